@@ -12,8 +12,8 @@ const FOLDED: Sheet = Sheet(include_str!("../../gyro-sim/src/generated/gyroscope
 const MAXIMAL: Sheet = Sheet(include_str!("../../gyro-sim/src/generated/gyroscope_maximal.rs"));
 
 /// The paper's second: corrections, and steps between them.
-const CORRECTIONS: u32 = 2000;
-const STEPS_PER_CORRECTION: u32 = 5;
+pub(crate) const CORRECTIONS: u32 = 2000;
+pub(crate) const STEPS_PER_CORRECTION: u32 = 5;
 
 /// Something to be measured.
 pub struct Kernel<'a> {

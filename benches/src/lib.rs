@@ -6,6 +6,7 @@
 
 mod floor;
 mod kernels;
+pub mod lanes;
 mod round;
 mod scene;
 mod sheet;

@@ -78,6 +78,11 @@ pub fn index(value: usize) -> Literal {
     Literal::usize_unsuffixed(value)
 }
 
+/// `x y + added`.
+fn fused(x: &TokenStream, y: &TokenStream, added: &TokenStream) -> (TokenStream, Binding) {
+    (quote! { T::fused(#x, #y, #added) }, Binding::Unary)
+}
+
 struct Writer<'a, V> {
     graph: &'a Graph,
     variables: &'a V,
@@ -165,7 +170,7 @@ impl<V: Variables> Writer<'_, V> {
         match self.graph.node(id) {
             Node::Constant(value) => (self.literal(value), Binding::Unary),
             Node::Symbol(symbol) => (self.variables.variable(*symbol).0, Binding::Unary),
-            Node::Add(a, b) => (self.sum(*a, *b), Binding::Sum),
+            Node::Add(a, b) => self.sum(*a, *b),
             Node::Mul(a, b) => (self.product(*a, *b), Binding::Product),
             Node::Neg(a) => self.negation(*a),
             Node::Recip(a) => {
@@ -183,14 +188,51 @@ impl<V: Variables> Writer<'_, V> {
         }
     }
 
-    fn sum(&self, a: ExprId, b: ExprId) -> TokenStream {
-        let first = self.expression(a, Binding::Sum);
+    /// A product that nobody else uses becomes one operation with the sum.
+    fn sum(&self, a: ExprId, b: ExprId) -> (TokenStream, Binding) {
         if let Node::Neg(subtracted) = self.graph.node(b) {
-            let second = self.expression(*subtracted, Binding::Product);
-            return quote! { #first - #second };
+            return self.difference(a, *subtracted);
         }
-        let second = self.expression(b, Binding::Product);
-        quote! { #first + #second }
+        let with_b = self.fusible(b).map(|factors| (factors, a));
+        if let Some((factors, added)) = with_b.or_else(|| Some((self.fusible(a)?, b))) {
+            let (x, y) = self.factors(factors);
+            return fused(&x, &y, &self.expression(added, Binding::Sum));
+        }
+        let (first, second) = (self.expression(a, Binding::Sum), self.expression(b, Binding::Product));
+        (quote! { #first + #second }, Binding::Sum)
+    }
+
+    fn difference(&self, from: ExprId, subtracted: ExprId) -> (TokenStream, Binding) {
+        if let Some((x, y)) = self.fusible(subtracted) {
+            let (x, y) = (self.expression(x, Binding::Unary), self.expression(y, Binding::Sum));
+            let minus_x = quote! { -#x };
+            return fused(&minus_x, &y, &self.expression(from, Binding::Sum));
+        }
+        if let Some(factors) = self.fusible(from) {
+            let ((x, y), added) = (self.factors(factors), self.expression(subtracted, Binding::Unary));
+            let minus_added = quote! { -#added };
+            return fused(&x, &y, &minus_added);
+        }
+        let first = self.expression(from, Binding::Sum);
+        let second = self.expression(subtracted, Binding::Product);
+        (quote! { #first - #second }, Binding::Sum)
+    }
+
+    fn factors(&self, (x, y): (ExprId, ExprId)) -> (TokenStream, TokenStream) {
+        (self.expression(x, Binding::Sum), self.expression(y, Binding::Sum))
+    }
+
+    /// The factors of a product that is written where it is used, and is no quotient.
+    fn fusible(&self, id: ExprId) -> Option<(ExprId, ExprId)> {
+        match self.graph.node(id) {
+            Node::Mul(a, b)
+                if !self.names.contains_key(&id)
+                    && self.program.uses.quotient(self.graph, *a, *b).is_none() =>
+            {
+                Some((*a, *b))
+            }
+            _ => None,
+        }
     }
 
     fn product(&self, a: ExprId, b: ExprId) -> TokenStream {
@@ -209,8 +251,7 @@ impl<V: Variables> Writer<'_, V> {
             && let Node::Neg(y) = self.graph.node(*y)
             && !self.names.contains_key(&a)
         {
-            let (first, second) = (self.expression(*y, Binding::Sum), self.expression(*x, Binding::Product));
-            return (quote! { #first - #second }, Binding::Sum);
+            return self.difference(*y, *x);
         }
         let a = self.expression(a, Binding::Unary);
         (quote! { -#a }, Binding::Unary)

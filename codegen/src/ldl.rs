@@ -31,10 +31,11 @@ impl Elimination {
         self.substitute_back(graph)
     }
 
-    /// Rewrites all that is yet to be eliminated.
-    pub fn rewrite(&mut self, rewritten: impl FnOnce(Vec<ExprId>) -> Vec<ExprId>) {
-        let old = self.entries.values().chain(&self.rhs).copied().collect();
-        let mut new = rewritten(old).into_iter();
+    /// Rewrites all that is yet to be eliminated; of each expression `rewritten` is told whether it is on the diagonal.
+    pub fn rewrite(&mut self, rewritten: impl FnOnce(&[ExprId], &[bool]) -> Vec<ExprId>) {
+        let old: Vec<_> = self.entries.values().chain(&self.rhs).copied().collect();
+        let is_diagonal: Vec<_> = self.entries.keys().map(|(row, column)| row == column).collect();
+        let mut new = rewritten(&old, &is_diagonal).into_iter();
         for (value, new) in self.entries.values_mut().chain(&mut self.rhs).zip(&mut new) {
             *value = new;
         }

@@ -2,7 +2,7 @@
 
 use crate::graph::{ExprId, Graph, Node};
 use crate::sheet::Form;
-use rustc_hash::FxHashMap as HashMap;
+use rustc_hash::{FxHashMap as HashMap, FxHashSet as HashSet};
 use std::fmt;
 
 /// Arithmetic operations of a program. A negation is free; a product with a reciprocal that nobody else uses is one division.
@@ -152,6 +152,7 @@ pub struct Program {
 impl Program {
     pub fn new(graph: &Graph, roots: &[ExprId]) -> Self {
         let uses = Uses::count(graph, roots);
+        let summed = products_of_sums(graph, &uses.order);
         let mut inline_size: HashMap<ExprId, usize> = HashMap::default();
         let mut temporaries = Vec::new();
         for &id in &uses.order {
@@ -164,8 +165,10 @@ impl Program {
             };
             let shared = uses.of(id) > 1 && !matches!(graph.node(id), Node::Neg(_));
             // A reciprocal that is used once is written as a quotient.
-            let long =
-                own > MAX_INLINE_OPERATIONS && !matches!(graph.node(id), Node::Recip(_) | Node::Neg(_));
+            // A product that feeds one sum becomes one operation with it.
+            let long = own > MAX_INLINE_OPERATIONS
+                && !matches!(graph.node(id), Node::Recip(_) | Node::Neg(_))
+                && !summed.contains(&id);
             let named = own > 0 && (shared || long);
             if named {
                 temporaries.push(id);
@@ -174,6 +177,14 @@ impl Program {
         }
         Self { uses, temporaries }
     }
+}
+
+/// Products that are terms of sums.
+fn products_of_sums(graph: &Graph, order: &[ExprId]) -> HashSet<ExprId> {
+    let sums = order.iter().filter(|&&id| matches!(graph.node(id), Node::Add(..)));
+    let terms = sums.flat_map(|&sum| graph.node(sum).operands());
+    let unsigned = terms.map(|term| if let Node::Neg(inner) = graph.node(term) { *inner } else { term });
+    unsigned.filter(|&term| matches!(graph.node(term), Node::Mul(..))).collect()
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ pub type Charts<const N: usize> = [u8; N];
 
 /// A chart is left only once another component is larger by this factor, so that rounding cannot make it flicker. Any
 /// factor above one works; the special component stays above 1/(2 · 1.25) of the vector's length.
-const HYSTERESIS: f64 = 1.25;
+pub(crate) const HYSTERESIS: f64 = 1.25;
 
 /// The chart of the largest component of each vector.
 pub fn best<T: Real, const N: usize>(vectors: &[[T; 4]; N]) -> Charts<N> {

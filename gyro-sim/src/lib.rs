@@ -57,8 +57,11 @@ extern crate self as gyro_sim;
 mod apart;
 pub mod charts;
 mod error;
+pub mod fused;
 #[cfg(feature = "generated")]
 pub mod generated;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 mod mechanism;
 mod partition;
 pub mod pivoting;
@@ -71,8 +74,8 @@ mod violation;
 pub use apart::apart;
 pub use error::Error;
 pub use mechanism::{
-    Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo, Owner,
-    Partition, Ports, RowInfo, Storage,
+    Charted, Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo,
+    Owner, Partition, Ports, RowInfo, Storage,
 };
 pub use partition::{Direct, Partitioned};
 pub use rk4::Rk4;

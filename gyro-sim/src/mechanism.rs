@@ -39,6 +39,12 @@ pub trait Mechanism: Ode {
     /// Zeroed buffer.
     fn readings(&self) -> Self::Readings;
 
+    /// Writes `f(t, y)` like [`Ode::derivative`], for states that were corrected a few steps ago: violations of the constraints
+    /// are of the order of the integrator's error, and so is what this takes for granted. Trees need far fewer operations
+    /// for it.
+    fn corrected_derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
+        self.derivative(t, y, dy);
+    }
     /// Writes Φ: joint rows, eqs. (5) to (10), then normalisations, eq. (12).
     fn phi(&self, t: Self::Scalar, y: &Self::State, out: &mut Self::Constraints);
     /// Writes `Φ_r s + Φ_π' w' − ν`, the residual of eq. (18).
@@ -99,12 +105,20 @@ pub trait Partition: Mechanism<Scalar: Real> {
         choice: &Self::Independent,
         y: &mut Self::State,
     ) -> Result<(), Error>;
-    /// Writes `f(t, y)` like [`Ode::derivative`], for states that were corrected a few steps ago: violations of the constraints
-    /// are of the order of the integrator's error, and so is what this takes for granted. Trees need far fewer operations
-    /// for it.
-    fn corrected_derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
-        self.derivative(t, y, dy);
-    }
+}
+
+/// A tree whose partition is unrolled: the solves behind its [`Partition`], for any scalar. They are free of branches, so that each
+/// lane of a pack may be on charts of its own: see [`charts`](mod@crate::charts).
+pub trait Charted: Mechanism {
+    /// For each joint with charts a four-vector.
+    type Vectors: Storage<[Self::Scalar; 4]>;
+
+    /// The four-vectors whose largest components are the special Euler parameters.
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors;
+    /// One Newton step of the dependent positions towards Φ(q, t) = 0, on the charts that are given as unit vectors.
+    fn newton_step_on(&self, t: Self::Scalar, charts: &Self::Vectors, y: &mut Self::State);
+    /// Solves eq. (19) for the dependent velocities, at corrected positions.
+    fn solve_velocities_on(&self, t: Self::Scalar, charts: &Self::Vectors, y: &mut Self::State);
 }
 
 /// A tree in joint coordinates: the state-space form, with the maps to and from maximal coordinates, and short ways to the

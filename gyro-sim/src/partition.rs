@@ -1,7 +1,7 @@
 //! The paper's two algorithms: direct integration and coordinate partitioning.
 
 use crate::violation::{Violation, constraint_violation};
-use crate::{Error, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
+use crate::{Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
 
 /// *Direct integration*: eq. (17) alone. Violations of the constraints grow, as the paper says.
 #[derive(Clone, Debug)]
@@ -49,9 +49,9 @@ pub struct Partitioned<M: Partition> {
 }
 
 /// A mechanism between two corrections.
-struct Corrected<'a, M>(&'a M);
+pub(crate) struct Corrected<'a, M>(pub(crate) &'a M);
 
-impl<M: Partition> Ode for Corrected<'_, M> {
+impl<M: Mechanism> Ode for Corrected<'_, M> {
     type Scalar = M::Scalar;
     type State = M::State;
 
@@ -64,11 +64,11 @@ impl<M: Partition> Ode for Corrected<'_, M> {
 }
 
 /// Newton–Raphson converges quadratically from the drift of a few steps: one or two iterations. Ten mean that it does not.
-const MAX_ITERATIONS: u32 = 10;
+pub(crate) const MAX_ITERATIONS: u32 = 10;
 
 /// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in units
 /// of the mechanism's size, because a point row is a difference of positions.
-const CONVERGED_EPSILONS: f64 = 16.0;
+pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
 
 impl<M: Partition> Partitioned<M> {
     /// A solver that starts with the best choice of independent coordinates at `state` and time zero.
@@ -139,7 +139,7 @@ impl<M: Partition> Partitioned<M> {
         for _ in 0..MAX_ITERATIONS {
             mechanism.newton_step(t, &self.independent, y)?;
             mechanism.phi(t, y, &mut self.phi);
-            worst = constraint_violation(mechanism, self.phi.as_ref());
+            worst = constraint_violation(mechanism, self.phi.as_ref(), |x| x);
             if worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y) {
                 return Ok(());
             }

@@ -160,7 +160,7 @@ where
     let largest = change.iter().fold(M::Scalar::constant(0.0), |m, x| if x.abs() > m { x.abs() } else { m });
     let limit = least.value * M::Scalar::constant(TRUSTED);
     if largest > limit {
-        let owner = constraint_violation(mechanism, phi.as_ref()).owner.unwrap_or(Owner::Body(0));
+        let owner = constraint_violation(mechanism, phi.as_ref(), |x| x).owner.unwrap_or(Owner::Body(0));
         return Err(Error::Jump { t: t.to_f64(), change: largest.to_f64(), limit: limit.to_f64(), owner });
     }
     let (size, y) = (mechanism.size(), y.as_mut());

@@ -25,32 +25,41 @@ impl<S: Clone> Rk4<S> {
         let half = h * O::Scalar::constant(0.5);
         let (sixth, third) = (h / O::Scalar::constant(6.0), h / O::Scalar::constant(3.0));
         system.derivative(t, y, &mut self.slope);
-        add_scaled(&mut self.sum, y, sixth, &self.slope);
-        add_scaled(&mut self.stage, y, half, &self.slope);
+        self.begin(y, sixth, half);
         system.derivative(t + half, &self.stage, &mut self.slope);
-        accumulate(&mut self.sum, third, &self.slope);
-        add_scaled(&mut self.stage, y, half, &self.slope);
+        self.go_on(y, third, half);
         system.derivative(t + half, &self.stage, &mut self.slope);
-        accumulate(&mut self.sum, third, &self.slope);
-        add_scaled(&mut self.stage, y, h, &self.slope);
+        self.go_on(y, third, h);
         system.derivative(t + h, &self.stage, &mut self.slope);
-        add_scaled(y, &self.sum, sixth, &self.slope);
+        for ((y, sum), slope) in y.as_mut().iter_mut().zip(self.sum.as_ref()).zip(self.slope.as_ref()) {
+            *y = O::Scalar::fused(sixth, *slope, *sum);
+        }
     }
-}
 
-/// `out = y + factor · slope`.
-#[inline]
-fn add_scaled<T: Scalar, S: Storage<T>>(out: &mut S, y: &S, factor: T, slope: &S) {
-    for ((out, y), slope) in out.as_mut().iter_mut().zip(y.as_ref()).zip(slope.as_ref()) {
-        *out = *y + factor * *slope;
+    /// Begins the sum with the slope at `y` and its weight, and goes along it to the first stage.
+    #[inline]
+    fn begin<T: Scalar>(&mut self, y: &S, weight: T, step: T)
+    where
+        S: Storage<T>,
+    {
+        let results = self.sum.as_mut().iter_mut().zip(self.stage.as_mut());
+        for (((sum, stage), slope), y) in results.zip(self.slope.as_ref()).zip(y.as_ref()) {
+            *sum = T::fused(weight, *slope, *y);
+            *stage = T::fused(step, *slope, *y);
+        }
     }
-}
 
-/// `sum = sum + factor · slope`.
-#[inline]
-fn accumulate<T: Scalar, S: Storage<T>>(sum: &mut S, factor: T, slope: &S) {
-    for (sum, slope) in sum.as_mut().iter_mut().zip(slope.as_ref()) {
-        *sum = *sum + factor * *slope;
+    /// Adds the slope to the sum with its weight, and goes on from `y` along it to the next stage, in one pass over memory.
+    #[inline]
+    fn go_on<T: Scalar>(&mut self, y: &S, weight: T, step: T)
+    where
+        S: Storage<T>,
+    {
+        let results = self.sum.as_mut().iter_mut().zip(self.stage.as_mut());
+        for (((sum, stage), slope), y) in results.zip(self.slope.as_ref()).zip(y.as_ref()) {
+            *sum = T::fused(weight, *slope, *sum);
+            *stage = T::fused(step, *slope, *y);
+        }
     }
 }
 

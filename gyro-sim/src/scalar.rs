@@ -1,6 +1,6 @@
 //! What a number must offer: little for the generated kernels, a little more for the solvers around them.
 
-use crate::spline;
+use crate::{fused, spline};
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -18,6 +18,12 @@ pub trait Scalar:
 {
     /// The constant nearest to `value`.
     fn constant(value: f64) -> Self;
+    /// `a b + c`, rounded once where the target has an instruction for it, else twice: see [`fused`](mod@crate::fused).
+    #[inline(always)]
+    #[must_use]
+    fn fused(a: Self, b: Self, c: Self) -> Self {
+        a * b + c
+    }
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
@@ -59,6 +65,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         value
+    }
+    #[inline(always)]
+    fn fused(a: Self, b: Self, c: Self) -> Self {
+        fused::double(a, b, c)
     }
     #[inline]
     fn sqrt(self) -> Self {
@@ -111,6 +121,10 @@ impl Scalar for f32 {
     #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is what is meant")]
     fn constant(value: f64) -> Self {
         value as Self
+    }
+    #[inline(always)]
+    fn fused(a: Self, b: Self, c: Self) -> Self {
+        fused::single(a, b, c)
     }
     #[inline]
     fn sqrt(self) -> Self {

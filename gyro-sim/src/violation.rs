@@ -15,27 +15,29 @@ pub struct Violation<T> {
 ///
 /// Rows that are not finite count as worse than any number.
 pub fn violation<M: Mechanism<Scalar: Real>>(mechanism: &M, rows: &[M::Scalar]) -> Violation<M::Scalar> {
-    worst(joint_rows(mechanism, rows))
+    worst(joint_rows(mechanism, rows, |x| x))
 }
 
-/// The worst of all rows of Φ, normalisations included.
-pub(crate) fn constraint_violation<M: Mechanism<Scalar: Real>>(
+/// The worst of all rows of Φ, normalisations included; `read` gives the number that counts, of a pack of lanes one of them.
+pub(crate) fn constraint_violation<M: Mechanism, T: Real>(
     mechanism: &M,
     phi: &[M::Scalar],
-) -> Violation<M::Scalar> {
+    read: impl Fn(M::Scalar) -> T,
+) -> Violation<T> {
     let (rows, normalisations) = phi.split_at(phi.len().saturating_sub(mechanism.n_bodies()));
-    let bodies = (0u16..).map(Owner::Body);
-    worst(joint_rows(mechanism, rows).chain(normalisations.iter().map(|x| x.abs()).zip(bodies)))
+    let normalisations = normalisations.iter().map(|&x| read(x).abs()).zip((0u16..).map(Owner::Body));
+    worst(joint_rows(mechanism, rows, &read).chain(normalisations))
 }
 
 /// Size and owner of each joint row.
-fn joint_rows<M: Mechanism<Scalar: Real>>(
+fn joint_rows<M: Mechanism, T: Real>(
     mechanism: &M,
     rows: &[M::Scalar],
-) -> impl Iterator<Item = (M::Scalar, Owner)> {
-    let size = mechanism.size();
+    read: impl Fn(M::Scalar) -> T,
+) -> impl Iterator<Item = (T, Owner)> {
+    let size = read(mechanism.size());
     rows.iter().enumerate().map(move |(index, &value)| {
-        let row = mechanism.row(index);
+        let (row, value) = (mechanism.row(index), read(value));
         (if row.is_length { (value / size).abs() } else { value.abs() }, row.owner)
     })
 }

@@ -12,6 +12,7 @@ mod generated_files;
 mod joint_kinds;
 mod joint_readings;
 mod joint_space;
+mod lanes;
 mod long_run;
 mod moving_base;
 mod no_std_probe;

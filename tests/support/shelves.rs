@@ -52,6 +52,9 @@ pub fn generated(page: &str) -> Engine {
             Engine::new(shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
         }
         "gyroscope-maximal" => Engine::new(shipped::gyroscope_maximal::GyroscopeMaximal::default()),
+        "gyroscope-misalignments" => {
+            Engine::new(shipped::gyroscope_misalignments::GyroscopeMisalignments::default())
+        }
         "gyroscope-parameters" => Engine::new(shipped::gyroscope_parameters::GyroscopeParameters::default()),
         "gyroscope-radial-imbalance" => {
             Engine::new(shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default())

@@ -20,6 +20,7 @@ pub(crate) enum Command {
     Import(ImportArgs),
     Verify(VerifyArgs),
     Performance(PerformanceArgs),
+    Embedded(EmbeddedArgs),
 }
 
 /// Write the Rust modules of models
@@ -239,6 +240,24 @@ pub(crate) struct PerformanceArgs {
     /// Bodies of the longest chain; 0 leaves the chains and their table alone
     #[arg(long, value_name = "N", default_value_t = 64)]
     pub(crate) bodies: usize,
+    /// Measure packs of lanes alone and leave the other tables alone
+    #[arg(long, conflicts_with = "bodies")]
+    pub(crate) only_lanes: bool,
+}
+
+/// Run the firmware and write docs/embedded.md
+///
+/// Builds the firmware in embedded/ for a Cortex-M7 and a Cortex-M4F, runs it under QEMU, compares every bit with the same runs on this
+/// machine, proves by the linker that nothing panics or allocates, and writes the tables of docs/embedded.md anew. The tools come
+/// from embedded/setup.sh; nothing is fetched here.
+#[derive(Debug, Args)]
+pub(crate) struct EmbeddedArgs {
+    /// The page whose tables are to be replaced [default: docs/embedded.md]
+    #[arg(long, value_name = "FILE.md")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print the tables instead, and write nothing
+    #[arg(long, conflicts_with = "out")]
+    pub(crate) print: bool,
 }
 
 /// What is fed into an input.

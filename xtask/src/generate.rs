@@ -27,12 +27,14 @@ pub(crate) struct Places {
 }
 
 impl Places {
-    /// What is shipped, and what only tests need.
-    pub(crate) fn of_workspace(root: &Path) -> [Self; 2] {
+    /// What is shipped, what only tests need, and what the firmware runs.
+    pub(crate) fn of_workspace(root: &Path) -> [Self; 3] {
         let (shipped, tests) = (root.join("gyro-sim").join("src"), root.join("tests"));
+        let (firmware, scenes) = (root.join("embedded"), root.join("embedded").join("scenes").join("src"));
         [
             Self { models: root.join("models"), generated: shipped.join("generated") },
             Self { models: tests.join("models"), generated: tests.join("support").join("generated") },
+            Self { models: firmware.join("models"), generated: scenes.join("mechanisms") },
         ]
     }
 }

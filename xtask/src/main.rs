@@ -3,6 +3,7 @@
 mod args;
 mod columns;
 mod compare;
+mod embedded;
 mod failure;
 mod files;
 mod fit;
@@ -10,6 +11,7 @@ mod generate;
 mod inputs;
 mod inspect;
 mod json;
+mod lanes;
 mod linear;
 mod machine_code;
 mod nested;
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Import(args) => urdf::import(&args),
         Command::Performance(args) => performance::performance(&args),
+        Command::Embedded(args) => embedded::embedded(&args),
         Command::Verify(args) => verify::verify_models(&args),
     };
     match outcome {

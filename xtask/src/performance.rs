@@ -3,6 +3,7 @@
 use crate::args::PerformanceArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::lanes;
 use crate::progress::Spinner;
 use crate::scaling;
 use std::fmt::Write as _;
@@ -18,19 +19,26 @@ pub(crate) fn performance(args: &PerformanceArgs) -> Result<(), Failure> {
     let path = args.out.clone().unwrap_or_else(|| files::root().join("docs").join("performance.md"));
     let page = files::read_page(&path)?;
     fs::create_dir_all(folder()).map_err(|e| said(&folder(), &e))?;
-    let program = program()?;
+    let page = if args.only_lanes { page } else { without_lanes(page, args)? };
+    let page = replaced(&page, "lanes", &lanes::table()?)?;
+    let is_new = files::write(&path, &page)?;
+    eprintln!("{} {}", if is_new { "wrote" } else { "nothing new in" }, path.display());
+    Ok(())
+}
+
+/// Everything that is compiled without special flags.
+fn without_lanes(mut page: String, args: &PerformanceArgs) -> Result<String, Failure> {
+    let program = built("performance", |_| ())?;
     let rows = measure(&program)?;
     let counts = count(&program)?;
     let (kernels, runs): (Vec<_>, Vec<_>) = rows.iter().partition(|row| row.what != SECOND);
-    let mut page = replaced(&page, "machine", &machine()?)?;
+    page = replaced(&page, "machine", &machine()?)?;
     page = replaced(&page, "kernels", &kernel_table(&kernels, counts.as_deref()))?;
     page = replaced(&page, "runs", &run_table(&runs))?;
     if args.bodies > 0 {
         page = replaced(&page, "scaling", &scaling::table(&program, args.bodies)?)?;
     }
-    let is_new = files::write(&path, &page)?;
-    eprintln!("{} {}", if is_new { "wrote" } else { "nothing new in" }, path.display());
-    Ok(())
+    Ok(page)
 }
 
 /// As benches/src/kernels.rs names whole runs.
@@ -54,15 +62,18 @@ struct Row {
     ratio: f64,
 }
 
-/// Builds the program that measures; returns where it is.
-fn program() -> Result<PathBuf, Failure> {
+/// Builds a program that measures, as `set` has Cargo do it; returns where it is.
+pub(crate) fn built(bench: &str, set: impl FnOnce(&mut Command)) -> Result<PathBuf, Failure> {
     let _spinner = Spinner::new("building the benches".to_owned());
     let options =
-        ["bench", "--no-run", "--package", "gyro-benches", "--bench", "performance", "--message-format=json"];
-    let messages = output(Command::new(cargo()).args(options).current_dir(files::root()))?;
+        ["bench", "--no-run", "--package", "gyro-benches", "--bench", bench, "--message-format=json"];
+    let mut command = Command::new(cargo());
+    command.args(options).current_dir(files::root());
+    set(&mut command);
+    let messages = output(&mut command)?;
     let executable = |line: &str| {
         let message: serde_json::Value = serde_json::from_str(line).ok()?;
-        let is_ours = message["target"]["name"] == "performance";
+        let is_ours = message["target"]["name"] == bench;
         is_ours.then(|| message["executable"].as_str().map(PathBuf::from)).flatten()
     };
     messages
@@ -197,7 +208,7 @@ fn machine() -> Result<String, Failure> {
 }
 
 /// The page with what stands between the marks of this name replaced.
-fn replaced(page: &str, name: &str, text: &str) -> Result<String, Failure> {
+pub(crate) fn replaced(page: &str, name: &str, text: &str) -> Result<String, Failure> {
     let (begin, end) = (format!("<!-- begin {name} -->\n"), format!("<!-- end {name} -->"));
     let missing = |mark: &str| Failure::Usage(format!("the page has no line `{}`", mark.trim()));
     let (before, rest) = page.split_once(&begin).ok_or_else(|| missing(&begin))?;

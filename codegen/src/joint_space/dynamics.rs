@@ -11,7 +11,7 @@ use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::ldl::Elimination;
 use crate::linear::{UNIT3, Vec3, ZERO3};
-use crate::normal_form::normal_form;
+use crate::normal_form::normal_form_of;
 use crate::null_space::{Arm, Basis, EliminatedTree, Excitation, Inertia};
 use crate::outputs::time_derivative;
 use crate::schedule::Operations;
@@ -105,23 +105,23 @@ impl Reduced {
         let matrix = self.mass_matrix(system);
         let forces = self.generalised_forces(system);
         let graph = &mut system.graph;
-        let mut reduced = |graph: &mut Graph, what, old: &[ExprId]| {
-            let new = normal_form(graph, unit, old);
+        let mut reduced = |graph: &mut Graph, what, (old, divisors): (&[ExprId], &[bool])| {
+            let new = normal_form_of(graph, unit, old, divisors);
             let [before, after] = [old, &new].map(|roots| Operations::count(graph, roots).total());
             reductions.push(Reduction { what, before, after });
             new
         };
         let mut elimination = Elimination::new(matrix, forces);
-        elimination.rewrite(|old| reduced(graph, "mass matrix and forces", &old));
+        elimination.rewrite(|old, divisors| reduced(graph, "mass matrix and forces", (old, divisors)));
         for unknown in self.rates.iter().flatten().rev().copied() {
             let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
             elimination.pivot(graph, unknown);
             if is_constant {
-                elimination.rewrite(|old| normal_form(graph, unit, &old));
+                elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
             }
         }
         let solution = elimination.substitute_back(graph);
-        reduced(graph, "solution", &solution)
+        reduced(graph, "solution", (&solution, &[]))
     }
 
     fn scattered(&self, rates: &[Vec<ExprId>]) -> Vec<ExprId> {

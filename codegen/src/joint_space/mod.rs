@@ -451,7 +451,7 @@ mod tests {
         check(&["joint_accelerations_at"], 40);
         check(&["corrected_accelerations"], 150);
         check(&["corrected_solution"], 250);
-        check(&["accelerations"], 500);
+        check(&["accelerations"], 440);
         let saddle = cost(page, Elimination::Saddle, &["accelerations"]);
         assert!(saddle <= 860, "saddle: {saddle}");
     }

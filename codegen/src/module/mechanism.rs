@@ -29,7 +29,7 @@ impl ModuleWriter<'_> {
         });
         let readings =
             self.filling("read_joints", "Writes the joint readings", "Readings", &self.functions.read_joints);
-        let tables = self.tables();
+        let (corrected, tables) = (self.corrected_derivative(), self.tables());
         quote! {
             impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for #name<T> {
                 type Rows = [T; #n_rows];
@@ -46,6 +46,7 @@ impl ModuleWriter<'_> {
                     [T::constant(0.0); #n_readings]
                 }
 
+                #corrected
                 #phi
                 #residual
                 #energy

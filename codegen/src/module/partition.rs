@@ -15,7 +15,6 @@ impl ModuleWriter<'_> {
     /// Full pivoting at run time.
     fn by_pivoting(&self) -> TokenStream {
         let name = ident(self.type_name);
-        let corrected = self.corrected_derivative();
         let [n_constraints, n_positions] =
             [self.equations.phi.len(), 7 * self.equations.n_slots()].map(index);
         quote! {
@@ -38,7 +37,6 @@ impl ModuleWriter<'_> {
                 ) -> ::core::result::Result<(), gyro_sim::Error> {
                     gyro_sim::pivoting::solve_velocities(self, t, choice, y)
                 }
-                #corrected
             }
         }
     }
@@ -47,7 +45,6 @@ impl ModuleWriter<'_> {
     fn by_charts(&self) -> TokenStream {
         let name = ident(self.type_name);
         let n_charts = index(self.functions.chart_vectors.len() / 4);
-        let n_state = index(self.equations.n_state());
         let vectors = self.function(
             "The four-vectors whose largest components are the special Euler parameters",
             &self.functions.chart_vectors,
@@ -55,7 +52,7 @@ impl ModuleWriter<'_> {
                 let statements = &body.statements;
                 let vectors = body.values.chunks(4).map(|vector| quote! { [#(#vector),*] });
                 quote! {
-                    fn chart_vectors(&self, #y: &[T; #n_state]) -> [[T; 4]; #n_charts] {
+                    fn chart_vectors(&self, #y: &Self::State) -> Self::Vectors {
                         #statements
                         [#(#vectors),*]
                     }
@@ -63,36 +60,47 @@ impl ModuleWriter<'_> {
             },
         );
         let newton = self.solve(
-            "newton_step",
+            "newton_step_on",
             "One Newton step of the dependent positions",
             &self.functions.newton_step,
             0,
         );
         let velocities = self.solve(
-            "solve_velocities",
+            "solve_velocities_on",
             "Solves eq. (19) for the dependent velocities",
             &self.functions.solve_velocities,
             7 * self.equations.n_slots(),
         );
-        let corrected = self.corrected_derivative();
         quote! {
-            impl<T: gyro_sim::Scalar> #name<T> {
+            impl<T: gyro_sim::Scalar> gyro_sim::Charted for #name<T> {
+                type Vectors = [[T; 4]; #n_charts];
+
                 #vectors
+                #newton
+                #velocities
             }
 
             impl<T: gyro_sim::Real> gyro_sim::Partition for #name<T> {
                 type Independent = gyro_sim::charts::Charts<#n_charts>;
 
                 fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-                    gyro_sim::charts::best(&self.chart_vectors(y))
+                    gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
                 }
                 fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-                    gyro_sim::charts::follow(&self.chart_vectors(y), choice)
+                    gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
                 }
-
-                #newton
-                #velocities
-                #corrected
+                fn newton_step(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::Charted::newton_step_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    Ok(())
+                }
+                fn solve_velocities(
+                    &self, t: T, choice: &Self::Independent, y: &mut Self::State,
+                ) -> ::core::result::Result<(), gyro_sim::Error> {
+                    gyro_sim::Charted::solve_velocities_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                    Ok(())
+                }
             }
         }
     }
@@ -106,17 +114,11 @@ impl ModuleWriter<'_> {
         self.function(what, &roots, |body, t, _| {
             let (statements, values) = (&body.statements, &body.values);
             let charted = body.symbols.iter().any(|s| matches!(s, Symbol::Chart { .. }));
-            let (choice, charts) = if charted {
-                (quote! { choice }, quote! { let charts = gyro_sim::charts::one_hot::<T, _>(choice); })
-            } else {
-                (quote! { _choice }, quote! {})
-            };
+            let charts = ident(if charted { "charts" } else { "_charts" });
             quote! {
-                fn #name(&self, #t: T, #choice: &Self::Independent, #y: &mut Self::State) -> ::core::result::Result<(), gyro_sim::Error> {
-                    #charts
+                fn #name(&self, #t: T, #charts: &Self::Vectors, #y: &mut Self::State) {
                     #statements
                     #(y[#places] = #values;)*
-                    Ok(())
                 }
             }
         })

@@ -80,6 +80,25 @@ impl<'a> Expansion<'a> {
         literal.and_then(|literal| self.rules.get(&literal)).is_some_and(|rule| rule.used)
     }
 
+    /// How many terms of denominators, and of what else will be divided by, are subtracted from others although they cannot be negative: where they come close, digits are lost. A
+    /// parameter (a mass, a moment of inertia) counts as positive.
+    pub fn cancellations<'p>(&self, divisors: impl Iterator<Item = &'p Polynomial>) -> usize {
+        let is_parameter =
+            |literal: Literal| matches!(self.atoms[literal], Atom::Symbol(Symbol::Parameter(_)));
+        let cannot_be_negative =
+            |monomial: &Monomial| monomial.powers().all(|(literal, e)| e % 2 == 0 || is_parameter(literal));
+        let in_one = |denominator: &Polynomial| {
+            let squares = denominator.terms().filter(|(_, monomial)| cannot_be_negative(monomial));
+            let (negative, positive): (Vec<_>, Vec<_>) = squares.partition(|(c, _)| c.is_negative());
+            negative.len().min(positive.len())
+        };
+        let denominators = self.atoms.iter().filter_map(|atom| match atom {
+            Atom::Sum(denominator) => Some(in_one(denominator)),
+            _ => None,
+        });
+        denominators.sum::<usize>() + divisors.map(in_one).sum::<usize>()
+    }
+
     /// The literal that an expression is, if it is one.
     fn literal_of(&mut self, expression: ExprId) -> Option<Option<Literal>> {
         let value = self.of(expression)?;

@@ -36,9 +36,20 @@ const MANY: u64 = 40;
 /// `unit` names points of unit circles and spheres, such as the four Euler parameters: the squares of each add up to one.
 /// The sine and cosine of one operand need no mention.
 pub fn normal_form(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) -> Vec<ExprId> {
+    normal_form_of(graph, unit, roots, &[])
+}
+
+/// The same; the last argument says which of the roots something will be divided by, so that they are better sums of what cannot be
+/// negative.
+pub fn normal_form_of(
+    graph: &mut Graph,
+    unit: &[Vec<ExprId>],
+    roots: &[ExprId],
+    divisors: &[bool],
+) -> Vec<ExprId> {
     let relations = relations(graph, unit, roots);
     let cost = Operations::count(graph, roots).total();
-    match search(graph, &relations, roots) {
+    match search(graph, &relations, (roots, divisors)) {
         Some(form) if form.cost < cost => form.system.build(graph),
         _ => roots.to_vec(),
     }
@@ -48,8 +59,8 @@ pub fn normal_form(graph: &mut Graph, unit: &[Vec<ExprId>], roots: &[ExprId]) ->
 pub fn vanishes(graph: &mut Graph, unit: &[Vec<ExprId>], root: ExprId) -> bool {
     let relations = relations(graph, unit, &[root]);
     let (first, mut terms) = (vec![0; relations.len()], MAX_TERMS);
-    let expanded = expand(graph, &relations, &first, &[root], &mut terms);
-    expanded.is_some_and(|(system, _)| system.sums.iter().all(Vec::is_empty))
+    let expanded = expand(graph, &relations, &first, (&[root], &[]), &mut terms);
+    expanded.is_some_and(|expanded| expanded.system.sums.iter().all(Vec::is_empty))
 }
 
 /// The given points that the roots depend on, and the sines and cosines among what they depend on. No two have an atom in
@@ -78,20 +89,27 @@ struct Form {
     cost: usize,
 }
 
-/// First each relation in turn replaces another square than its first, if that is cheaper; then more ways of factoring are
+/// First each relation in turn replaces another square than its first, if that loses fewer digits or is cheaper; then more ways of factoring are
 /// tried. `None` if the roots are too large.
-fn search(graph: &Graph, relations: &[Vec<ExprId>], roots: &[ExprId]) -> Option<Form> {
+fn search(graph: &Graph, relations: &[Vec<ExprId>], roots: (&[ExprId], &[bool])) -> Option<Form> {
     let (mut terms, mut steps) = (MAX_TERMS, MAX_STEPS);
     let mut choice = vec![0; relations.len()];
-    let (mut system, used) = expand(graph, relations, &choice, roots, &mut terms)?;
+    let Expanded { mut system, used, mut cancellations } =
+        expand(graph, relations, &choice, roots, &mut terms)?;
     let mut best = factored(&system, 0..FEW, &mut steps)?;
-    for (at, relation) in relations.iter().enumerate().filter(|&(at, _)| used[at]) {
+    for (at, relation) in relations.iter().enumerate() {
+        if !used[at] && cancellations == 0 {
+            continue;
+        }
         for reduced in 1..relation.len() {
             let kept = std::mem::replace(&mut choice[at], reduced);
             let other = expand(graph, relations, &choice, roots, &mut terms);
-            let form = other.and_then(|(other, _)| Some((factored(&other, 0..FEW, &mut steps)?, other)));
+            let form = other.and_then(|other| Some((factored(&other.system, 0..FEW, &mut steps)?, other)));
             match form {
-                Some((form, other)) if form.cost < best.cost => (best, system) = (form, other),
+                // Digits before operations.
+                Some((form, other)) if (other.cancellations, form.cost) < (cancellations, best.cost) => {
+                    (best, system, cancellations) = (form, other.system, other.cancellations);
+                }
                 _ => choice[at] = kept,
             }
         }
@@ -105,24 +123,36 @@ fn search(graph: &Graph, relations: &[Vec<ExprId>], roots: &[ExprId]) -> Option<
     Some(if cost < best.cost { Form { system, cost } } else { best })
 }
 
-/// The roots as a system of polynomials, each relation replacing the chosen square, and which relations had any to replace.
+/// The roots as polynomials.
+struct Expanded {
+    system: Sums,
+    /// Which relations had anything to replace.
+    used: Vec<bool>,
+    /// See [`Expansion::cancellations`].
+    cancellations: usize,
+}
+
+/// The roots as a system of polynomials, each relation replacing the chosen square.
 fn expand(
     graph: &Graph,
     relations: &[Vec<ExprId>],
     choice: &[usize],
-    roots: &[ExprId],
+    (roots, divisors): (&[ExprId], &[bool]),
     terms: &mut usize,
-) -> Option<(Sums, Vec<bool>)> {
+) -> Option<Expanded> {
     let mut expansion = Expansion::new(graph, terms);
     for (relation, &reduced) in relations.iter().zip(choice) {
         let others: Vec<_> = relation.iter().copied().filter(|&x| x != relation[reduced]).collect();
         expansion.relate(relation[reduced], &others)?;
     }
     let polynomials: Option<Vec<Rc<Polynomial>>> = roots.iter().map(|&root| expansion.of(root)).collect();
-    let system = Sums::new(&expansion, &polynomials?);
+    let polynomials = polynomials?;
+    let system = Sums::new(&expansion, &polynomials);
+    let divisors = polynomials.iter().zip(divisors).filter(|(_, is_divisor)| **is_divisor);
+    let cancellations = expansion.cancellations(divisors.map(|(divisor, _)| &**divisor));
     let pairs = relations.iter().zip(choice);
     let used = pairs.map(|(relation, &reduced)| expansion.was_used(relation[reduced])).collect();
-    Some((system, used))
+    Some(Expanded { system, used, cancellations })
 }
 
 /// The cheapest of several ways of factoring, as far as the steps reach.

@@ -126,10 +126,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CompoundPendulum<T> {
             rod_sx,
             rod_sy,
             rod_sz,
-            -(k(0.5) * (rod_e1 * rod_wx + rod_e2 * rod_wy + rod_e3 * rod_wz)),
-            k(0.5) * (rod_e0 * rod_wx - rod_e3 * rod_wy + rod_e2 * rod_wz),
-            k(0.5) * (rod_e3 * rod_wx + rod_e0 * rod_wy - rod_e1 * rod_wz),
-            -(k(0.5) * (rod_e2 * rod_wx - rod_e1 * rod_wy - rod_e0 * rod_wz)),
+            -(k(0.5)
+                * T::fused(rod_e3, rod_wz, T::fused(rod_e2, rod_wy, rod_e1 * rod_wx))),
+            k(0.5)
+                * T::fused(rod_e2, rod_wz, T::fused(-rod_e3, rod_wy, rod_e0 * rod_wx)),
+            k(0.5)
+                * T::fused(-rod_e1, rod_wz, T::fused(rod_e0, rod_wy, rod_e3 * rod_wx)),
+            -(k(0.5)
+                * T::fused(-rod_e0, rod_wz, T::fused(-rod_e1, rod_wy, rod_e2 * rod_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -152,6 +156,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e1 = y[4];
+        let rod_e2 = y[5];
+        let rod_e3 = y[6];
+        let rod_sx = y[7];
+        let rod_sy = y[8];
+        let rod_sz = y[9];
+        let rod_wx = y[10];
+        let rod_wy = y[11];
+        let rod_wz = y[12];
+        *dy = [
+            rod_sx,
+            rod_sy,
+            rod_sz,
+            -(k(0.5)
+                * T::fused(rod_e3, rod_wz, T::fused(rod_e2, rod_wy, rod_e1 * rod_wx))),
+            k(0.5)
+                * T::fused(rod_e2, rod_wz, T::fused(-rod_e3, rod_wy, rod_e0 * rod_wx)),
+            k(0.5)
+                * T::fused(-rod_e1, rod_wz, T::fused(rod_e0, rod_wy, rod_e3 * rod_wx)),
+            -(k(0.5)
+                * T::fused(-rod_e0, rod_wz, T::fused(-rod_e1, rod_wy, rod_e2 * rod_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 24 operations (12 ±, 12 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -162,16 +201,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         let rod_e1 = y[4];
         let rod_e2 = y[5];
         let rod_e3 = y[6];
-        let t0 = rod_e0 * rod_e0 + rod_e1 * rod_e1;
+        let t0 = T::fused(rod_e1, rod_e1, rod_e0 * rod_e0);
         let t1 = rod_e0 * rod_e2;
         let t2 = rod_e1 * rod_e3;
         *out = [
             k(0.5) - t0 + rod_rx,
-            rod_ry - (rod_e1 * rod_e2 + rod_e0 * rod_e3),
+            rod_ry - T::fused(rod_e0, rod_e3, rod_e1 * rod_e2),
             rod_rz - (t2 - t1),
-            -(k(2.0) * (rod_e2 * rod_e3 - rod_e0 * rod_e1)),
+            -(k(2.0) * T::fused(-rod_e0, rod_e1, rod_e2 * rod_e3)),
             k(2.0) * (t2 + t1),
-            rod_e3 * rod_e3 + (t0 + rod_e2 * rod_e2) - k(1.0),
+            T::fused(rod_e3, rod_e3, T::fused(rod_e2, rod_e2, t0)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 50 operations (19 ±, 31 ×, 0 ÷).
@@ -190,20 +229,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         let t0 = rod_e0 * rod_e3;
         let t1 = rod_e1 * rod_e2;
         let t2 = k(2.0) * (t1 - t0);
-        let t3 = t2 * rod_wz - k(2.0) * (rod_e1 * rod_e3 + rod_e0 * rod_e2) * rod_wy;
+        let t3 = T::fused(
+            -(k(2.0) * T::fused(rod_e0, rod_e2, rod_e1 * rod_e3)),
+            rod_wy,
+            t2 * rod_wz,
+        );
         let t4 = rod_e0 * rod_e1;
         let t5 = rod_e2 * rod_e3;
         let t6 = rod_e0 * rod_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + rod_e2 * rod_e2));
-        let t8 = rod_sy + k(0.5) * (t7 * rod_wz + k(2.0) * (t5 - t4) * rod_wy);
-        let t9 = k(2.0) * (t5 + t4) * rod_wz
-            + k(2.0) * (k(0.5) - (t6 + rod_e3 * rod_e3)) * rod_wy;
-        let t10 = t2 * rod_wx + k(2.0) * (k(0.5) - (t6 + rod_e1 * rod_e1)) * rod_wy;
+        let t7 = k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t6));
+        let t8 = T::fused(
+            k(0.5),
+            T::fused(k(2.0) * (t5 - t4), rod_wy, t7 * rod_wz),
+            rod_sy,
+        );
+        let t9 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rod_e3, rod_e3, t6)),
+            rod_wy,
+            k(2.0) * (t5 + t4) * rod_wz,
+        );
+        let t10 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t6)),
+            rod_wy,
+            t2 * rod_wx,
+        );
         *out = [
-            rod_sx - k(0.5) * t3,
+            T::fused(-k(0.5), t3, rod_sx),
             t8,
-            rod_sz - k(0.5) * t9,
-            -(t7 * rod_wx + k(2.0) * (t1 + t0) * rod_wy),
+            T::fused(-k(0.5), t9, rod_sz),
+            -T::fused(k(2.0) * (t1 + t0), rod_wy, t7 * rod_wx),
             -t10,
         ];
     }
@@ -217,9 +271,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         let rod_wx = y[10];
         let rod_wy = y[11];
         let rod_wz = y[12];
-        let t0 = rod_wx * (k(0.0001) * rod_wx) + rod_wy * (k(0.1) * rod_wy)
-            + rod_wz * (k(0.1) * rod_wz);
-        let t1 = t0 + k(1.2) * (rod_sx * rod_sx + rod_sy * rod_sy + rod_sz * rod_sz);
+        let t0 = T::fused(
+            rod_wz,
+            k(0.1) * rod_wz,
+            T::fused(rod_wy, k(0.1) * rod_wy, rod_wx * (k(0.0001) * rod_wx)),
+        );
+        let t1 = T::fused(
+            k(1.2),
+            T::fused(rod_sz, rod_sz, T::fused(rod_sy, rod_sy, rod_sx * rod_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(11.772) * rod_ry,
@@ -233,10 +294,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         let rod_e2 = y[5];
         let rod_e3 = y[6];
         let rod_wz = y[12];
-        let t0 = rod_e0 * rod_e0 + rod_e1 * rod_e1;
-        let t1 = k(2.0) * (k(0.5) - t0)
-            - (k(1.0) - (rod_e3 * rod_e3 + (t0 + rod_e2 * rod_e2)));
-        *out = [-t1, -(k(2.0) * (rod_e1 * rod_e2 + rod_e0 * rod_e3)), rod_wz];
+        let t0 = T::fused(rod_e1, rod_e1, rod_e0 * rod_e0);
+        let t1 = T::fused(
+            k(2.0),
+            k(0.5) - t0,
+            -(k(1.0) - T::fused(rod_e3, rod_e3, T::fused(rod_e2, rod_e2, t0))),
+        );
+        *out = [-t1, -(k(2.0) * T::fused(rod_e0, rod_e3, rod_e1 * rod_e2)), rod_wz];
     }
     fn n_bodies(&self) -> usize {
         1
@@ -308,32 +372,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CompoundPendulum<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> CompoundPendulum<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for CompoundPendulum<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let rod_e0 = y[3];
         let rod_e1 = y[4];
         let rod_e2 = y[5];
         let rod_e3 = y[6];
         [[-rod_e3, rod_e2, -rod_e1, rod_e0]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 138 operations (51 ±, 86 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -343,7 +393,11 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = rod_e3 * rod_e3 + (rod_e0 * rod_e0 + rod_e1 * rod_e1 + rod_e2 * rod_e2);
+        let t0 = T::fused(
+            rod_e3,
+            rod_e3,
+            T::fused(rod_e2, rod_e2, T::fused(rod_e1, rod_e1, rod_e0 * rod_e0)),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = rod_e2 * t1;
         let t3 = rod_e1 * t1;
@@ -354,44 +408,57 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
         let t8 = k(2.0) * (t7 - t4);
         let t9 = k(2.0) * (t7 + t4);
         let t10 = t6 * t6;
-        let t11 = k(2.0) * (k(0.5) - (t10 + t3 * t3));
-        let t12 = k(2.0) * (k(0.5) - (t2 * t2 + t10));
-        let t13 = t12 * t11 + t9 * t8;
-        let t14 = chart0_0 * (rod_e0 + t6) + chart0_1 * (rod_e1 + t3)
-            + chart0_2 * (rod_e2 + t2);
-        let t15 = chart0_0 * t2 + chart0_1 * t5 - chart0_2 * t6 - chart0_3 * t3;
+        let t11 = k(2.0) * (k(0.5) - T::fused(t3, t3, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(t2, t2, t10));
+        let t13 = T::fused(t9, t8, t12 * t11);
+        let t14 = T::fused(
+            chart0_2,
+            rod_e2 + t2,
+            T::fused(chart0_1, rod_e1 + t3, chart0_0 * (rod_e0 + t6)),
+        );
+        let t15 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(-chart0_2, t6, T::fused(chart0_1, t5, chart0_0 * t2)),
+        );
         let t16 = k(0.5) * t15;
-        let t17 = chart0_0 * t3 - chart0_1 * t6 - chart0_2 * t5 + chart0_3 * t2;
+        let t17 = T::fused(
+            chart0_3,
+            t2,
+            T::fused(-chart0_2, t5, T::fused(-chart0_1, t6, chart0_0 * t3)),
+        );
         let t18 = k(0.5) * t17;
-        let t19 = k(2.0) * (t6 * t2 + t3 * t5);
-        let t20 = k(2.0) * (t6 * t3 - t2 * t5);
-        let t21 = t20 * (t8 * t16 + t11 * t18) - t19 * (t9 * t18 - t12 * t16);
-        let t22 = chart0_0 * t5 - chart0_1 * t2 + chart0_2 * t3 - chart0_3 * t6;
+        let t19 = k(2.0) * T::fused(t3, t5, t6 * t2);
+        let t20 = k(2.0) * T::fused(-t2, t5, t6 * t3);
+        let t21 = T::fused(
+            -t19,
+            T::fused(-t12, t16, t9 * t18),
+            t20 * T::fused(t11, t18, t8 * t16),
+        );
+        let t22 = T::fused(
+            -chart0_3,
+            t6,
+            T::fused(chart0_2, t3, T::fused(-chart0_1, t2, chart0_0 * t5)),
+        );
         let t23 = k(0.5) * t22;
         let t24 = k(1.0) / (t23 * t13);
-        let t25 = t24 * (t21 - (t14 + chart0_3 * (rod_e3 + t5)) * t13);
-        let t26 = t24 * (t20 * (t8 * t23) + t19 * (t12 * t23));
-        let t27 = t24 * (t20 * (t11 * t23) - t19 * (t9 * t23));
-        let t28 = t6 - k(0.5) * (t3 * t27 + t2 * t26 - t5 * t25);
-        let t29 = t3 + k(0.5) * (t6 * t27 - t5 * t26 - t2 * t25);
-        let t30 = t2 + k(0.5) * (t5 * t27 + t6 * t26 + t3 * t25);
-        let t31 = t5 - k(0.5) * (t2 * t27 - t3 * t26 + t6 * t25);
-        y[0] = t29 * t29 + t28 * t28 - k(0.5);
-        y[1] = t28 * t31 + t29 * t30;
-        y[2] = t29 * t31 - t28 * t30;
+        let t25 = t24 * T::fused(-T::fused(chart0_3, rod_e3 + t5, t14), t13, t21);
+        let t26 = t24 * T::fused(t19, t12 * t23, t20 * (t8 * t23));
+        let t27 = t24 * T::fused(-t19, t9 * t23, t20 * (t11 * t23));
+        let t28 = T::fused(-k(0.5), T::fused(-t5, t25, T::fused(t2, t26, t3 * t27)), t6);
+        let t29 = T::fused(k(0.5), T::fused(-t2, t25, T::fused(-t5, t26, t6 * t27)), t3);
+        let t30 = T::fused(k(0.5), T::fused(t3, t25, T::fused(t6, t26, t5 * t27)), t2);
+        let t31 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t26, t2 * t27)), t5);
+        y[0] = T::fused(t28, t28, t29 * t29) - k(0.5);
+        y[1] = T::fused(t29, t30, t28 * t31);
+        y[2] = T::fused(-t28, t30, t29 * t31);
         y[3] = -t28;
         y[4] = -t29;
         y[5] = -t30;
         y[6] = -t31;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 63 operations (21 ±, 41 ×, 1 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let rod_e0 = y[3];
         let rod_e1 = y[4];
@@ -404,55 +471,67 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
         let t1 = rod_e1 * rod_e2;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = rod_e0 * rod_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + rod_e2 * rod_e2));
-        let t5 = k(2.0) * (k(0.5) - (t3 + rod_e1 * rod_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t3));
         let t6 = k(2.0) * (t1 + t0);
-        let t7 = k(1.0) / (t2 * t6 - t5 * t4);
-        let t8 = t2 * rod_wx + t5 * rod_wy;
-        let t9 = t4 * rod_wx + t6 * rod_wy;
-        let t10 = rod_wy - t9 * (t2 * t7) + t8 * (t4 * t7);
-        let t11 = k(2.0) * (rod_e1 * rod_e3 + rod_e0 * rod_e2) * t10 - t2 * rod_wz;
+        let t7 = k(1.0) / T::fused(-t5, t4, t2 * t6);
+        let t8 = T::fused(t5, rod_wy, t2 * rod_wx);
+        let t9 = T::fused(t6, rod_wy, t4 * rod_wx);
+        let t10 = T::fused(t8, t4 * t7, T::fused(-t9, t2 * t7, rod_wy));
+        let t11 = T::fused(
+            -t2,
+            rod_wz,
+            k(2.0) * T::fused(rod_e0, rod_e2, rod_e1 * rod_e3) * t10,
+        );
         let t12 = rod_e0 * rod_e1;
         let t13 = rod_e2 * rod_e3;
-        let t14 = k(2.0) * (k(0.5) - (t3 + rod_e3 * rod_e3)) * t10
-            + k(2.0) * (t13 + t12) * rod_wz;
+        let t14 = T::fused(
+            k(2.0) * (t13 + t12),
+            rod_wz,
+            k(2.0) * (k(0.5) - T::fused(rod_e3, rod_e3, t3)) * t10,
+        );
         y[7] = -(k(0.5) * t11);
-        y[8] = -(k(0.5) * (k(2.0) * (t13 - t12) * t10 + t4 * rod_wz));
+        y[8] = -(k(0.5) * T::fused(t4, rod_wz, k(2.0) * (t13 - t12) * t10));
         y[9] = k(0.5) * t14;
-        y[10] = rod_wx + t9 * (t5 * t7) - t8 * (t6 * t7);
+        y[10] = T::fused(-t8, t6 * t7, T::fused(t9, t5 * t7, rod_wx));
         y[11] = t10;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for CompoundPendulum<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let rod_e0 = y[3];
-        let rod_e1 = y[4];
-        let rod_e2 = y[5];
-        let rod_e3 = y[6];
-        let rod_sx = y[7];
-        let rod_sy = y[8];
-        let rod_sz = y[9];
-        let rod_wx = y[10];
-        let rod_wy = y[11];
-        let rod_wz = y[12];
-        *dy = [
-            rod_sx,
-            rod_sy,
-            rod_sz,
-            -(k(0.5) * (rod_e1 * rod_wx + rod_e2 * rod_wy + rod_e3 * rod_wz)),
-            k(0.5) * (rod_e0 * rod_wx - rod_e3 * rod_wy + rod_e2 * rod_wz),
-            k(0.5) * (rod_e3 * rod_wx + rod_e0 * rod_wy - rod_e1 * rod_wz),
-            -(k(0.5) * (rod_e2 * rod_wx - rod_e1 * rod_wy - rod_e0 * rod_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
@@ -571,21 +650,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
         let t3 = rod_e0 * rod_e1;
         let t4 = rod_e2 * rod_e3;
         let t5 = rod_e0 * rod_e0;
-        let t6 = k(0.5) - (t5 + rod_e2 * rod_e2);
+        let t6 = k(0.5) - T::fused(rod_e2, rod_e2, t5);
         *out = [
             k(1.0),
-            rod_e1 * rod_e3 + rod_e0 * rod_e2,
+            T::fused(rod_e0, rod_e2, rod_e1 * rod_e3),
             -t2,
             k(1.0),
             t4 - t3,
             t6,
             k(1.0),
-            t5 + rod_e3 * rod_e3 - k(0.5),
+            T::fused(rod_e3, rod_e3, t5) - k(0.5),
             -(t4 + t3),
             -(k(2.0) * t6),
             -(k(2.0) * (t1 + t0)),
             -(k(2.0) * t2),
-            -(k(2.0) * (k(0.5) - (t5 + rod_e1 * rod_e1))),
+            -(k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t5))),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -604,9 +683,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
         let rod_wy = y[11];
         let rod_wz = y[12];
         let t0 = rod_wy * rod_wy;
-        let t1 = rod_wz * rod_wz + t0;
+        let t1 = T::fused(rod_wz, rod_wz, t0);
         let t2 = rod_e0 * rod_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + rod_e1 * rod_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t2));
         let t4 = rod_wx * rod_wy;
         let t5 = rod_e0 * rod_e3;
         let t6 = rod_e1 * rod_e2;
@@ -616,20 +695,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
         let t10 = rod_e1 * rod_e3;
         let t11 = k(2.0) * (t10 + t9);
         let t12 = k(2.0) * (t6 + t5);
-        let t13 = k(2.0) * (k(0.5) - (t2 + rod_e2 * rod_e2));
+        let t13 = k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t2));
         let t14 = rod_e0 * rod_e1;
         let t15 = rod_e2 * rod_e3;
         let t16 = k(2.0) * (t15 - t14);
-        let t17 = k(2.0) * (t15 + t14) * t4 - k(2.0) * (t10 - t9) * t1;
-        let t18 = k(0.5) * (k(2.0) * (k(0.5) - (t2 + rod_e3 * rod_e3)) * t8 - t17);
+        let t17 = T::fused(-(k(2.0) * (t10 - t9)), t1, k(2.0) * (t15 + t14) * t4);
+        let t18 = k(0.5)
+            * T::fused(k(2.0) * (k(0.5) - T::fused(rod_e3, rod_e3, t2)), t8, -t17);
         let t19 = rod_wy * rod_wz;
-        let t20 = t0 + rod_wx * rod_wx;
+        let t20 = T::fused(rod_wx, rod_wx, t0);
         *out = [
-            k(0.5) * (t11 * t8 + (t7 * t4 + t3 * t1)),
-            k(0.5) * (t16 * t8 - (t13 * t4 + t12 * t1)),
+            k(0.5) * T::fused(t11, t8, T::fused(t3, t1, t7 * t4)),
+            k(0.5) * T::fused(t16, t8, -T::fused(t12, t1, t13 * t4)),
             -t18,
-            -(t16 * t20 + (t13 * t19 - t12 * t8)),
-            t11 * t20 - (t7 * t19 - t3 * t8),
+            -T::fused(t16, t20, T::fused(-t12, t8, t13 * t19)),
+            T::fused(t11, t20, -T::fused(-t3, t8, t7 * t19)),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 4 operations (0 ±, 4 ×, 0 ÷).
@@ -658,38 +738,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
         let rod_wy = y[11];
         let rod_wz = y[12];
         let t0 = rod_e0 * rod_e0;
-        let t1 = k(0.5) - (t0 + rod_e3 * rod_e3);
+        let t1 = k(0.5) - T::fused(rod_e3, rod_e3, t0);
         let t2 = rod_wy * rod_wy;
-        let t3 = (t2 + rod_wx * rod_wx) * (k(0.5) / t1);
+        let t3 = T::fused(rod_wx, rod_wx, t2) * (k(0.5) / t1);
         let t4 = rod_e0 * rod_e2;
         let t5 = rod_e1 * rod_e3;
         let t6 = k(2.0) * (t5 - t4);
         let t7 = rod_wx * rod_wz;
-        let t8 = t7 - t6 * t3;
+        let t8 = T::fused(-t6, t3, t7);
         let t9 = t5 + t4;
-        let t10 = k(0.5) - (t0 + rod_e2 * rod_e2);
+        let t10 = k(0.5) - T::fused(rod_e2, rod_e2, t0);
         let t11 = rod_wx * rod_wy;
-        let t12 = rod_wz * rod_wz + t2;
+        let t12 = T::fused(rod_wz, rod_wz, t2);
         let t13 = rod_e0 * rod_e3;
         let t14 = rod_e1 * rod_e2;
         let t15 = t14 - t13;
-        let t16 = k(2.0) * t15 * t11 + k(2.0) * (k(0.5) - (t0 + rod_e1 * rod_e1)) * t12;
-        let t17 = k(0.5) * (k(2.0) * t9 * t7 + t16);
+        let t16 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t0)),
+            t12,
+            k(2.0) * t15 * t11,
+        );
+        let t17 = k(0.5) * T::fused(k(2.0) * t9, t7, t16);
         let t18 = rod_e0 * rod_e1;
         let t19 = rod_e2 * rod_e3;
         let t20 = t19 - t18;
-        let t21 = k(2.0) * t20 * t7 - (k(2.0) * t10 * t11 + k(2.0) * (t14 + t13) * t12);
+        let t21 = T::fused(
+            k(2.0) * t20,
+            t7,
+            -T::fused(k(2.0) * (t14 + t13), t12, k(2.0) * t10 * t11),
+        );
         let t22 = k(0.5) * t21;
         let t23 = t19 + t18;
         let t24 = k(2.0) * t23;
-        let t25 = k(0.5) * (k(2.0) * t1 * t7 - (t24 * t11 - t6 * t12));
-        let t26 = k(1.2) * t23 * t25 + (k(1.2) * t10 * t22 - k(1.2) * t15 * t17);
-        let t27 = k(2.5) * (t26 - (k(0.0999) * t11 - k(11.772) * t10));
+        let t25 = k(0.5) * T::fused(k(2.0) * t1, t7, -T::fused(-t6, t12, t24 * t11));
+        let t26 = T::fused(
+            k(1.2) * t23,
+            t25,
+            T::fused(-(k(1.2) * t15), t17, k(1.2) * t10 * t22),
+        );
+        let t27 = k(2.5) * (t26 - T::fused(-k(11.772), t10, k(0.0999) * t11));
         *out = [
-            t17 + (t15 * t27 + t9 * t8),
-            t22 - (t10 * t27 - t20 * t8),
-            t23 * t27 - t1 * t8 - t25,
-            rod_wy * rod_wz - t24 * t3,
+            t17 + T::fused(t9, t8, t15 * t27),
+            t22 - T::fused(-t20, t8, t10 * t27),
+            T::fused(-t1, t8, t23 * t27) - t25,
+            T::fused(-t24, t3, rod_wy * rod_wz),
             -t8,
             t27,
         ];
@@ -715,27 +807,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CompoundPendulum<T> {
         let rod_dwx = accelerations[3];
         let rod_dwy = accelerations[4];
         let t0 = k(1.2) * rod_dsx;
-        let t1 = k(11.772) + k(1.2) * rod_dsy;
+        let t1 = T::fused(k(1.2), rod_dsy, k(11.772));
         let t2 = k(1.2) * rod_dsz;
         let t3 = rod_e0 * rod_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + rod_e2 * rod_e2));
-        let t5 = k(2.0) * (k(0.5) - (t3 + rod_e1 * rod_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t3));
         let t6 = rod_e0 * rod_e3;
         let t7 = rod_e1 * rod_e2;
         let t8 = k(2.0) * (t7 + t6);
         let t9 = k(2.0) * (t7 - t6);
-        let t10 = k(1.0) / (t9 * t8 - t5 * t4);
+        let t10 = k(1.0) / T::fused(-t5, t4, t9 * t8);
         let t11 = k(0.0001) * rod_dwx;
-        let t12 = (rod_e2 * rod_e3 - rod_e0 * rod_e1) * t1
-            + (rod_e1 * rod_e3 + rod_e0 * rod_e2) * t0;
-        let t13 = k(0.0999) * (rod_wx * rod_wz) - k(0.1) * rod_dwy
-            - ((k(0.5) - (t3 + rod_e3 * rod_e3)) * t2 - t12);
+        let t12 = T::fused(
+            T::fused(rod_e0, rod_e2, rod_e1 * rod_e3),
+            t0,
+            T::fused(-rod_e0, rod_e1, rod_e2 * rod_e3) * t1,
+        );
+        let t13 = T::fused(-k(0.1), rod_dwy, k(0.0999) * (rod_wx * rod_wz))
+            - T::fused(k(0.5) - T::fused(rod_e3, rod_e3, t3), t2, -t12);
         *lambda = [
             -t0,
             -t1,
             -t2,
-            -(t9 * t10 * t13 + t11 * (t5 * t10)),
-            t4 * t10 * t13 + t11 * (t8 * t10),
+            -T::fused(t11, t5 * t10, t9 * t10 * t13),
+            T::fused(t11, t8 * t10, t4 * t10 * t13),
         ];
     }
 }
@@ -775,7 +870,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
         let t1 = t0.cos();
         let t2 = t0.sin();
         let t3 = k(0.7071067811865476) * (t2 + t1);
-        let t4 = k(0.5) - t3 * t3;
+        let t4 = T::fused(-t3, t3, k(0.5));
         let t5 = k(0.7071067811865476) * (t2 - t1);
         let t6 = t3 * t5;
         let t7 = k(0.5) * u0;
@@ -805,12 +900,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
         let rod_wz = y[12];
         let x0 = x[0];
         let t0 = x0.sin();
-        let t1 = rod_e0 * rod_e0 + rod_e1 * rod_e1;
-        let t2 = k(2.0) * (k(0.5) - t1)
-            - (k(1.0) - (rod_e3 * rod_e3 + (t1 + rod_e2 * rod_e2)));
+        let t1 = T::fused(rod_e1, rod_e1, rod_e0 * rod_e0);
+        let t2 = T::fused(
+            k(2.0),
+            k(0.5) - t1,
+            -(k(1.0) - T::fused(rod_e3, rod_e3, T::fused(rod_e2, rod_e2, t1))),
+        );
         let t3 = x0.cos();
-        let t4 = k(2.0) * (rod_e1 * rod_e2 + rod_e0 * rod_e3);
-        let t5 = (t4 * t0 - t2 * t3).atan2(-(t4 * t3 + t2 * t0));
+        let t4 = k(2.0) * T::fused(rod_e0, rod_e3, rod_e1 * rod_e2);
+        let t5 = T::fused(-t2, t3, t4 * t0).atan2(-T::fused(t2, t0, t4 * t3));
         x[0] = x0 + t5;
         x[1] = rod_wz;
     }
@@ -838,27 +936,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
         let rod_wz = y[12];
         let t0 = k(0.5) * rod_wz;
         let t1 = k(0.5) * rod_wy;
-        let t2 = rod_wy * t1 + rod_wz * t0;
+        let t2 = T::fused(rod_wz, t0, rod_wy * t1);
         let t3 = rod_e0 * rod_e0;
         let t4 = (rod_e0 + rod_e3) * (rod_e0 - rod_e3);
-        let t5 = rod_wx * t1 - k(7.3575) * t4;
+        let t5 = T::fused(-k(7.3575), t4, rod_wx * t1);
         let t6 = rod_e0 * rod_e3;
         let t7 = rod_e1 * rod_e2;
-        let t8 = k(2.0) * (t7 - t6) * t5
-            + k(2.0) * (k(0.5) - (t3 + rod_e1 * rod_e1)) * t2;
+        let t8 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t3)),
+            t2,
+            k(2.0) * (t7 - t6) * t5,
+        );
         let t9 = rod_wx * rod_wz;
-        let t10 = rod_wx * t0 + k(0.5) * t9;
+        let t10 = T::fused(k(0.5), t9, rod_wx * t0);
         let t11 = rod_e0 * rod_e2;
         let t12 = rod_e1 * rod_e3;
-        let t13 = k(2.0) * (k(0.5) - (t3 + rod_e2 * rod_e2)) * t5
-            + k(2.0) * (t7 + t6) * t2;
+        let t13 = T::fused(
+            k(2.0) * (t7 + t6),
+            t2,
+            k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t3)) * t5,
+        );
         let t14 = rod_e0 * rod_e1;
         let t15 = rod_e2 * rod_e3;
-        let t16 = k(2.0) * (t15 + t14) * t5 - k(2.0) * (t12 - t11) * t2;
+        let t16 = T::fused(-(k(2.0) * (t12 - t11)), t2, k(2.0) * (t15 + t14) * t5);
         *out = [
-            k(2.0) * (t12 + t11) * t10 + t8,
-            k(2.0) * (t15 - t14) * t10 - t13,
-            t16 - k(2.0) * (k(0.5) - (t3 + rod_e3 * rod_e3)) * t10,
+            T::fused(k(2.0) * (t12 + t11), t10, t8),
+            T::fused(k(2.0) * (t15 - t14), t10, -t13),
+            T::fused(-(k(2.0) * (k(0.5) - T::fused(rod_e3, rod_e3, t3))), t10, t16),
             rod_wy * rod_wz,
             -t9,
             -(k(14.715) * t4),
@@ -885,17 +989,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
         let rod_dwx = accelerations[3];
         let rod_dwy = accelerations[4];
         let t0 = k(1.2) * rod_dsx;
-        let t1 = k(11.772) + k(1.2) * rod_dsy;
+        let t1 = T::fused(k(1.2), rod_dsy, k(11.772));
         let t2 = k(1.2) * rod_dsz;
         let t3 = rod_e0 + rod_e3;
         let t4 = t3 * (rod_e0 - rod_e3);
         let t5 = k(0.0001) * rod_dwx;
-        let t6 = (rod_e2 * rod_e3 - rod_e0 * rod_e1) * t1
-            + (rod_e1 * rod_e3 + rod_e0 * rod_e2) * t0;
-        let t7 = k(0.0999) * (rod_wx * rod_wz) - k(0.1) * rod_dwy
-            - ((k(0.5) - (rod_e0 * rod_e0 + rod_e3 * rod_e3)) * t2 - t6);
-        let t8 = k(1.0) - t3 * t3;
-        *lambda = [-t0, -t1, -t2, t8 * t7 - t5 * t4, t4 * t7 + t5 * t8];
+        let t6 = T::fused(
+            T::fused(rod_e0, rod_e2, rod_e1 * rod_e3),
+            t0,
+            T::fused(-rod_e0, rod_e1, rod_e2 * rod_e3) * t1,
+        );
+        let t7 = T::fused(-k(0.1), rod_dwy, k(0.0999) * (rod_wx * rod_wz))
+            - T::fused(k(0.5) - T::fused(rod_e3, rod_e3, rod_e0 * rod_e0), t2, -t6);
+        let t8 = T::fused(-t3, t3, k(1.0));
+        *lambda = [-t0, -t1, -t2, T::fused(-t5, t4, t8 * t7), T::fused(t5, t8, t4 * t7)];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 83 operations (30 ±, 53 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
@@ -909,36 +1016,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
         let rod_wz = y[12];
         let t0 = k(0.5) * rod_wz;
         let t1 = k(0.5) * rod_wy;
-        let t2 = rod_wy * t1 + rod_wz * t0;
+        let t2 = T::fused(rod_wz, t0, rod_wy * t1);
         let t3 = rod_e0 * rod_e0;
         let t4 = rod_e0 + rod_e3;
         let t5 = t4 * (rod_e0 - rod_e3);
-        let t6 = rod_wx * t1 - k(7.3575) * t5;
+        let t6 = T::fused(-k(7.3575), t5, rod_wx * t1);
         let t7 = rod_e0 * rod_e3;
         let t8 = rod_e1 * rod_e2;
-        let t9 = k(2.0) * (t8 - t7) * t6
-            + k(2.0) * (k(0.5) - (t3 + rod_e1 * rod_e1)) * t2;
+        let t9 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t3)),
+            t2,
+            k(2.0) * (t8 - t7) * t6,
+        );
         let t10 = rod_wx * rod_wz;
-        let t11 = rod_wx * t0 + k(0.5) * t10;
+        let t11 = T::fused(k(0.5), t10, rod_wx * t0);
         let t12 = rod_e0 * rod_e2;
         let t13 = rod_e1 * rod_e3;
         let t14 = t13 + t12;
-        let t15 = k(2.0) * t14 * t11 + t9;
-        let t16 = k(2.0) * (k(0.5) - (t3 + rod_e2 * rod_e2)) * t6
-            + k(2.0) * (t8 + t7) * t2;
+        let t15 = T::fused(k(2.0) * t14, t11, t9);
+        let t16 = T::fused(
+            k(2.0) * (t8 + t7),
+            t2,
+            k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t3)) * t6,
+        );
         let t17 = rod_e0 * rod_e1;
         let t18 = rod_e2 * rod_e3;
         let t19 = t18 - t17;
-        let t20 = k(2.0) * t19 * t11 - t16;
-        let t21 = k(2.0) * (t18 + t17) * t6 - k(2.0) * (t13 - t12) * t2;
-        let t22 = k(0.5) - (t3 + rod_e3 * rod_e3);
-        let t23 = k(2.0) * t22 * t11 - t21;
+        let t20 = T::fused(k(2.0) * t19, t11, -t16);
+        let t21 = T::fused(-(k(2.0) * (t13 - t12)), t2, k(2.0) * (t18 + t17) * t6);
+        let t22 = k(0.5) - T::fused(rod_e3, rod_e3, t3);
+        let t23 = T::fused(k(2.0) * t22, t11, -t21);
         let t24 = rod_wy * rod_wz;
         let t25 = k(1.2) * t15;
-        let t26 = k(11.772) + k(1.2) * t20;
+        let t26 = T::fused(k(1.2), t20, k(11.772));
         let t27 = k(1.2) * t23;
-        let t28 = t14 * t25 + t19 * t26 + t22 * t27 + k(0.1999) * t10;
-        let t29 = k(1.0) - t4 * t4;
+        let t28 = T::fused(
+            k(0.1999),
+            t10,
+            T::fused(t22, t27, T::fused(t19, t26, t14 * t25)),
+        );
+        let t29 = T::fused(-t4, t4, k(1.0));
         let t30 = k(0.0001) * t24;
         *out = [
             t15,
@@ -950,8 +1067,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CompoundPendulum<T> {
             -t25,
             -t26,
             t27,
-            t29 * t28 - t5 * t30,
-            t29 * t30 + t5 * t28,
+            T::fused(-t5, t30, t29 * t28),
+            T::fused(t5, t28, t29 * t30),
         ];
     }
 }

@@ -153,41 +153,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FourBar<T> {
             crank_sy,
             crank_sz,
             -(k(0.5)
-                * (crank_e1 * crank_wx + crank_e2 * crank_wy + crank_e3 * crank_wz)),
-            k(0.5) * (crank_e0 * crank_wx - crank_e3 * crank_wy + crank_e2 * crank_wz),
-            k(0.5) * (crank_e3 * crank_wx + crank_e0 * crank_wy - crank_e1 * crank_wz),
+                * T::fused(
+                    crank_e3,
+                    crank_wz,
+                    T::fused(crank_e2, crank_wy, crank_e1 * crank_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    crank_e2,
+                    crank_wz,
+                    T::fused(-crank_e3, crank_wy, crank_e0 * crank_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -crank_e1,
+                    crank_wz,
+                    T::fused(crank_e0, crank_wy, crank_e3 * crank_wx),
+                ),
             -(k(0.5)
-                * (crank_e2 * crank_wx - crank_e1 * crank_wy - crank_e0 * crank_wz)),
+                * T::fused(
+                    -crank_e0,
+                    crank_wz,
+                    T::fused(-crank_e1, crank_wy, crank_e2 * crank_wx),
+                )),
             coupler_sx,
             coupler_sy,
             coupler_sz,
             -(k(0.5)
-                * (coupler_e1 * coupler_wx + coupler_e2 * coupler_wy
-                    + coupler_e3 * coupler_wz)),
+                * T::fused(
+                    coupler_e3,
+                    coupler_wz,
+                    T::fused(coupler_e2, coupler_wy, coupler_e1 * coupler_wx),
+                )),
             k(0.5)
-                * (coupler_e0 * coupler_wx - coupler_e3 * coupler_wy
-                    + coupler_e2 * coupler_wz),
+                * T::fused(
+                    coupler_e2,
+                    coupler_wz,
+                    T::fused(-coupler_e3, coupler_wy, coupler_e0 * coupler_wx),
+                ),
             k(0.5)
-                * (coupler_e3 * coupler_wx + coupler_e0 * coupler_wy
-                    - coupler_e1 * coupler_wz),
+                * T::fused(
+                    -coupler_e1,
+                    coupler_wz,
+                    T::fused(coupler_e0, coupler_wy, coupler_e3 * coupler_wx),
+                ),
             -(k(0.5)
-                * (coupler_e2 * coupler_wx - coupler_e1 * coupler_wy
-                    - coupler_e0 * coupler_wz)),
+                * T::fused(
+                    -coupler_e0,
+                    coupler_wz,
+                    T::fused(-coupler_e1, coupler_wy, coupler_e2 * coupler_wx),
+                )),
             rocker_sx,
             rocker_sy,
             rocker_sz,
             -(k(0.5)
-                * (rocker_e1 * rocker_wx + rocker_e2 * rocker_wy
-                    + rocker_e3 * rocker_wz)),
+                * T::fused(
+                    rocker_e3,
+                    rocker_wz,
+                    T::fused(rocker_e2, rocker_wy, rocker_e1 * rocker_wx),
+                )),
             k(0.5)
-                * (rocker_e0 * rocker_wx - rocker_e3 * rocker_wy
-                    + rocker_e2 * rocker_wz),
+                * T::fused(
+                    rocker_e2,
+                    rocker_wz,
+                    T::fused(-rocker_e3, rocker_wy, rocker_e0 * rocker_wx),
+                ),
             k(0.5)
-                * (rocker_e3 * rocker_wx + rocker_e0 * rocker_wy
-                    - rocker_e1 * rocker_wz),
+                * T::fused(
+                    -rocker_e1,
+                    rocker_wz,
+                    T::fused(rocker_e0, rocker_wy, rocker_e3 * rocker_wx),
+                ),
             -(k(0.5)
-                * (rocker_e2 * rocker_wx - rocker_e1 * rocker_wy
-                    - rocker_e0 * rocker_wz)),
+                * T::fused(
+                    -rocker_e0,
+                    rocker_wz,
+                    T::fused(-rocker_e1, rocker_wy, rocker_e2 * rocker_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -247,32 +289,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let rocker_e2 = y[19];
         let rocker_e3 = y[20];
         let t0 = crank_e0 * crank_e0;
-        let t1 = t0 + crank_e1 * crank_e1;
+        let t1 = T::fused(crank_e1, crank_e1, t0);
         let t2 = k(0.2) * (k(0.5) - t1);
-        let t3 = k(0.2) * (crank_e1 * crank_e2 + crank_e0 * crank_e3);
+        let t3 = k(0.2) * T::fused(crank_e0, crank_e3, crank_e1 * crank_e2);
         let t4 = crank_e0 * crank_e2;
         let t5 = crank_e1 * crank_e3;
         let t6 = k(0.2) * (t5 - t4);
         let t7 = k(2.0) * (t5 + t4);
-        let t8 = k(2.0) * (crank_e2 * crank_e3 - crank_e0 * crank_e1);
-        let t9 = rocker_e0 * rocker_e0 + rocker_e1 * rocker_e1;
+        let t8 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
+        let t9 = T::fused(rocker_e1, rocker_e1, rocker_e0 * rocker_e0);
         let t10 = k(0.4) * (k(0.5) - t9);
-        let t11 = k(0.4) * (rocker_e1 * rocker_e2 + rocker_e0 * rocker_e3);
+        let t11 = k(0.4) * T::fused(rocker_e0, rocker_e3, rocker_e1 * rocker_e2);
         let t12 = rocker_e0 * rocker_e2;
         let t13 = rocker_e1 * rocker_e3;
         let t14 = k(0.4) * (t13 - t12);
         let t15 = coupler_e0 * coupler_e0;
-        let t16 = t15 + coupler_e1 * coupler_e1;
+        let t16 = T::fused(coupler_e1, coupler_e1, t15);
         let t17 = k(0.5) * (k(0.5) - t16);
         let t18 = coupler_e0 * coupler_e3;
         let t19 = coupler_e1 * coupler_e2;
         let t20 = k(0.5) * (t19 + t18);
-        let t21 = k(0.5) * (coupler_e1 * coupler_e3 - coupler_e0 * coupler_e2);
+        let t21 = k(0.5) * T::fused(-coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
         let t22 = coupler_e2 * coupler_e2;
-        let t23 = t7 * (k(2.0) * (t19 - t18)) - t8 * (k(2.0) * (k(0.5) - (t15 + t22)));
+        let t23 = T::fused(
+            -t8,
+            k(2.0) * (k(0.5) - (t15 + t22)),
+            t7 * (k(2.0) * (t19 - t18)),
+        );
         let t24 = crank_e3 * crank_e3;
-        let t25 = k(2.0) * (k(0.5) - (t0 + t24))
-            * (k(2.0) * (coupler_e2 * coupler_e3 + coupler_e0 * coupler_e1));
+        let t25 = T::fused(
+            k(2.0) * (k(0.5) - (t0 + t24)),
+            k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3),
+            -t23,
+        );
         *out = [
             crank_rx + t2,
             crank_ry - t3,
@@ -283,17 +332,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
             rocker_ry - t11,
             rocker_rz - t14,
             k(2.0) * (t13 + t12),
-            k(2.0) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1),
+            k(2.0) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3),
             coupler_rx + t17 - (crank_rx - t2),
             coupler_ry - t20 - (crank_ry + t3),
             coupler_rz - t21 - (crank_rz + t6),
-            t23 - t25,
+            -t25,
             rocker_rx - t10 - (coupler_rx - t17),
             rocker_ry + t11 - (coupler_ry + t20),
             rocker_rz + t14 - (coupler_rz + t21),
-            t24 + (t1 + crank_e2 * crank_e2) - k(1.0),
-            coupler_e3 * coupler_e3 + (t16 + t22) - k(1.0),
-            rocker_e3 * rocker_e3 + (t9 + rocker_e2 * rocker_e2) - k(1.0),
+            t24 + T::fused(crank_e2, crank_e2, t1) - k(1.0),
+            T::fused(coupler_e3, coupler_e3, t16 + t22) - k(1.0),
+            T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t9)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 190 operations (83 ±, 107 ×, 0 ÷).
@@ -335,67 +384,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let t3 = crank_e0 * crank_e2;
         let t4 = crank_e1 * crank_e3;
         let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(0.1) * (t5 * crank_wy - t2 * crank_wz);
+        let t6 = k(0.1) * T::fused(-t2, crank_wz, t5 * crank_wy);
         let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + crank_e2 * crank_e2));
+        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
         let t9 = crank_e0 * crank_e1;
         let t10 = crank_e2 * crank_e3;
         let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(0.1) * (t11 * crank_wy + t8 * crank_wz);
+        let t12 = k(0.1) * T::fused(t8, crank_wz, t11 * crank_wy);
         let t13 = k(2.0) * (t10 + t9);
-        let t14 = k(2.0) * (k(0.5) - (t7 + crank_e3 * crank_e3));
-        let t15 = k(0.1) * (t14 * crank_wy + t13 * crank_wz);
-        let t16 = k(2.0) * (k(0.5) - (t7 + crank_e1 * crank_e1));
+        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
+        let t15 = k(0.1) * T::fused(t13, crank_wz, t14 * crank_wy);
+        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
         let t17 = k(2.0) * (t1 + t0);
         let t18 = rocker_e0 * rocker_e3;
         let t19 = rocker_e1 * rocker_e2;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2) * rocker_wy
-            - t20 * rocker_wz;
+        let t21 = T::fused(
+            -t20,
+            rocker_wz,
+            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+        );
         let t22 = k(0.2) * t21;
         let t23 = rocker_e0 * rocker_e0;
-        let t24 = k(2.0) * (k(0.5) - (t23 + rocker_e2 * rocker_e2));
+        let t24 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t23));
         let t25 = rocker_e0 * rocker_e1;
         let t26 = rocker_e2 * rocker_e3;
-        let t27 = k(0.2) * (k(2.0) * (t26 - t25) * rocker_wy + t24 * rocker_wz);
-        let t28 = k(2.0) * (k(0.5) - (t23 + rocker_e3 * rocker_e3)) * rocker_wy
-            + k(2.0) * (t26 + t25) * rocker_wz;
+        let t27 = k(0.2) * T::fused(t24, rocker_wz, k(2.0) * (t26 - t25) * rocker_wy);
+        let t28 = T::fused(
+            k(2.0) * (t26 + t25),
+            rocker_wz,
+            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t23)) * rocker_wy,
+        );
         let t29 = k(0.2) * t28;
-        let t30 = t20 * rocker_wx
-            + k(2.0) * (k(0.5) - (t23 + rocker_e1 * rocker_e1)) * rocker_wy;
+        let t30 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t23)),
+            rocker_wy,
+            t20 * rocker_wx,
+        );
         let t31 = coupler_e0 * coupler_e3;
         let t32 = coupler_e1 * coupler_e2;
         let t33 = k(2.0) * (t32 - t31);
         let t34 = coupler_e0 * coupler_e2;
         let t35 = coupler_e1 * coupler_e3;
         let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.25) * (t36 * coupler_wy - t33 * coupler_wz);
+        let t37 = k(0.25) * T::fused(-t33, coupler_wz, t36 * coupler_wy);
         let t38 = coupler_e0 * coupler_e0;
-        let t39 = k(2.0) * (k(0.5) - (t38 + coupler_e2 * coupler_e2));
+        let t39 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t38));
         let t40 = coupler_e0 * coupler_e1;
         let t41 = coupler_e2 * coupler_e3;
         let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.25) * (t42 * coupler_wy + t39 * coupler_wz);
+        let t43 = k(0.25) * T::fused(t39, coupler_wz, t42 * coupler_wy);
         let t44 = k(2.0) * (t41 + t40);
-        let t45 = k(2.0) * (k(0.5) - (t38 + coupler_e3 * coupler_e3));
-        let t46 = k(0.25) * (t45 * coupler_wy + t44 * coupler_wz);
-        let t47 = t11 * (k(2.0) * (t32 + t31))
-            - t5 * (k(2.0) * (k(0.5) - (t38 + coupler_e1 * coupler_e1)));
-        let t48 = coupler_wx * (t5 * t36 + t11 * t42 + t14 * t45)
-            + coupler_wz * (t14 * (k(2.0) * (t35 - t34)) - t47);
-        let t49 = k(2.0) * (t4 - t3) * t44 - (t17 * t39 + t16 * t33);
-        let t50 = crank_wx * (t13 * t44 + (t2 * t33 + t8 * t39)) - crank_wy * t49;
+        let t45 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t38));
+        let t46 = k(0.25) * T::fused(t44, coupler_wz, t45 * coupler_wy);
+        let t47 = T::fused(
+            -t5,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t38)),
+            t11 * (k(2.0) * (t32 + t31)),
+        );
+        let t48 = T::fused(
+            coupler_wz,
+            T::fused(t14, k(2.0) * (t35 - t34), -t47),
+            coupler_wx * T::fused(t14, t45, T::fused(t11, t42, t5 * t36)),
+        );
+        let t49 = T::fused(k(2.0) * (t4 - t3), t44, -T::fused(t16, t33, t17 * t39));
+        let t50 = T::fused(
+            -crank_wy,
+            t49,
+            crank_wx * T::fused(t13, t44, T::fused(t8, t39, t2 * t33)),
+        );
         *out = [
             crank_sx + t6,
             crank_sy + t12,
             crank_sz - t15,
-            -(t2 * crank_wx + t16 * crank_wy),
-            t8 * crank_wx + t17 * crank_wy,
+            -T::fused(t16, crank_wy, t2 * crank_wx),
+            T::fused(t17, crank_wy, t8 * crank_wx),
             rocker_sx + t22,
             rocker_sy + t27,
             rocker_sz - t29,
             -t30,
-            t24 * rocker_wx + k(2.0) * (t19 + t18) * rocker_wy,
+            T::fused(k(2.0) * (t19 + t18), rocker_wy, t24 * rocker_wx),
             coupler_sx + t37 - (crank_sx - t6),
             coupler_sy + t43 - (crank_sy - t12),
             coupler_sz - t46 - (crank_sz + t15),
@@ -429,25 +497,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = rocker_wx * (k(4e-5) * rocker_wx) + rocker_wy * (k(0.0108) * rocker_wy)
-            + rocker_wz * (k(0.0108) * rocker_wz);
-        let t1 = t0
-            + k(0.8)
-                * (rocker_sx * rocker_sx + rocker_sy * rocker_sy
-                    + rocker_sz * rocker_sz);
-        let t2 = coupler_wx * (k(5e-5) * coupler_wx)
-            + coupler_wy * (k(0.021) * coupler_wy)
-            + coupler_wz * (k(0.021) * coupler_wz);
-        let t3 = crank_wx * (k(2e-5) * crank_wx) + crank_wy * (k(0.00135) * crank_wy)
-            + crank_wz * (k(0.00135) * crank_wz);
-        let t4 = t3
-            + k(0.4) * (crank_sx * crank_sx + crank_sy * crank_sy + crank_sz * crank_sz);
+        let t0 = T::fused(
+            rocker_wz,
+            k(0.0108) * rocker_wz,
+            T::fused(rocker_wy, k(0.0108) * rocker_wy, rocker_wx * (k(4e-5) * rocker_wx)),
+        );
+        let t1 = T::fused(
+            k(0.8),
+            T::fused(
+                rocker_sz,
+                rocker_sz,
+                T::fused(rocker_sy, rocker_sy, rocker_sx * rocker_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            coupler_wz,
+            k(0.021) * coupler_wz,
+            T::fused(
+                coupler_wy,
+                k(0.021) * coupler_wy,
+                coupler_wx * (k(5e-5) * coupler_wx),
+            ),
+        );
+        let t3 = T::fused(
+            crank_wz,
+            k(0.00135) * crank_wz,
+            T::fused(crank_wy, k(0.00135) * crank_wy, crank_wx * (k(2e-5) * crank_wx)),
+        );
+        let t4 = T::fused(
+            k(0.4),
+            T::fused(
+                crank_sz,
+                crank_sz,
+                T::fused(crank_sy, crank_sy, crank_sx * crank_sx),
+            ),
+            t3,
+        );
         let t5 = t4
-            + (coupler_sx * coupler_sx + coupler_sy * coupler_sy
-                + coupler_sz * coupler_sz + t2);
+            + (T::fused(
+                coupler_sz,
+                coupler_sz,
+                T::fused(coupler_sy, coupler_sy, coupler_sx * coupler_sx),
+            ) + t2);
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t1),
-            potential: k(3.924) * crank_ry + k(9.81) * coupler_ry + k(7.848) * rocker_ry,
+            potential: T::fused(
+                k(7.848),
+                rocker_ry,
+                T::fused(k(9.81), coupler_ry, k(3.924) * crank_ry),
+            ),
         }
     }
     /// Writes the joint readings: 250 operations (114 ±, 136 ×, 0 ÷).
@@ -479,7 +578,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let t2 = k(2.0) * (t1 + t0);
         let t3 = crank_e2 * crank_e2;
         let t4 = crank_e0 * crank_e0;
-        let t5 = t4 + crank_e1 * crank_e1;
+        let t5 = T::fused(crank_e1, crank_e1, t4);
         let t6 = crank_e3 * crank_e3;
         let t7 = k(1.0) - (t6 + (t5 + t3));
         let t8 = k(2.0) * (k(0.5) - t5);
@@ -489,7 +588,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let t12 = k(2.0) * (t11 + t10);
         let t13 = rocker_e2 * rocker_e2;
         let t14 = rocker_e0 * rocker_e0;
-        let t15 = t14 + rocker_e1 * rocker_e1;
+        let t15 = T::fused(rocker_e1, rocker_e1, t14);
         let t16 = rocker_e3 * rocker_e3;
         let t17 = k(2.0) * (k(0.5) - t15);
         let t18 = coupler_e0 * coupler_e1;
@@ -500,7 +599,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let t23 = k(2.0) * (t22 - t21) * t20;
         let t24 = coupler_e2 * coupler_e2;
         let t25 = coupler_e0 * coupler_e0;
-        let t26 = t25 + coupler_e1 * coupler_e1;
+        let t26 = T::fused(coupler_e1, coupler_e1, t25);
         let t27 = coupler_e3 * coupler_e3;
         let t28 = k(1.0) - (t27 + (t26 + t24));
         let t29 = k(2.0) * (k(0.5) - (t25 + t24));
@@ -522,43 +621,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let t45 = coupler_e1 * coupler_e3;
         let t46 = k(2.0) * (t45 - t44);
         let t47 = k(2.0) * (k(0.5) - (t4 + t6));
-        let t48 = t47 * t20 - (t40 * t33 - t42 * t29);
-        let t49 = coupler_wy * t48 + coupler_wx * (t47 * t46 - (t43 - t40 * t39));
+        let t48 = T::fused(t47, t20, -T::fused(-t42, t29, t40 * t33));
+        let t49 = T::fused(
+            coupler_wx,
+            T::fused(t47, t46, -T::fused(-t40, t39, t43)),
+            coupler_wy * t48,
+        );
         let t50 = k(2.0) * (k(0.5) - (t25 + t27));
         let t51 = k(2.0) * (t19 - t18);
         let t52 = k(2.0) * (t45 + t44);
-        let t53 = t40 * t52 + t42 * t51;
+        let t53 = T::fused(t42, t51, t40 * t52);
         let t54 = t47 - t7;
-        let t55 = crank_wy * (t36 + (t38 + t37 * t29))
-            + crank_wx * (t23 - (t2 * t29 + t8 * t33));
-        let t56 = coupler_e0 * rocker_e0 + coupler_e1 * rocker_e1
-            + coupler_e2 * rocker_e2 + coupler_e3 * rocker_e3;
-        let t57 = coupler_e1 * rocker_e0 - coupler_e0 * rocker_e1
-            - coupler_e3 * rocker_e2 + coupler_e2 * rocker_e3;
-        let t58 = coupler_e2 * rocker_e0 + coupler_e3 * rocker_e1
-            - coupler_e0 * rocker_e2 - coupler_e1 * rocker_e3;
-        let t59 = coupler_e3 * rocker_e0 - coupler_e2 * rocker_e1
-            + coupler_e1 * rocker_e2 - coupler_e0 * rocker_e3;
+        let t55 = T::fused(
+            crank_wx,
+            t23 - T::fused(t8, t33, t2 * t29),
+            crank_wy * (t36 + T::fused(t37, t29, t38)),
+        );
+        let t56 = T::fused(
+            coupler_e3,
+            rocker_e3,
+            T::fused(
+                coupler_e2,
+                rocker_e2,
+                T::fused(coupler_e1, rocker_e1, coupler_e0 * rocker_e0),
+            ),
+        );
+        let t57 = T::fused(
+            coupler_e2,
+            rocker_e3,
+            T::fused(
+                -coupler_e3,
+                rocker_e2,
+                T::fused(-coupler_e0, rocker_e1, coupler_e1 * rocker_e0),
+            ),
+        );
+        let t58 = T::fused(
+            -coupler_e1,
+            rocker_e3,
+            T::fused(
+                -coupler_e0,
+                rocker_e2,
+                T::fused(coupler_e3, rocker_e1, coupler_e2 * rocker_e0),
+            ),
+        );
+        let t59 = T::fused(
+            -coupler_e0,
+            rocker_e3,
+            T::fused(
+                coupler_e1,
+                rocker_e2,
+                T::fused(-coupler_e2, rocker_e1, coupler_e3 * rocker_e0),
+            ),
+        );
         let t60 = rocker_e0 * rocker_e2;
         let t61 = rocker_e1 * rocker_e3;
         let t62 = k(2.0) * (t61 - t60);
-        let t63 = coupler_wy * (t20 * t62 - (t29 * t12 + t33 * t17))
-            + coupler_wx * (t46 * t62 + (t41 * t12 + t39 * t17));
-        let t64 = coupler_wz * (t50 * t62 - (t51 * t12 - t52 * t17)) - t63;
+        let t63 = T::fused(
+            coupler_wx,
+            T::fused(t46, t62, T::fused(t39, t17, t41 * t12)),
+            coupler_wy * T::fused(t20, t62, -T::fused(t33, t17, t29 * t12)),
+        );
+        let t64 = T::fused(
+            coupler_wz,
+            T::fused(t50, t62, -T::fused(-t52, t17, t51 * t12)),
+            -t63,
+        );
         let t65 = k(2.0) * (t11 - t10);
         let t66 = k(2.0) * (k(0.5) - (t14 + t13));
         let t67 = rocker_e0 * rocker_e1;
         let t68 = rocker_e2 * rocker_e3;
         let t69 = k(2.0) * (t68 + t67);
-        let t70 = coupler_wy * (t20 * t69 + (t29 * t66 + t33 * t65))
-            + coupler_wx * (t46 * t69 - (t41 * t66 + t39 * t65));
-        let t71 = coupler_wz * (t50 * t69 + (t51 * t66 - t52 * t65)) - t70;
+        let t70 = T::fused(
+            coupler_wx,
+            T::fused(t46, t69, -T::fused(t39, t65, t41 * t66)),
+            coupler_wy * T::fused(t20, t69, T::fused(t33, t65, t29 * t66)),
+        );
+        let t71 = T::fused(
+            coupler_wz,
+            T::fused(t50, t69, T::fused(-t52, t65, t51 * t66)),
+            -t70,
+        );
         let t72 = k(2.0) * (t61 + t60);
         let t73 = k(2.0) * (t68 - t67);
         let t74 = k(2.0) * (k(0.5) - (t14 + t16));
-        let t75 = coupler_wy * (t20 * t74 + (t29 * t73 - t33 * t72))
-            + coupler_wx * (t46 * t74 - (t41 * t73 - t39 * t72));
-        let t76 = coupler_wz * (t50 * t74 + (t51 * t73 + t52 * t72)) - t75;
+        let t75 = T::fused(
+            coupler_wx,
+            T::fused(t46, t74, -T::fused(-t39, t72, t41 * t73)),
+            coupler_wy * T::fused(t20, t74, T::fused(-t33, t72, t29 * t73)),
+        );
+        let t76 = T::fused(
+            coupler_wz,
+            T::fused(t50, t74, T::fused(t52, t72, t51 * t73)),
+            -t75,
+        );
         *out = [
             t2,
             -t9,
@@ -566,12 +721,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
             t12,
             k(1.0) - (t16 + (t15 + t13)) - t17,
             rocker_wz,
-            t33 * t9 + t2 * t30 - t23,
-            t38 + (t37 - t7) * t30 + t36,
-            coupler_wz * (t53 + t47 * t50) - t49 - crank_wz,
-            t40 * (t39 - t28) - t43 + t46 * t54,
-            t53 + t54 * (t50 - t28),
-            coupler_wy + (crank_wz * t48 - t55),
+            T::fused(t2, t30, t33 * t9) - t23,
+            T::fused(t37 - t7, t30, t38) + t36,
+            T::fused(coupler_wz, T::fused(t47, t50, t53), -t49) - crank_wz,
+            T::fused(t46, t54, T::fused(t40, t39 - t28, -t43)),
+            T::fused(t54, t50 - t28, t53),
+            coupler_wy + T::fused(crank_wz, t48, -t55),
             t56,
             -t57,
             -t58,
@@ -981,15 +1136,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t21 = k(0.5) * coupler_e2;
         let t22 = k(0.5) * coupler_e1;
         let t23 = k(0.5) * coupler_e0;
-        let t24 = k(2.0) * (coupler_e2 * coupler_e3 + coupler_e0 * coupler_e1);
+        let t24 = k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
         let t25 = k(2.0)
-            * (k(0.5) - (coupler_e0 * coupler_e0 + coupler_e2 * coupler_e2));
-        let t26 = k(2.0) * (coupler_e1 * coupler_e2 - coupler_e0 * coupler_e3);
+            * (k(0.5) - T::fused(coupler_e2, coupler_e2, coupler_e0 * coupler_e0));
+        let t26 = k(2.0) * T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
         let t27 = k(2.0) * coupler_e1;
-        let t28 = k(2.0) * (k(0.5) - (crank_e0 * crank_e0 + crank_e3 * crank_e3));
-        let t29 = k(2.0) * (crank_e2 * crank_e3 - crank_e0 * crank_e1);
+        let t28 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, crank_e0 * crank_e0));
+        let t29 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
         let t30 = k(2.0) * coupler_e3;
-        let t31 = k(2.0) * (crank_e1 * crank_e3 + crank_e0 * crank_e2);
+        let t31 = k(2.0) * T::fused(crank_e0, crank_e2, crank_e1 * crank_e3);
         let t32 = k(2.0) * coupler_e0;
         let t33 = k(2.0) * coupler_e2;
         *out = [
@@ -1061,14 +1216,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -t20,
             t23,
             -t22,
-            t26 * t6 + t25 * t9 + t24 * (k(4.0) * crank_e0),
-            t26 * t7 + t25 * t8,
-            t26 * t8 - t25 * t7,
-            t26 * t9 - t25 * t6 + t24 * (k(4.0) * crank_e3),
-            -(t31 * t30 - t29 * (k(4.0) * coupler_e0) + t28 * t27),
-            t31 * t33 - t28 * t32,
-            t31 * t27 + t29 * (k(4.0) * coupler_e2) - t28 * t30,
-            -(t31 * t32 + t28 * t33),
+            T::fused(t24, k(4.0) * crank_e0, T::fused(t25, t9, t26 * t6)),
+            T::fused(t25, t8, t26 * t7),
+            T::fused(-t25, t7, t26 * t8),
+            T::fused(t24, k(4.0) * crank_e3, T::fused(-t25, t6, t26 * t9)),
+            -T::fused(t28, t27, T::fused(-t29, k(4.0) * coupler_e0, t31 * t30)),
+            T::fused(-t28, t32, t31 * t33),
+            T::fused(-t28, t30, T::fused(t29, k(4.0) * coupler_e2, t31 * t27)),
+            -T::fused(t28, t33, t31 * t32),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1137,17 +1292,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t10 = t9 - t8;
         let t11 = k(0.2) * t10;
         let t12 = crank_e0 * crank_e0;
-        let t13 = k(0.5) - (t12 + crank_e2 * crank_e2);
+        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
         let t14 = k(0.2) * t13;
-        let t15 = k(0.5) - (t12 + crank_e3 * crank_e3);
+        let t15 = k(0.5) - T::fused(crank_e3, crank_e3, t12);
         let t16 = k(0.2) * t15;
         let t17 = t9 + t8;
         let t18 = k(0.2) * t17;
         let t19 = k(2.0) * t6;
-        let t20 = k(2.0) * (k(0.5) - (t12 + crank_e1 * crank_e1));
+        let t20 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12));
         let t21 = k(2.0) * t13;
         let t22 = k(2.0) * (t5 + t4);
-        let t23 = k(0.4) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
+        let t23 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
         let t24 = rocker_e0 * rocker_e3;
         let t25 = rocker_e1 * rocker_e2;
         let t26 = t25 - t24;
@@ -1156,9 +1311,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t29 = rocker_e2 * rocker_e3;
         let t30 = k(0.4) * (t29 - t28);
         let t31 = rocker_e0 * rocker_e0;
-        let t32 = k(0.5) - (t31 + rocker_e2 * rocker_e2);
+        let t32 = k(0.5) - T::fused(rocker_e2, rocker_e2, t31);
         let t33 = k(0.4) * t32;
-        let t34 = k(0.4) * (k(0.5) - (t31 + rocker_e3 * rocker_e3));
+        let t34 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t31));
         let t35 = k(0.4) * (t29 + t28);
         let t36 = coupler_e0 * coupler_e2;
         let t37 = coupler_e1 * coupler_e3;
@@ -1173,22 +1328,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t46 = t45 - t44;
         let t47 = k(0.5) * t46;
         let t48 = coupler_e0 * coupler_e0;
-        let t49 = k(0.5) - (t48 + coupler_e2 * coupler_e2);
+        let t49 = k(0.5) - T::fused(coupler_e2, coupler_e2, t48);
         let t50 = k(0.5) * t49;
-        let t51 = k(0.5) - (t48 + coupler_e3 * coupler_e3);
+        let t51 = k(0.5) - T::fused(coupler_e3, coupler_e3, t48);
         let t52 = k(0.5) * t51;
         let t53 = t45 + t44;
         let t54 = k(0.5) * t53;
         let t55 = k(2.0) * t49;
         let t56 = k(2.0) * t42;
         let t57 = k(2.0) * t53;
-        let t58 = k(2.0) * (t1 - t0) * t57 - (t22 * t55 + t20 * t56);
+        let t58 = T::fused(k(2.0) * (t1 - t0), t57, -T::fused(t20, t56, t22 * t55));
         let t59 = k(2.0) * t15;
         let t60 = k(2.0) * t10;
         let t61 = k(2.0) * t2;
-        let t62 = t61 * (k(2.0) * t38) + t60 * (k(2.0) * t46) + t59 * (k(2.0) * t51);
-        let t63 = t60 * (k(2.0) * (t41 + t40))
-            - t61 * (k(2.0) * (k(0.5) - (t48 + coupler_e1 * coupler_e1)));
+        let t62 = T::fused(
+            t59,
+            k(2.0) * t51,
+            T::fused(t60, k(2.0) * t46, t61 * (k(2.0) * t38)),
+        );
+        let t63 = T::fused(
+            -t61,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t48)),
+            t60 * (k(2.0) * (t41 + t40)),
+        );
         *out = [
             k(1.0),
             t3,
@@ -1213,7 +1375,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -t34,
             -t35,
             -(k(2.0) * t26),
-            -(k(2.0) * (k(0.5) - (t31 + rocker_e1 * rocker_e1))),
+            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t31))),
             k(2.0) * t32,
             k(2.0) * (t25 + t24),
             k(-1.0),
@@ -1234,10 +1396,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             k(1.0),
             -t52,
             -t54,
-            -(k(2.0) * t17 * t57 + (t19 * t56 + t21 * t55)),
+            -T::fused(k(2.0) * t17, t57, T::fused(t21, t55, t19 * t56)),
             t58,
             t62,
-            t59 * (k(2.0) * (t37 - t36)) - t63,
+            T::fused(t59, k(2.0) * (t37 - t36), -t63),
             k(-1.0),
             t39,
             -t43,
@@ -1306,9 +1468,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let t0 = crank_wy * crank_wy;
-        let t1 = crank_wz * crank_wz + t0;
+        let t1 = T::fused(crank_wz, crank_wz, t0);
         let t2 = crank_e0 * crank_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
         let t4 = crank_wx * crank_wy;
         let t5 = crank_e0 * crank_e3;
         let t6 = crank_e1 * crank_e2;
@@ -1317,23 +1479,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t9 = crank_e0 * crank_e2;
         let t10 = crank_e1 * crank_e3;
         let t11 = k(2.0) * (t10 + t9);
-        let t12 = k(0.1) * (t11 * t8 + (t7 * t4 + t3 * t1));
+        let t12 = k(0.1) * T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
         let t13 = k(2.0) * (t6 + t5);
-        let t14 = k(2.0) * (k(0.5) - (t2 + crank_e2 * crank_e2));
+        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t2));
         let t15 = crank_e0 * crank_e1;
         let t16 = crank_e2 * crank_e3;
         let t17 = k(2.0) * (t16 - t15);
-        let t18 = k(0.1) * (t17 * t8 - (t14 * t4 + t13 * t1));
+        let t18 = k(0.1) * T::fused(t17, t8, -T::fused(t13, t1, t14 * t4));
         let t19 = k(2.0) * (t10 - t9);
         let t20 = k(2.0) * (t16 + t15);
-        let t21 = k(2.0) * (k(0.5) - (t2 + crank_e3 * crank_e3));
-        let t22 = k(0.1) * (t21 * t8 - (t20 * t4 - t19 * t1));
+        let t21 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t2));
+        let t22 = k(0.1) * T::fused(t21, t8, -T::fused(-t19, t1, t20 * t4));
         let t23 = crank_wy * crank_wz;
-        let t24 = t0 + crank_wx * crank_wx;
+        let t24 = T::fused(crank_wx, crank_wx, t0);
         let t25 = rocker_wy * rocker_wy;
-        let t26 = rocker_wz * rocker_wz + t25;
+        let t26 = T::fused(rocker_wz, rocker_wz, t25);
         let t27 = rocker_e0 * rocker_e0;
-        let t28 = k(2.0) * (k(0.5) - (t27 + rocker_e1 * rocker_e1));
+        let t28 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t27));
         let t29 = rocker_wx * rocker_wy;
         let t30 = rocker_e0 * rocker_e3;
         let t31 = rocker_e1 * rocker_e2;
@@ -1342,22 +1504,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t34 = rocker_e0 * rocker_e2;
         let t35 = rocker_e1 * rocker_e3;
         let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.2) * (t36 * t33 + (t32 * t29 + t28 * t26));
+        let t37 = k(0.2) * T::fused(t36, t33, T::fused(t28, t26, t32 * t29));
         let t38 = k(2.0) * (t31 + t30);
-        let t39 = k(2.0) * (k(0.5) - (t27 + rocker_e2 * rocker_e2));
+        let t39 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t27));
         let t40 = rocker_e0 * rocker_e1;
         let t41 = rocker_e2 * rocker_e3;
         let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.2) * (t42 * t33 - (t39 * t29 + t38 * t26));
-        let t44 = k(2.0) * (t41 + t40) * t29 - k(2.0) * (t35 - t34) * t26;
+        let t43 = k(0.2) * T::fused(t42, t33, -T::fused(t38, t26, t39 * t29));
+        let t44 = T::fused(-(k(2.0) * (t35 - t34)), t26, k(2.0) * (t41 + t40) * t29);
         let t45 = k(0.2)
-            * (k(2.0) * (k(0.5) - (t27 + rocker_e3 * rocker_e3)) * t33 - t44);
+            * T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t27)),
+                t33,
+                -t44,
+            );
         let t46 = rocker_wy * rocker_wz;
-        let t47 = t25 + rocker_wx * rocker_wx;
+        let t47 = T::fused(rocker_wx, rocker_wx, t25);
         let t48 = coupler_wz * coupler_wz;
-        let t49 = t48 + coupler_wy * coupler_wy;
+        let t49 = T::fused(coupler_wy, coupler_wy, t48);
         let t50 = coupler_e0 * coupler_e0;
-        let t51 = k(2.0) * (k(0.5) - (t50 + coupler_e1 * coupler_e1));
+        let t51 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t50));
         let t52 = coupler_wx * coupler_wy;
         let t53 = coupler_e0 * coupler_e3;
         let t54 = coupler_e1 * coupler_e2;
@@ -1366,40 +1532,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t57 = coupler_e0 * coupler_e2;
         let t58 = coupler_e1 * coupler_e3;
         let t59 = k(2.0) * (t58 + t57);
-        let t60 = k(0.25) * (t59 * t56 + (t55 * t52 + t51 * t49));
+        let t60 = k(0.25) * T::fused(t59, t56, T::fused(t51, t49, t55 * t52));
         let t61 = k(2.0) * (t54 + t53);
-        let t62 = k(2.0) * (k(0.5) - (t50 + coupler_e2 * coupler_e2));
+        let t62 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t50));
         let t63 = coupler_e0 * coupler_e1;
         let t64 = coupler_e2 * coupler_e3;
         let t65 = k(2.0) * (t64 - t63);
-        let t66 = k(0.25) * (t65 * t56 - (t62 * t52 + t61 * t49));
+        let t66 = k(0.25) * T::fused(t65, t56, -T::fused(t61, t49, t62 * t52));
         let t67 = k(2.0) * (t58 - t57);
         let t68 = k(2.0) * (t64 + t63);
-        let t69 = k(2.0) * (k(0.5) - (t50 + coupler_e3 * coupler_e3));
-        let t70 = k(0.25) * (t69 * t56 - (t68 * t52 - t67 * t49));
-        let t71 = t23 * (t20 * t68 + (t7 * t55 + t14 * t62))
-            + t8 * (t19 * t68 - (t13 * t62 + t3 * t55));
-        let t72 = t21 * t68 - (t11 * t55 - t17 * t62);
-        let t73 = coupler_wx * (t19 * t69 - (t13 * t65 - t3 * t59))
-            + coupler_wz * (t19 * t67 + (t13 * t61 + t3 * t51));
-        let t74 = coupler_wx * (t20 * t69 - (t7 * t59 - t14 * t65))
-            + coupler_wz * (t20 * t67 - (t14 * t61 + t7 * t51));
-        let t75 = (t48 + coupler_wx * coupler_wx) * t72
-            - t52 * (t21 * t67 - (t17 * t61 - t11 * t51));
-        let t76 = coupler_wy * coupler_wz * (t11 * t59 + t17 * t65 + t21 * t69);
-        let t77 = t76 + t75 + k(2.0) * (crank_wx * t74 - crank_wy * t73)
-            + (t24 * t72 + t71);
+        let t69 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t50));
+        let t70 = k(0.25) * T::fused(t69, t56, -T::fused(-t67, t49, t68 * t52));
+        let t71 = T::fused(
+            t8,
+            T::fused(t19, t68, -T::fused(t3, t55, t13 * t62)),
+            t23 * T::fused(t20, t68, T::fused(t14, t62, t7 * t55)),
+        );
+        let t72 = T::fused(t21, t68, -T::fused(-t17, t62, t11 * t55));
+        let t73 = T::fused(
+            coupler_wz,
+            T::fused(t19, t67, T::fused(t3, t51, t13 * t61)),
+            coupler_wx * T::fused(t19, t69, -T::fused(-t3, t59, t13 * t65)),
+        );
+        let t74 = T::fused(
+            coupler_wz,
+            T::fused(t20, t67, -T::fused(t7, t51, t14 * t61)),
+            coupler_wx * T::fused(t20, t69, -T::fused(-t14, t65, t7 * t59)),
+        );
+        let t75 = T::fused(
+            -t52,
+            T::fused(t21, t67, -T::fused(-t11, t51, t17 * t61)),
+            T::fused(coupler_wx, coupler_wx, t48) * t72,
+        );
+        let t76 = T::fused(
+            coupler_wy * coupler_wz,
+            T::fused(t21, t69, T::fused(t17, t65, t11 * t59)),
+            t75,
+        );
+        let t77 = T::fused(k(2.0), T::fused(-crank_wy, t73, crank_wx * t74), t76)
+            + T::fused(t24, t72, t71);
         *out = [
             t12,
             t18,
             -t22,
-            t11 * t24 - (t7 * t23 - t3 * t8),
-            t17 * t24 + (t14 * t23 - t13 * t8),
+            T::fused(t11, t24, -T::fused(-t3, t8, t7 * t23)),
+            T::fused(t17, t24, T::fused(-t13, t8, t14 * t23)),
             t37,
             t43,
             -t45,
-            t36 * t47 - (t32 * t46 - t28 * t33),
-            t42 * t47 + (t39 * t46 - t38 * t33),
+            T::fused(t36, t47, -T::fused(-t28, t33, t32 * t46)),
+            T::fused(t42, t47, T::fused(-t38, t33, t39 * t46)),
             t12 + t60,
             t18 + t66,
             -(t22 + t70),
@@ -1529,9 +1711,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             t199,
         ) = {
             let t0 = coupler_wz * coupler_wz;
-            let t1 = t0 + coupler_wy * coupler_wy;
+            let t1 = T::fused(coupler_wy, coupler_wy, t0);
             let t2 = coupler_e0 * coupler_e0;
-            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
+            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
             let t4 = coupler_wx * coupler_wy;
             let t5 = coupler_e0 * coupler_e3;
             let t6 = coupler_e1 * coupler_e2;
@@ -1542,38 +1724,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t11 = coupler_e1 * coupler_e3;
             let t12 = t11 + t10;
             let t13 = k(2.0) * t12;
-            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
+            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
             let t15 = rocker_wy * rocker_wy;
-            let t16 = rocker_wz * rocker_wz + t15;
+            let t16 = T::fused(rocker_wz, rocker_wz, t15);
             let t17 = rocker_e0 * rocker_e0;
             let t18 = rocker_wx * rocker_wy;
             let t19 = rocker_e0 * rocker_e3;
             let t20 = rocker_e1 * rocker_e2;
             let t21 = t20 - t19;
-            let t22 = k(2.0) * t21 * t18
-                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
+            let t22 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17)),
+                t16,
+                k(2.0) * t21 * t18,
+            );
             let t23 = rocker_wx * rocker_wz;
             let t24 = rocker_e0 * rocker_e2;
             let t25 = rocker_e1 * rocker_e3;
             let t26 = t25 + t24;
-            let t27 = k(0.2) * (k(2.0) * t26 * t23 + t22);
+            let t27 = k(0.2) * T::fused(k(2.0) * t26, t23, t22);
             let t28 = crank_e0 * crank_e0;
-            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
+            let t29 = k(0.5) - T::fused(crank_e3, crank_e3, t28);
             let t30 = crank_wy * crank_wy;
-            let t31 = t30 + crank_wx * crank_wx;
+            let t31 = T::fused(crank_wx, crank_wx, t30);
             let t32 = t31 * (k(0.5) / t29);
             let t33 = crank_e0 * crank_e2;
             let t34 = crank_e1 * crank_e3;
             let t35 = k(2.0) * (t34 - t33);
             let t36 = crank_wx * crank_wz;
-            let t37 = t36 - t35 * t32;
+            let t37 = T::fused(-t35, t32, t36);
             let t38 = t34 + t33;
             let t39 = k(0.2) * t38;
             let t40 = coupler_e0 * coupler_e1;
             let t41 = coupler_e2 * coupler_e3;
             let t42 = t41 - t40;
-            let t43 = k(0.02095) * t9 + k(4.905) * t42;
-            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
+            let t43 = T::fused(k(4.905), t42, k(0.02095) * t9);
+            let t44 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
             let t45 = k(2.0) * t44;
             let t46 = crank_e0 * crank_e1;
             let t47 = crank_e2 * crank_e3;
@@ -1583,170 +1768,213 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t51 = t41 + t40;
             let t52 = k(2.0) * t51;
             let t53 = k(2.0) * t29;
-            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
-            let t55 = k(0.02095) * t4 - k(4.905) * t44;
-            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t54 = T::fused(t53, t52, -T::fused(-t49, t45, t50 * t8));
+            let t55 = T::fused(-k(4.905), t44, k(0.02095) * t4);
+            let t56 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
             let t57 = k(2.0) * t56;
             let t58 = k(2.0) * t42;
-            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
-            let t60 = t59 * t55 + t54 * t43;
+            let t59 = T::fused(t53, t57, T::fused(t49, t58, t50 * t13));
+            let t60 = T::fused(t54, t43, t59 * t55);
             let t61 = k(2.0) * (t6 + t5);
             let t62 = k(2.0) * (t11 - t10);
-            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
+            let t63 = T::fused(t53, t62, -T::fused(-t50, t3, t49 * t61));
             let t64 = k(5e-5) * t63;
             let t65 = k(0.0835) * t54;
             let t66 = k(0.0835) * t59;
-            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
+            let t67 = k(1.0) / T::fused(t59, t66, T::fused(t63, t64, t54 * t65));
             let t68 = t67 * t60;
-            let t69 = t43 - t65 * t68;
+            let t69 = T::fused(-t65, t68, t43);
             let t70 = t65 * t67;
-            let t71 = k(1.0) / (k(0.0835) - t65 * t70);
+            let t71 = k(1.0) / T::fused(-t65, t70, k(0.0835));
             let t72 = t71 * t69;
             let t73 = t64 * t67;
             let t74 = t65 * t73;
-            let t75 = crank_wz * crank_wz + t30;
-            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
+            let t75 = T::fused(crank_wz, crank_wz, t30);
+            let t76 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t28));
             let t77 = crank_wx * crank_wy;
             let t78 = crank_e0 * crank_e3;
             let t79 = crank_e1 * crank_e2;
             let t80 = t79 - t78;
             let t81 = k(2.0) * t80;
-            let t82 = k(0.1) * (t50 * t36 + (t81 * t77 + t76 * t75));
+            let t82 = k(0.1) * T::fused(t50, t36, T::fused(t76, t75, t81 * t77));
             let t83 = t82 + t14;
             let t84 = k(0.5) * t12;
             let t85 = k(0.5) * t7;
-            let t86 = t85 * t59 + t84 * t54;
+            let t86 = T::fused(t84, t54, t85 * t59);
             let t87 = t67 * t86;
-            let t88 = t84 - t65 * t87;
+            let t88 = T::fused(-t65, t87, t84);
             let t89 = t71 * t88;
-            let t90 = t74 * t89 - t64 * t87;
-            let t91 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
+            let t90 = T::fused(-t64, t87, t74 * t89);
+            let t91 = k(0.25) * T::fused(t58, t9, -T::fused(t61, t1, t45 * t4));
             let t92 = k(2.0) * (t79 + t78);
-            let t93 = k(0.5) - (t28 + crank_e2 * crank_e2);
+            let t93 = k(0.5) - T::fused(crank_e2, crank_e2, t28);
             let t94 = k(2.0) * t93;
-            let t95 = k(0.1) * (t49 * t36 - (t94 * t77 + t92 * t75));
+            let t95 = k(0.1) * T::fused(t49, t36, -T::fused(t92, t75, t94 * t77));
             let t96 = t95 + t91;
             let t97 = k(0.5) * t42;
             let t98 = k(0.5) * t44;
-            let t99 = t98 * t59 - t97 * t54;
+            let t99 = T::fused(-t97, t54, t98 * t59);
             let t100 = t67 * t99;
-            let t101 = t97 + t65 * t100;
+            let t101 = T::fused(t65, t100, t97);
             let t102 = t71 * t101;
-            let t103 = t74 * t102 + t64 * t100;
-            let t104 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
+            let t103 = T::fused(t64, t100, t74 * t102);
+            let t104 = k(0.25) * T::fused(t57, t9, -T::fused(-t62, t1, t52 * t4));
             let t105 = t47 + t46;
             let t106 = k(2.0) * t105;
-            let t107 = k(0.1) * (t53 * t36 - (t106 * t77 - t35 * t75));
+            let t107 = k(0.1) * T::fused(t53, t36, -T::fused(-t35, t75, t106 * t77));
             let t108 = t107 + t104;
             let t109 = k(0.5) * t56;
             let t110 = k(0.5) * t51;
-            let t111 = t110 * t59 - t109 * t54;
+            let t111 = T::fused(-t109, t54, t110 * t59);
             let t112 = t67 * t111;
-            let t113 = t109 + t65 * t112;
+            let t113 = T::fused(t65, t112, t109);
             let t114 = t71 * t113;
-            let t115 = t74 * t114 + t64 * t112;
-            let t116 = k(1.0) / (t63 * t63 + t59 * t59);
+            let t115 = T::fused(t64, t112, t74 * t114);
+            let t116 = k(1.0) / T::fused(t59, t59, t63 * t63);
             let t117 = crank_wy * crank_wz;
-            let t118 = t117 * (t106 * t52 + (t81 * t8 + t94 * t45))
-                + t36 * (t35 * t52 - (t92 * t45 + t76 * t8));
-            let t119 = t35 * t62 + (t92 * t61 + t76 * t3);
-            let t120 = t35 * t57 - (t92 * t58 - t76 * t13);
-            let t121 = t106 * t62 - (t94 * t61 + t81 * t3);
-            let t122 = t106 * t57 - (t81 * t13 - t94 * t58);
-            let t123 = crank_wx * (coupler_wx * t122 + coupler_wz * t121)
-                - crank_wy * (coupler_wx * t120 + coupler_wz * t119);
-            let t124 = coupler_wy * coupler_wz * t59
-                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
-            let t125 = t124 + k(2.0) * t123 + (t31 * t54 + t118);
+            let t118 = T::fused(
+                t36,
+                T::fused(t35, t52, -T::fused(t76, t8, t92 * t45)),
+                t117 * T::fused(t106, t52, T::fused(t94, t45, t81 * t8)),
+            );
+            let t119 = T::fused(t35, t62, T::fused(t76, t3, t92 * t61));
+            let t120 = T::fused(t35, t57, -T::fused(-t76, t13, t92 * t58));
+            let t121 = T::fused(t106, t62, -T::fused(t81, t3, t94 * t61));
+            let t122 = T::fused(t106, t57, -T::fused(-t94, t58, t81 * t13));
+            let t123 = T::fused(
+                -crank_wy,
+                T::fused(coupler_wz, t119, coupler_wx * t120),
+                crank_wx * T::fused(coupler_wz, t121, coupler_wx * t122),
+            );
+            let t124 = T::fused(
+                coupler_wy * coupler_wz,
+                t59,
+                T::fused(-t4, t63, T::fused(coupler_wx, coupler_wx, t0) * t54),
+            );
+            let t125 = T::fused(k(2.0), t123, t124) + T::fused(t31, t54, t118);
             let t126 = t125 * (t59 * t116);
             let t127 = t71 * t74;
-            let t128 = t74 * t127 - (k(5e-5) - t64 * t73);
+            let t128 = T::fused(t74, t127, -T::fused(-t64, t73, k(5e-5)));
             let t129 = t63 * t116 * t125;
             let t130 = t66 * t70;
-            let t131 = t130 * t127 + t66 * t73;
-            let t132 = t131 * t129 - t128 * t126
-                + (t115 * t108 + (t103 * t96 + t90 * t83));
-            let t133 = t130 * t89 + (t85 - t66 * t87);
-            let t134 = t130 * t102 - (t98 - t66 * t100);
-            let t135 = t130 * t114 - (t110 - t66 * t112);
-            let t136 = t130 * (t71 * t130) - (k(0.0835) - t66 * (t66 * t67));
-            let t137 = t136 * t129 - t131 * t126
-                + (t135 * t108 + (t134 * t96 + t133 * t83));
-            let t138 = t59 * (t137 + (t130 * t72 + (t55 - t66 * t68)))
-                + t63 * (t132 + (t74 * t72 - t64 * t68));
-            let t139 = t101 * t89 - t99 * t87;
-            let t140 = t101 * t102 + t99 * t100;
-            let t141 = t113 * t102 + t111 * t100;
-            let t142 = t134 * t129 - t103 * t126
-                - (t96 - (t141 * t108 + (t140 * t96 + t139 * t83)));
-            let t143 = t142 + (t101 * t72 - (k(9.81) + t99 * t68));
+            let t131 = T::fused(t66, t73, t130 * t127);
+            let t132 = T::fused(-t128, t126, t131 * t129)
+                + T::fused(t115, t108, T::fused(t90, t83, t103 * t96));
+            let t133 = T::fused(t130, t89, T::fused(-t66, t87, t85));
+            let t134 = T::fused(t130, t102, -T::fused(-t66, t100, t98));
+            let t135 = T::fused(t130, t114, -T::fused(-t66, t112, t110));
+            let t136 = T::fused(t130, t71 * t130, -T::fused(-t66, t66 * t67, k(0.0835)));
+            let t137 = T::fused(-t131, t126, t136 * t129)
+                + T::fused(t135, t108, T::fused(t133, t83, t134 * t96));
+            let t138 = T::fused(
+                t63,
+                t132 + T::fused(-t64, t68, t74 * t72),
+                t59 * (t137 + T::fused(t130, t72, T::fused(-t66, t68, t55))),
+            );
+            let t139 = T::fused(-t99, t87, t101 * t89);
+            let t140 = T::fused(t99, t100, t101 * t102);
+            let t141 = T::fused(t111, t100, t113 * t102);
+            let t142 = T::fused(-t103, t126, t134 * t129)
+                - (t96 - T::fused(t141, t108, T::fused(t139, t83, t140 * t96)));
+            let t143 = t142 + T::fused(t101, t72, -T::fused(t99, t68, k(9.81)));
             let t144 = k(0.2) * t93;
-            let t145 = t88 * t89 + t86 * t87;
-            let t146 = t113 * t89 - t111 * t87;
-            let t147 = t133 * t129 - t90 * t126
-                - (t83 - (t146 * t108 + (t139 * t96 + t145 * t83)));
+            let t145 = T::fused(t86, t87, t88 * t89);
+            let t146 = T::fused(-t111, t87, t113 * t89);
+            let t147 = T::fused(-t90, t126, t133 * t129)
+                - (t83 - T::fused(t146, t108, T::fused(t145, t83, t139 * t96)));
             let t148 = k(0.2) * t80;
-            let t149 = t148 * (t147 + (t88 * t72 + t86 * t68));
-            let t150 = t113 * t114 + t111 * t112;
-            let t151 = t135 * t129 - t115 * t126
-                - (t108 - (t150 * t108 + (t141 * t96 + t146 * t83)));
+            let t149 = t148 * (t147 + T::fused(t86, t68, t88 * t72));
+            let t150 = T::fused(t111, t112, t113 * t114);
+            let t151 = T::fused(-t115, t126, t135 * t129)
+                - (t108 - T::fused(t150, t108, T::fused(t146, t83, t141 * t96)));
             let t152 = k(0.2) * t105;
-            let t153 = t152 * (t151 + (t113 * t72 - t111 * t68));
-            let t154 = t144 * (k(3.924) - t143) + t149 - t153
-                - (k(0.00133) * t77 + (t153 - (t149 - t144 * t143) + t138));
-            let t155 = t152 * t146 + (t144 * t139 - t148 * t145);
-            let t156 = t59 * t133 + t63 * t90;
+            let t153 = t152 * (t151 + T::fused(-t111, t68, t113 * t72));
+            let t154 = T::fused(t144, k(3.924) - t143, t149) - t153
+                - T::fused(k(0.00133), t77, t153 - T::fused(-t144, t143, t149) + t138);
+            let t155 = T::fused(t152, t146, T::fused(-t148, t145, t144 * t139));
+            let t156 = T::fused(t63, t90, t59 * t133);
             let t157 = t148 + t155 + t156;
-            let t158 = t152 * t141 + (t144 * t140 - t148 * t139);
-            let t159 = t59 * t134 + t63 * t103;
+            let t158 = T::fused(t152, t141, T::fused(-t148, t139, t144 * t140));
+            let t159 = T::fused(t63, t103, t59 * t134);
             let t160 = t144 - t158 - t159;
-            let t161 = (t160 - (t158 - k(0.28) * t93)) * t95
-                - (t157 + (t155 + k(0.28) * t80)) * t82;
-            let t162 = t152 * t150 + (t144 * t141 - t148 * t146);
-            let t163 = t59 * t135 + t63 * t115;
+            let t161 = T::fused(
+                -(t157 + T::fused(k(0.28), t80, t155)),
+                t82,
+                (t160 - T::fused(-k(0.28), t93, t158)) * t95,
+            );
+            let t162 = T::fused(t152, t150, T::fused(-t148, t146, t144 * t141));
+            let t163 = T::fused(t63, t115, t59 * t135);
             let t164 = t152 - t162 - t163;
-            let t165 = t117 - t106 * t32;
-            let t166 = t59 * (t136 * t120 + t131 * t119)
-                + t63 * (t131 * t120 + t128 * t119);
-            let t167 = t144 * (t134 * t120 + t103 * t119)
-                - t148 * (t133 * t120 + t90 * t119);
-            let t168 = t152 * (t135 * t120 + t115 * t119) + t167;
-            let t169 = t59 * (t136 * t122 + t131 * t121)
-                + t63 * (t131 * t122 + t128 * t121);
+            let t165 = T::fused(-t106, t32, t117);
+            let t166 = T::fused(
+                t63,
+                T::fused(t128, t119, t131 * t120),
+                t59 * T::fused(t131, t119, t136 * t120),
+            );
+            let t167 = T::fused(
+                -t148,
+                T::fused(t90, t119, t133 * t120),
+                t144 * T::fused(t103, t119, t134 * t120),
+            );
+            let t168 = T::fused(t152, T::fused(t115, t119, t135 * t120), t167);
+            let t169 = T::fused(
+                t63,
+                T::fused(t128, t121, t131 * t122),
+                t59 * T::fused(t131, t121, t136 * t122),
+            );
             let t170 = k(0.2) * t48;
             let t171 = k(0.2) * t29;
-            let t172 = t133 * t122 + t90 * t121;
-            let t173 = t134 * t122 + t103 * t121;
-            let t174 = t135 * t122 + t115 * t121;
-            let t175 = t152 * t174 + (t144 * t173 - t148 * t172)
-                - (t171 * t163 + (t170 * t159 + t39 * t156));
-            let t176 = t171 * t162 + (t170 * t158 + t39 * t155);
-            let t177 = t39 - (t171 * t146 + (t170 * t139 + t39 * t145)) + t172;
-            let t178 = t170 - (t171 * t141 + (t170 * t140 + t39 * t139)) + t173;
-            let t179 = t171 - (t171 * t150 + (t170 * t141 + t39 * t146)) + t174;
-            let t180 = t152 * t179 + (t144 * t178 - t148 * t177)
-                + (t171 * t164 + (t170 * t160 - t39 * t157));
-            let t181 = (t180 - t176 - (t176 - t175 - t169)) * t37
-                - (t168 + (t168 + t166)) * t165;
-            let t182 = t181 + ((t164 - (t162 - k(0.28) * t105)) * t107 + t161) + t154;
-            let t183 = t59 * (t59 * t136 + t63 * t131) + t63 * (t59 * t131 + t63 * t128);
-            let t184 = t152 * t162 + (t144 * t158 - t148 * t155);
-            let t185 = t184 + k(2.0) * (t152 * t163 + (t144 * t159 - t148 * t156));
-            let t186 = k(2.0) * (t152 * t164 + (t144 * t160 + t148 * t157)) - t184;
+            let t172 = T::fused(t90, t121, t133 * t122);
+            let t173 = T::fused(t103, t121, t134 * t122);
+            let t174 = T::fused(t115, t121, t135 * t122);
+            let t175 = T::fused(t152, t174, T::fused(-t148, t172, t144 * t173))
+                - T::fused(t171, t163, T::fused(t39, t156, t170 * t159));
+            let t176 = T::fused(t171, t162, T::fused(t39, t155, t170 * t158));
+            let t177 = t39 - T::fused(t171, t146, T::fused(t39, t145, t170 * t139))
+                + t172;
+            let t178 = t170 - T::fused(t171, t141, T::fused(t39, t139, t170 * t140))
+                + t173;
+            let t179 = t171 - T::fused(t171, t150, T::fused(t39, t146, t170 * t141))
+                + t174;
+            let t180 = T::fused(t152, t179, T::fused(-t148, t177, t144 * t178))
+                + T::fused(t171, t164, T::fused(-t39, t157, t170 * t160));
+            let t181 = T::fused(
+                -(t168 + (t168 + t166)),
+                t165,
+                (t180 - t176 - (t176 - t175 - t169)) * t37,
+            );
+            let t182 = t181 + T::fused(t164 - T::fused(-k(0.28), t105, t162), t107, t161)
+                + t154;
+            let t183 = T::fused(
+                t63,
+                T::fused(t63, t128, t59 * t131),
+                t59 * T::fused(t63, t131, t59 * t136),
+            );
+            let t184 = T::fused(t152, t162, T::fused(-t148, t155, t144 * t158));
+            let t185 = T::fused(
+                k(2.0),
+                T::fused(t152, t163, T::fused(-t148, t156, t144 * t159)),
+                t184,
+            );
+            let t186 = T::fused(
+                k(2.0),
+                T::fused(t152, t164, T::fused(t148, t157, t144 * t160)),
+                -t184,
+            );
             let t187 = k(1.0)
                 / (t186 + (k(0.014) + (k(0.00135) - (t185 - (k(0.01) - t183)))));
             let t188 = t187 * t182;
-            let t189 = t148 * t188 + t39 * t37;
+            let t189 = T::fused(t39, t37, t148 * t188);
             let t190 = t82 + t189;
             let t191 = t83 + (t189 + t190);
-            let t192 = t144 * t188 - t170 * t37;
+            let t192 = T::fused(-t170, t37, t144 * t188);
             let t193 = t95 - t192;
             let t194 = t96 - (t192 - t193);
-            let t195 = t152 * t188 - t171 * t37;
+            let t195 = T::fused(-t171, t37, t152 * t188);
             let t196 = t107 - t195;
             let t197 = t108 - (t195 - t196);
-            let t198 = t126 + (t63 * t188 + (t121 * t37 - t119 * t165));
-            let t199 = t129 - (t59 * t188 + (t122 * t37 - t120 * t165));
+            let t198 = t126 + T::fused(t63, t188, T::fused(-t119, t165, t121 * t37));
+            let t199 = t129 - T::fused(t59, t188, T::fused(-t120, t165, t122 * t37));
             (
                 t7,
                 t12,
@@ -1858,47 +2086,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             t341,
             t342,
         ) = {
-            let t200 = t130 * t199 - t74 * t198
-                + (t113 * t197 + (t101 * t194 + t88 * t191));
+            let t200 = T::fused(-t74, t198, t130 * t199)
+                + T::fused(t113, t197, T::fused(t88, t191, t101 * t194));
             let t201 = t71 * (t69 + t200);
-            let t202 = t66 * t199 + (t65 * t201 - t64 * t198)
-                + (t111 * t197 + (t99 * t194 - t86 * t191));
+            let t202 = T::fused(t66, t199, T::fused(-t64, t198, t65 * t201))
+                + T::fused(t111, t197, T::fused(-t86, t191, t99 * t194));
             let t203 = t67 * (t60 - t202);
-            let t204 = t201 + t54 * t203;
-            let t205 = t199 + t59 * t203;
-            let t206 = t85 * t205 + t84 * t204;
+            let t204 = T::fused(t54, t203, t201);
+            let t205 = T::fused(t59, t203, t199);
+            let t206 = T::fused(t84, t204, t85 * t205);
             let t207 = t191 - t206;
-            let t208 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
-            let t209 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t208);
+            let t208 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
+            let t209 = T::fused(rocker_wx, rocker_wx, t15) * (k(0.5) / t208);
             let t210 = k(2.0) * (t25 - t24);
-            let t211 = t23 - t210 * t209;
-            let t212 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
+            let t211 = T::fused(-t210, t209, t23);
+            let t212 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
             let t213 = rocker_e0 * rocker_e1;
             let t214 = rocker_e2 * rocker_e3;
             let t215 = t214 - t213;
-            let t216 = k(2.0) * t215 * t23
-                - (k(2.0) * t212 * t18 + k(2.0) * (t20 + t19) * t16);
+            let t216 = T::fused(
+                k(2.0) * t215,
+                t23,
+                -T::fused(k(2.0) * (t20 + t19), t16, k(2.0) * t212 * t18),
+            );
             let t217 = k(0.2) * t216;
             let t218 = t214 + t213;
             let t219 = k(2.0) * t218;
-            let t220 = k(0.2) * (k(2.0) * t208 * t23 - (t219 * t18 - t210 * t16));
-            let t221 = k(0.32) * t218 * t220
-                + (k(0.32) * t212 * t217 - k(0.32) * t21 * t27);
+            let t220 = k(0.2)
+                * T::fused(k(2.0) * t208, t23, -T::fused(-t210, t16, t219 * t18));
+            let t221 = T::fused(
+                k(0.32) * t218,
+                t220,
+                T::fused(-(k(0.32) * t21), t27, k(0.32) * t212 * t217),
+            );
             let t222 = k(23.364485981308412)
-                * (t221 - (k(0.01076) * t18 - k(3.1392) * t212));
+                * (t221 - T::fused(-k(3.1392), t212, k(0.01076) * t18));
             let t223 = k(0.4) * t21;
-            let t224 = t223 * t222 + k(0.4) * t26 * t211;
+            let t224 = T::fused(k(0.4) * t26, t211, t223 * t222);
             let t225 = t27 + t224;
             let t226 = t224 + t225 + (t206 - t207) + (t27 - t14);
-            let t227 = t7 * t59 + t12 * t54;
+            let t227 = T::fused(t12, t54, t7 * t59);
             let t228 = t227 * t67;
-            let t229 = t12 - t65 * t228;
+            let t229 = T::fused(-t65, t228, t12);
             let t230 = t229 * t71;
-            let t231 = t59 * (t230 * t130 + (t7 - t66 * t228))
-                + t63 * (t230 * t74 - t64 * t228);
-            let t232 = t144 * (t230 * t101 - t228 * t99)
-                - t148 * (t230 * t88 - (k(1.0) - t228 * t86));
-            let t233 = t152 * (t230 * t113 - t228 * t111) + t232;
+            let t231 = T::fused(
+                t63,
+                T::fused(-t64, t228, t230 * t74),
+                t59 * T::fused(t230, t130, T::fused(-t66, t228, t7)),
+            );
+            let t232 = T::fused(
+                -t148,
+                T::fused(t230, t88, -T::fused(-t228, t86, k(1.0))),
+                t144 * T::fused(-t228, t99, t230 * t101),
+            );
+            let t233 = T::fused(t152, T::fused(-t228, t111, t230 * t113), t232);
             let t234 = (t233 + (t233 + t231)) * t187;
             let t235 = t148 * t234;
             let t236 = k(2.0) * t235;
@@ -1908,39 +2149,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t240 = k(2.0) * t239;
             let t241 = t63 * t234;
             let t242 = t59 * t234;
-            let t243 = t130 * t242 + t74 * t241
-                + (t113 * t240 + (t101 * t238 - t88 * t236));
+            let t243 = T::fused(t74, t241, t130 * t242)
+                + T::fused(t113, t240, T::fused(-t88, t236, t101 * t238));
             let t244 = t71 * (t229 + t243);
-            let t245 = t66 * t242 + (t65 * t244 + t64 * t241)
-                + (t111 * t240 + (t99 * t238 + t86 * t236));
+            let t245 = T::fused(t66, t242, T::fused(t64, t241, t65 * t244))
+                + T::fused(t111, t240, T::fused(t86, t236, t99 * t238));
             let t246 = t67 * (t227 - t245);
-            let t247 = t244 + t54 * t246;
-            let t248 = t242 + t59 * t246;
-            let t249 = t85 * t248 + t84 * t247;
+            let t247 = T::fused(t54, t246, t244);
+            let t248 = T::fused(t59, t246, t242);
+            let t249 = T::fused(t84, t247, t85 * t248);
             let t250 = t236 + t249;
             let t251 = k(18.69158878504673) * t21;
             let t252 = t223 * t251;
-            let t253 = k(1.0) / (k(2.0) * t252 + (t249 + t250));
-            let t254 = t98 * t205 - t97 * t204;
+            let t253 = k(1.0) / T::fused(k(2.0), t252, t249 + t250);
+            let t254 = T::fused(-t97, t204, t98 * t205);
             let t255 = t194 + t254;
             let t256 = k(0.4) * t212;
-            let t257 = t256 * t222 - k(0.4) * t215 * t211;
+            let t257 = T::fused(-(k(0.4) * t215), t211, t256 * t222);
             let t258 = t217 - t257;
-            let t259 = t98 * t248 - t97 * t247;
+            let t259 = T::fused(-t97, t247, t98 * t248);
             let t260 = t238 + t259;
             let t261 = t256 * t251;
-            let t262 = k(2.0) * t261 + (t259 + t260);
+            let t262 = T::fused(k(2.0), t261, t259 + t260);
             let t263 = t253 * t262;
-            let t264 = t263 * t226 - (t257 - t258 + (t254 + t255) - (t217 - t91));
-            let t265 = t44 * t59 - t42 * t54;
+            let t264 = T::fused(
+                t263,
+                t226,
+                -(t257 - t258 + (t254 + t255) - (t217 - t91)),
+            );
+            let t265 = T::fused(-t42, t54, t44 * t59);
             let t266 = t67 * t265;
-            let t267 = t42 + t65 * t266;
+            let t267 = T::fused(t65, t266, t42);
             let t268 = t71 * t267;
-            let t269 = t59 * (t130 * t268 - (t44 - t66 * t266))
-                + t63 * (t74 * t268 + t64 * t266);
-            let t270 = t144 * (t101 * t268 - (k(1.0) - t99 * t266))
-                - t148 * (t88 * t268 - t86 * t266);
-            let t271 = t152 * (t113 * t268 + t111 * t266) + t270;
+            let t269 = T::fused(
+                t63,
+                T::fused(t64, t266, t74 * t268),
+                t59 * T::fused(t130, t268, -T::fused(-t66, t266, t44)),
+            );
+            let t270 = T::fused(
+                -t148,
+                T::fused(-t86, t266, t88 * t268),
+                t144 * T::fused(t101, t268, -T::fused(-t99, t266, k(1.0))),
+            );
+            let t271 = T::fused(t152, T::fused(t111, t266, t113 * t268), t270);
             let t272 = t187 * (t271 + (t271 + t269));
             let t273 = t148 * t272;
             let t274 = k(2.0) * t273;
@@ -1950,44 +2201,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t278 = k(2.0) * t277;
             let t279 = t63 * t272;
             let t280 = t59 * t272;
-            let t281 = t130 * t280 + t74 * t279
-                + (t113 * t278 + (t101 * t276 - t88 * t274));
+            let t281 = T::fused(t74, t279, t130 * t280)
+                + T::fused(t113, t278, T::fused(-t88, t274, t101 * t276));
             let t282 = t71 * (t267 + t281);
-            let t283 = t66 * t280 + (t65 * t282 + t64 * t279)
-                + (t111 * t278 + (t99 * t276 + t86 * t274));
+            let t283 = T::fused(t66, t280, T::fused(t64, t279, t65 * t282))
+                + T::fused(t111, t278, T::fused(t86, t274, t99 * t276));
             let t284 = t67 * (t265 + t283);
-            let t285 = t282 - t54 * t284;
-            let t286 = t280 - t59 * t284;
-            let t287 = t98 * t286 - t97 * t285;
+            let t285 = T::fused(-t54, t284, t282);
+            let t286 = T::fused(-t59, t284, t280);
+            let t287 = T::fused(-t97, t285, t98 * t286);
             let t288 = t276 + t287;
             let t289 = k(18.69158878504673) * t212;
             let t290 = t256 * t289;
-            let t291 = k(1.0) / (t262 * t263 - (k(2.0) * t290 - (t287 + t288)));
-            let t292 = t110 * t205 - t109 * t204;
+            let t291 = k(1.0)
+                / T::fused(t262, t263, -T::fused(k(2.0), t290, -(t287 + t288)));
+            let t292 = T::fused(-t109, t204, t110 * t205);
             let t293 = t197 + t292;
             let t294 = k(0.4) * t218;
-            let t295 = t294 * t222 - k(0.4) * t208 * t211;
+            let t295 = T::fused(-(k(0.4) * t208), t211, t294 * t222);
             let t296 = t220 - t295;
-            let t297 = t110 * t248 - t109 * t247;
+            let t297 = T::fused(-t109, t247, t110 * t248);
             let t298 = t240 + t297;
             let t299 = t294 * t251;
-            let t300 = k(2.0) * t299 + (t297 + t298);
+            let t300 = T::fused(k(2.0), t299, t297 + t298);
             let t301 = t253 * t300;
-            let t302 = t301 * t226 - (t295 - t296 + (t292 + t293) - (t220 - t104));
-            let t303 = t110 * t286 - t109 * t285;
+            let t302 = T::fused(
+                t301,
+                t226,
+                -(t295 - t296 + (t292 + t293) - (t220 - t104)),
+            );
+            let t303 = T::fused(-t109, t285, t110 * t286);
             let t304 = t278 + t303;
             let t305 = t294 * t289;
-            let t306 = t262 * t301 - (k(2.0) * t305 - (t303 + t304));
+            let t306 = T::fused(t262, t301, -T::fused(k(2.0), t305, -(t303 + t304)));
             let t307 = t291 * t306;
-            let t308 = t51 * t59 - t56 * t54;
+            let t308 = T::fused(-t56, t54, t51 * t59);
             let t309 = t67 * t308;
-            let t310 = t56 + t65 * t309;
+            let t310 = T::fused(t65, t309, t56);
             let t311 = t71 * t310;
-            let t312 = t59 * (t130 * t311 - (t51 - t66 * t309))
-                + t63 * (t74 * t311 + t64 * t309);
-            let t313 = t144 * (t101 * t311 + t99 * t309)
-                - t148 * (t88 * t311 - t86 * t309);
-            let t314 = t152 * (t113 * t311 - (k(1.0) - t111 * t309)) + t313;
+            let t312 = T::fused(
+                t63,
+                T::fused(t64, t309, t74 * t311),
+                t59 * T::fused(t130, t311, -T::fused(-t66, t309, t51)),
+            );
+            let t313 = T::fused(
+                -t148,
+                T::fused(-t86, t309, t88 * t311),
+                t144 * T::fused(t99, t309, t101 * t311),
+            );
+            let t314 = T::fused(
+                t152,
+                T::fused(t113, t311, -T::fused(-t111, t309, k(1.0))),
+                t313,
+            );
             let t315 = t187 * (t314 + (t314 + t312));
             let t316 = t148 * t315;
             let t317 = k(2.0) * t316;
@@ -1997,30 +2263,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t321 = k(2.0) * t320;
             let t322 = t63 * t315;
             let t323 = t59 * t315;
-            let t324 = t130 * t323 + t74 * t322
-                + (t113 * t321 + (t101 * t319 - t88 * t317));
+            let t324 = T::fused(t74, t322, t130 * t323)
+                + T::fused(t113, t321, T::fused(-t88, t317, t101 * t319));
             let t325 = t71 * (t310 + t324);
-            let t326 = t66 * t323 + (t65 * t325 + t64 * t322)
-                + (t111 * t321 + (t99 * t319 + t86 * t317));
+            let t326 = T::fused(t66, t323, T::fused(t64, t322, t65 * t325))
+                + T::fused(t111, t321, T::fused(t86, t317, t99 * t319));
             let t327 = t67 * (t308 + t326);
-            let t328 = t325 - t54 * t327;
-            let t329 = t323 - t59 * t327;
-            let t330 = t110 * t329 - t109 * t328;
+            let t328 = T::fused(-t54, t327, t325);
+            let t329 = T::fused(-t59, t327, t323);
+            let t330 = T::fused(-t109, t328, t110 * t329);
             let t331 = t321 + t330;
             let t332 = k(18.69158878504673) * t218;
             let t333 = t294 * t332;
-            let t334 = t306 * t307 - (t300 * t301 - (k(2.0) * t333 - (t330 + t331)));
-            let t335 = (t307 * t264 - t302) / t334;
-            let t336 = t307 * t335 - t291 * t264;
-            let t337 = t301 * t335 - (t263 * t336 + t253 * t226);
-            let t338 = t336 * (t274 + (t85 * t286 + t84 * t285)) + (t207 - t250 * t337);
-            let t339 = t335 * (t319 + (t98 * t329 - t97 * t328))
-                - (t288 * t336 - (t255 + t260 * t337));
-            let t340 = t336 * (t279 - t63 * t284)
-                - (t337 * (t241 + t63 * t246) - (t198 - t63 * t203));
-            let t341 = t335 * (t223 * t332)
-                - (t336 * (t223 * t289) + (t225 + t252 * t337));
-            let t342 = t335 * (t256 * t332) - (t290 * t336 - (t258 - t261 * t337));
+            let t334 = T::fused(
+                t306,
+                t307,
+                -T::fused(t300, t301, -T::fused(k(2.0), t333, -(t330 + t331))),
+            );
+            let t335 = T::fused(t307, t264, -t302) / t334;
+            let t336 = T::fused(-t291, t264, t307 * t335);
+            let t337 = T::fused(t301, t335, -T::fused(t253, t226, t263 * t336));
+            let t338 = T::fused(
+                t336,
+                t274 + T::fused(t84, t285, t85 * t286),
+                T::fused(-t250, t337, t207),
+            );
+            let t339 = T::fused(
+                t335,
+                t319 + T::fused(-t97, t328, t98 * t329),
+                -T::fused(t288, t336, -T::fused(t260, t337, t255)),
+            );
+            let t340 = T::fused(
+                t336,
+                T::fused(-t63, t284, t279),
+                -T::fused(t337, T::fused(t63, t246, t241), -T::fused(-t63, t203, t198)),
+            );
+            let t341 = T::fused(
+                t335,
+                t223 * t332,
+                -T::fused(t336, t223 * t289, T::fused(t252, t337, t225)),
+            );
+            let t342 = T::fused(
+                t335,
+                t256 * t332,
+                -T::fused(t290, t336, -T::fused(-t261, t337, t258)),
+            );
             (
                 t204,
                 t205,
@@ -2071,24 +2358,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             )
         };
         *out = [
-            t273 * t336 + (t190 - t235 * t337) - t316 * t335,
-            t318 * t335 - (t275 * t336 - (t193 + t237 * t337)),
-            t277 * t336 - (t196 + t239 * t337) - t320 * t335,
+            T::fused(-t316, t335, T::fused(t273, t336, T::fused(-t235, t337, t190))),
+            T::fused(t318, t335, -T::fused(t275, t336, -T::fused(t237, t337, t193))),
+            T::fused(-t320, t335, T::fused(t277, t336, -T::fused(t239, t337, t196))),
             t165,
             -t37,
-            t272 * t336 + (t188 - t234 * t337) - t315 * t335,
-            t338 - t335 * (t317 + (t85 * t329 + t84 * t328)),
+            T::fused(-t315, t335, T::fused(t272, t336, T::fused(-t234, t337, t188))),
+            T::fused(-t335, t317 + T::fused(t84, t328, t85 * t329), t338),
             t339,
-            t304 * t336 - (t293 + t298 * t337) - t331 * t335,
-            t335 * (t322 - t63 * t327) - t340,
-            t328 * t335 - (t285 * t336 - (t204 + t247 * t337)),
-            t286 * t336 - (t205 + t248 * t337) - t329 * t335,
+            T::fused(-t331, t335, T::fused(t304, t336, -T::fused(t298, t337, t293))),
+            T::fused(t335, T::fused(-t63, t327, t322), -t340),
+            T::fused(t328, t335, -T::fused(t285, t336, -T::fused(t247, t337, t204))),
+            T::fused(-t329, t335, T::fused(t286, t336, -T::fused(t248, t337, t205))),
             -t341,
             t342,
-            t305 * t336 - (t296 - t299 * t337) - t333 * t335,
-            rocker_wy * rocker_wz - t219 * t209,
+            T::fused(-t333, t335, T::fused(t305, t336, -T::fused(-t299, t337, t296))),
+            T::fused(-t219, t209, rocker_wy * rocker_wz),
             -t211,
-            t289 * t336 + (t222 + t251 * t337) - t332 * t335,
+            T::fused(-t332, t335, T::fused(t289, t336, T::fused(t251, t337, t222))),
             -t337,
             t336,
             t335,
@@ -2142,21 +2429,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let closing1 = accelerations[19];
         let closing2 = accelerations[20];
         let t0 = coupler_dsx - closing0;
-        let t1 = k(0.4) * crank_dsx + t0;
+        let t1 = T::fused(k(0.4), crank_dsx, t0);
         let t2 = k(9.81) + coupler_dsy - closing1;
-        let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
+        let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = coupler_dsz - closing2;
-        let t5 = k(0.4) * crank_dsz + t4;
+        let t5 = T::fused(k(0.4), crank_dsz, t4);
         let t6 = crank_e0 * crank_e3;
         let t7 = crank_e1 * crank_e2;
         let t8 = k(2.0) * (t7 + t6);
         let t9 = k(2.0) * (t7 - t6);
         let t10 = crank_e0 * crank_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + crank_e2 * crank_e2));
-        let t12 = k(2.0) * (k(0.5) - (t10 + crank_e1 * crank_e1));
-        let t13 = k(1.0) / (t12 * t11 - t9 * t8);
+        let t11 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t10));
+        let t13 = k(1.0) / T::fused(-t9, t8, t12 * t11);
         let t14 = coupler_e0 * coupler_e0;
-        let t15 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+        let t15 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t14));
         let t16 = coupler_e0 * coupler_e3;
         let t17 = coupler_e1 * coupler_e2;
         let t18 = k(2.0) * (t17 + t16);
@@ -2173,87 +2460,122 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t29 = coupler_e2 * coupler_e3;
         let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = closing1 * t31
-            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t27);
-        let t33 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+        let t32 = T::fused(
+            closing1,
+            t31,
+            -T::fused(
+                -closing0,
+                t27,
+                T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
+            ),
+        );
+        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t14);
         let t34 = k(0.5) * t33;
-        let t35 = t4 * t34 - (t2 * t31 + t0 * t27) - (closing2 * t34 - t32);
+        let t35 = T::fused(t4, t34, -T::fused(t0, t27, t2 * t31))
+            - T::fused(closing2, t34, -t32);
         let t36 = t17 - t16;
         let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+        let t38 = k(0.5) - T::fused(coupler_e2, coupler_e2, t14);
         let t39 = k(2.0) * t38;
         let t40 = t29 + t28;
         let t41 = k(2.0) * t40;
-        let t42 = (t24 * t41 - (t8 * t39 + t12 * t37)) * t35
-            + t25 * (t24 * t21 + (t8 * t18 + t12 * t15));
+        let t42 = T::fused(
+            t25,
+            T::fused(t24, t21, T::fused(t12, t15, t8 * t18)),
+            T::fused(t24, t41, -T::fused(t12, t37, t8 * t39)) * t35,
+        );
         let t43 = k(0.5) * t36;
         let t44 = k(0.5) * t38;
-        let t45 = closing1 * t44
-            + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t43);
+        let t45 = T::fused(
+            closing1,
+            t44,
+            T::fused(
+                -closing0,
+                t43,
+                T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
+            ),
+        );
         let t46 = k(0.5) * t40;
-        let t47 = t4 * t46 - (t2 * t44 - t0 * t43) - (closing2 * t46 - t45);
+        let t47 = T::fused(t4, t46, -T::fused(-t0, t43, t2 * t44))
+            - T::fused(closing2, t46, -t45);
         let t48 = k(2.0) * t26;
         let t49 = k(2.0) * t30;
         let t50 = k(2.0) * t33;
-        let t51 = (t24 * t50 - (t8 * t49 - t12 * t48)) * t47 - t42;
-        let t52 = k(2e-5) * crank_dwx - t51;
+        let t51 = T::fused(
+            T::fused(t24, t50, -T::fused(-t12, t48, t8 * t49)),
+            t47,
+            -t42,
+        );
+        let t52 = T::fused(k(2e-5), crank_dwx, -t51);
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = (t55 * t41 + (t9 * t37 + t11 * t39)) * t35
-            + t25 * (t55 * t21 - (t11 * t18 + t9 * t15));
-        let t57 = (t55 * t50 - (t9 * t48 - t11 * t49)) * t47 - t56;
+        let t56 = T::fused(
+            t25,
+            T::fused(t55, t21, -T::fused(t9, t15, t11 * t18)),
+            T::fused(t55, t41, T::fused(t11, t39, t9 * t37)) * t35,
+        );
+        let t57 = T::fused(
+            T::fused(t55, t50, -T::fused(-t11, t49, t9 * t48)),
+            t47,
+            -t56,
+        );
         let t58 = t23 + t22;
         let t59 = k(0.2) * t58;
         let t60 = t54 - t53;
         let t61 = k(0.2) * t60;
-        let t62 = k(0.5) - (t10 + crank_e3 * crank_e3);
+        let t62 = k(0.5) - T::fused(crank_e3, crank_e3, t10);
         let t63 = k(0.2) * t62;
-        let t64 = k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
-            - (t4 * t63 - (t2 * t61 + t0 * t59) - t57);
-        let t65 = t5 * t63 - (t3 * t61 + t1 * t59) - t64;
-        let t66 = k(0.8) * rocker_dsx + closing0;
-        let t67 = k(7.848) + k(0.8) * rocker_dsy + closing1;
-        let t68 = k(0.8) * rocker_dsz + closing2;
+        let t64 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
+            - (T::fused(t4, t63, -T::fused(t0, t59, t2 * t61)) - t57);
+        let t65 = T::fused(t5, t63, -T::fused(t1, t59, t3 * t61)) - t64;
+        let t66 = T::fused(k(0.8), rocker_dsx, closing0);
+        let t67 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
+        let t68 = T::fused(k(0.8), rocker_dsz, closing2);
         let t69 = rocker_e0 * rocker_e3;
         let t70 = rocker_e1 * rocker_e2;
         let t71 = k(2.0) * (t70 + t69);
         let t72 = k(2.0) * (t70 - t69);
         let t73 = rocker_e0 * rocker_e0;
-        let t74 = k(2.0) * (k(0.5) - (t73 + rocker_e2 * rocker_e2));
-        let t75 = k(2.0) * (k(0.5) - (t73 + rocker_e1 * rocker_e1));
-        let t76 = k(1.0) / (t75 * t74 - t72 * t71);
+        let t74 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t73));
+        let t75 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t73));
+        let t76 = k(1.0) / T::fused(-t72, t71, t75 * t74);
         let t77 = k(4e-5) * rocker_dwx;
-        let t78 = k(0.4) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
-        let t79 = k(0.4) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1);
-        let t80 = closing1 * t79
-            + (k(0.01076) * (rocker_wx * rocker_wz) - k(0.0108) * rocker_dwy
-                + closing0 * t78);
-        let t81 = k(0.4) * (k(0.5) - (t73 + rocker_e3 * rocker_e3));
-        let t82 = t68 * t81 - (t67 * t79 + t66 * t78) + (closing2 * t81 - t80);
+        let t78 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
+        let t79 = k(0.4) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
+        let t80 = T::fused(
+            closing1,
+            t79,
+            T::fused(
+                closing0,
+                t78,
+                T::fused(-k(0.0108), rocker_dwy, k(0.01076) * (rocker_wx * rocker_wz)),
+            ),
+        );
+        let t81 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t73));
+        let t82 = T::fused(t68, t81, -T::fused(t66, t78, t67 * t79))
+            + T::fused(closing2, t81, -t80);
         let t83 = k(2.0) * t62;
         let t84 = k(2.0) * t60;
         let t85 = k(2.0) * t58;
-        let t86 = t85 * t48 + t84 * t49 + t83 * t50;
-        let t87 = t83 * t21 - (t84 * t18 - t85 * t15);
-        let t88 = k(1.0) / (t87 * t87 + t86 * t86);
+        let t86 = T::fused(t83, t50, T::fused(t84, t49, t85 * t48));
+        let t87 = T::fused(t83, t21, -T::fused(-t85, t15, t84 * t18));
+        let t88 = k(1.0) / T::fused(t86, t86, t87 * t87);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            t65 * (t11 * t13) - t52 * (t8 * t13),
-            t65 * (t9 * t13) - t52 * (t12 * t13),
+            T::fused(-t52, t8 * t13, t65 * (t11 * t13)),
+            T::fused(-t52, t12 * t13, t65 * (t9 * t13)),
             -t66,
             -t67,
             -t68,
-            t82 * (t74 * t76) - t77 * (t71 * t76),
-            t82 * (t72 * t76) - t77 * (t75 * t76),
+            T::fused(-t77, t71 * t76, t82 * (t74 * t76)),
+            T::fused(-t77, t75 * t76, t82 * (t72 * t76)),
             -t0,
             -t2,
             -t4,
-            -(t87 * t88 * t47 + t25 * (t86 * t88)),
+            -T::fused(t25, t86 * t88, t87 * t88 * t47),
             closing0,
             closing1,
             closing2,

@@ -156,41 +156,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FourBarRevolute<T> {
             crank_sy,
             crank_sz,
             -(k(0.5)
-                * (crank_e1 * crank_wx + crank_e2 * crank_wy + crank_e3 * crank_wz)),
-            k(0.5) * (crank_e0 * crank_wx - crank_e3 * crank_wy + crank_e2 * crank_wz),
-            k(0.5) * (crank_e3 * crank_wx + crank_e0 * crank_wy - crank_e1 * crank_wz),
+                * T::fused(
+                    crank_e3,
+                    crank_wz,
+                    T::fused(crank_e2, crank_wy, crank_e1 * crank_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    crank_e2,
+                    crank_wz,
+                    T::fused(-crank_e3, crank_wy, crank_e0 * crank_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -crank_e1,
+                    crank_wz,
+                    T::fused(crank_e0, crank_wy, crank_e3 * crank_wx),
+                ),
             -(k(0.5)
-                * (crank_e2 * crank_wx - crank_e1 * crank_wy - crank_e0 * crank_wz)),
+                * T::fused(
+                    -crank_e0,
+                    crank_wz,
+                    T::fused(-crank_e1, crank_wy, crank_e2 * crank_wx),
+                )),
             coupler_sx,
             coupler_sy,
             coupler_sz,
             -(k(0.5)
-                * (coupler_e1 * coupler_wx + coupler_e2 * coupler_wy
-                    + coupler_e3 * coupler_wz)),
+                * T::fused(
+                    coupler_e3,
+                    coupler_wz,
+                    T::fused(coupler_e2, coupler_wy, coupler_e1 * coupler_wx),
+                )),
             k(0.5)
-                * (coupler_e0 * coupler_wx - coupler_e3 * coupler_wy
-                    + coupler_e2 * coupler_wz),
+                * T::fused(
+                    coupler_e2,
+                    coupler_wz,
+                    T::fused(-coupler_e3, coupler_wy, coupler_e0 * coupler_wx),
+                ),
             k(0.5)
-                * (coupler_e3 * coupler_wx + coupler_e0 * coupler_wy
-                    - coupler_e1 * coupler_wz),
+                * T::fused(
+                    -coupler_e1,
+                    coupler_wz,
+                    T::fused(coupler_e0, coupler_wy, coupler_e3 * coupler_wx),
+                ),
             -(k(0.5)
-                * (coupler_e2 * coupler_wx - coupler_e1 * coupler_wy
-                    - coupler_e0 * coupler_wz)),
+                * T::fused(
+                    -coupler_e0,
+                    coupler_wz,
+                    T::fused(-coupler_e1, coupler_wy, coupler_e2 * coupler_wx),
+                )),
             rocker_sx,
             rocker_sy,
             rocker_sz,
             -(k(0.5)
-                * (rocker_e1 * rocker_wx + rocker_e2 * rocker_wy
-                    + rocker_e3 * rocker_wz)),
+                * T::fused(
+                    rocker_e3,
+                    rocker_wz,
+                    T::fused(rocker_e2, rocker_wy, rocker_e1 * rocker_wx),
+                )),
             k(0.5)
-                * (rocker_e0 * rocker_wx - rocker_e3 * rocker_wy
-                    + rocker_e2 * rocker_wz),
+                * T::fused(
+                    rocker_e2,
+                    rocker_wz,
+                    T::fused(-rocker_e3, rocker_wy, rocker_e0 * rocker_wx),
+                ),
             k(0.5)
-                * (rocker_e3 * rocker_wx + rocker_e0 * rocker_wy
-                    - rocker_e1 * rocker_wz),
+                * T::fused(
+                    -rocker_e1,
+                    rocker_wz,
+                    T::fused(rocker_e0, rocker_wy, rocker_e3 * rocker_wx),
+                ),
             -(k(0.5)
-                * (rocker_e2 * rocker_wx - rocker_e1 * rocker_wy
-                    - rocker_e0 * rocker_wz)),
+                * T::fused(
+                    -rocker_e0,
+                    rocker_wz,
+                    T::fused(-rocker_e1, rocker_wy, rocker_e2 * rocker_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -250,7 +292,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
         let rocker_e2 = y[19];
         let rocker_e3 = y[20];
         let t0 = crank_e0 * crank_e0;
-        let t1 = t0 + crank_e1 * crank_e1;
+        let t1 = T::fused(crank_e1, crank_e1, t0);
         let t2 = k(0.5) - t1;
         let t3 = k(0.2) * t2;
         let t4 = crank_e0 * crank_e3;
@@ -263,24 +305,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
         let t11 = k(0.2) * t10;
         let t12 = crank_e0 * crank_e1;
         let t13 = crank_e2 * crank_e3;
-        let t14 = rocker_e0 * rocker_e0 + rocker_e1 * rocker_e1;
+        let t14 = T::fused(rocker_e1, rocker_e1, rocker_e0 * rocker_e0);
         let t15 = k(0.4) * (k(0.5) - t14);
-        let t16 = k(0.4) * (rocker_e1 * rocker_e2 + rocker_e0 * rocker_e3);
+        let t16 = k(0.4) * T::fused(rocker_e0, rocker_e3, rocker_e1 * rocker_e2);
         let t17 = rocker_e0 * rocker_e2;
         let t18 = rocker_e1 * rocker_e3;
         let t19 = coupler_e0 * coupler_e0;
-        let t20 = t19 + coupler_e1 * coupler_e1;
+        let t20 = T::fused(coupler_e1, coupler_e1, t19);
         let t21 = k(0.5) * (k(0.5) - t20);
-        let t22 = k(0.5) * (coupler_e1 * coupler_e2 + coupler_e0 * coupler_e3);
+        let t22 = k(0.5) * T::fused(coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
         let t23 = coupler_e0 * coupler_e2;
         let t24 = coupler_e1 * coupler_e3;
         let t25 = k(2.0) * (t24 + t23);
-        let t26 = k(2.0) * (coupler_e2 * coupler_e3 - coupler_e0 * coupler_e1);
+        let t26 = k(2.0) * T::fused(-coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
         let t27 = coupler_e3 * coupler_e3;
         let t28 = k(2.0) * (k(0.5) - (t19 + t27));
-        let t29 = k(2.0) * t10 * t28 - (k(2.0) * t6 * t26 - k(2.0) * t2 * t25);
+        let t29 = T::fused(
+            k(2.0) * t10,
+            t28,
+            -T::fused(-(k(2.0) * t2), t25, k(2.0) * t6 * t26),
+        );
         let t30 = crank_e2 * crank_e2;
-        let t31 = k(2.0) * (t5 - t4) * t25 - k(2.0) * (k(0.5) - (t0 + t30)) * t26;
+        let t31 = T::fused(
+            -(k(2.0) * (k(0.5) - (t0 + t30))),
+            t26,
+            k(2.0) * (t5 - t4) * t25,
+        );
         *out = [
             crank_rx + t3,
             crank_ry - t7,
@@ -289,19 +339,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
             k(2.0) * (t13 - t12),
             rocker_rx + t15 - k(0.5),
             rocker_ry - t16,
-            rocker_rz - k(0.4) * (t18 - t17),
+            T::fused(-k(0.4), t18 - t17, rocker_rz),
             k(2.0) * (t18 + t17),
-            k(2.0) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1),
+            k(2.0) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3),
             coupler_rx + t21 - (crank_rx - t3),
             coupler_ry - t22 - (crank_ry + t7),
-            coupler_rz - k(0.5) * (t24 - t23) - (crank_rz + t11),
+            T::fused(-k(0.5), t24 - t23, coupler_rz) - (crank_rz + t11),
             -t29,
-            t31 - k(2.0) * (t13 + t12) * t28,
+            T::fused(-(k(2.0) * (t13 + t12)), t28, t31),
             rocker_rx - t15 - (coupler_rx - t21),
             rocker_ry + t16 - (coupler_ry + t22),
-            crank_e3 * crank_e3 + (t1 + t30) - k(1.0),
-            t27 + (t20 + coupler_e2 * coupler_e2) - k(1.0),
-            rocker_e3 * rocker_e3 + (t14 + rocker_e2 * rocker_e2) - k(1.0),
+            T::fused(crank_e3, crank_e3, t1 + t30) - k(1.0),
+            t27 + T::fused(coupler_e2, coupler_e2, t20) - k(1.0),
+            T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t14)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 209 operations (89 ±, 120 ×, 0 ÷).
@@ -343,72 +393,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
         let t3 = crank_e0 * crank_e2;
         let t4 = crank_e1 * crank_e3;
         let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(0.1) * (t5 * crank_wy - t2 * crank_wz);
+        let t6 = k(0.1) * T::fused(-t2, crank_wz, t5 * crank_wy);
         let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + crank_e2 * crank_e2));
+        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
         let t9 = crank_e0 * crank_e1;
         let t10 = crank_e2 * crank_e3;
         let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(0.1) * (t11 * crank_wy + t8 * crank_wz);
+        let t12 = k(0.1) * T::fused(t8, crank_wz, t11 * crank_wy);
         let t13 = k(2.0) * (t10 + t9);
-        let t14 = k(2.0) * (k(0.5) - (t7 + crank_e3 * crank_e3));
-        let t15 = k(0.1) * (t14 * crank_wy + t13 * crank_wz);
-        let t16 = k(2.0) * (k(0.5) - (t7 + crank_e1 * crank_e1));
+        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
+        let t15 = k(0.1) * T::fused(t13, crank_wz, t14 * crank_wy);
+        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
         let t17 = k(2.0) * (t1 + t0);
         let t18 = rocker_e0 * rocker_e3;
         let t19 = rocker_e1 * rocker_e2;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2) * rocker_wy
-            - t20 * rocker_wz;
+        let t21 = T::fused(
+            -t20,
+            rocker_wz,
+            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+        );
         let t22 = k(0.2) * t21;
         let t23 = rocker_e0 * rocker_e0;
-        let t24 = k(2.0) * (k(0.5) - (t23 + rocker_e2 * rocker_e2));
+        let t24 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t23));
         let t25 = rocker_e0 * rocker_e1;
         let t26 = rocker_e2 * rocker_e3;
-        let t27 = k(0.2) * (k(2.0) * (t26 - t25) * rocker_wy + t24 * rocker_wz);
-        let t28 = k(2.0) * (k(0.5) - (t23 + rocker_e3 * rocker_e3)) * rocker_wy
-            + k(2.0) * (t26 + t25) * rocker_wz;
-        let t29 = t20 * rocker_wx
-            + k(2.0) * (k(0.5) - (t23 + rocker_e1 * rocker_e1)) * rocker_wy;
+        let t27 = k(0.2) * T::fused(t24, rocker_wz, k(2.0) * (t26 - t25) * rocker_wy);
+        let t28 = T::fused(
+            k(2.0) * (t26 + t25),
+            rocker_wz,
+            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t23)) * rocker_wy,
+        );
+        let t29 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t23)),
+            rocker_wy,
+            t20 * rocker_wx,
+        );
         let t30 = coupler_e0 * coupler_e3;
         let t31 = coupler_e1 * coupler_e2;
         let t32 = k(2.0) * (t31 - t30);
         let t33 = coupler_e0 * coupler_e2;
         let t34 = coupler_e1 * coupler_e3;
         let t35 = k(2.0) * (t34 + t33);
-        let t36 = k(0.25) * (t35 * coupler_wy - t32 * coupler_wz);
+        let t36 = k(0.25) * T::fused(-t32, coupler_wz, t35 * coupler_wy);
         let t37 = coupler_e0 * coupler_e0;
-        let t38 = k(2.0) * (k(0.5) - (t37 + coupler_e2 * coupler_e2));
+        let t38 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t37));
         let t39 = coupler_e0 * coupler_e1;
         let t40 = coupler_e2 * coupler_e3;
         let t41 = k(2.0) * (t40 - t39);
-        let t42 = k(0.25) * (t41 * coupler_wy + t38 * coupler_wz);
+        let t42 = k(0.25) * T::fused(t38, coupler_wz, t41 * coupler_wy);
         let t43 = k(2.0) * (t40 + t39);
-        let t44 = k(2.0) * (k(0.5) - (t37 + coupler_e3 * coupler_e3));
+        let t44 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t37));
         let t45 = crank_sz + t15
-            - (coupler_sz - k(0.25) * (t44 * coupler_wy + t43 * coupler_wz));
-        let t46 = t5 * t35 + t11 * t41 + t14 * t44;
-        let t47 = crank_wy * t46 + crank_wz * (t13 * t44 - (t2 * t35 - t8 * t41));
-        let t48 = k(2.0) * (k(0.5) - (t37 + coupler_e1 * coupler_e1));
+            - T::fused(
+                -k(0.25),
+                T::fused(t43, coupler_wz, t44 * coupler_wy),
+                coupler_sz,
+            );
+        let t46 = T::fused(t14, t44, T::fused(t11, t41, t5 * t35));
+        let t47 = T::fused(
+            crank_wz,
+            T::fused(t13, t44, -T::fused(-t8, t41, t2 * t35)),
+            crank_wy * t46,
+        );
+        let t48 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t37));
         let t49 = k(2.0) * (t31 + t30);
         let t50 = k(2.0) * (t34 - t33);
         let t51 = k(2.0) * (t4 - t3);
-        let t52 = coupler_wx * (t51 * t43 - (t17 * t38 + t16 * t32))
-            - coupler_wy * (t51 * t50 + (t17 * t49 + t16 * t48));
-        let t53 = crank_wx * t46 + crank_wz * (t51 * t44 - (t17 * t41 - t16 * t35));
-        let t54 = coupler_wx * (t13 * t43 + (t2 * t32 + t8 * t38))
-            - coupler_wy * (t13 * t50 - (t8 * t49 + t2 * t48));
+        let t52 = T::fused(
+            -coupler_wy,
+            T::fused(t51, t50, T::fused(t16, t48, t17 * t49)),
+            coupler_wx * T::fused(t51, t43, -T::fused(t16, t32, t17 * t38)),
+        );
+        let t53 = T::fused(
+            crank_wz,
+            T::fused(t51, t44, -T::fused(-t16, t35, t17 * t41)),
+            crank_wx * t46,
+        );
+        let t54 = T::fused(
+            -coupler_wy,
+            T::fused(t13, t50, -T::fused(t2, t48, t8 * t49)),
+            coupler_wx * T::fused(t13, t43, T::fused(t8, t38, t2 * t32)),
+        );
         *out = [
             crank_sx + t6,
             crank_sy + t12,
             crank_sz - t15,
-            -(t2 * crank_wx + t16 * crank_wy),
-            t8 * crank_wx + t17 * crank_wy,
+            -T::fused(t16, crank_wy, t2 * crank_wx),
+            T::fused(t17, crank_wy, t8 * crank_wx),
             rocker_sx + t22,
             rocker_sy + t27,
-            rocker_sz - k(0.2) * t28,
+            T::fused(-k(0.2), t28, rocker_sz),
             -t29,
-            t24 * rocker_wx + k(2.0) * (t19 + t18) * rocker_wy,
+            T::fused(k(2.0) * (t19 + t18), rocker_wy, t24 * rocker_wx),
             coupler_sx + t36 - (crank_sx - t6),
             coupler_sy + t42 - (crank_sy - t12),
             -t45,
@@ -442,25 +519,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = rocker_wx * (k(4e-5) * rocker_wx) + rocker_wy * (k(0.0108) * rocker_wy)
-            + rocker_wz * (k(0.0108) * rocker_wz);
-        let t1 = t0
-            + k(0.8)
-                * (rocker_sx * rocker_sx + rocker_sy * rocker_sy
-                    + rocker_sz * rocker_sz);
-        let t2 = coupler_wx * (k(5e-5) * coupler_wx)
-            + coupler_wy * (k(0.021) * coupler_wy)
-            + coupler_wz * (k(0.021) * coupler_wz);
-        let t3 = crank_wx * (k(2e-5) * crank_wx) + crank_wy * (k(0.00135) * crank_wy)
-            + crank_wz * (k(0.00135) * crank_wz);
-        let t4 = t3
-            + k(0.4) * (crank_sx * crank_sx + crank_sy * crank_sy + crank_sz * crank_sz);
+        let t0 = T::fused(
+            rocker_wz,
+            k(0.0108) * rocker_wz,
+            T::fused(rocker_wy, k(0.0108) * rocker_wy, rocker_wx * (k(4e-5) * rocker_wx)),
+        );
+        let t1 = T::fused(
+            k(0.8),
+            T::fused(
+                rocker_sz,
+                rocker_sz,
+                T::fused(rocker_sy, rocker_sy, rocker_sx * rocker_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            coupler_wz,
+            k(0.021) * coupler_wz,
+            T::fused(
+                coupler_wy,
+                k(0.021) * coupler_wy,
+                coupler_wx * (k(5e-5) * coupler_wx),
+            ),
+        );
+        let t3 = T::fused(
+            crank_wz,
+            k(0.00135) * crank_wz,
+            T::fused(crank_wy, k(0.00135) * crank_wy, crank_wx * (k(2e-5) * crank_wx)),
+        );
+        let t4 = T::fused(
+            k(0.4),
+            T::fused(
+                crank_sz,
+                crank_sz,
+                T::fused(crank_sy, crank_sy, crank_sx * crank_sx),
+            ),
+            t3,
+        );
         let t5 = t4
-            + (coupler_sx * coupler_sx + coupler_sy * coupler_sy
-                + coupler_sz * coupler_sz + t2);
+            + (T::fused(
+                coupler_sz,
+                coupler_sz,
+                T::fused(coupler_sy, coupler_sy, coupler_sx * coupler_sx),
+            ) + t2);
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t1),
-            potential: k(3.924) * crank_ry + k(9.81) * coupler_ry + k(7.848) * rocker_ry,
+            potential: T::fused(
+                k(7.848),
+                rocker_ry,
+                T::fused(k(9.81), coupler_ry, k(3.924) * crank_ry),
+            ),
         }
     }
     /// Writes the joint readings: 99 operations (44 ±, 55 ×, 0 ÷).
@@ -486,28 +594,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
         let t2 = k(2.0) * (t1 + t0);
         let t3 = crank_e2 * crank_e2;
         let t4 = crank_e0 * crank_e0;
-        let t5 = t4 + crank_e1 * crank_e1;
-        let t6 = k(1.0) - (crank_e3 * crank_e3 + (t5 + t3));
-        let t7 = k(2.0) * (k(0.5) - t5) - t6;
-        let t8 = k(2.0) * (rocker_e1 * rocker_e2 + rocker_e0 * rocker_e3);
-        let t9 = rocker_e0 * rocker_e0 + rocker_e1 * rocker_e1;
-        let t10 = k(2.0) * (k(0.5) - t9)
-            - (k(1.0) - (rocker_e3 * rocker_e3 + (t9 + rocker_e2 * rocker_e2)));
-        let t11 = k(2.0) * (coupler_e1 * coupler_e3 - coupler_e0 * coupler_e2);
+        let t5 = T::fused(crank_e1, crank_e1, t4);
+        let t6 = k(1.0) - T::fused(crank_e3, crank_e3, t5 + t3);
+        let t7 = T::fused(k(2.0), k(0.5) - t5, -t6);
+        let t8 = k(2.0) * T::fused(rocker_e0, rocker_e3, rocker_e1 * rocker_e2);
+        let t9 = T::fused(rocker_e1, rocker_e1, rocker_e0 * rocker_e0);
+        let t10 = T::fused(
+            k(2.0),
+            k(0.5) - t9,
+            -(k(1.0)
+                - T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t9))),
+        );
+        let t11 = k(2.0) * T::fused(-coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
         let t12 = coupler_e0 * coupler_e3;
         let t13 = coupler_e1 * coupler_e2;
         let t14 = k(2.0) * (t13 + t12);
         let t15 = coupler_e2 * coupler_e2;
         let t16 = coupler_e0 * coupler_e0;
-        let t17 = t16 + coupler_e1 * coupler_e1;
-        let t18 = k(1.0) - (coupler_e3 * coupler_e3 + (t17 + t15));
-        let t19 = k(2.0) * (k(0.5) - t17) - t18;
-        let t20 = k(2.0) * (t1 - t0) * t19 + t14 * (k(2.0) * (k(0.5) - (t4 + t3)) - t6);
-        let t21 = t7 * t19 + t2 * t14
-            + k(2.0) * (crank_e1 * crank_e3 - crank_e0 * crank_e2) * t11;
-        let t22 = k(2.0) * (rocker_e1 * rocker_e3 - rocker_e0 * rocker_e2);
-        let t23 = k(2.0) * (t13 - t12) * t10
-            + t8 * (k(2.0) * (k(0.5) - (t16 + t15)) - t18);
+        let t17 = T::fused(coupler_e1, coupler_e1, t16);
+        let t18 = k(1.0) - T::fused(coupler_e3, coupler_e3, t17 + t15);
+        let t19 = T::fused(k(2.0), k(0.5) - t17, -t18);
+        let t20 = T::fused(
+            t14,
+            T::fused(k(2.0), k(0.5) - (t4 + t3), -t6),
+            k(2.0) * (t1 - t0) * t19,
+        );
+        let t21 = T::fused(
+            k(2.0) * T::fused(-crank_e0, crank_e2, crank_e1 * crank_e3),
+            t11,
+            T::fused(t2, t14, t7 * t19),
+        );
+        let t22 = k(2.0) * T::fused(-rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
+        let t23 = T::fused(
+            t8,
+            T::fused(k(2.0), k(0.5) - (t16 + t15), -t18),
+            k(2.0) * (t13 - t12) * t10,
+        );
         *out = [
             t2,
             -t7,
@@ -515,11 +637,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
             t8,
             -t10,
             rocker_wz,
-            k(2.0) * (crank_e2 * crank_e3 + crank_e0 * crank_e1) * t11 - t20,
+            T::fused(
+                k(2.0) * T::fused(crank_e0, crank_e1, crank_e2 * crank_e3),
+                t11,
+                -t20,
+            ),
             t21,
             coupler_wz - crank_wz,
-            k(2.0) * (coupler_e2 * coupler_e3 + coupler_e0 * coupler_e1) * t22 - t23,
-            t10 * t19 + t14 * t8 + t11 * t22,
+            T::fused(
+                k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3),
+                t22,
+                -t23,
+            ),
+            T::fused(t11, t22, T::fused(t14, t8, t10 * t19)),
             rocker_wz - coupler_wz,
         ];
     }
@@ -920,28 +1050,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t22 = k(0.5) * coupler_e1;
         let t23 = k(0.5) * coupler_e0;
         let t24 = k(2.0)
-            * (k(0.5) - (coupler_e0 * coupler_e0 + coupler_e3 * coupler_e3));
+            * (k(0.5) - T::fused(coupler_e3, coupler_e3, coupler_e0 * coupler_e0));
         let t25 = t24 * t6;
-        let t26 = k(2.0) * (coupler_e2 * coupler_e3 - coupler_e0 * coupler_e1);
+        let t26 = k(2.0) * T::fused(-coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
         let t27 = k(4.0) * crank_e0;
-        let t28 = k(2.0) * (coupler_e1 * coupler_e3 + coupler_e0 * coupler_e2);
+        let t28 = k(2.0) * T::fused(coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
         let t29 = t24 * t7;
         let t30 = t24 * t8;
         let t31 = t24 * t9;
         let t32 = k(4.0) * coupler_e0;
-        let t33 = k(2.0) * (crank_e1 * crank_e3 - crank_e0 * crank_e2);
+        let t33 = k(2.0) * T::fused(-crank_e0, crank_e2, crank_e1 * crank_e3);
         let t34 = k(2.0) * coupler_e1;
         let t35 = crank_e0 * crank_e3;
         let t36 = crank_e1 * crank_e2;
         let t37 = k(2.0) * (t36 + t35);
         let t38 = k(2.0) * coupler_e2;
         let t39 = crank_e0 * crank_e0;
-        let t40 = k(2.0) * (k(0.5) - (t39 + crank_e1 * crank_e1));
+        let t40 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t39));
         let t41 = k(2.0) * coupler_e0;
         let t42 = k(2.0) * coupler_e3;
         let t43 = k(4.0) * coupler_e3;
-        let t44 = k(2.0) * (crank_e2 * crank_e3 + crank_e0 * crank_e1);
-        let t45 = k(2.0) * (k(0.5) - (t39 + crank_e2 * crank_e2));
+        let t44 = k(2.0) * T::fused(crank_e0, crank_e1, crank_e2 * crank_e3);
+        let t45 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t39));
         let t46 = k(2.0) * (t36 - t35);
         *out = [
             k(1.0),
@@ -1012,22 +1142,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -t20,
             t23,
             -t22,
-            t28 * t27 + t26 * t7 + t25,
-            t28 * (k(4.0) * crank_e1) + t26 * t6 - t29,
-            t26 * t9 + t30,
-            t26 * t8 - t31,
-            t33 * t32 - (t40 * t38 + t37 * t34),
-            -(t40 * t42 + t37 * t41),
-            t37 * t42 - t40 * t41,
-            t33 * t43 - (t40 * t34 - t37 * t38),
-            -(t31 + (t28 * t7 - t26 * t27)),
-            t28 * t6 - t30,
-            t28 * t9 + t26 * (k(4.0) * crank_e2) - t29,
-            -(t25 + t28 * t8),
-            t46 * t38 + t45 * t34 + t44 * t32,
-            t46 * t42 + t45 * t41,
-            t46 * t41 - t45 * t42,
-            t46 * t34 - t45 * t38 + t44 * t43,
+            T::fused(t26, t7, t28 * t27) + t25,
+            T::fused(t26, t6, t28 * (k(4.0) * crank_e1)) - t29,
+            T::fused(t26, t9, t30),
+            T::fused(t26, t8, -t31),
+            T::fused(t33, t32, -T::fused(t37, t34, t40 * t38)),
+            -T::fused(t37, t41, t40 * t42),
+            T::fused(-t40, t41, t37 * t42),
+            T::fused(t33, t43, -T::fused(-t37, t38, t40 * t34)),
+            -(t31 + T::fused(-t26, t27, t28 * t7)),
+            T::fused(t28, t6, -t30),
+            T::fused(t26, k(4.0) * crank_e2, t28 * t9) - t29,
+            -T::fused(t28, t8, t25),
+            T::fused(t44, t32, T::fused(t45, t34, t46 * t38)),
+            T::fused(t45, t41, t46 * t42),
+            T::fused(-t45, t42, t46 * t41),
+            T::fused(t44, t43, T::fused(-t45, t38, t46 * t34)),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1086,17 +1216,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t10 = t9 - t8;
         let t11 = k(0.2) * t10;
         let t12 = crank_e0 * crank_e0;
-        let t13 = k(0.5) - (t12 + crank_e2 * crank_e2);
+        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
         let t14 = k(0.2) * t13;
-        let t15 = k(0.5) - (t12 + crank_e3 * crank_e3);
+        let t15 = k(0.5) - T::fused(crank_e3, crank_e3, t12);
         let t16 = k(0.2) * t15;
         let t17 = t9 + t8;
         let t18 = k(0.2) * t17;
         let t19 = k(2.0) * t6;
-        let t20 = k(2.0) * (k(0.5) - (t12 + crank_e1 * crank_e1));
+        let t20 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12));
         let t21 = k(2.0) * t13;
         let t22 = k(2.0) * (t5 + t4);
-        let t23 = k(0.4) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
+        let t23 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
         let t24 = rocker_e0 * rocker_e3;
         let t25 = rocker_e1 * rocker_e2;
         let t26 = t25 - t24;
@@ -1105,7 +1235,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t29 = rocker_e2 * rocker_e3;
         let t30 = k(0.4) * (t29 - t28);
         let t31 = rocker_e0 * rocker_e0;
-        let t32 = k(0.5) - (t31 + rocker_e2 * rocker_e2);
+        let t32 = k(0.5) - T::fused(rocker_e2, rocker_e2, t31);
         let t33 = k(0.4) * t32;
         let t34 = coupler_e0 * coupler_e2;
         let t35 = coupler_e1 * coupler_e3;
@@ -1120,20 +1250,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t44 = t43 - t42;
         let t45 = k(0.5) * t44;
         let t46 = coupler_e0 * coupler_e0;
-        let t47 = k(0.5) - (t46 + coupler_e2 * coupler_e2);
+        let t47 = k(0.5) - T::fused(coupler_e2, coupler_e2, t46);
         let t48 = k(0.5) * t47;
-        let t49 = k(0.5) - (t46 + coupler_e3 * coupler_e3);
+        let t49 = k(0.5) - T::fused(coupler_e3, coupler_e3, t46);
         let t50 = t43 + t42;
         let t51 = k(2.0) * t49;
         let t52 = k(2.0) * t44;
         let t53 = k(2.0) * t36;
-        let t54 = k(2.0) * t2 * t53 + k(2.0) * t10 * t52 + k(2.0) * t15 * t51;
+        let t54 = T::fused(
+            k(2.0) * t15,
+            t51,
+            T::fused(k(2.0) * t10, t52, k(2.0) * t2 * t53),
+        );
         let t55 = k(2.0) * t17;
         let t56 = k(2.0) * t40;
         let t57 = k(2.0) * t47;
         let t58 = k(2.0) * t50;
         let t59 = k(2.0) * (t1 - t0);
-        let t60 = k(2.0) * (k(0.5) - (t46 + coupler_e1 * coupler_e1));
+        let t60 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t46));
         let t61 = k(2.0) * (t39 + t38);
         let t62 = k(2.0) * (t35 - t34);
         *out = [
@@ -1157,10 +1291,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             t30,
             t33,
             k(1.0),
-            -(k(0.4) * (k(0.5) - (t31 + rocker_e3 * rocker_e3))),
+            -(k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t31))),
             -(k(0.4) * (t29 + t28)),
             -(k(2.0) * t26),
-            -(k(2.0) * (k(0.5) - (t31 + rocker_e1 * rocker_e1))),
+            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t31))),
             k(2.0) * t32,
             k(2.0) * (t25 + t24),
             k(-1.0),
@@ -1182,13 +1316,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -(k(0.5) * t49),
             -(k(0.5) * t50),
             -t54,
-            t19 * t53 - t21 * t52 - t55 * t51,
-            t22 * t57 + t20 * t56 - t59 * t58,
-            t59 * t62 + (t22 * t61 + t20 * t60),
+            T::fused(-t55, t51, T::fused(-t21, t52, t19 * t53)),
+            T::fused(-t59, t58, T::fused(t20, t56, t22 * t57)),
+            T::fused(t59, t62, T::fused(t20, t60, t22 * t61)),
             t54,
-            t59 * t51 - (t22 * t52 - t20 * t53),
-            -(t55 * t58 + (t19 * t56 + t21 * t57)),
-            t55 * t62 - (t21 * t61 + t19 * t60),
+            T::fused(t59, t51, -T::fused(-t20, t53, t22 * t52)),
+            -T::fused(t55, t58, T::fused(t21, t57, t19 * t56)),
+            T::fused(t55, t62, -T::fused(t19, t60, t21 * t61)),
             k(-1.0),
             t37,
             -t41,
@@ -1254,7 +1388,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t1 = crank_wz * crank_wz;
         let t2 = t1 + t0;
         let t3 = crank_e0 * crank_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + crank_e1 * crank_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t3));
         let t5 = crank_wx * crank_wy;
         let t6 = crank_e0 * crank_e3;
         let t7 = crank_e1 * crank_e2;
@@ -1263,24 +1397,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t10 = crank_e0 * crank_e2;
         let t11 = crank_e1 * crank_e3;
         let t12 = k(2.0) * (t11 + t10);
-        let t13 = k(0.1) * (t12 * t9 + (t8 * t5 + t4 * t2));
+        let t13 = k(0.1) * T::fused(t12, t9, T::fused(t4, t2, t8 * t5));
         let t14 = k(2.0) * (t7 + t6);
-        let t15 = k(2.0) * (k(0.5) - (t3 + crank_e2 * crank_e2));
+        let t15 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t3));
         let t16 = crank_e0 * crank_e1;
         let t17 = crank_e2 * crank_e3;
         let t18 = k(2.0) * (t17 - t16);
-        let t19 = k(0.1) * (t18 * t9 - (t15 * t5 + t14 * t2));
+        let t19 = k(0.1) * T::fused(t18, t9, -T::fused(t14, t2, t15 * t5));
         let t20 = k(2.0) * (t11 - t10);
         let t21 = k(2.0) * (t17 + t16);
-        let t22 = k(2.0) * (k(0.5) - (t3 + crank_e3 * crank_e3));
-        let t23 = k(0.1) * (t22 * t9 - (t21 * t5 - t20 * t2));
+        let t22 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t3));
+        let t23 = k(0.1) * T::fused(t22, t9, -T::fused(-t20, t2, t21 * t5));
         let t24 = crank_wy * crank_wz;
         let t25 = crank_wx * crank_wx;
         let t26 = t0 + t25;
         let t27 = rocker_wy * rocker_wy;
-        let t28 = rocker_wz * rocker_wz + t27;
+        let t28 = T::fused(rocker_wz, rocker_wz, t27);
         let t29 = rocker_e0 * rocker_e0;
-        let t30 = k(2.0) * (k(0.5) - (t29 + rocker_e1 * rocker_e1));
+        let t30 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t29));
         let t31 = rocker_wx * rocker_wy;
         let t32 = rocker_e0 * rocker_e3;
         let t33 = rocker_e1 * rocker_e2;
@@ -1289,22 +1423,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t36 = rocker_e0 * rocker_e2;
         let t37 = rocker_e1 * rocker_e3;
         let t38 = k(2.0) * (t37 + t36);
-        let t39 = k(0.2) * (t38 * t35 + (t34 * t31 + t30 * t28));
+        let t39 = k(0.2) * T::fused(t38, t35, T::fused(t30, t28, t34 * t31));
         let t40 = k(2.0) * (t33 + t32);
-        let t41 = k(2.0) * (k(0.5) - (t29 + rocker_e2 * rocker_e2));
+        let t41 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t29));
         let t42 = rocker_e0 * rocker_e1;
         let t43 = rocker_e2 * rocker_e3;
         let t44 = k(2.0) * (t43 - t42);
-        let t45 = k(0.2) * (t44 * t35 - (t41 * t31 + t40 * t28));
-        let t46 = k(2.0) * (t43 + t42) * t31 - k(2.0) * (t37 - t36) * t28;
+        let t45 = k(0.2) * T::fused(t44, t35, -T::fused(t40, t28, t41 * t31));
+        let t46 = T::fused(-(k(2.0) * (t37 - t36)), t28, k(2.0) * (t43 + t42) * t31);
         let t47 = k(0.2)
-            * (k(2.0) * (k(0.5) - (t29 + rocker_e3 * rocker_e3)) * t35 - t46);
+            * T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t29)),
+                t35,
+                -t46,
+            );
         let t48 = rocker_wy * rocker_wz;
-        let t49 = t27 + rocker_wx * rocker_wx;
+        let t49 = T::fused(rocker_wx, rocker_wx, t27);
         let t50 = coupler_wy * coupler_wy;
-        let t51 = coupler_wz * coupler_wz + t50;
+        let t51 = T::fused(coupler_wz, coupler_wz, t50);
         let t52 = coupler_e0 * coupler_e0;
-        let t53 = k(2.0) * (k(0.5) - (t52 + coupler_e1 * coupler_e1));
+        let t53 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t52));
         let t54 = coupler_wx * coupler_wy;
         let t55 = coupler_e0 * coupler_e3;
         let t56 = coupler_e1 * coupler_e2;
@@ -1313,52 +1451,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t59 = coupler_e0 * coupler_e2;
         let t60 = coupler_e1 * coupler_e3;
         let t61 = k(2.0) * (t60 + t59);
-        let t62 = k(0.25) * (t61 * t58 + (t57 * t54 + t53 * t51));
+        let t62 = k(0.25) * T::fused(t61, t58, T::fused(t53, t51, t57 * t54));
         let t63 = k(2.0) * (t56 + t55);
-        let t64 = k(2.0) * (k(0.5) - (t52 + coupler_e2 * coupler_e2));
+        let t64 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t52));
         let t65 = coupler_e0 * coupler_e1;
         let t66 = coupler_e2 * coupler_e3;
         let t67 = k(2.0) * (t66 - t65);
-        let t68 = k(0.25) * (t67 * t58 - (t64 * t54 + t63 * t51));
+        let t68 = k(0.25) * T::fused(t67, t58, -T::fused(t63, t51, t64 * t54));
         let t69 = k(2.0) * (t60 - t59);
         let t70 = k(2.0) * (t66 + t65);
-        let t71 = k(2.0) * (k(0.5) - (t52 + coupler_e3 * coupler_e3));
-        let t72 = t23 + k(0.25) * (t71 * t58 - (t70 * t54 - t69 * t51));
-        let t73 = t20 * t71 - (t14 * t67 - t4 * t61);
-        let t74 = t21 * t71 - (t8 * t61 - t15 * t67);
-        let t75 = t12 * t61 + t18 * t67 + t22 * t71;
-        let t76 = t21 * t69 - (t15 * t63 + t8 * t53);
-        let t77 = t21 * t70 + (t8 * t57 + t15 * t64);
-        let t78 = coupler_wx * (t22 * t70 - (t12 * t57 - t18 * t64))
-            - coupler_wy * (t22 * t69 - (t18 * t63 - t12 * t53));
-        let t79 = k(2.0)
-            * (crank_wy * t78 + crank_wz * (coupler_wx * t77 - coupler_wy * t76));
-        let t80 = t20 * t69 + (t14 * t63 + t4 * t53);
-        let t81 = t20 * t70 - (t14 * t64 + t4 * t57);
-        let t82 = coupler_wy * coupler_wz;
-        let t83 = t50 + coupler_wx * coupler_wx;
-        let t84 = t83 * t73 + (t82 * t81 + t58 * t80) - t79
-            + (t9 * t75 - (t5 * t74 - t2 * t73));
-        let t85 = k(2.0)
-            * (crank_wx * t78 + crank_wz * (coupler_wx * t81 - coupler_wy * t80));
-        let t86 = t83 * t74 + (t82 * t77 + t58 * t76) + t85
-            + (t24 * t75 + ((t1 + t25) * t74 - t5 * t73));
+        let t71 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t52));
+        let t72 = T::fused(
+            k(0.25),
+            T::fused(t71, t58, -T::fused(-t69, t51, t70 * t54)),
+            t23,
+        );
+        let t73 = T::fused(t20, t71, -T::fused(-t4, t61, t14 * t67));
+        let t74 = T::fused(t21, t71, -T::fused(-t15, t67, t8 * t61));
+        let t75 = T::fused(t22, t71, T::fused(t18, t67, t12 * t61));
+        let t76 = T::fused(t21, t69, -T::fused(t8, t53, t15 * t63));
+        let t77 = T::fused(t21, t70, T::fused(t15, t64, t8 * t57));
+        let t78 = T::fused(
+            -coupler_wy,
+            T::fused(t22, t69, -T::fused(-t12, t53, t18 * t63)),
+            coupler_wx * T::fused(t22, t70, -T::fused(-t18, t64, t12 * t57)),
+        );
+        let t79 = T::fused(t20, t69, T::fused(t4, t53, t14 * t63));
+        let t80 = T::fused(t20, t70, -T::fused(t4, t57, t14 * t64));
+        let t81 = coupler_wy * coupler_wz;
+        let t82 = T::fused(coupler_wx, coupler_wx, t50);
+        let t83 = T::fused(
+            -k(2.0),
+            T::fused(
+                crank_wz,
+                T::fused(-coupler_wy, t76, coupler_wx * t77),
+                crank_wy * t78,
+            ),
+            T::fused(t82, t73, T::fused(t58, t79, t81 * t80)),
+        );
+        let t84 = T::fused(
+            k(2.0),
+            T::fused(
+                crank_wz,
+                T::fused(-coupler_wy, t79, coupler_wx * t80),
+                crank_wx * t78,
+            ),
+            T::fused(t82, t74, T::fused(t58, t76, t81 * t77)),
+        );
+        let t85 = t84 + T::fused(t24, t75, T::fused(-t5, t73, (t1 + t25) * t74));
         *out = [
             t13,
             t19,
             -t23,
-            t12 * t26 - (t8 * t24 - t4 * t9),
-            t18 * t26 + (t15 * t24 - t14 * t9),
+            T::fused(t12, t26, -T::fused(-t4, t9, t8 * t24)),
+            T::fused(t18, t26, T::fused(-t14, t9, t15 * t24)),
             t39,
             t45,
             -t47,
-            t38 * t49 - (t34 * t48 - t30 * t35),
-            t44 * t49 + (t41 * t48 - t40 * t35),
+            T::fused(t38, t49, -T::fused(-t30, t35, t34 * t48)),
+            T::fused(t44, t49, T::fused(-t40, t35, t41 * t48)),
             t13 + t62,
             t19 + t68,
             -t72,
-            -t84,
-            -t86,
+            -(t83 + T::fused(t9, t75, -T::fused(-t2, t73, t5 * t74))),
+            -t85,
             t62 - t39,
             t68 - t45,
         ];
@@ -1501,9 +1657,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             t199,
         ) = {
             let t0 = crank_wy * crank_wy;
-            let t1 = crank_wz * crank_wz + t0;
+            let t1 = T::fused(crank_wz, crank_wz, t0);
             let t2 = crank_e0 * crank_e0;
-            let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
             let t4 = crank_wx * crank_wy;
             let t5 = crank_e0 * crank_e3;
             let t6 = crank_e1 * crank_e2;
@@ -1512,20 +1668,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             let t9 = crank_e0 * crank_e2;
             let t10 = crank_e1 * crank_e3;
             let t11 = k(2.0) * (t10 + t9);
-            let t12 = k(0.1) * (t11 * t8 + (t7 * t4 + t3 * t1));
+            let t12 = k(0.1) * T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
             let t13 = k(2.0) * (t6 + t5);
-            let t14 = k(0.5) - (t2 + crank_e2 * crank_e2);
+            let t14 = k(0.5) - T::fused(crank_e2, crank_e2, t2);
             let t15 = k(2.0) * t14;
             let t16 = crank_e0 * crank_e1;
             let t17 = crank_e2 * crank_e3;
             let t18 = k(2.0) * (t17 - t16);
-            let t19 = k(0.1) * (t18 * t8 - (t15 * t4 + t13 * t1));
+            let t19 = k(0.1) * T::fused(t18, t8, -T::fused(t13, t1, t15 * t4));
             let t20 = k(2.0) * (t10 - t9);
             let t21 = k(2.0) * (t17 + t16);
-            let t22 = k(0.5) - (t2 + crank_e3 * crank_e3);
+            let t22 = k(0.5) - T::fused(crank_e3, crank_e3, t2);
             let t23 = k(2.0) * t22;
-            let t24 = k(0.1) * (t23 * t8 - (t21 * t4 - t20 * t1));
-            let t25 = t20 * t24 - (t13 * t19 - t3 * t12);
+            let t24 = k(0.1) * T::fused(t23, t8, -T::fused(-t20, t1, t21 * t4));
+            let t25 = T::fused(t20, t24, -T::fused(-t3, t12, t13 * t19));
             let t26 = coupler_e0 * coupler_e2;
             let t27 = coupler_e1 * coupler_e3;
             let t28 = t27 + t26;
@@ -1535,104 +1691,140 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             let t32 = t31 - t30;
             let t33 = k(2.0) * t32;
             let t34 = coupler_e0 * coupler_e0;
-            let t35 = k(2.0) * (k(0.5) - (t34 + coupler_e3 * coupler_e3));
-            let t36 = t20 * t35 - (t13 * t33 - t3 * t29);
-            let t37 = t21 * t35 - (t7 * t29 - t15 * t33);
-            let t38 = t11 * t29 + t18 * t33 + t23 * t35;
-            let t39 = crank_wz * t38 - (crank_wy * t37 + crank_wx * t36);
+            let t35 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t34));
+            let t36 = T::fused(t20, t35, -T::fused(-t3, t29, t13 * t33));
+            let t37 = T::fused(t21, t35, -T::fused(-t15, t33, t7 * t29));
+            let t38 = T::fused(t23, t35, T::fused(t18, t33, t11 * t29));
+            let t39 = T::fused(crank_wz, t38, -T::fused(crank_wx, t36, crank_wy * t37));
             let t40 = coupler_wz - t39;
             let t41 = coupler_e0 * coupler_e3;
             let t42 = coupler_e1 * coupler_e2;
             let t43 = t42 - t41;
             let t44 = k(2.0) * t43;
-            let t45 = k(0.5) - (t34 + coupler_e2 * coupler_e2);
+            let t45 = k(0.5) - T::fused(coupler_e2, coupler_e2, t34);
             let t46 = k(2.0) * t45;
             let t47 = k(2.0) * (t31 + t30);
-            let t48 = t20 * t47 - (t13 * t46 + t3 * t44);
-            let t49 = t21 * t47 + (t7 * t44 + t15 * t46);
-            let t50 = t23 * t47 - (t11 * t44 - t18 * t46);
-            let t51 = crank_wz * t50 - (crank_wy * t49 + crank_wx * t48);
+            let t48 = T::fused(t20, t47, -T::fused(t3, t44, t13 * t46));
+            let t49 = T::fused(t21, t47, T::fused(t15, t46, t7 * t44));
+            let t50 = T::fused(t23, t47, -T::fused(-t18, t46, t11 * t44));
+            let t51 = T::fused(crank_wz, t50, -T::fused(crank_wx, t48, crank_wy * t49));
             let t52 = coupler_wy + t51;
-            let t53 = k(2.0) * (k(0.5) - (t34 + coupler_e1 * coupler_e1));
+            let t53 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t34));
             let t54 = t42 + t41;
             let t55 = k(2.0) * t54;
             let t56 = k(2.0) * (t27 - t26);
-            let t57 = t20 * t56 + (t13 * t55 + t3 * t53);
-            let t58 = t21 * t56 - (t15 * t55 + t7 * t53);
-            let t59 = t23 * t56 - (t18 * t55 - t11 * t53);
-            let t60 = crank_wz * t59 - (crank_wy * t58 + crank_wx * t57);
+            let t57 = T::fused(t20, t56, T::fused(t3, t53, t13 * t55));
+            let t58 = T::fused(t21, t56, -T::fused(t7, t53, t15 * t55));
+            let t59 = T::fused(t23, t56, -T::fused(-t11, t53, t18 * t55));
+            let t60 = T::fused(crank_wz, t59, -T::fused(crank_wx, t57, crank_wy * t58));
             let t61 = coupler_wx + t60;
-            let t62 = (t61 * t61 + t52 * t52) / t38;
-            let t63 = coupler_wy * t39 + coupler_wz * t51 + (t50 * t62 - t52 * t40);
+            let t62 = T::fused(t52, t52, t61 * t61) / t38;
+            let t63 = T::fused(coupler_wz, t51, coupler_wy * t39)
+                + T::fused(-t52, t40, t50 * t62);
             let t64 = coupler_wx * coupler_wz;
-            let t65 = coupler_wz * t60 + coupler_wx * t39 + (t59 * t62 - t61 * t40);
+            let t65 = T::fused(coupler_wx, t39, coupler_wz * t60)
+                + T::fused(-t61, t40, t59 * t62);
             let t66 = k(0.1) * crank_wz;
             let t67 = k(0.1) * crank_wy;
-            let t68 = crank_wy * t67 + crank_wz * t66;
+            let t68 = T::fused(crank_wz, t66, crank_wy * t67);
             let t69 = crank_wx * t67;
             let t70 = crank_wx * t66;
             let t71 = k(0.25) * coupler_wz;
-            let t72 = coupler_wx * t71 + (t70 * t38 - (t69 * t37 - t68 * t36));
-            let t73 = k(0.25) * t72 - k(0.0835) * t65
-                + (k(0.02095) * t64 + k(4.905) * t32);
+            let t72 = T::fused(
+                coupler_wx,
+                t71,
+                T::fused(t70, t38, -T::fused(-t68, t36, t69 * t37)),
+            );
+            let t73 = T::fused(-k(0.0835), t65, k(0.25) * t72)
+                + T::fused(k(4.905), t32, k(0.02095) * t64);
             let t74 = k(0.25) * coupler_wy;
-            let t75 = coupler_wy * t74 + coupler_wz * t71
-                + (t70 * t59 - (t69 * t58 - t68 * t57));
+            let t75 = T::fused(coupler_wz, t71, coupler_wy * t74)
+                + T::fused(t70, t59, -T::fused(-t68, t57, t69 * t58));
             let t76 = coupler_wx * coupler_wy;
-            let t77 = k(0.02095) * t76 - k(4.905) * t45;
-            let t78 = coupler_wx * t74 - (t70 * t50 - (t69 * t49 - t68 * t48));
-            let t79 = t49
-                * (k(0.25149700598802394) * t78
-                    - (k(2.9940119760479043) * t77 + k(19.62) * t45))
-                + t58 * (k(19.62) * t54 - t75);
-            let t80 = t37 * (k(0.25) * t65 - t72 - k(19.62) * t32) + t79;
-            let t81 = k(0.00133) * t4
-                + (k(0.1) * t80 + (t50 * t73 + t59 * (k(5e-5) * t63)));
+            let t77 = T::fused(-k(4.905), t45, k(0.02095) * t76);
+            let t78 = T::fused(
+                coupler_wx,
+                t74,
+                -T::fused(t70, t50, -T::fused(-t68, t48, t69 * t49)),
+            );
+            let t79 = T::fused(
+                t58,
+                T::fused(k(19.62), t54, -t75),
+                t49
+                    * T::fused(
+                        k(0.25149700598802394),
+                        t78,
+                        -T::fused(k(19.62), t45, k(2.9940119760479043) * t77),
+                    ),
+            );
+            let t80 = T::fused(
+                t37,
+                T::fused(-k(19.62), t32, T::fused(k(0.25), t65, -t72)),
+                t79,
+            );
+            let t81 = T::fused(
+                k(0.00133),
+                t4,
+                T::fused(k(0.1), t80, T::fused(t59, k(5e-5) * t63, t50 * t73)),
+            );
             let t82 = k(0.1) * (t49 * (k(0.7485029940119761) * t48));
-            let t83 = t21 * t24 + (t15 * t19 - t7 * t12);
+            let t83 = T::fused(t21, t24, T::fused(-t7, t12, t15 * t19));
             let t84 = k(0.7485029940119761) * t49;
             let t85 = t49 * t84;
             let t86 = k(0.1) * t85;
             let t87 = k(0.25) * t37;
             let t88 = t50 * t87;
             let t89 = k(0.1) - t86 - t88;
-            let t90 = (t89 + (k(0.14) - t86)) * t83
-                - (t82 + (t82 + t50 * (k(0.25) * t36))) * t25;
+            let t90 = T::fused(
+                -(t82 + T::fused(t50, k(0.25) * t36, t82)),
+                t25,
+                (t89 + (k(0.14) - t86)) * t83,
+            );
             let t91 = t50 * (k(0.25) * t38);
             let t92 = t50 * t84;
             let t93 = k(0.1) * t92;
             let t94 = t93 + t91;
-            let t95 = t23 * t24 + (t18 * t19 + t11 * t12);
-            let t96 = (t0 + crank_wx * crank_wx) * (k(0.5) / t22);
-            let t97 = crank_wy * crank_wz - t21 * t96;
+            let t95 = T::fused(t23, t24, T::fused(t11, t12, t18 * t19));
+            let t96 = T::fused(crank_wx, crank_wx, t0) * (k(0.5) / t22);
+            let t97 = T::fused(-t21, t96, crank_wy * crank_wz);
             let t98 = k(0.1) * (t48 * t87);
-            let t99 = t98 + (t98 - (t50 * (k(0.0835) * t48) + t59 * (k(5e-5) * t57)));
+            let t99 = t98
+                + (t98 - T::fused(t59, k(5e-5) * t57, t50 * (k(0.0835) * t48)));
             let t100 = t49 * t87;
             let t101 = k(0.01) * t92;
-            let t102 = t101 + k(0.1) * (t91 - t100)
-                + (t50 * (k(0.0835) * t49) + t59 * (k(5e-5) * t58));
-            let t103 = t8 - t20 * t96;
-            let t104 = t103 * (k(0.1) * (t94 + (t93 - t100)) + t101 + t102) + t99 * t97;
-            let t105 = t104 + (t95 * (t93 + t94) - t90)
-                + (k(0.1) * (t80 - k(7.848) * t14) + t81);
+            let t102 = T::fused(k(0.1), t91 - t100, t101)
+                + T::fused(t59, k(5e-5) * t58, t50 * (k(0.0835) * t49));
+            let t103 = T::fused(-t20, t96, t8);
+            let t104 = T::fused(
+                t99,
+                t97,
+                t103 * (T::fused(k(0.1), t94 + (t93 - t100), t101) + t102),
+            );
+            let t105 = t104 + T::fused(t95, t93 + t94, -t90)
+                + T::fused(k(0.1), T::fused(-k(7.848), t14, t80), t81);
             let t106 = k(0.01) * t85;
-            let t107 = t106 + k(0.2) * t88
-                - (k(0.01) + (t50 * (k(0.0835) * t50) + t59 * (k(5e-5) * t59)));
-            let t108 = k(1.0) / (k(0.2) * t89 - t106 + (k(0.014) + (k(0.00135) - t107)));
+            let t107 = T::fused(k(0.2), t88, t106)
+                - (k(0.01) + T::fused(t59, k(5e-5) * t59, t50 * (k(0.0835) * t50)));
+            let t108 = k(1.0)
+                / (T::fused(k(0.2), t89, -t106) + (k(0.014) + (k(0.00135) - t107)));
             let t109 = t108 * t105;
             let t110 = k(0.1) * t109;
             let t111 = t83 + t110;
             let t112 = k(0.1) * t103;
             let t113 = t112 + t95;
             let t114 = k(0.1)
-                * (t29 * t37 + (t49 * (k(0.9940119760479041) * t43) + t53 * t58));
-            let t115 = (t114 + (t114 - t28 * t50)) * t108;
+                * T::fused(
+                    t29,
+                    t37,
+                    T::fused(t53, t58, t49 * (k(0.9940119760479041) * t43)),
+                );
+            let t115 = (t114 + T::fused(-t28, t50, t114)) * t108;
             let t116 = k(0.1) * t115;
-            let t117 = coupler_wz * coupler_wz + coupler_wy * coupler_wy;
+            let t117 = T::fused(coupler_wy, coupler_wy, coupler_wz * coupler_wz);
             let t118 = rocker_wy * rocker_wy;
-            let t119 = rocker_wz * rocker_wz + t118;
+            let t119 = T::fused(rocker_wz, rocker_wz, t118);
             let t120 = rocker_e0 * rocker_e0;
-            let t121 = k(2.0) * (k(0.5) - (t120 + rocker_e1 * rocker_e1));
+            let t121 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t120));
             let t122 = rocker_wx * rocker_wy;
             let t123 = rocker_e0 * rocker_e3;
             let t124 = rocker_e1 * rocker_e2;
@@ -1643,75 +1835,102 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             let t129 = rocker_e1 * rocker_e3;
             let t130 = t129 + t128;
             let t131 = k(2.0) * t130;
-            let t132 = k(0.2) * (t131 * t127 + (t126 * t122 + t121 * t119));
-            let t133 = t132 - k(0.25) * (t29 * t64 + (t44 * t76 + t53 * t117));
+            let t132 = k(0.2) * T::fused(t131, t127, T::fused(t121, t119, t126 * t122));
+            let t133 = T::fused(
+                -k(0.25),
+                T::fused(t29, t64, T::fused(t53, t117, t44 * t76)),
+                t132,
+            );
             let t134 = t110 + t111;
             let t135 = t112 + t113;
-            let t136 = t75 + (t59 * t135 + (t58 * t134 + t57 * t25));
-            let t137 = t78 - (t50 * t135 + (t49 * t134 + t48 * t25));
-            let t138 = t77 + k(0.25) * t137;
-            let t139 = t137 - k(2.9940119760479043) * t138;
-            let t140 = t65 + (t50 * t109 - (t49 * t103 - t48 * t97));
-            let t141 = k(0.25) * t140 - (t72 + (t38 * t135 + (t37 * t134 + t36 * t25)));
-            let t142 = t29 * t141 - (t44 * t139 + t53 * t136);
+            let t136 = t75 + T::fused(t59, t135, T::fused(t57, t25, t58 * t134));
+            let t137 = t78 - T::fused(t50, t135, T::fused(t48, t25, t49 * t134));
+            let t138 = T::fused(k(0.25), t137, t77);
+            let t139 = T::fused(-k(2.9940119760479043), t138, t137);
+            let t140 = t65 + T::fused(t50, t109, -T::fused(-t48, t97, t49 * t103));
+            let t141 = T::fused(
+                k(0.25),
+                t140,
+                -(t72 + T::fused(t38, t135, T::fused(t36, t25, t37 * t134))),
+            );
+            let t142 = T::fused(t29, t141, -T::fused(t53, t136, t44 * t139));
             let t143 = k(0.5) * t28;
             let t144 = k(11.976047904191617) * t138;
             let t145 = k(0.5) * t43;
             let t146 = k(2.0) * (t124 + t123);
-            let t147 = k(0.5) - (t120 + rocker_e2 * rocker_e2);
+            let t147 = k(0.5) - T::fused(rocker_e2, rocker_e2, t120);
             let t148 = k(2.0) * t147;
             let t149 = rocker_e0 * rocker_e1;
             let t150 = rocker_e2 * rocker_e3;
             let t151 = t150 - t149;
             let t152 = k(2.0) * t151;
-            let t153 = k(0.2) * (t152 * t127 - (t148 * t122 + t146 * t119));
+            let t153 = k(0.2) * T::fused(t152, t127, -T::fused(t146, t119, t148 * t122));
             let t154 = k(2.0) * (t129 - t128);
             let t155 = k(2.0) * (t150 + t149);
-            let t156 = k(0.5) - (t120 + rocker_e3 * rocker_e3);
+            let t156 = k(0.5) - T::fused(rocker_e3, rocker_e3, t120);
             let t157 = k(2.0) * t156;
-            let t158 = k(0.2) * (t157 * t127 - (t155 * t122 - t154 * t119));
-            let t159 = t154 * t158 - (t146 * t153 - t121 * t132);
-            let t160 = t155 * t158 + (t148 * t153 - t126 * t132);
-            let t161 = k(0.16) * t160 - (k(0.01076) * t122 - k(3.1392) * t147);
-            let t162 = t160 - k(4.672897196261682) * t161;
-            let t163 = (t118 + rocker_wx * rocker_wx) * (k(0.5) / t156);
-            let t164 = t127 - t154 * t163;
-            let t165 = k(0.2) * t164 + (t157 * t158 + (t152 * t153 + t131 * t132));
-            let t166 = t131 * t165 - (t126 * t162 - t121 * t159);
+            let t158 = k(0.2)
+                * T::fused(t157, t127, -T::fused(-t154, t119, t155 * t122));
+            let t159 = T::fused(t154, t158, -T::fused(-t121, t132, t146 * t153));
+            let t160 = T::fused(t155, t158, T::fused(-t126, t132, t148 * t153));
+            let t161 = T::fused(
+                k(0.16),
+                t160,
+                -T::fused(-k(3.1392), t147, k(0.01076) * t122),
+            );
+            let t162 = T::fused(-k(4.672897196261682), t161, t160);
+            let t163 = T::fused(rocker_wx, rocker_wx, t118) * (k(0.5) / t156);
+            let t164 = T::fused(-t154, t163, t127);
+            let t165 = T::fused(
+                k(0.2),
+                t164,
+                T::fused(t157, t158, T::fused(t131, t132, t152 * t153)),
+            );
+            let t166 = T::fused(t131, t165, -T::fused(-t121, t159, t126 * t162));
             let t167 = k(23.364485981308412) * t161;
             let t168 = k(0.4) * t125;
-            let t169 = t168 * t167 + k(0.4) * t130 * t164 + t166
-                + (t145 * t144 + t143 * t140 + t142);
+            let t169 = T::fused(k(0.4) * t130, t164, t168 * t167) + t166
+                + (T::fused(t143, t140, t145 * t144) + t142);
             let t170 = t169 + t133;
             let t171 = k(0.2) * t115;
             let t172 = t58 * t171;
             let t173 = t49 * t171;
-            let t174 = t43 + k(0.25) * t173;
-            let t175 = t173 - k(2.9940119760479043) * t174;
+            let t174 = T::fused(k(0.25), t173, t43);
+            let t175 = T::fused(-k(2.9940119760479043), t174, t173);
             let t176 = t50 * t115;
-            let t177 = k(0.25) * t176 - t37 * t171;
-            let t178 = t29 * t177 + (t44 * t175 - t53 * t172);
+            let t177 = T::fused(-t37, t171, k(0.25) * t176);
+            let t178 = T::fused(t29, t177, T::fused(-t53, t172, t44 * t175));
             let t179 = k(11.976047904191617) * t174;
             let t180 = k(18.69158878504673) * t125;
             let t181 = k(3.7383177570093458) * t125;
             let t182 = t126 * t181;
-            let t183 = t182 + t168 * t180 + (t145 * t179 - t143 * t176 - t178);
+            let t183 = T::fused(t168, t180, t182)
+                + (T::fused(-t143, t176, t145 * t179) - t178);
             let t184 = k(1.0) / t183;
-            let t185 = t153 - k(0.25) * (t33 * t64 - (t46 * t76 + t55 * t117));
-            let t186 = t33 * t141 + (t46 * t139 + t55 * t136);
+            let t185 = T::fused(
+                -k(0.25),
+                T::fused(t33, t64, -T::fused(t55, t117, t46 * t76)),
+                t153,
+            );
+            let t186 = T::fused(t33, t141, T::fused(t55, t136, t46 * t139));
             let t187 = k(0.5) * t32;
             let t188 = k(0.5) * t45;
-            let t189 = t152 * t165 + (t148 * t162 - t146 * t159);
+            let t189 = T::fused(t152, t165, T::fused(-t146, t159, t148 * t162));
             let t190 = k(0.4) * t147;
-            let t191 = t190 * t167 - k(0.4) * t151 * t164 - t189
-                + (t188 * t144 - t187 * t140 - t186);
-            let t192 = t33 * t177 - (t46 * t175 - t55 * t172);
+            let t191 = T::fused(-(k(0.4) * t151), t164, t190 * t167) - t189
+                + (T::fused(-t187, t140, t188 * t144) - t186);
+            let t192 = T::fused(t33, t177, -T::fused(-t55, t172, t46 * t175));
             let t193 = t148 * t181;
-            let t194 = t193 + t190 * t180 + (t188 * t179 + t187 * t176 + t192);
+            let t194 = T::fused(t190, t180, t193)
+                + (T::fused(t187, t176, t188 * t179) + t192);
             let t195 = t184 * t194;
             let t196 = k(0.1)
-                * (t33 * t37 - (t49 * (k(0.9940119760479041) * t45) + t55 * t58));
-            let t197 = t108 * (t196 + (t196 - t32 * t50));
+                * T::fused(
+                    t33,
+                    t37,
+                    -T::fused(t55, t58, t49 * (k(0.9940119760479041) * t45)),
+                );
+            let t197 = t108 * (t196 + T::fused(-t32, t50, t196));
             let t198 = k(0.2) * t197;
             let t199 = t58 * t198;
             (
@@ -1814,31 +2033,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             t221,
         ) = {
             let t200 = t49 * t198;
-            let t201 = t45 - k(0.25) * t200;
-            let t202 = t200 + k(2.9940119760479043) * t201;
+            let t201 = T::fused(-k(0.25), t200, t45);
+            let t202 = T::fused(k(2.9940119760479043), t201, t200);
             let t203 = t50 * t197;
-            let t204 = k(0.25) * t203 - t37 * t198;
-            let t205 = t33 * t204 - (t46 * t202 - t55 * t199);
+            let t204 = T::fused(-t37, t198, k(0.25) * t203);
+            let t205 = T::fused(t33, t204, -T::fused(-t55, t199, t46 * t202));
             let t206 = k(11.976047904191617) * t201;
             let t207 = k(18.69158878504673) * t147;
             let t208 = k(3.7383177570093458) * t147;
             let t209 = t148 * t208;
-            let t210 = t209 + t190 * t207 + (t188 * t206 - t187 * t203 - t205);
-            let t211 = (t195 * t170 - (t191 - t185)) / (t194 * t195 - t210);
-            let t212 = t195 * t211 - t184 * t170;
-            let t213 = t212 * (t7 * t116) + (t11 * t113 - (t7 * t111 - t3 * t25));
+            let t210 = T::fused(t190, t207, t209)
+                + (T::fused(-t187, t203, t188 * t206) - t205);
+            let t211 = T::fused(t195, t170, -(t191 - t185))
+                / T::fused(t194, t195, -t210);
+            let t212 = T::fused(-t184, t170, t195 * t211);
+            let t213 = T::fused(
+                t212,
+                t7 * t116,
+                T::fused(t11, t113, -T::fused(-t3, t25, t7 * t111)),
+            );
             let t214 = k(0.1) * t197;
-            let t215 = t212 * (t15 * t116) - (t18 * t113 + (t15 * t111 - t13 * t25));
-            let t216 = t212 * (t21 * t116) - (t23 * t113 + (t21 * t111 + t20 * t25));
-            let t217 = t211 * (t29 * t204 + (t44 * t202 - t53 * t199))
-                - (t142 - t178 * t212);
-            let t218 = t212 * (t35 * t177 - (t47 * t175 + t56 * t172))
-                - (t35 * t141 + (t47 * t139 - t56 * t136));
-            let t219 = t211 * (t35 * t204 - (t47 * t202 + t56 * t199)) + t218;
-            let t220 = t212 * (t59 * t115)
-                + (t63 - (t59 * t109 - (t58 * t103 - t57 * t97)));
-            let t221 = t212 * (t155 * t181)
-                - (t157 * t165 + (t155 * t162 + t154 * t159));
+            let t215 = T::fused(
+                t212,
+                t15 * t116,
+                -T::fused(t18, t113, T::fused(-t13, t25, t15 * t111)),
+            );
+            let t216 = T::fused(
+                t212,
+                t21 * t116,
+                -T::fused(t23, t113, T::fused(t20, t25, t21 * t111)),
+            );
+            let t217 = T::fused(
+                t211,
+                T::fused(t29, t204, T::fused(-t53, t199, t44 * t202)),
+                -T::fused(-t178, t212, t142),
+            );
+            let t218 = T::fused(
+                t212,
+                T::fused(t35, t177, -T::fused(t56, t172, t47 * t175)),
+                -T::fused(t35, t141, T::fused(-t56, t136, t47 * t139)),
+            );
+            let t219 = T::fused(
+                t211,
+                T::fused(t35, t204, -T::fused(t56, t199, t47 * t202)),
+                t218,
+            );
+            let t220 = T::fused(
+                t212,
+                t59 * t115,
+                t63 - T::fused(t59, t109, -T::fused(-t57, t97, t58 * t103)),
+            );
+            let t221 = T::fused(
+                t212,
+                t155 * t181,
+                -T::fused(t157, t165, T::fused(t154, t159, t155 * t162)),
+            );
             (
                 t203,
                 t205,
@@ -1859,24 +2108,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             )
         };
         *out = [
-            t211 * (t7 * t214) + t213,
-            -(t211 * (t15 * t214) + t215),
-            t211 * (t21 * t214) + t216,
+            T::fused(t211, t7 * t214, t213),
+            -T::fused(t211, t15 * t214, t215),
+            T::fused(t211, t21 * t214, t216),
             t97,
             -t103,
-            t197 * t211 - (t109 - t115 * t212),
+            T::fused(t197, t211, -T::fused(-t115, t212, t109)),
             t217,
-            t205 * t211 - (t186 - t192 * t212),
+            T::fused(t205, t211, -T::fused(-t192, t212, t186)),
             -t219,
-            -(t211 * (t59 * t197) + t220),
-            t140 - t176 * t212 - t203 * t211,
-            t206 * t211 - (t144 + t179 * t212),
-            t166 + t182 * t212 - t211 * (t126 * t208),
-            t209 * t211 + (t189 - t193 * t212),
-            t221 - t211 * (t155 * t208),
-            rocker_wy * rocker_wz - t155 * t163,
+            -T::fused(t211, t59 * t197, t220),
+            T::fused(-t203, t211, T::fused(-t176, t212, t140)),
+            T::fused(t206, t211, -T::fused(t179, t212, t144)),
+            T::fused(-t211, t126 * t208, T::fused(t182, t212, t166)),
+            T::fused(t209, t211, T::fused(-t193, t212, t189)),
+            T::fused(-t211, t155 * t208, t221),
+            T::fused(-t155, t163, rocker_wy * rocker_wz),
             -t164,
-            t167 + t180 * t212 - t207 * t211,
+            T::fused(-t207, t211, T::fused(t180, t212, t167)),
             -t212,
             -t211,
         ];
@@ -1928,20 +2177,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let closing0 = accelerations[18];
         let closing1 = accelerations[19];
         let t0 = coupler_dsx - closing0;
-        let t1 = k(0.4) * crank_dsx + t0;
+        let t1 = T::fused(k(0.4), crank_dsx, t0);
         let t2 = k(9.81) + coupler_dsy - closing1;
-        let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
-        let t4 = k(0.4) * crank_dsz + coupler_dsz;
+        let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
+        let t4 = T::fused(k(0.4), crank_dsz, coupler_dsz);
         let t5 = crank_e0 * crank_e3;
         let t6 = crank_e1 * crank_e2;
         let t7 = k(2.0) * (t6 + t5);
         let t8 = k(2.0) * (t6 - t5);
         let t9 = crank_e0 * crank_e0;
-        let t10 = k(2.0) * (k(0.5) - (t9 + crank_e2 * crank_e2));
-        let t11 = k(2.0) * (k(0.5) - (t9 + crank_e1 * crank_e1));
-        let t12 = k(1.0) / (t11 * t10 - t8 * t7);
+        let t10 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t9));
+        let t11 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t9));
+        let t12 = k(1.0) / T::fused(-t8, t7, t11 * t10);
         let t13 = coupler_e0 * coupler_e0;
-        let t14 = k(2.0) * (k(0.5) - (t13 + coupler_e1 * coupler_e1));
+        let t14 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t13));
         let t15 = coupler_e0 * coupler_e3;
         let t16 = coupler_e1 * coupler_e2;
         let t17 = k(2.0) * (t16 + t15);
@@ -1951,7 +2200,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t21 = crank_e0 * crank_e2;
         let t22 = crank_e1 * crank_e3;
         let t23 = k(2.0) * (t22 - t21);
-        let t24 = t23 * t20 + (t7 * t17 + t11 * t14);
+        let t24 = T::fused(t23, t20, T::fused(t11, t14, t7 * t17));
         let t25 = k(5e-5) * coupler_dwx;
         let t26 = t19 + t18;
         let t27 = k(0.5) * t26;
@@ -1959,78 +2208,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t29 = coupler_e2 * coupler_e3;
         let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = closing1 * t31
-            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t27);
-        let t33 = k(0.5) - (t13 + coupler_e3 * coupler_e3);
-        let t34 = coupler_dsz * (k(0.5) * t33) - (t2 * t31 + t0 * t27) + t32;
+        let t32 = T::fused(
+            closing1,
+            t31,
+            -T::fused(
+                -closing0,
+                t27,
+                T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
+            ),
+        );
+        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t13);
+        let t34 = T::fused(coupler_dsz, k(0.5) * t33, -T::fused(t0, t27, t2 * t31))
+            + t32;
         let t35 = t16 - t15;
         let t36 = k(2.0) * t35;
-        let t37 = k(0.5) - (t13 + coupler_e2 * coupler_e2);
+        let t37 = k(0.5) - T::fused(coupler_e2, coupler_e2, t13);
         let t38 = k(2.0) * t37;
         let t39 = t29 + t28;
         let t40 = k(2.0) * t39;
-        let t41 = t23 * t40 - (t7 * t38 + t11 * t36);
+        let t41 = T::fused(t23, t40, -T::fused(t11, t36, t7 * t38));
         let t42 = k(0.5) * t35;
         let t43 = k(0.5) * t37;
-        let t44 = closing1 * t43
-            + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t42);
-        let t45 = coupler_dsz * (k(0.5) * t39) - (t2 * t43 - t0 * t42) + t44;
+        let t44 = T::fused(
+            closing1,
+            t43,
+            T::fused(
+                -closing0,
+                t42,
+                T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
+            ),
+        );
+        let t45 = T::fused(coupler_dsz, k(0.5) * t39, -T::fused(-t0, t42, t2 * t43))
+            + t44;
         let t46 = k(2.0) * t26;
         let t47 = k(2.0) * t30;
         let t48 = k(2.0) * t33;
-        let t49 = (t23 * t48 - (t7 * t47 - t11 * t46)) * t45 - (t41 * t34 + t25 * t24);
-        let t50 = k(2e-5) * crank_dwx - t49;
+        let t49 = T::fused(
+            T::fused(t23, t48, -T::fused(-t11, t46, t7 * t47)),
+            t45,
+            -T::fused(t25, t24, t41 * t34),
+        );
+        let t50 = T::fused(k(2e-5), crank_dwx, -t49);
         let t51 = crank_e0 * crank_e1;
         let t52 = crank_e2 * crank_e3;
         let t53 = k(2.0) * (t52 + t51);
-        let t54 = t53 * t20 - (t10 * t17 + t8 * t14);
-        let t55 = t53 * t40 + (t8 * t36 + t10 * t38);
-        let t56 = (t53 * t48 - (t8 * t46 - t10 * t47)) * t45 - (t55 * t34 + t25 * t54);
+        let t54 = T::fused(t53, t20, -T::fused(t8, t14, t10 * t17));
+        let t55 = T::fused(t53, t40, T::fused(t10, t38, t8 * t36));
+        let t56 = T::fused(
+            T::fused(t53, t48, -T::fused(-t10, t47, t8 * t46)),
+            t45,
+            -T::fused(t25, t54, t55 * t34),
+        );
         let t57 = k(0.2) * (t22 + t21);
         let t58 = k(0.2) * (t52 - t51);
-        let t59 = k(0.2) * (k(0.5) - (t9 + crank_e3 * crank_e3));
-        let t60 = k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
-            - (coupler_dsz * t59 - (t2 * t58 + t0 * t57) - t56);
-        let t61 = t4 * t59 - (t3 * t58 + t1 * t57) - t60;
-        let t62 = k(0.8) * rocker_dsx + closing0;
-        let t63 = k(7.848) + k(0.8) * rocker_dsy + closing1;
+        let t59 = k(0.2) * (k(0.5) - T::fused(crank_e3, crank_e3, t9));
+        let t60 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
+            - (T::fused(coupler_dsz, t59, -T::fused(t0, t57, t2 * t58)) - t56);
+        let t61 = T::fused(t4, t59, -T::fused(t1, t57, t3 * t58)) - t60;
+        let t62 = T::fused(k(0.8), rocker_dsx, closing0);
+        let t63 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
         let t64 = k(0.8) * rocker_dsz;
         let t65 = rocker_e0 * rocker_e3;
         let t66 = rocker_e1 * rocker_e2;
         let t67 = k(2.0) * (t66 + t65);
         let t68 = k(2.0) * (t66 - t65);
         let t69 = rocker_e0 * rocker_e0;
-        let t70 = k(2.0) * (k(0.5) - (t69 + rocker_e2 * rocker_e2));
-        let t71 = k(2.0) * (k(0.5) - (t69 + rocker_e1 * rocker_e1));
-        let t72 = k(1.0) / (t71 * t70 - t68 * t67);
+        let t70 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t69));
+        let t71 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t69));
+        let t72 = k(1.0) / T::fused(-t68, t67, t71 * t70);
         let t73 = k(4e-5) * rocker_dwx;
-        let t74 = k(0.4) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
-        let t75 = k(0.4) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1);
-        let t76 = closing1 * t75
-            + (k(0.01076) * (rocker_wx * rocker_wz) - k(0.0108) * rocker_dwy
-                + closing0 * t74);
-        let t77 = t64 * (k(0.4) * (k(0.5) - (t69 + rocker_e3 * rocker_e3)))
-            - (t63 * t75 + t62 * t74);
+        let t74 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
+        let t75 = k(0.4) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
+        let t76 = T::fused(
+            closing1,
+            t75,
+            T::fused(
+                closing0,
+                t74,
+                T::fused(-k(0.0108), rocker_dwy, k(0.01076) * (rocker_wx * rocker_wz)),
+            ),
+        );
+        let t77 = T::fused(
+            t64,
+            k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t69)),
+            -T::fused(t62, t74, t63 * t75),
+        );
         let t78 = t77 - t76;
-        let t79 = k(1.0) / (t24 * t55 - t41 * t54);
+        let t79 = k(1.0) / T::fused(-t41, t54, t24 * t55);
         *lambda = [
             -t1,
             -t3,
             -t4,
-            t61 * (t10 * t12) - t50 * (t7 * t12),
-            t61 * (t8 * t12) - t50 * (t11 * t12),
+            T::fused(-t50, t7 * t12, t61 * (t10 * t12)),
+            T::fused(-t50, t11 * t12, t61 * (t8 * t12)),
             -t62,
             -t63,
             -t64,
-            t78 * (t70 * t72) - t73 * (t67 * t72),
-            t78 * (t68 * t72) - t73 * (t71 * t72),
+            T::fused(-t73, t67 * t72, t78 * (t70 * t72)),
+            T::fused(-t73, t71 * t72, t78 * (t68 * t72)),
             -t0,
             -t2,
             -coupler_dsz,
-            -(t34 * (t55 * t79) + t25 * (t54 * t79)),
-            t34 * (t41 * t79) + t25 * (t24 * t79),
+            -T::fused(t25, t54 * t79, t34 * (t55 * t79)),
+            T::fused(t25, t24 * t79, t34 * (t41 * t79)),
             closing0,
             closing1,
         ];

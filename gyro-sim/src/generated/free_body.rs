@@ -119,10 +119,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for FreeBody<T> {
             body_sx,
             body_sy,
             body_sz,
-            -(k(0.5) * (body_e1 * body_wx + body_e2 * body_wy + body_e3 * body_wz)),
-            k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
-            k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
-            -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
+            -(k(0.5)
+                * T::fused(
+                    body_e3,
+                    body_wz,
+                    T::fused(body_e2, body_wy, body_e1 * body_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    body_e2,
+                    body_wz,
+                    T::fused(-body_e3, body_wy, body_e0 * body_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -body_e1,
+                    body_wz,
+                    T::fused(body_e0, body_wy, body_e3 * body_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -body_e0,
+                    body_wz,
+                    T::fused(-body_e1, body_wy, body_e2 * body_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -145,6 +165,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 0]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let body_e0 = y[3];
+        let body_e1 = y[4];
+        let body_e2 = y[5];
+        let body_e3 = y[6];
+        let body_sx = y[7];
+        let body_sy = y[8];
+        let body_sz = y[9];
+        let body_wx = y[10];
+        let body_wy = y[11];
+        let body_wz = y[12];
+        *dy = [
+            body_sx,
+            body_sy,
+            body_sz,
+            -(k(0.5)
+                * T::fused(
+                    body_e3,
+                    body_wz,
+                    T::fused(body_e2, body_wy, body_e1 * body_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    body_e2,
+                    body_wz,
+                    T::fused(-body_e3, body_wy, body_e0 * body_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -body_e1,
+                    body_wz,
+                    T::fused(body_e0, body_wy, body_e3 * body_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -body_e0,
+                    body_wz,
+                    T::fused(-body_e1, body_wy, body_e2 * body_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 8 operations (4 ±, 4 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -152,8 +223,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         let body_e1 = y[4];
         let body_e2 = y[5];
         let body_e3 = y[6];
-        let t0 = body_e3 * body_e3
-            + (body_e0 * body_e0 + body_e1 * body_e1 + body_e2 * body_e2);
+        let t0 = T::fused(
+            body_e3,
+            body_e3,
+            T::fused(body_e2, body_e2, T::fused(body_e1, body_e1, body_e0 * body_e0)),
+        );
         *out = [t0 - k(1.0)];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -169,10 +243,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         let body_wx = y[10];
         let body_wy = y[11];
         let body_wz = y[12];
-        let t0 = body_wx * (k(0.0003) * body_wx) + body_wy * (k(0.0003) * body_wy)
-            + body_wz * (k(0.0004) * body_wz);
-        let t1 = t0
-            + k(0.1) * (body_sx * body_sx + body_sy * body_sy + body_sz * body_sz);
+        let t0 = T::fused(
+            body_wz,
+            k(0.0004) * body_wz,
+            T::fused(body_wy, k(0.0003) * body_wy, body_wx * (k(0.0003) * body_wx)),
+        );
+        let t1 = T::fused(
+            k(0.1),
+            T::fused(body_sz, body_sz, T::fused(body_sy, body_sy, body_sx * body_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(0.0),
@@ -226,32 +306,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FreeBody<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> FreeBody<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for FreeBody<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let body_e0 = y[3];
         let body_e1 = y[4];
         let body_e2 = y[5];
         let body_e3 = y[6];
         [[body_e0, body_e1, body_e2, body_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 25 operations (11 ±, 13 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let body_e0 = y[3];
         let body_e1 = y[4];
@@ -261,56 +327,60 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = body_e0 * chart0_0 + body_e1 * chart0_1 + body_e2 * chart0_2
-            + body_e3 * chart0_3;
-        let t1 = body_e3 * body_e3
-            + (body_e0 * body_e0 + body_e1 * body_e1 + body_e2 * body_e2);
+        let t0 = T::fused(
+            body_e3,
+            chart0_3,
+            T::fused(body_e2, chart0_2, T::fused(body_e1, chart0_1, body_e0 * chart0_0)),
+        );
+        let t1 = T::fused(
+            body_e3,
+            body_e3,
+            T::fused(body_e2, body_e2, T::fused(body_e1, body_e1, body_e0 * body_e0)),
+        );
         let t2 = (k(1.0) - t1) * (k(0.5) / t0);
-        y[3] = body_e0 + chart0_0 * t2;
-        y[4] = body_e1 + chart0_1 * t2;
-        y[5] = body_e2 + chart0_2 * t2;
-        y[6] = body_e3 + chart0_3 * t2;
-        Ok(())
+        y[3] = T::fused(chart0_0, t2, body_e0);
+        y[4] = T::fused(chart0_1, t2, body_e1);
+        y[5] = T::fused(chart0_2, t2, body_e2);
+        y[6] = T::fused(chart0_3, t2, body_e3);
     }
     /// Solves eq. (19) for the dependent velocities: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn solve_velocities(
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, _y: &mut Self::State) {}
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for FreeBody<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
         &self,
-        _t: T,
-        _choice: &Self::Independent,
-        _y: &mut Self::State,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let body_e0 = y[3];
-        let body_e1 = y[4];
-        let body_e2 = y[5];
-        let body_e3 = y[6];
-        let body_sx = y[7];
-        let body_sy = y[8];
-        let body_sz = y[9];
-        let body_wx = y[10];
-        let body_wy = y[11];
-        let body_wz = y[12];
-        *dy = [
-            body_sx,
-            body_sy,
-            body_sz,
-            -(k(0.5) * (body_e1 * body_wx + body_e2 * body_wy + body_e3 * body_wz)),
-            k(0.5) * (body_e0 * body_wx - body_e3 * body_wy + body_e2 * body_wz),
-            k(0.5) * (body_e3 * body_wx + body_e0 * body_wy - body_e1 * body_wz),
-            -(k(0.5) * (body_e2 * body_wx - body_e1 * body_wy - body_e0 * body_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
@@ -461,10 +531,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
             u0,
             u1,
             u2,
-            -(k(0.5) * (x4 * u3 + x5 * u4 + x6 * u5)),
-            k(0.5) * (x3 * u3 - x6 * u4 + x5 * u5),
-            k(0.5) * (x6 * u3 + x3 * u4 - x4 * u5),
-            -(k(0.5) * (x5 * u3 - x4 * u4 - x3 * u5)),
+            -(k(0.5) * T::fused(x6, u5, T::fused(x5, u4, x4 * u3))),
+            k(0.5) * T::fused(x5, u5, T::fused(-x6, u4, x3 * u3)),
+            k(0.5) * T::fused(-x4, u5, T::fused(x3, u4, x6 * u3)),
+            -(k(0.5) * T::fused(-x3, u5, T::fused(-x4, u4, x5 * u3))),
             rates[0],
             rates[1],
             rates[2],

@@ -39,8 +39,8 @@
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 69 | 113 | 0 | 182 | 16 of 39 | 1695 | 182 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 | 23335 | 177 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 | 456575 | 322 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 73 | 101 | 2 | 176 | 0 of 3 | 23451 | 177 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 | 458822 | 322 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 | 1747 | 233 |
 //! | corrected_solution | both | 198 | 280 | 2 | 480 | 6 of 33 | 1.4e7 | 481 |
 //!
@@ -173,41 +173,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeCombinedOffsets<T> {
             outer_ring_sy,
             outer_ring_sz,
             -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
             k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
             -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
             inner_ring_sx,
             inner_ring_sy,
             inner_ring_sz,
             -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
             k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
             -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
             rotor_sx,
             rotor_sy,
             rotor_sz,
             -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
             -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -242,6 +300,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
     /// Writes Φ: 148 operations (73 ±, 75 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -267,7 +478,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
         let t3 = k(2.0) * (t2 - t1);
@@ -276,53 +487,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t6 = t5 + t4;
         let t7 = k(2.0) * t6;
         let t8 = outer_ring_e0 * outer_ring_e0;
-        let t9 = t8 + outer_ring_e1 * outer_ring_e1;
+        let t9 = T::fused(outer_ring_e1, outer_ring_e1, t8);
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
         let t12 = t11 - t10;
         let t13 = k(2.0) * t12;
-        let t14 = k(2.0) * (t2 + t1) * t13 - k(2.0) * (k(0.5) - t9) * t7;
+        let t14 = T::fused(-(k(2.0) * (k(0.5) - t9)), t7, k(2.0) * (t2 + t1) * t13);
         let t15 = inner_ring_e3 * inner_ring_e3;
         let t16 = inner_ring_e0 * inner_ring_e0;
         let t17 = k(0.5) - (t16 + t15);
         let t18 = k(2.0) * t17;
         let t19 = outer_ring_e2 * outer_ring_e2;
-        let t20 = t0 * t18 - (t3 * t7 - k(2.0) * (k(0.5) - (t8 + t19)) * t13);
-        let t21 = t16 + inner_ring_e1 * inner_ring_e1;
+        let t20 = T::fused(
+            t0,
+            t18,
+            -T::fused(-(k(2.0) * (k(0.5) - (t8 + t19))), t13, t3 * t7),
+        );
+        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t16);
         let t22 = inner_ring_e0 * inner_ring_e3;
         let t23 = inner_ring_e1 * inner_ring_e2;
         let t24 = t23 - t22;
         let t25 = inner_ring_rx
-            - (k(6e-5) * t6 - (k(0.0001) * t24 - k(0.00025) * (k(0.5) - t21)));
+            - T::fused(
+                k(6e-5),
+                t6,
+                -T::fused(-k(0.00025), k(0.5) - t21, k(0.0001) * t24),
+            );
         let t26 = rotor_e0 * rotor_e0;
-        let t27 = t26 + rotor_e1 * rotor_e1;
+        let t27 = T::fused(rotor_e1, rotor_e1, t26);
         let t28 = k(0.5) - t27;
         let t29 = rotor_e0 * rotor_e3;
         let t30 = rotor_e1 * rotor_e2;
         let t31 = rotor_e0 * rotor_e2;
         let t32 = rotor_e1 * rotor_e3;
-        let t33 = k(0.0003) * (t32 + t31) - (k(0.0004) * (t30 - t29) - k(0.0002) * t28);
+        let t33 = T::fused(
+            k(0.0003),
+            t32 + t31,
+            -T::fused(-k(0.0002), t28, k(0.0004) * (t30 - t29)),
+        );
         let t34 = inner_ring_e2 * inner_ring_e2;
         let t35 = k(0.5) - (t16 + t34);
         let t36 = inner_ring_ry
-            - (k(6e-5) * t12 + (k(0.0001) * t35 - k(0.00025) * (t23 + t22)));
+            - T::fused(k(6e-5), t12, T::fused(-k(0.00025), t23 + t22, k(0.0001) * t35));
         let t37 = t30 + t29;
         let t38 = rotor_e2 * rotor_e2;
         let t39 = rotor_e0 * rotor_e1;
         let t40 = rotor_e2 * rotor_e3;
-        let t41 = k(0.0003) * (t40 - t39)
-            + (k(0.0004) * (k(0.5) - (t26 + t38)) - k(0.0002) * t37);
+        let t41 = T::fused(
+            k(0.0003),
+            t40 - t39,
+            T::fused(-k(0.0002), t37, k(0.0004) * (k(0.5) - (t26 + t38))),
+        );
         let t42 = t11 + t10;
         let t43 = inner_ring_rz
-            + (k(6e-5) * t17 + (k(0.0001) * t42 + k(0.00025) * (t5 - t4)));
+            + T::fused(k(6e-5), t17, T::fused(k(0.00025), t5 - t4, k(0.0001) * t42));
         let t44 = t32 - t31;
         let t45 = rotor_e3 * rotor_e3;
-        let t46 = k(0.0003) * (k(0.5) - (t26 + t45))
-            + (k(0.0004) * (t40 + t39) + k(0.0002) * t44);
+        let t46 = T::fused(
+            k(0.0003),
+            k(0.5) - (t26 + t45),
+            T::fused(k(0.0002), t44, k(0.0004) * (t40 + t39)),
+        );
         let t47 = k(2.0) * t28;
         let t48 = k(2.0) * t37;
         let t49 = k(2.0) * t44;
-        let t50 = k(2.0) * t42 * t49 - (k(2.0) * t35 * t48 + k(2.0) * t24 * t47);
+        let t50 = T::fused(
+            k(2.0) * t42,
+            t49,
+            -T::fused(k(2.0) * t24, t47, k(2.0) * t35 * t48),
+        );
         *out = [
             outer_ring_rx,
             outer_ring_ry,
@@ -332,17 +565,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            t14
-                - k(2.0)
-                    * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2)
-                    * t18,
+            T::fused(
+                -(k(2.0)
+                    * T::fused(
+                        -outer_ring_e0,
+                        outer_ring_e2,
+                        outer_ring_e1 * outer_ring_e3,
+                    )),
+                t18,
+                t14,
+            ),
             -t20,
             rotor_rx - t33 - t25,
             rotor_ry - t41 - t36,
             rotor_rz + t46 - t43,
             t50,
-            t13 * t48 - t7 * t47 - t18 * t49,
-            outer_ring_e3 * outer_ring_e3 + (t9 + t19) - k(1.0),
+            T::fused(-t18, t49, T::fused(-t7, t47, t13 * t48)),
+            T::fused(outer_ring_e3, outer_ring_e3, t9 + t19) - k(1.0),
             t15 + (t21 + t34) - k(1.0),
             t45 + (t27 + t38) - k(1.0),
         ];
@@ -384,13 +623,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
-        let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
         let t6 = k(2.0) * (t1 + t0);
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
         let t11 = inner_ring_e0 * inner_ring_e2;
         let t12 = inner_ring_e1 * inner_ring_e3;
         let t13 = k(2.0) * (t12 + t11);
@@ -398,80 +637,125 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
+        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
-        let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
-        let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
+        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
+        let t23 = T::fused(
+            outer_ring_wz,
+            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
+            outer_ring_wy * t22,
+        );
+        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
         let t28 = k(2.0) * (t15 + t14);
         let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
+        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
         let t32 = k(2.0) * (t8 + t7);
-        let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
-            - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
-        let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
-            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
+        let t33 = T::fused(
+            -inner_ring_wy,
+            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
+            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+        );
+        let t34 = T::fused(
+            outer_ring_wz,
+            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
+            outer_ring_wx * t22,
+        );
+        let t35 = T::fused(
+            -inner_ring_wy,
+            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
+            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+        );
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
+        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
         let t38 = rotor_e0 * rotor_e3;
         let t39 = rotor_e1 * rotor_e2;
         let t40 = k(2.0) * (t39 - t38);
         let t41 = rotor_e0 * rotor_e2;
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 + t41);
-        let t44 = k(0.0001) * (t43 * rotor_wy - t40 * rotor_wz)
-            - k(0.0002) * (t43 * rotor_wx + t37 * rotor_wz);
-        let t45 = k(0.000125) * (t30 * inner_ring_wz - t13 * inner_ring_wy)
-            + k(5e-5) * (t24 * inner_ring_wz + t13 * inner_ring_wx);
+        let t44 = T::fused(
+            -k(0.0002),
+            T::fused(t37, rotor_wz, t43 * rotor_wx),
+            k(0.0001) * T::fused(-t40, rotor_wz, t43 * rotor_wy),
+        );
+        let t45 = T::fused(
+            k(5e-5),
+            T::fused(t13, inner_ring_wx, t24 * inner_ring_wz),
+            k(0.000125) * T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
+        );
         let t46 = inner_ring_sx
-            + (t45 + k(3e-5) * (t30 * inner_ring_wx + t24 * inner_ring_wy))
-            - (rotor_sx - (t44 - k(0.00015) * (t40 * rotor_wx + t37 * rotor_wy)));
+            + T::fused(k(3e-5), T::fused(t24, inner_ring_wy, t30 * inner_ring_wx), t45)
+            - (rotor_sx
+                - T::fused(-k(0.00015), T::fused(t37, rotor_wy, t40 * rotor_wx), t44));
         let t47 = k(2.0) * (t39 + t38);
-        let t48 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t48 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
         let t49 = rotor_e0 * rotor_e1;
         let t50 = rotor_e2 * rotor_e3;
         let t51 = k(2.0) * (t50 - t49);
-        let t52 = k(0.0001) * (t51 * rotor_wy + t48 * rotor_wz)
-            - k(0.0002) * (t51 * rotor_wx - t47 * rotor_wz);
-        let t53 = k(0.000125) * (t31 * inner_ring_wz + t9 * inner_ring_wy)
-            + k(5e-5) * (t27 * inner_ring_wz - t9 * inner_ring_wx);
+        let t52 = T::fused(
+            -k(0.0002),
+            T::fused(-t47, rotor_wz, t51 * rotor_wx),
+            k(0.0001) * T::fused(t48, rotor_wz, t51 * rotor_wy),
+        );
+        let t53 = T::fused(
+            k(5e-5),
+            T::fused(-t9, inner_ring_wx, t27 * inner_ring_wz),
+            k(0.000125) * T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
+        );
         let t54 = inner_ring_sy
-            - (t53 + k(3e-5) * (t31 * inner_ring_wx + t27 * inner_ring_wy))
-            - (rotor_sy - (t52 + k(0.00015) * (t48 * rotor_wx + t47 * rotor_wy)));
+            - T::fused(k(3e-5), T::fused(t27, inner_ring_wy, t31 * inner_ring_wx), t53)
+            - (rotor_sy
+                - T::fused(k(0.00015), T::fused(t47, rotor_wy, t48 * rotor_wx), t52));
         let t55 = k(2.0) * (t42 - t41);
         let t56 = k(2.0) * (t50 + t49);
-        let t57 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
-        let t58 = k(0.0001) * (t57 * rotor_wy + t56 * rotor_wz)
-            - k(0.0002) * (t57 * rotor_wx + t55 * rotor_wz);
-        let t59 = k(0.000125) * (t32 * inner_ring_wz + t18 * inner_ring_wy)
-            - k(5e-5) * (t29 * inner_ring_wz + t18 * inner_ring_wx);
+        let t57 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
+        let t58 = T::fused(
+            -k(0.0002),
+            T::fused(t55, rotor_wz, t57 * rotor_wx),
+            k(0.0001) * T::fused(t56, rotor_wz, t57 * rotor_wy),
+        );
+        let t59 = T::fused(
+            -k(5e-5),
+            T::fused(t18, inner_ring_wx, t29 * inner_ring_wz),
+            k(0.000125) * T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
+        );
         let t60 = inner_ring_sz
-            + (t59 + k(3e-5) * (t32 * inner_ring_wx - t29 * inner_ring_wy))
-            - (rotor_sz + (t58 + k(0.00015) * (t56 * rotor_wx - t55 * rotor_wy)));
-        let t61 = t29 * t55 + (t27 * t47 + t24 * t37);
-        let t62 = inner_ring_wz * t61
-            + inner_ring_wx * (t18 * t55 - (t9 * t47 - t13 * t37));
-        let t63 = rotor_wy * (t32 * t57 - (t30 * t43 - t31 * t51))
-            + rotor_wz * (t32 * t56 + (t30 * t40 + t31 * t48));
-        let t64 = inner_ring_wx * (t32 * t55 - (t31 * t47 + t30 * t37))
-            - inner_ring_wy * t61;
-        let t65 = rotor_wy * (t13 * t43 + t9 * t51 + t18 * t57)
-            + rotor_wz * (t18 * t56 - (t13 * t40 - t9 * t48));
+            + T::fused(k(3e-5), T::fused(-t29, inner_ring_wy, t32 * inner_ring_wx), t59)
+            - (rotor_sz
+                + T::fused(k(0.00015), T::fused(-t55, rotor_wy, t56 * rotor_wx), t58));
+        let t61 = T::fused(t29, t55, T::fused(t24, t37, t27 * t47));
+        let t62 = T::fused(
+            inner_ring_wx,
+            T::fused(t18, t55, -T::fused(-t13, t37, t9 * t47)),
+            inner_ring_wz * t61,
+        );
+        let t63 = T::fused(
+            rotor_wz,
+            T::fused(t32, t56, T::fused(t31, t48, t30 * t40)),
+            rotor_wy * T::fused(t32, t57, -T::fused(-t31, t51, t30 * t43)),
+        );
+        let t64 = T::fused(
+            -inner_ring_wy,
+            t61,
+            inner_ring_wx * T::fused(t32, t55, -T::fused(t30, t37, t31 * t47)),
+        );
+        let t65 = T::fused(
+            rotor_wz,
+            T::fused(t18, t56, -T::fused(-t9, t48, t13 * t40)),
+            rotor_wy * T::fused(t18, t57, T::fused(t9, t51, t13 * t43)),
+        );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -(t4 * outer_ring_wx + t2 * outer_ring_wz),
-            t6 * outer_ring_wx + t5 * outer_ring_wz,
+            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
+            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
@@ -508,28 +792,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_wx * (k(1e-5) * rotor_wx) + rotor_wy * (k(5e-6) * rotor_wy)
-            + rotor_wz * (k(5e-6) * rotor_wz);
-        let t1 = t0
-            + k(0.08)
-                * (rotor_sx * rotor_sx + rotor_sy * rotor_sy + rotor_sz * rotor_sz);
-        let t2 = inner_ring_wx * (k(1e-6) * inner_ring_wx)
-            + inner_ring_wy * (k(2e-6) * inner_ring_wy)
-            + inner_ring_wz * (k(1e-6) * inner_ring_wz);
-        let t3 = t2
-            + k(0.01)
-                * (inner_ring_sx * inner_ring_sx + inner_ring_sy * inner_ring_sy
-                    + inner_ring_sz * inner_ring_sz);
-        let t4 = outer_ring_wx * (k(2e-6) * outer_ring_wx)
-            + outer_ring_wy * (k(1e-6) * outer_ring_wy)
-            + outer_ring_wz * (k(1e-6) * outer_ring_wz);
-        let t5 = t4
-            + k(0.01)
-                * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
-                    + outer_ring_sz * outer_ring_sz);
+        let t0 = T::fused(
+            rotor_wz,
+            k(5e-6) * rotor_wz,
+            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+        );
+        let t1 = T::fused(
+            k(0.08),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            inner_ring_wz,
+            k(1e-6) * inner_ring_wz,
+            T::fused(
+                inner_ring_wy,
+                k(2e-6) * inner_ring_wy,
+                inner_ring_wx * (k(1e-6) * inner_ring_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.01),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            outer_ring_wz,
+            k(1e-6) * outer_ring_wz,
+            T::fused(
+                outer_ring_wy,
+                k(1e-6) * outer_ring_wy,
+                outer_ring_wx * (k(2e-6) * outer_ring_wx),
+            ),
+        );
+        let t5 = T::fused(
+            k(0.01),
+            T::fused(
+                outer_ring_sz,
+                outer_ring_sz,
+                T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
+            ),
+            t4,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: k(0.1) * (outer_ring_ry + inner_ring_ry) + k(0.8) * rotor_ry,
+            potential: T::fused(
+                k(0.8),
+                rotor_ry,
+                k(0.1) * (outer_ring_ry + inner_ring_ry),
+            ),
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
@@ -556,7 +875,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = outer_ring_e2 * outer_ring_e2;
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
         let t5 = outer_ring_e3 * outer_ring_e3;
         let t6 = k(1.0) - (t5 + (t4 + t2));
         let t7 = inner_ring_e0 * inner_ring_e2;
@@ -567,36 +886,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let t12 = k(2.0) * (t11 + t10);
         let t13 = inner_ring_e2 * inner_ring_e2;
         let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t16 = inner_ring_e3 * inner_ring_e3;
         let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
         let t19 = outer_ring_e0 * outer_ring_e3;
         let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = k(2.0) * (t20 - t19) * t18
-            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
-        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
-        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t21 = T::fused(
+            t12,
+            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
+            k(2.0) * (t20 - t19) * t18,
+        );
+        let t22 = T::fused(
+            k(2.0) * (t20 + t19),
+            t12,
+            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+        );
+        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t24 = rotor_e2 * rotor_e2;
         let t25 = rotor_e0 * rotor_e0;
-        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t26 = T::fused(
+            k(2.0),
+            k(0.5) - (t25 + t24),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        );
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
-        let t31 = k(2.0) * (t11 - t10) * t29
-            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
+        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t31 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
+            t26,
+            k(2.0) * (t11 - t10) * t29,
+        );
         *out = [
             k(2.0) * (t1 + t0),
-            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
+            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
-                - t21,
-            t22 + k(2.0) * (t1 - t0) * t9,
+            T::fused(
+                k(2.0)
+                    * T::fused(
+                        outer_ring_e0,
+                        outer_ring_e1,
+                        outer_ring_e2 * outer_ring_e3,
+                    ),
+                t9,
+                -t21,
+            ),
+            T::fused(k(2.0) * (t1 - t0), t9, t22),
             inner_ring_wz - outer_ring_wz,
-            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
-            t31 + k(2.0) * (t28 + t27) * t23,
+            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
+            T::fused(k(2.0) * (t28 + t27), t23, t31),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -718,9 +1059,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> GyroscopeCombinedOffsets<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeCombinedOffsets<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -739,23 +1081,8 @@ impl<T: gyro_sim::Scalar> GyroscopeCombinedOffsets<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 566 operations (220 ±, 343 ×, 3 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -781,47 +1108,82 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e3 * outer_ring_e3
-            + (outer_ring_e0 * outer_ring_e0 + outer_ring_e1 * outer_ring_e1
-                + outer_ring_e2 * outer_ring_e2);
+        let t0 = T::fused(
+            outer_ring_e3,
+            outer_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                outer_ring_e2,
+                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+            ),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
         let t4 = outer_ring_e3 * t1;
         let t5 = outer_ring_e2 * t1;
-        let t6 = chart0_0 * t5 + chart0_1 * t4 - chart0_2 * t3 - chart0_3 * t2;
+        let t6 = T::fused(
+            -chart0_3,
+            t2,
+            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+        );
         let t7 = k(0.5) * t6;
         let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - (t4 * t4 + t8));
-        let t10 = k(2.0) * (t3 * t4 - t2 * t5);
+        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
+        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
         let t11 = t2 * t4;
         let t12 = t3 * t5;
         let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * (t3 * t2 + t5 * t4);
-        let t15 = k(2.0) * (k(0.5) - (t8 + t2 * t2));
+        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
+        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
         let t16 = k(2.0) * (t12 - t11);
-        let t17 = t16 * t13 + t9 * t15;
+        let t17 = T::fused(t9, t15, t16 * t13);
         let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * (t14 * (t13 * t7) - t10 * (t9 * t7));
-        let t20 = chart0_0 * (outer_ring_e0 + t3) + chart0_1 * (outer_ring_e1 + t2)
-            + chart0_2 * (outer_ring_e2 + t5);
-        let t21 = chart0_0 * t2 - chart0_1 * t3 - chart0_2 * t4 + chart0_3 * t5;
+        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t20 = T::fused(
+            chart0_2,
+            outer_ring_e2 + t5,
+            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+        );
+        let t21 = T::fused(
+            chart0_3,
+            t5,
+            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+        );
         let t22 = k(0.5) * t21;
-        let t23 = chart0_0 * t4 - chart0_1 * t5 + chart0_2 * t2 - chart0_3 * t3;
+        let t23 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+        );
         let t24 = k(0.5) * t23;
-        let t25 = t14 * (t15 * t22 - t13 * t24) + t10 * (t9 * t24 + t16 * t22);
-        let t26 = t18 * (t25 - (t20 + chart0_3 * (outer_ring_e3 + t4)) * t17);
-        let t27 = t18 * (t14 * (t15 * t7) + t10 * (t16 * t7));
-        let t28 = t3 - k(0.5) * (t2 * t27 - t5 * t26 - t4 * t19);
-        let t29 = t2 + k(0.5) * (t3 * t27 + t4 * t26 - t5 * t19);
-        let t30 = t5 + k(0.5) * (t4 * t27 - t3 * t26 + t2 * t19);
-        let t31 = t4 - k(0.5) * (t5 * t27 + t2 * t26 + t3 * t19);
+        let t25 = T::fused(
+            t10,
+            T::fused(t16, t22, t9 * t24),
+            t14 * T::fused(-t13, t24, t15 * t22),
+        );
+        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
+        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
+        let t28 = T::fused(
+            -k(0.5),
+            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
+            t3,
+        );
+        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
+        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
+        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
         let t32 = t29 * t30;
         let t33 = t28 * t31;
         let t34 = k(2.0) * (t33 - t32);
-        let t35 = inner_ring_e3 * inner_ring_e3
-            + (inner_ring_e0 * inner_ring_e0 + inner_ring_e1 * inner_ring_e1
-                + inner_ring_e2 * inner_ring_e2);
+        let t35 = T::fused(
+            inner_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                inner_ring_e2,
+                inner_ring_e2,
+                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t36 = k(0.5) * (t35 - k(3.0));
         let t37 = inner_ring_e2 * t36;
         let t38 = inner_ring_e1 * t36;
@@ -831,48 +1193,84 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         let t42 = t41 * t40;
         let t43 = k(2.0) * (t42 - t39);
         let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - (t44 + t30 * t30));
+        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
         let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - (t37 * t37 + t46));
-        let t48 = k(2.0) * (t28 * t29 + t30 * t31);
+        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
+        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
         let t49 = t37 * t40;
         let t50 = t41 * t38;
         let t51 = k(2.0) * (t50 + t49);
-        let t52 = t51 * t48 + (t47 * t45 + t43 * t34);
-        let t53 = k(2.0) * (k(0.5) - (t46 + t38 * t38));
-        let t54 = k(2.0) * (k(0.5) - (t29 * t29 + t44));
+        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
+        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
+        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
         let t55 = k(2.0) * (t42 + t39);
         let t56 = k(2.0) * (t33 + t32);
         let t57 = t38 * t40;
         let t58 = t41 * t37;
         let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * (t28 * t30 - t29 * t31);
-        let t61 = t60 * t59 + (t56 * t55 + t54 * t53);
-        let t62 = t59 * t48 + (t55 * t45 - t53 * t34);
-        let t63 = t51 * t60 + (t47 * t56 - t43 * t54);
-        let t64 = t63 * t62 - t61 * t52;
-        let t65 = chart1_0 * (inner_ring_e0 + t41) + chart1_1 * (inner_ring_e1 + t38)
-            + chart1_2 * (inner_ring_e2 + t37);
-        let t66 = chart1_0 * t37 + chart1_1 * t40 - chart1_2 * t41 - chart1_3 * t38;
+        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
+        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
+        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
+        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
+        let t64 = T::fused(-t61, t52, t63 * t62);
+        let t65 = T::fused(
+            chart1_2,
+            inner_ring_e2 + t37,
+            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
+        );
+        let t66 = T::fused(
+            -chart1_3,
+            t38,
+            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
+        );
         let t67 = k(0.5) * t66;
-        let t68 = chart1_0 * t38 - chart1_1 * t41 - chart1_2 * t40 + chart1_3 * t37;
+        let t68 = T::fused(
+            chart1_3,
+            t37,
+            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+        );
         let t69 = k(0.5) * t68;
         let t70 = k(2.0) * (t58 + t57);
         let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - (t46 + t40 * t40));
-        let t73 = t72 * t48 - (t71 * t45 - t70 * t34);
-        let t74 = t60 * t72 - (t56 * t71 + t54 * t70);
-        let t75 = t74 * (t52 * t67 - t62 * t69) + t73 * (t61 * t69 - t63 * t67);
-        let t76 = chart1_0 * t40 - chart1_1 * t37 + chart1_2 * t38 - chart1_3 * t41;
+        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
+        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
+        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t75 = T::fused(
+            t73,
+            T::fused(-t63, t67, t61 * t69),
+            t74 * T::fused(-t62, t69, t52 * t67),
+        );
+        let t76 = T::fused(
+            -chart1_3,
+            t41,
+            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+        );
         let t77 = k(0.5) * t76;
         let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78 * (t75 - (t65 + chart1_3 * (inner_ring_e3 + t40)) * t64);
-        let t80 = t78 * (t74 * (t52 * t77) - t73 * (t63 * t77));
-        let t81 = t78 * (t74 * (t62 * t77) - t73 * (t61 * t77));
-        let t82 = t41 + k(0.5) * (t38 * t81 - t37 * t80 + t40 * t79);
-        let t83 = t38 - k(0.5) * (t41 * t81 + t40 * t80 + t37 * t79);
-        let t84 = t37 - k(0.5) * (t40 * t81 - t41 * t80 - t38 * t79);
-        let t85 = t40 + k(0.5) * (t37 * t81 + t38 * t80 - t41 * t79);
+        let t79 = t78
+            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
+        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
+        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t82 = T::fused(
+            k(0.5),
+            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
+            t41,
+        );
+        let t83 = T::fused(
+            -k(0.5),
+            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
+            t38,
+        );
+        let t84 = T::fused(
+            -k(0.5),
+            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
+            t37,
+        );
+        let t85 = T::fused(
+            k(0.5),
+            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
+            t40,
+        );
         let t86 = t82 * t82;
         let t87 = t83 * t84;
         let t88 = t82 * t85;
@@ -880,22 +1278,36 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         let t90 = t83 * t85;
         let t91 = t82 * t84;
         let t92 = t91 + t90;
-        let t93 = k(6e-5) * t92
-            + (k(0.0001) * t89 + k(0.00025) * (k(0.5) - (t86 + t83 * t83)));
-        let t94 = rotor_e3 * rotor_e3
-            + (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1 + rotor_e2 * rotor_e2);
+        let t93 = T::fused(
+            k(6e-5),
+            t92,
+            T::fused(k(0.00025), k(0.5) - T::fused(t83, t83, t86), k(0.0001) * t89),
+        );
+        let t94 = T::fused(
+            rotor_e3,
+            rotor_e3,
+            T::fused(
+                rotor_e2,
+                rotor_e2,
+                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+            ),
+        );
         let t95 = k(0.5) * (t94 - k(3.0));
         let t96 = rotor_e2 * t95;
         let t97 = rotor_e3 * t95;
         let t98 = rotor_e0 * t95;
         let t99 = rotor_e1 * t95;
-        let t100 = chart2_0 * t99 - chart2_1 * t98 - chart2_2 * t97 + chart2_3 * t96;
+        let t100 = T::fused(
+            chart2_3,
+            t96,
+            T::fused(-chart2_2, t97, T::fused(-chart2_1, t98, chart2_0 * t99)),
+        );
         let t101 = k(0.5) * t100;
         let t102 = k(2.0) * t89;
         let t103 = t99 * t97;
         let t104 = t98 * t96;
         let t105 = k(2.0) * (t104 + t103);
-        let t106 = k(0.5) - (t84 * t84 + t86);
+        let t106 = k(0.5) - T::fused(t84, t84, t86);
         let t107 = k(2.0) * t106;
         let t108 = t96 * t97;
         let t109 = t98 * t99;
@@ -905,60 +1317,107 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         let t113 = t112 + t111;
         let t114 = k(2.0) * t113;
         let t115 = t98 * t98;
-        let t116 = k(2.0) * (k(0.5) - (t97 * t97 + t115));
-        let t117 = t116 * t114 - (t110 * t107 - t105 * t102);
+        let t116 = k(2.0) * (k(0.5) - T::fused(t97, t97, t115));
+        let t117 = T::fused(t116, t114, -T::fused(-t105, t102, t110 * t107));
         let t118 = k(2.0) * t92;
-        let t119 = k(2.0) * (k(0.5) - (t115 + t99 * t99));
+        let t119 = k(2.0) * (k(0.5) - T::fused(t99, t99, t115));
         let t120 = t112 - t111;
         let t121 = k(2.0) * t120;
         let t122 = t99 * t96;
         let t123 = t98 * t97;
         let t124 = k(2.0) * (t123 + t122);
-        let t125 = k(0.5) - (t86 + t85 * t85);
+        let t125 = k(0.5) - T::fused(t85, t85, t86);
         let t126 = k(2.0) * t125;
         let t127 = k(2.0) * (t104 - t103);
-        let t128 = t127 * t126 - (t124 * t121 + t119 * t118);
-        let t129 = t116 * t126 + (t110 * t121 + t105 * t118);
-        let t130 = t114 * t127 + (t107 * t124 - t102 * t119);
+        let t128 = T::fused(t127, t126, -T::fused(t119, t118, t124 * t121));
+        let t129 = T::fused(t116, t126, T::fused(t105, t118, t110 * t121));
+        let t130 = T::fused(t114, t127, T::fused(-t102, t119, t107 * t124));
         let t131 = k(2.0) * (t123 - t122);
-        let t132 = k(2.0) * (k(0.5) - (t115 + t96 * t96));
+        let t132 = k(2.0) * (k(0.5) - T::fused(t96, t96, t115));
         let t133 = k(2.0) * (t109 + t108);
-        let t134 = t114 * t133 + (t107 * t132 + t102 * t131);
-        let t135 = t133 * t126 - (t132 * t121 - t131 * t118);
-        let t136 = t117 * t135 - t134 * t129;
+        let t134 = T::fused(t114, t133, T::fused(t102, t131, t107 * t132));
+        let t135 = T::fused(t133, t126, -T::fused(-t131, t118, t132 * t121));
+        let t136 = T::fused(-t134, t129, t117 * t135);
         let t137 = k(1.0) / (t101 * t136);
-        let t138 = t137 * (t130 * (t129 * t101) - t128 * (t117 * t101));
-        let t139 = t137 * (t130 * (t135 * t101) - t128 * (t134 * t101));
-        let t140 = chart2_0 * (rotor_e0 + t98) + chart2_1 * (rotor_e1 + t99)
-            + chart2_2 * (rotor_e2 + t96);
-        let t141 = chart2_0 * t97 - chart2_1 * t96 + chart2_2 * t99 - chart2_3 * t98;
+        let t138 = t137 * T::fused(-t128, t117 * t101, t130 * (t129 * t101));
+        let t139 = t137 * T::fused(-t128, t134 * t101, t130 * (t135 * t101));
+        let t140 = T::fused(
+            chart2_2,
+            rotor_e2 + t96,
+            T::fused(chart2_1, rotor_e1 + t99, chart2_0 * (rotor_e0 + t98)),
+        );
+        let t141 = T::fused(
+            -chart2_3,
+            t98,
+            T::fused(chart2_2, t99, T::fused(-chart2_1, t96, chart2_0 * t97)),
+        );
         let t142 = k(0.5) * t141;
-        let t143 = chart2_0 * t96 + chart2_1 * t97 - chart2_2 * t98 - chart2_3 * t99;
+        let t143 = T::fused(
+            -chart2_3,
+            t99,
+            T::fused(-chart2_2, t98, T::fused(chart2_1, t97, chart2_0 * t96)),
+        );
         let t144 = k(0.5) * t143;
-        let t145 = t130 * (t129 * t142 - t135 * t144)
-            + t128 * (t134 * t144 - t117 * t142);
-        let t146 = t137 * (t145 + (t140 + chart2_3 * (rotor_e3 + t97)) * t136);
-        let t147 = t98 - k(0.5) * (t99 * t146 + t96 * t139 - t97 * t138);
+        let t145 = T::fused(
+            t128,
+            T::fused(-t117, t142, t134 * t144),
+            t130 * T::fused(-t135, t144, t129 * t142),
+        );
+        let t146 = t137 * T::fused(T::fused(chart2_3, rotor_e3 + t97, t140), t136, t145);
+        let t147 = T::fused(
+            -k(0.5),
+            T::fused(-t97, t138, T::fused(t96, t139, t99 * t146)),
+            t98,
+        );
         let t148 = t147 * t147;
-        let t149 = t99 + k(0.5) * (t98 * t146 - t97 * t139 - t96 * t138);
-        let t150 = t96 + k(0.5) * (t97 * t146 + t98 * t139 + t99 * t138);
+        let t149 = T::fused(
+            k(0.5),
+            T::fused(-t96, t138, T::fused(-t97, t139, t98 * t146)),
+            t99,
+        );
+        let t150 = T::fused(
+            k(0.5),
+            T::fused(t99, t138, T::fused(t98, t139, t97 * t146)),
+            t96,
+        );
         let t151 = t149 * t150;
-        let t152 = t97 - k(0.5) * (t96 * t146 - t99 * t139 + t98 * t138);
+        let t152 = T::fused(
+            -k(0.5),
+            T::fused(t98, t138, T::fused(-t99, t139, t96 * t146)),
+            t97,
+        );
         let t153 = t147 * t152;
-        let t154 = k(0.0004) * (t153 - t151)
-            + k(0.0002) * (k(0.5) - (t149 * t149 + t148));
+        let t154 = T::fused(
+            k(0.0002),
+            k(0.5) - T::fused(t149, t149, t148),
+            k(0.0004) * (t153 - t151),
+        );
         let t155 = t149 * t152;
         let t156 = t147 * t150;
-        let t157 = k(0.0004) * (k(0.5) - (t148 + t150 * t150))
-            - k(0.0002) * (t153 + t151);
+        let t157 = T::fused(
+            -k(0.0002),
+            t153 + t151,
+            k(0.0004) * (k(0.5) - T::fused(t150, t150, t148)),
+        );
         let t158 = t150 * t152;
         let t159 = t147 * t149;
-        let t160 = k(0.0003) * (t159 - t158) - t157
-            - (k(6e-5) * t120 - (k(0.0001) * t106 - k(0.00025) * (t88 + t87)));
-        let t161 = k(0.0003) * (k(0.5) - (t148 + t152 * t152))
-            + (k(0.0004) * (t159 + t158) - k(0.0002) * (t156 - t155));
+        let t160 = T::fused(k(0.0003), t159 - t158, -t157)
+            - T::fused(
+                k(6e-5),
+                t120,
+                -T::fused(-k(0.00025), t88 + t87, k(0.0001) * t106),
+            );
+        let t161 = T::fused(
+            k(0.0003),
+            k(0.5) - T::fused(t152, t152, t148),
+            T::fused(-k(0.0002), t156 - t155, k(0.0004) * (t159 + t158)),
+        );
         let t162 = t161
-            - (k(6e-5) * t125 + (k(0.0001) * t113 - k(0.00025) * (t91 - t90)));
+            - T::fused(
+                k(6e-5),
+                t125,
+                T::fused(-k(0.00025), t91 - t90, k(0.0001) * t113),
+            );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
@@ -973,22 +1432,16 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         y[11] = -t83;
         y[12] = -t84;
         y[13] = -t85;
-        y[14] = k(0.0003) * (t156 + t155) + t154 - t93;
+        y[14] = T::fused(k(0.0003), t156 + t155, t154) - t93;
         y[15] = -t160;
         y[16] = -t162;
         y[17] = -t147;
         y[18] = -t149;
         y[19] = -t150;
         y[20] = -t152;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 332 operations (126 ±, 203 ×, 3 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -1012,99 +1465,133 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t3 = outer_ring_e0 * outer_ring_e2;
         let t4 = outer_ring_e1 * outer_ring_e3;
         let t5 = k(2.0) * (t4 - t3);
         let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
-        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
-        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
-        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
-        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
+        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
+        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
+        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
         let t14 = outer_ring_e0 * outer_ring_e3;
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e3;
         let t18 = inner_ring_e1 * inner_ring_e2;
         let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t21 = inner_ring_e0 * inner_ring_e2;
         let t22 = inner_ring_e1 * inner_ring_e3;
         let t23 = k(2.0) * (t22 - t21);
         let t24 = outer_ring_e0 * outer_ring_e1;
         let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
         let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
         let t30 = k(2.0) * (t15 + t14);
         let t31 = inner_ring_e0 * inner_ring_e1;
         let t32 = inner_ring_e2 * inner_ring_e3;
         let t33 = k(2.0) * (t32 + t31);
-        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
-        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
-        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
-        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
+        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
+        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
+        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
         let t38 = k(2.0) * (t22 + t21);
         let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
-        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
-        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
-        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
-        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
-        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
-        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
-        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
+        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
+        let t42 = T::fused(
+            t11,
+            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
+            t10 * t41,
+        );
+        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t44 = T::fused(
+            t11,
+            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
+            outer_ring_wy * t41,
+        );
+        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
+        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
+        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
         let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
         let t50 = rotor_e0 * rotor_e3;
         let t51 = rotor_e1 * rotor_e2;
         let t52 = k(2.0) * (t51 - t50);
         let t53 = rotor_e0 * rotor_e1;
         let t54 = rotor_e2 * rotor_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
         let t57 = k(2.0) * (t54 - t53);
         let t58 = rotor_e0 * rotor_e2;
         let t59 = rotor_e1 * rotor_e3;
         let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
-        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
-        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
-        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
-        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
-        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
+        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
+        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
+        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
+        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
+        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
         let t67 = k(2.0) * (t51 + t50);
         let t68 = k(2.0) * (t59 - t58);
-        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
-        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
-        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
-        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
-        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
-        let t74 = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
-        let t75 = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
-        let t76 = k(0.0001) * (t60 * t74 - t52 * t75)
-            - k(0.0002) * (t60 * rotor_wx + t66 * t75);
-        let t77 = k(0.000125) * (t38 * t47 - t28 * inner_ring_wz)
-            - k(5e-5) * (t38 * t46 + t13 * inner_ring_wz);
-        let t78 = t77 - k(3e-5) * (t28 * t46 + t13 * t47)
-            - (t76 - k(0.00015) * (t52 * rotor_wx + t66 * t74));
-        let t79 = k(0.0001) * (t57 * t74 + t49 * t75)
-            - k(0.0002) * (t57 * rotor_wx - t67 * t75);
-        let t80 = k(0.000125) * (t39 * t47 + t29 * inner_ring_wz)
-            - k(5e-5) * (t39 * t46 - t19 * inner_ring_wz);
-        let t81 = t80 + k(3e-5) * (t29 * t46 + t19 * t47)
-            - (t79 + k(0.00015) * (t49 * rotor_wx + t67 * t74));
-        let t82 = k(0.0001) * (t61 * t74 + t55 * t75)
-            - k(0.0002) * (t61 * rotor_wx + t68 * t75);
-        let t83 = k(0.000125) * (t40 * t47 + t33 * inner_ring_wz)
-            - k(5e-5) * (t40 * t46 + t23 * inner_ring_wz);
-        let t84 = t83 + k(3e-5) * (t33 * t46 - t23 * t47)
-            - (t82 + k(0.00015) * (t55 * rotor_wx - t68 * t74));
+        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
+        let t70 = T::fused(
+            -t47,
+            t69,
+            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        );
+        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t72 = T::fused(
+            inner_ring_wz,
+            t69,
+            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+        );
+        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
+        let t74 = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
+        let t75 = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        let t76 = T::fused(
+            -k(0.0002),
+            T::fused(t66, t75, t60 * rotor_wx),
+            k(0.0001) * T::fused(-t52, t75, t60 * t74),
+        );
+        let t77 = T::fused(
+            -k(5e-5),
+            T::fused(t13, inner_ring_wz, t38 * t46),
+            k(0.000125) * T::fused(-t28, inner_ring_wz, t38 * t47),
+        );
+        let t78 = T::fused(-k(3e-5), T::fused(t13, t47, t28 * t46), t77)
+            - T::fused(-k(0.00015), T::fused(t66, t74, t52 * rotor_wx), t76);
+        let t79 = T::fused(
+            -k(0.0002),
+            T::fused(-t67, t75, t57 * rotor_wx),
+            k(0.0001) * T::fused(t49, t75, t57 * t74),
+        );
+        let t80 = T::fused(
+            -k(5e-5),
+            T::fused(-t19, inner_ring_wz, t39 * t46),
+            k(0.000125) * T::fused(t29, inner_ring_wz, t39 * t47),
+        );
+        let t81 = T::fused(k(3e-5), T::fused(t19, t47, t29 * t46), t80)
+            - T::fused(k(0.00015), T::fused(t67, t74, t49 * rotor_wx), t79);
+        let t82 = T::fused(
+            -k(0.0002),
+            T::fused(t68, t75, t61 * rotor_wx),
+            k(0.0001) * T::fused(t55, t75, t61 * t74),
+        );
+        let t83 = T::fused(
+            -k(5e-5),
+            T::fused(t23, inner_ring_wz, t40 * t46),
+            k(0.000125) * T::fused(t33, inner_ring_wz, t40 * t47),
+        );
+        let t84 = T::fused(k(3e-5), T::fused(-t23, t47, t33 * t46), t83)
+            - T::fused(k(0.00015), T::fused(-t68, t74, t55 * rotor_wx), t82);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
@@ -1120,102 +1607,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
         y[35] = t84;
         y[37] = t74;
         y[38] = t75;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeCombinedOffsets<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
@@ -1408,33 +1836,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
         let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + inner_ring_e3 * inner_ring_e3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
         let t6 = t5 * t3;
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
         let t10 = k(4.0) * outer_ring_e0;
         let t11 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2);
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
         let t12 = t5 * t2;
         let t13 = t5 * t1;
         let t14 = t5 * t0;
         let t15 = k(4.0) * inner_ring_e0;
         let t16 = k(2.0)
-            * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2);
+            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
         let t17 = k(2.0) * inner_ring_e1;
         let t18 = outer_ring_e0 * outer_ring_e3;
         let t19 = outer_ring_e1 * outer_ring_e2;
         let t20 = k(2.0) * (t19 + t18);
         let t21 = k(2.0) * inner_ring_e2;
         let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + outer_ring_e1 * outer_ring_e1));
+        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
         let t24 = k(2.0) * inner_ring_e0;
         let t25 = k(2.0) * inner_ring_e3;
         let t26 = k(4.0) * inner_ring_e3;
         let t27 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
-        let t28 = k(2.0) * (k(0.5) - (t22 + outer_ring_e2 * outer_ring_e2));
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
         let t29 = k(2.0) * (t19 - t18);
         let t30 = k(0.0001) * inner_ring_e3;
         let t31 = k(6e-5) * inner_ring_e2;
@@ -1458,9 +1886,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t49 = k(0.0002) * rotor_e2;
         let t50 = k(0.0002) * rotor_e1;
         let t51 = k(0.0002) * rotor_e0;
-        let t52 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
-        let t53 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
-        let t54 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1));
+        let t52 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t53 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t54 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
         let t55 = t54 * t25;
         let t56 = t54 * t21;
         let t57 = t54 * t17;
@@ -1468,10 +1896,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t59 = k(2.0) * rotor_e2;
         let t60 = k(2.0) * (t8 + t7);
         let t61 = k(2.0) * rotor_e3;
-        let t62 = k(2.0) * (k(0.5) - (t4 + inner_ring_e2 * inner_ring_e2));
+        let t62 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
         let t63 = k(4.0) * rotor_e0;
         let t64 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3);
+            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
         let t65 = k(4.0) * rotor_e1;
         let t66 = k(2.0) * rotor_e0;
         let t67 = k(2.0) * rotor_e1;
@@ -1493,68 +1921,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            t11 * t10 + t9 * t2 + t6,
-            t11 * (k(4.0) * outer_ring_e1) + t9 * t3 - t12,
-            t9 * t0 + t13,
-            t9 * t1 - t14,
-            t16 * t15 - (t23 * t21 + t20 * t17),
-            -(t23 * t25 + t20 * t24),
-            t20 * t25 - t23 * t24,
-            t16 * t26 - (t23 * t17 - t20 * t21),
-            -(t14 + (t11 * t2 - t9 * t10)),
-            t11 * t3 - t13,
-            t11 * t0 + t9 * (k(4.0) * outer_ring_e2) - t12,
-            -(t6 + t11 * t1),
-            t29 * t21 + t28 * t17 + t27 * t15,
-            t29 * t25 + t28 * t24,
-            t29 * t24 - t28 * t25,
-            t29 * t17 - t28 * t21 + t27 * t26,
+            T::fused(t9, t2, t11 * t10) + t6,
+            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
+            T::fused(t9, t0, t13),
+            T::fused(t9, t1, -t14),
+            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
+            -T::fused(t20, t24, t23 * t25),
+            T::fused(-t23, t24, t20 * t25),
+            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
+            -(t14 + T::fused(-t9, t10, t11 * t2)),
+            T::fused(t11, t3, -t13),
+            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
+            -T::fused(t11, t1, t6),
+            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
+            T::fused(t28, t24, t29 * t25),
+            T::fused(-t28, t25, t29 * t24),
+            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
             k(-1.0),
-            t31 + (t30 - k(0.0005) * inner_ring_e0),
-            t33 - (t32 + k(0.0005) * inner_ring_e1),
+            t31 + T::fused(-k(0.0005), inner_ring_e0, t30),
+            t33 - T::fused(k(0.0005), inner_ring_e1, t32),
             t34 - t35,
             t37 + t36,
             k(1.0),
-            k(0.0004) * (rotor_e0 - rotor_e3) - t38,
-            k(0.0004) * (rotor_e1 + rotor_e2) - t39,
+            T::fused(k(0.0004), rotor_e0 - rotor_e3, -t38),
+            T::fused(k(0.0004), rotor_e1 + rotor_e2, -t39),
             t41 - t40,
             -(t43 + t42),
             k(-1.0),
-            -(t37 + (k(0.0002) * inner_ring_e0 + t44)),
+            -(t37 + T::fused(k(0.0002), inner_ring_e0, t44)),
             -(t45 + t34),
-            t33 - (k(0.0002) * inner_ring_e2 + t46),
+            t33 - T::fused(k(0.0002), inner_ring_e2, t46),
             t31 - t47,
             k(1.0),
-            t42 + (k(0.0008) * rotor_e0 + t48),
+            t42 + T::fused(k(0.0008), rotor_e0, t48),
             t49 + t40,
-            k(0.0008) * rotor_e2 + t50 - t39,
+            T::fused(k(0.0008), rotor_e2, t50) - t39,
             t51 - t38,
             k(-1.0),
-            k(0.00012) * inner_ring_e0 - (t35 - t45),
+            T::fused(k(0.00012), inner_ring_e0, -(t35 - t45)),
             -(t44 + t36),
             t47 - t30,
-            k(0.00012) * inner_ring_e3 - (t32 + t46),
+            T::fused(k(0.00012), inner_ring_e3, -(t32 + t46)),
             k(1.0),
-            t41 - t49 - k(0.0006) * rotor_e0,
+            T::fused(-k(0.0006), rotor_e0, t41 - t49),
             t43 + t48,
-            k(0.0004) * rotor_e3 - t51,
-            k(0.0004) * rotor_e2 + t50 - k(0.0006) * rotor_e3,
-            t55 + t53 * t15 + t52 * t17,
-            t52 * t24 - t56,
-            t52 * t25 - (t57 - t53 * (k(4.0) * inner_ring_e2)),
-            t52 * t21 + t58,
-            t64 * t63 - t62 * t61 - t60 * t59,
-            t64 * t65 - t62 * t59 + t60 * t61,
-            -(t62 * t67 + t60 * t66),
-            t60 * t67 - t62 * t66,
-            t52 * t15 - (t56 + t53 * t17),
-            -(t55 + t53 * t24),
-            t53 * t25 - t58,
-            t52 * t26 - (t57 - t53 * t21),
-            t11 * t63 + t9 * t61 + t5 * t59,
-            t11 * t65 + t9 * t59 - t5 * t61,
-            t9 * t67 + t5 * t66,
-            t9 * t66 - t5 * t67,
+            T::fused(k(0.0004), rotor_e3, -t51),
+            T::fused(-k(0.0006), rotor_e3, T::fused(k(0.0004), rotor_e2, t50)),
+            T::fused(t52, t17, T::fused(t53, t15, t55)),
+            T::fused(t52, t24, -t56),
+            T::fused(t52, t25, -T::fused(-t53, k(4.0) * inner_ring_e2, t57)),
+            T::fused(t52, t21, t58),
+            T::fused(-t60, t59, T::fused(-t62, t61, t64 * t63)),
+            T::fused(t60, t61, T::fused(-t62, t59, t64 * t65)),
+            -T::fused(t60, t66, t62 * t67),
+            T::fused(-t62, t66, t60 * t67),
+            T::fused(t52, t15, -T::fused(t53, t17, t56)),
+            -T::fused(t53, t24, t55),
+            T::fused(t53, t25, -t58),
+            T::fused(t52, t26, -T::fused(-t53, t21, t57)),
+            T::fused(t5, t59, T::fused(t9, t61, t11 * t63)),
+            T::fused(-t5, t61, T::fused(t9, t59, t11 * t65)),
+            T::fused(t5, t66, t9 * t67),
+            T::fused(-t5, t67, t9 * t66),
             t1,
             t0,
             t3,
@@ -1585,14 +2013,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
         let t2 = outer_ring_e0 * outer_ring_e2;
         let t3 = outer_ring_e1 * outer_ring_e3;
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3);
+        let t8 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7);
         let t9 = k(2.0) * t8;
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
@@ -1604,8 +2032,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t17 = inner_ring_e1 * inner_ring_e3;
         let t18 = t17 + t16;
         let t19 = k(2.0) * t18;
-        let t20 = t5 * t19 + k(2.0) * (t15 - t14) * t13 + t1 * t9;
-        let t21 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t20 = T::fused(t1, t9, T::fused(k(2.0) * (t15 - t14), t13, t5 * t19));
+        let t21 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t22 = outer_ring_e0 * outer_ring_e3;
         let t23 = outer_ring_e1 * outer_ring_e2;
         let t24 = k(2.0) * (t23 - t22);
@@ -1614,12 +2042,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t27 = inner_ring_e1 * inner_ring_e2;
         let t28 = t27 - t26;
         let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2);
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7);
         let t31 = k(2.0) * t30;
         let t32 = k(2.0) * (t23 + t22);
         let t33 = t11 + t10;
         let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1);
+        let t35 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7);
         let t36 = k(2.0) * t35;
         let t37 = t27 + t26;
         let t38 = k(2.0) * t37;
@@ -1632,19 +2060,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t45 = rotor_e1 * rotor_e3;
         let t46 = t45 + t44;
         let t47 = rotor_e0 * rotor_e0;
-        let t48 = k(0.5) - (t47 + rotor_e1 * rotor_e1);
-        let t49 = k(0.5) - (t47 + rotor_e2 * rotor_e2);
+        let t48 = k(0.5) - T::fused(rotor_e1, rotor_e1, t47);
+        let t49 = k(0.5) - T::fused(rotor_e2, rotor_e2, t47);
         let t50 = rotor_e0 * rotor_e1;
         let t51 = rotor_e2 * rotor_e3;
         let t52 = t51 - t50;
         let t53 = t42 + t41;
         let t54 = t51 + t50;
-        let t55 = k(0.5) - (t47 + rotor_e3 * rotor_e3);
+        let t55 = k(0.5) - T::fused(rotor_e3, rotor_e3, t47);
         let t56 = t45 - t44;
         let t57 = k(2.0) * t48;
         let t58 = k(2.0) * t53;
         let t59 = k(2.0) * t56;
-        let t60 = t40 * t59 + (t38 * t58 + t36 * t57);
+        let t60 = T::fused(t40, t59, T::fused(t36, t57, t38 * t58));
         let t61 = k(2.0) * t52;
         let t62 = k(2.0) * t46;
         let t63 = k(2.0) * t55;
@@ -1666,45 +2094,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(-1.0),
             k(1.0),
             -t20,
-            t24 * t19 - t21 * t13 - t25 * t9,
-            t32 * t31 + t6 * t29 - t4 * t34,
-            t4 * t40 + (t32 * t38 + t6 * t36),
+            T::fused(-t25, t9, T::fused(-t21, t13, t24 * t19)),
+            T::fused(-t4, t34, T::fused(t6, t29, t32 * t31)),
+            T::fused(t4, t40, T::fused(t6, t36, t32 * t38)),
             t20,
-            t4 * t9 - (t32 * t13 - t6 * t19),
-            -(t25 * t34 + (t24 * t29 + t21 * t31)),
-            t25 * t40 - (t21 * t38 + t24 * t36),
+            T::fused(t4, t9, -T::fused(-t6, t19, t32 * t13)),
+            -T::fused(t25, t34, T::fused(t21, t31, t24 * t29)),
+            T::fused(t25, t40, -T::fused(t24, t36, t21 * t38)),
             k(-1.0),
-            -(k(0.0001) * t18 + k(6e-5) * t28),
-            k(0.00025) * t18 - k(6e-5) * t35,
-            -(k(0.00025) * t28 + k(0.0001) * t35),
+            -T::fused(k(6e-5), t28, k(0.0001) * t18),
+            T::fused(-k(6e-5), t35, k(0.00025) * t18),
+            -T::fused(k(0.0001), t35, k(0.00025) * t28),
             k(1.0),
-            k(0.0004) * t46 + k(0.0003) * t43,
-            k(0.0003) * t48 - k(0.0002) * t46,
-            k(0.0002) * t43 + k(0.0004) * t48,
+            T::fused(k(0.0003), t43, k(0.0004) * t46),
+            T::fused(-k(0.0002), t46, k(0.0003) * t48),
+            T::fused(k(0.0004), t48, k(0.0002) * t43),
             k(-1.0),
-            k(6e-5) * t30 - k(0.0001) * t12,
-            k(0.00025) * t12 + k(6e-5) * t37,
-            k(0.00025) * t30 + k(0.0001) * t37,
+            T::fused(-k(0.0001), t12, k(6e-5) * t30),
+            T::fused(k(6e-5), t37, k(0.00025) * t12),
+            T::fused(k(0.0001), t37, k(0.00025) * t30),
             k(1.0),
-            k(0.0004) * t52 - k(0.0003) * t49,
-            -(k(0.0002) * t52 + k(0.0003) * t53),
-            -(k(0.0002) * t49 + k(0.0004) * t53),
+            T::fused(-k(0.0003), t49, k(0.0004) * t52),
+            -T::fused(k(0.0003), t53, k(0.0002) * t52),
+            -T::fused(k(0.0004), t53, k(0.0002) * t49),
             k(-1.0),
-            k(0.0001) * t8 - k(6e-5) * t33,
-            k(6e-5) * t39 - k(0.00025) * t8,
-            k(0.0001) * t39 - k(0.00025) * t33,
+            T::fused(-k(6e-5), t33, k(0.0001) * t8),
+            T::fused(-k(0.00025), t8, k(6e-5) * t39),
+            T::fused(-k(0.00025), t33, k(0.0001) * t39),
             k(1.0),
-            k(0.0003) * t54 - k(0.0004) * t55,
-            k(0.0002) * t55 - k(0.0003) * t56,
-            k(0.0002) * t54 - k(0.0004) * t56,
-            t13 * t58 - t19 * t57 - t9 * t59,
+            T::fused(-k(0.0004), t55, k(0.0003) * t54),
+            T::fused(-k(0.0003), t56, k(0.0002) * t55),
+            T::fused(-k(0.0004), t56, k(0.0002) * t54),
+            T::fused(-t9, t59, T::fused(-t19, t57, t13 * t58)),
             -t60,
-            t34 * t63 - (t29 * t62 - t31 * t61),
-            t34 * t66 + (t29 * t65 + t31 * t64),
-            t31 * t58 + t29 * t57 - t34 * t59,
+            T::fused(t34, t63, -T::fused(-t31, t61, t29 * t62)),
+            T::fused(t34, t66, T::fused(t31, t64, t29 * t65)),
+            T::fused(-t34, t59, T::fused(t29, t57, t31 * t58)),
             t60,
-            -(t19 * t62 + t13 * t61 + t9 * t63),
-            t19 * t65 - t13 * t64 - t9 * t66,
+            -T::fused(t9, t63, T::fused(t13, t61, t19 * t62)),
+            T::fused(-t9, t66, T::fused(-t13, t64, t19 * t65)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1757,14 +2185,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t2 = outer_ring_e1 * outer_ring_e3;
         let t3 = k(2.0) * (t2 - t1);
         let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
         let t6 = outer_ring_e0 * outer_ring_e1;
         let t7 = outer_ring_e2 * outer_ring_e3;
         let t8 = k(2.0) * (t7 + t6);
         let t9 = outer_ring_wy * outer_ring_wz;
         let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
         let t13 = outer_ring_e0 * outer_ring_e3;
         let t14 = outer_ring_e1 * outer_ring_e2;
         let t15 = k(2.0) * (t14 - t13);
@@ -1777,123 +2205,192 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t22 = k(2.0) * (t21 - t20);
         let t23 = k(2.0) * (t14 + t13);
         let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
-        let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
+        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
+        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
+        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
+        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
-        let t31 = outer_ring_wx * outer_ring_wz * t30
-            - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
-        let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
+        let t31 = T::fused(
+            outer_ring_wx * outer_ring_wz,
+            t30,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+        );
+        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
         let t33 = inner_ring_e0 * inner_ring_e3;
         let t34 = inner_ring_e1 * inner_ring_e2;
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
-        let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
+        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
         let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
-            - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
-        let t43 = k(2.0)
-            * (outer_ring_wy * t42
-                + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
-        let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
-        let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
-        let t47 = inner_ring_wy * inner_ring_wz;
-        let t48 = inner_ring_wx * inner_ring_wx;
-        let t49 = inner_ring_wy * inner_ring_wy;
-        let t50 = t49 + t48;
-        let t51 = t50 * t26 + (t47 * t46 + t45 * t44) - t43 + t31;
-        let t52 = k(2.0)
-            * (outer_ring_wx * t42
-                + outer_ring_wz * (inner_ring_wx * t46 - inner_ring_wy * t44));
-        let t53 = t50 * t28 + (t47 * t41 + t45 * t37) + t52
-            + (t9 * t30 + (t5 * t28 - t0 * t26));
-        let t54 = inner_ring_wz * inner_ring_wz;
-        let t55 = t54 + t49;
-        let t56 = inner_ring_wx * inner_ring_wy;
-        let t57 = t54 + t48;
-        let t58 = k(5e-5) * (t19 * t47 - (t39 * t57 + t32 * t56))
-            + k(0.000125) * (t19 * t45 + (t39 * t56 + t32 * t55));
-        let t59 = k(3e-5) * (t19 * t50 - (t39 * t47 - t32 * t45)) + t58;
-        let t60 = rotor_wy * rotor_wy;
-        let t61 = rotor_wz * rotor_wz;
-        let t62 = t61 + t60;
-        let t63 = rotor_e0 * rotor_e0;
-        let t64 = k(2.0) * (k(0.5) - (t63 + rotor_e1 * rotor_e1));
-        let t65 = rotor_wx * rotor_wy;
-        let t66 = rotor_e0 * rotor_e3;
-        let t67 = rotor_e1 * rotor_e2;
-        let t68 = k(2.0) * (t67 - t66);
-        let t69 = rotor_wx * rotor_wz;
-        let t70 = rotor_e0 * rotor_e2;
-        let t71 = rotor_e1 * rotor_e3;
-        let t72 = k(2.0) * (t71 + t70);
-        let t73 = rotor_wx * rotor_wx;
-        let t74 = t61 + t73;
-        let t75 = rotor_wy * rotor_wz;
-        let t76 = k(0.0002) * (t72 * t75 - (t68 * t74 + t64 * t65))
-            + k(0.0001) * (t72 * t69 + (t68 * t65 + t64 * t62));
-        let t77 = t60 + t73;
-        let t78 = k(0.00015) * (t72 * t77 - (t68 * t75 - t64 * t69)) + t76;
-        let t79 = k(5e-5) * (t22 * t47 + (t38 * t57 + t35 * t56))
-            + k(0.000125) * (t22 * t45 - (t38 * t56 + t35 * t55));
-        let t80 = k(3e-5) * (t22 * t50 + (t38 * t47 - t35 * t45)) + t79;
-        let t81 = k(2.0) * (t67 + t66);
-        let t82 = k(2.0) * (k(0.5) - (t63 + rotor_e2 * rotor_e2));
-        let t83 = rotor_e0 * rotor_e1;
-        let t84 = rotor_e2 * rotor_e3;
-        let t85 = k(2.0) * (t84 - t83);
-        let t86 = k(0.0002) * (t85 * t75 + (t82 * t74 + t81 * t65))
-            + k(0.0001) * (t85 * t69 - (t82 * t65 + t81 * t62));
-        let t87 = k(0.00015) * (t85 * t77 + (t82 * t75 - t81 * t69)) + t86;
-        let t88 = k(5e-5) * (t25 * t47 + (t40 * t57 - t36 * t56))
-            + k(0.000125) * (t25 * t45 - (t40 * t56 - t36 * t55));
-        let t89 = k(3e-5) * (t25 * t50 + (t40 * t47 + t36 * t45)) + t88;
-        let t90 = k(2.0) * (t71 - t70);
-        let t91 = k(2.0) * (t84 + t83);
-        let t92 = k(2.0) * (k(0.5) - (t63 + rotor_e3 * rotor_e3));
-        let t93 = k(0.0002) * (t92 * t75 + (t91 * t74 - t90 * t65))
-            + k(0.0001) * (t92 * t69 - (t91 * t65 - t90 * t62));
-        let t94 = k(0.00015) * (t92 * t77 + (t91 * t75 + t90 * t69)) + t93;
-        let t95 = t36 * t90 + (t35 * t81 + t32 * t64);
-        let t96 = t40 * t90 - (t38 * t81 + t39 * t64);
-        let t97 = t25 * t90 - (t22 * t81 - t19 * t64);
-        let t98 = rotor_wy * (t36 * t92 - (t35 * t85 - t32 * t72))
-            + rotor_wz * (t36 * t91 - (t35 * t82 + t32 * t68));
-        let t99 = t25 * t91 - (t19 * t68 - t22 * t82);
-        let t100 = t19 * t72 + t22 * t85 + t25 * t92;
-        let t101 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t100 + rotor_wz * t99) + inner_ring_wz * t98);
-        let t102 = t40 * t91 + (t39 * t68 + t38 * t82);
-        let t103 = t40 * t92 - (t39 * t72 - t38 * t85);
-        let t104 = t69 * t103 - (t65 * t102 - t62 * t96) + t101
-            + (t47 * t97 + (t57 * t96 - t56 * t95));
-        let t105 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t103 + rotor_wz * t102)
-                - inner_ring_wy * t98);
-        let t106 = t69 * t100 - (t65 * t99 - t62 * t97) - t105
-            + (t50 * t97 + (t47 * t96 + t45 * t95));
+        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
+        let t42 = T::fused(
+            -inner_ring_wy,
+            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
+            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+        );
+        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
+        let t44 = inner_ring_wx * inner_ring_wz;
+        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
+        let t46 = inner_ring_wy * inner_ring_wz;
+        let t47 = inner_ring_wx * inner_ring_wx;
+        let t48 = inner_ring_wy * inner_ring_wy;
+        let t49 = t48 + t47;
+        let t50 = T::fused(
+            -k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
+                outer_ring_wy * t42,
+            ),
+            T::fused(t49, t26, T::fused(t44, t43, t46 * t45)),
+        );
+        let t51 = T::fused(
+            k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
+                outer_ring_wx * t42,
+            ),
+            T::fused(t49, t28, T::fused(t44, t37, t46 * t41)),
+        );
+        let t52 = inner_ring_wz * inner_ring_wz;
+        let t53 = t52 + t48;
+        let t54 = inner_ring_wx * inner_ring_wy;
+        let t55 = t52 + t47;
+        let t56 = T::fused(
+            k(0.000125),
+            T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
+            k(5e-5) * T::fused(t19, t46, -T::fused(t32, t54, t39 * t55)),
+        );
+        let t57 = T::fused(
+            k(3e-5),
+            T::fused(t19, t49, -T::fused(-t32, t44, t39 * t46)),
+            t56,
+        );
+        let t58 = rotor_wy * rotor_wy;
+        let t59 = rotor_wz * rotor_wz;
+        let t60 = t59 + t58;
+        let t61 = rotor_e0 * rotor_e0;
+        let t62 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t61));
+        let t63 = rotor_wx * rotor_wy;
+        let t64 = rotor_e0 * rotor_e3;
+        let t65 = rotor_e1 * rotor_e2;
+        let t66 = k(2.0) * (t65 - t64);
+        let t67 = rotor_wx * rotor_wz;
+        let t68 = rotor_e0 * rotor_e2;
+        let t69 = rotor_e1 * rotor_e3;
+        let t70 = k(2.0) * (t69 + t68);
+        let t71 = rotor_wx * rotor_wx;
+        let t72 = t59 + t71;
+        let t73 = rotor_wy * rotor_wz;
+        let t74 = T::fused(
+            k(0.0001),
+            T::fused(t70, t67, T::fused(t62, t60, t66 * t63)),
+            k(0.0002) * T::fused(t70, t73, -T::fused(t62, t63, t66 * t72)),
+        );
+        let t75 = t58 + t71;
+        let t76 = T::fused(
+            k(0.00015),
+            T::fused(t70, t75, -T::fused(-t62, t67, t66 * t73)),
+            t74,
+        );
+        let t77 = T::fused(
+            k(0.000125),
+            T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
+            k(5e-5) * T::fused(t22, t46, T::fused(t35, t54, t38 * t55)),
+        );
+        let t78 = T::fused(
+            k(3e-5),
+            T::fused(t22, t49, T::fused(-t35, t44, t38 * t46)),
+            t77,
+        );
+        let t79 = k(2.0) * (t65 + t64);
+        let t80 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t61));
+        let t81 = rotor_e0 * rotor_e1;
+        let t82 = rotor_e2 * rotor_e3;
+        let t83 = k(2.0) * (t82 - t81);
+        let t84 = T::fused(
+            k(0.0001),
+            T::fused(t83, t67, -T::fused(t79, t60, t80 * t63)),
+            k(0.0002) * T::fused(t83, t73, T::fused(t79, t63, t80 * t72)),
+        );
+        let t85 = T::fused(
+            k(0.00015),
+            T::fused(t83, t75, T::fused(-t79, t67, t80 * t73)),
+            t84,
+        );
+        let t86 = T::fused(
+            k(0.000125),
+            T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54)),
+            k(5e-5) * T::fused(t25, t46, T::fused(-t36, t54, t40 * t55)),
+        );
+        let t87 = T::fused(
+            k(3e-5),
+            T::fused(t25, t49, T::fused(t36, t44, t40 * t46)),
+            t86,
+        );
+        let t88 = k(2.0) * (t69 - t68);
+        let t89 = k(2.0) * (t82 + t81);
+        let t90 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t61));
+        let t91 = T::fused(
+            k(0.0001),
+            T::fused(t90, t67, -T::fused(-t88, t60, t89 * t63)),
+            k(0.0002) * T::fused(t90, t73, T::fused(-t88, t63, t89 * t72)),
+        );
+        let t92 = T::fused(
+            k(0.00015),
+            T::fused(t90, t75, T::fused(t88, t67, t89 * t73)),
+            t91,
+        );
+        let t93 = T::fused(t36, t88, T::fused(t32, t62, t35 * t79));
+        let t94 = T::fused(t40, t88, -T::fused(t39, t62, t38 * t79));
+        let t95 = T::fused(t25, t88, -T::fused(-t19, t62, t22 * t79));
+        let t96 = T::fused(
+            rotor_wz,
+            T::fused(t36, t89, -T::fused(t32, t66, t35 * t80)),
+            rotor_wy * T::fused(t36, t90, -T::fused(-t32, t70, t35 * t83)),
+        );
+        let t97 = T::fused(t25, t89, -T::fused(-t22, t80, t19 * t66));
+        let t98 = T::fused(t25, t90, T::fused(t22, t83, t19 * t70));
+        let t99 = T::fused(t40, t89, T::fused(t38, t80, t39 * t66));
+        let t100 = T::fused(t40, t90, -T::fused(-t38, t83, t39 * t70));
+        let t101 = T::fused(
+            k(2.0),
+            T::fused(
+                inner_ring_wz,
+                t96,
+                inner_ring_wx * T::fused(rotor_wz, t97, rotor_wy * t98),
+            ),
+            T::fused(t67, t100, -T::fused(-t60, t94, t63 * t99)),
+        );
+        let t102 = T::fused(
+            -k(2.0),
+            T::fused(
+                -inner_ring_wy,
+                t96,
+                inner_ring_wx * T::fused(rotor_wz, t99, rotor_wy * t100),
+            ),
+            T::fused(t67, t98, -T::fused(-t60, t95, t63 * t97)),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t11 * t9 + (t8 * t5 - t3 * t0),
-            t15 * t5 + t12 * t0 - t16 * t9,
+            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
+            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -t51,
-            -t53,
-            t59 - t78,
-            t80 - t87,
-            t94 - t89,
-            t104,
-            -t106,
+            -(t50 + t31),
+            -(t51 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
+            t57 - t76,
+            t78 - t85,
+            t92 - t87,
+            t101 + T::fused(t46, t95, T::fused(-t54, t93, t55 * t94)),
+            -(t102 + T::fused(t49, t95, T::fused(t44, t93, t46 * t94))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
@@ -1953,155 +2450,297 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
             * (k(0.5)
                 / (k(0.5)
-                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
-        let t1 = outer_ring_wy * outer_ring_wz
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
-                * t0;
-        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
-            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
-        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+                    - T::fused(
+                        outer_ring_e2,
+                        outer_ring_e2,
+                        outer_ring_e0 * outer_ring_e0,
+                    )));
+        let t1 = T::fused(
+            -(k(2.0)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_e1,
+                    outer_ring_e2 * outer_ring_e3,
+                )),
+            t0,
+            outer_ring_wy * outer_ring_wz,
+        );
+        let t2 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t3 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t4 = t3 * t2;
-        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
-            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
-        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t5 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t6 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t7 = t6 * t5;
         let t8 = t7 + t4;
         let t9 = t3 * t5;
         let t10 = t6 * t2;
         let t11 = t10 - t9;
-        let t12 = k(4.800383808095952e-9) * t11 + k(1.0005199488255872e-5) * t8;
+        let t12 = T::fused(k(1.0005199488255872e-5), t8, k(4.800383808095952e-9) * t11);
         let t13 = k(2.0) * t8;
-        let t14 = k(1.0007999712143928e-5) * t11 + k(4.800383808095952e-9) * t8;
+        let t14 = T::fused(k(4.800383808095952e-9), t8, k(1.0007999712143928e-5) * t11);
         let t15 = k(2.0) * t11;
         let t16 = t3 * t3;
-        let t17 = k(0.5) - (t16 + t5 * t5);
+        let t17 = k(0.5) - T::fused(t5, t5, t16);
         let t18 = t3 * t6;
         let t19 = t5 * t2;
         let t20 = t19 + t18;
-        let t21 = k(3.8380809595202396e-5) * t20 - k(2.87856071964018e-5) * t17;
+        let t21 = T::fused(-k(2.87856071964018e-5), t17, k(3.8380809595202396e-5) * t20);
         let t22 = k(2.0) * t17;
-        let t23 = k(5.1174412793603195e-5) * t20 - k(3.8380809595202396e-5) * t17;
+        let t23 = T::fused(
+            -k(3.8380809595202396e-5),
+            t17,
+            k(5.1174412793603195e-5) * t20,
+        );
         let t24 = k(2.0) * t20;
-        let t25 = t24 * t23 - t22 * t21;
+        let t25 = T::fused(-t22, t21, t24 * t23);
         let t26 = t19 - t18;
         let t27 = k(2.0) * t26;
-        let t28 = k(0.5) - (t16 + t2 * t2);
+        let t28 = k(0.5) - T::fused(t2, t2, t16);
         let t29 = k(2.0) * t28;
-        let t30 = t29 * t23 - t27 * t21;
-        let t31 = t29 * (k(5.1174412793603195e-5) * t28 - k(3.8380809595202396e-5) * t26)
-            - t27 * (k(3.8380809595202396e-5) * t28 - k(2.87856071964018e-5) * t26);
-        let t32 = k(5e-5) * (k(5e-5) * t31 - k(3e-5) * t30)
-            - k(3e-5) * (k(5e-5) * t30 - k(3e-5) * t25);
+        let t30 = T::fused(-t27, t21, t29 * t23);
+        let t31 = T::fused(
+            -t27,
+            T::fused(-k(2.87856071964018e-5), t26, k(3.8380809595202396e-5) * t28),
+            t29
+                * T::fused(
+                    -k(3.8380809595202396e-5),
+                    t26,
+                    k(5.1174412793603195e-5) * t28,
+                ),
+        );
+        let t32 = T::fused(
+            -k(3e-5),
+            T::fused(-k(3e-5), t25, k(5e-5) * t30),
+            k(5e-5) * T::fused(-k(3e-5), t30, k(5e-5) * t31),
+        );
         let t33 = t7 - t4;
-        let t34 = k(1.599488255872064e-5) * t20
-            + (k(3.8380809595202396e-9) * t17 + k(2.4e-5) * t33);
-        let t35 = k(3.8380809595202396e-9) * t20
-            + (k(1.599712143928036e-5) * t17 + k(3.2e-5) * t33);
-        let t36 = t15 * t35 + t13 * t34;
+        let t34 = T::fused(
+            k(1.599488255872064e-5),
+            t20,
+            T::fused(k(2.4e-5), t33, k(3.8380809595202396e-9) * t17),
+        );
+        let t35 = T::fused(
+            k(3.8380809595202396e-9),
+            t20,
+            T::fused(k(3.2e-5), t33, k(1.599712143928036e-5) * t17),
+        );
+        let t36 = T::fused(t13, t34, t15 * t35);
         let t37 = t10 + t9;
-        let t38 = k(1.599488255872064e-5) * t28
-            + (k(3.8380809595202396e-9) * t26 - k(2.4e-5) * t37);
-        let t39 = k(3.8380809595202396e-9) * t28
-            + (k(1.599712143928036e-5) * t26 - k(3.2e-5) * t37);
-        let t40 = t15 * t39 + t13 * t38;
-        let t41 = k(2.0) * (k(5e-5) * t40 - k(3e-5) * t36) + t32
-            - (k(2.72e-10) + (t15 * t14 + t13 * t12));
-        let t42 = k(3.8380809595202396e-5) * t11 + k(2.87856071964018e-5) * t8;
-        let t43 = k(5.1174412793603195e-5) * t11 + k(3.8380809595202396e-5) * t8;
-        let t44 = t24 * t43 - t22 * t42;
-        let t45 = k(0.000125) * t25 - k(5e-5) * t44;
-        let t46 = t29 * t43 - t27 * t42;
+        let t38 = T::fused(
+            k(1.599488255872064e-5),
+            t28,
+            T::fused(-k(2.4e-5), t37, k(3.8380809595202396e-9) * t26),
+        );
+        let t39 = T::fused(
+            k(3.8380809595202396e-9),
+            t28,
+            T::fused(-k(3.2e-5), t37, k(1.599712143928036e-5) * t26),
+        );
+        let t40 = T::fused(t13, t38, t15 * t39);
+        let t41 = T::fused(k(2.0), T::fused(-k(3e-5), t36, k(5e-5) * t40), t32)
+            - (k(2.72e-10) + T::fused(t13, t12, t15 * t14));
+        let t42 = T::fused(k(2.87856071964018e-5), t8, k(3.8380809595202396e-5) * t11);
+        let t43 = T::fused(k(3.8380809595202396e-5), t8, k(5.1174412793603195e-5) * t11);
+        let t44 = T::fused(-t22, t42, t24 * t43);
+        let t45 = T::fused(-k(5e-5), t44, k(0.000125) * t25);
+        let t46 = T::fused(-t27, t42, t29 * t43);
         let t47 = k(0.000125) * t30;
-        let t48 = t47 - k(5e-5) * t46;
-        let t49 = t29 * t35 - t27 * t34;
-        let t50 = t29 * t39 - t27 * t38;
-        let t51 = k(0.5) - (t16 + t6 * t6);
-        let t52 = k(1.599488255872064e-5) * t11
-            - (k(3.8380809595202396e-9) * t8 + k(2.4e-5) * t51);
-        let t53 = k(3.8380809595202396e-9) * t11
-            - (k(1.599712143928036e-5) * t8 + k(3.2e-5) * t51);
-        let t54 = t15 * t53 + t13 * t52;
-        let t55 = k(0.000125) * t36 - k(5e-5) * t54 + (k(5e-5) * t50 - k(3e-5) * t49);
-        let t56 = t55 + (k(5e-5) * t48 - k(3e-5) * t45)
-            + (k(3e-10) - (t29 * t14 - t27 * t12));
-        let t57 = t29 * (k(1.0007999712143928e-5) * t28 - k(4.800383808095952e-9) * t26)
-            - t27 * (k(4.800383808095952e-9) * t28 - k(1.0005199488255872e-5) * t26);
-        let t58 = t15 * t43 + t13 * t42;
-        let t59 = k(0.000125) * t44 - k(5e-5) * t58;
-        let t60 = t29 * t53 - t27 * t52;
-        let t61 = k(2.0) * (k(0.000125) * t49 - k(5e-5) * t60)
-            + (k(0.000125) * t45 - k(5e-5) * t59);
+        let t48 = T::fused(-k(5e-5), t46, t47);
+        let t49 = T::fused(-t27, t34, t29 * t35);
+        let t50 = T::fused(-t27, t38, t29 * t39);
+        let t51 = k(0.5) - T::fused(t6, t6, t16);
+        let t52 = T::fused(
+            k(1.599488255872064e-5),
+            t11,
+            -T::fused(k(2.4e-5), t51, k(3.8380809595202396e-9) * t8),
+        );
+        let t53 = T::fused(
+            k(3.8380809595202396e-9),
+            t11,
+            -T::fused(k(3.2e-5), t51, k(1.599712143928036e-5) * t8),
+        );
+        let t54 = T::fused(t13, t52, t15 * t53);
+        let t55 = T::fused(-k(5e-5), t54, k(0.000125) * t36)
+            + T::fused(-k(3e-5), t49, k(5e-5) * t50);
+        let t56 = t55 + T::fused(-k(3e-5), t45, k(5e-5) * t48)
+            + (k(3e-10) - T::fused(-t27, t12, t29 * t14));
+        let t57 = T::fused(
+            -t27,
+            T::fused(-k(1.0005199488255872e-5), t26, k(4.800383808095952e-9) * t28),
+            t29 * T::fused(-k(4.800383808095952e-9), t26, k(1.0007999712143928e-5) * t28),
+        );
+        let t58 = T::fused(t13, t42, t15 * t43);
+        let t59 = T::fused(-k(5e-5), t58, k(0.000125) * t44);
+        let t60 = T::fused(-t27, t52, t29 * t53);
+        let t61 = T::fused(
+            k(2.0),
+            T::fused(-k(5e-5), t60, k(0.000125) * t49),
+            T::fused(-k(5e-5), t59, k(0.000125) * t45),
+        );
         let t62 = k(1.0) / (k(1e-6) - (t61 - (k(1.45e-9) + t57)));
         let t63 = t62 * t56;
-        let t64 = t56 * t63 - (k(1e-6) - t41);
-        let t65 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t66 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t64 = T::fused(t56, t63, -(k(1e-6) - t41));
+        let t65 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t66 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t67 = t66 * t65;
-        let t68 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
-            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
-        let t69 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
-            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t68 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t69 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
         let t70 = t69 * t68;
         let t71 = k(2.0) * (t70 - t67);
-        let t72 = k(0.000125) * t31 - k(3e-5) * t46;
-        let t73 = t24 * t35 - t22 * t34;
-        let t74 = t24 * t39 - t22 * t38;
-        let t75 = k(0.000125) * t40 - k(3e-5) * t54 - (k(5e-5) * t74 - k(3e-5) * t73);
-        let t76 = t75 + (k(5e-5) * t72 - k(3e-5) * (t47 - k(3e-5) * t44))
-            - (k(5e-10) - (t24 * t14 - t22 * t12));
-        let t77 = k(4.800383808095952e-9) * t20 - k(1.0005199488255872e-5) * t17;
-        let t78 = k(1.0007999712143928e-5) * t20 - k(4.800383808095952e-9) * t17;
-        let t79 = t24 * t53 - t22 * t52;
-        let t80 = k(0.000125) * t73 - k(5e-5) * t79
-            - (k(0.000125) * t50 - k(3e-5) * t60);
-        let t81 = t80 - (k(0.000125) * t48 - k(3e-5) * t59)
-            + (k(1.2e-10) - (t29 * t78 - t27 * t77));
-        let t82 = t81 * t63 - t76;
+        let t72 = T::fused(-k(3e-5), t46, k(0.000125) * t31);
+        let t73 = T::fused(-t22, t34, t24 * t35);
+        let t74 = T::fused(-t22, t38, t24 * t39);
+        let t75 = T::fused(-k(3e-5), t54, k(0.000125) * t40)
+            - T::fused(-k(3e-5), t73, k(5e-5) * t74);
+        let t76 = t75 + T::fused(-k(3e-5), T::fused(-k(3e-5), t44, t47), k(5e-5) * t72)
+            - (k(5e-10) - T::fused(-t22, t12, t24 * t14));
+        let t77 = T::fused(
+            -k(1.0005199488255872e-5),
+            t17,
+            k(4.800383808095952e-9) * t20,
+        );
+        let t78 = T::fused(
+            -k(4.800383808095952e-9),
+            t17,
+            k(1.0007999712143928e-5) * t20,
+        );
+        let t79 = T::fused(-t22, t52, t24 * t53);
+        let t80 = T::fused(-k(5e-5), t79, k(0.000125) * t73)
+            - T::fused(-k(3e-5), t60, k(0.000125) * t50);
+        let t81 = t80 - T::fused(-k(3e-5), t59, k(0.000125) * t48)
+            + (k(1.2e-10) - T::fused(-t27, t77, t29 * t78));
+        let t82 = T::fused(t81, t63, -t76);
         let t83 = t66 * t66;
-        let t84 = k(2.0) * (k(0.5) - (t83 + t68 * t68));
-        let t85 = t84 * t82 - t71 * t64;
-        let t86 = k(2.0) * (k(0.000125) * t74 - k(3e-5) * t79)
-            - (k(0.000125) * t72 - k(3e-5) * (k(0.000125) * t46 - k(3e-5) * t58));
-        let t87 = t81 * (t62 * t81)
-            - (k(2e-6) + (t86 + (k(1.322e-9) + (t24 * t78 - t22 * t77))));
-        let t88 = t84 * t87 - t71 * t82;
+        let t84 = k(2.0) * (k(0.5) - T::fused(t68, t68, t83));
+        let t85 = T::fused(-t71, t64, t84 * t82);
+        let t86 = T::fused(
+            k(2.0),
+            T::fused(-k(3e-5), t79, k(0.000125) * t74),
+            -T::fused(
+                -k(3e-5),
+                T::fused(-k(3e-5), t58, k(0.000125) * t46),
+                k(0.000125) * t72,
+            ),
+        );
+        let t87 = T::fused(
+            t81,
+            t62 * t81,
+            -(k(2e-6) + (t86 + (k(1.322e-9) + T::fused(-t22, t77, t24 * t78)))),
+        );
+        let t88 = T::fused(-t71, t82, t84 * t87);
         let t89 = k(2.0) * t51;
         let t90 = k(2.0) * t33;
         let t91 = k(2.0) * t37;
-        let t92 = inner_ring_wz * t91 + (inner_ring_wy * t90 - inner_ring_wx * t89);
+        let t92 = T::fused(
+            inner_ring_wz,
+            t91,
+            T::fused(-inner_ring_wx, t89, inner_ring_wy * t90),
+        );
         let t93 = rotor_wx - t92;
-        let t94 = inner_ring_wz * t29 - (inner_ring_wy * t24 + inner_ring_wx * t15);
+        let t94 = T::fused(
+            inner_ring_wz,
+            t29,
+            -T::fused(inner_ring_wx, t15, inner_ring_wy * t24),
+        );
         let t95 = rotor_wz + t94;
-        let t96 = inner_ring_wz * t27 - (inner_ring_wy * t22 - inner_ring_wx * t13);
+        let t96 = T::fused(
+            inner_ring_wz,
+            t27,
+            -T::fused(-inner_ring_wx, t13, inner_ring_wy * t22),
+        );
         let t97 = rotor_wy - t96;
-        let t98 = k(0.5) / t51 * (t97 * t97 + t95 * t95);
-        let t99 = rotor_wz * t92 + rotor_wx * t94 + (t15 * t98 - t95 * t93);
-        let t100 = rotor_wx * t96 - rotor_wy * t92 - (t13 * t98 - t97 * t93);
-        let t101 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
-        let t102 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
-        let t103 = inner_ring_wy * t102 - inner_ring_wz * t101;
-        let t104 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
-        let t105 = inner_ring_wz * t104 + inner_ring_wx * t102;
-        let t106 = inner_ring_wx * t101 + inner_ring_wy * t104;
-        let t107 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
-        let t108 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
-        let t109 = rotor_wy * t108 - rotor_wz * t107
-            - (t106 * t91 - (t105 * t90 + t103 * t89));
-        let t110 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t111 = rotor_wz * t110 + rotor_wx * t108
-            + (t106 * t27 + (t105 * t22 + t103 * t13));
-        let t112 = rotor_wx * t107 + rotor_wy * t110
-            + (t106 * t29 + (t105 * t24 - t103 * t15));
-        let t113 = k(7.99744127936032e-6) * t112
-            + (k(1.9190404797601198e-9) * t111 + k(1.2e-5) * t109)
-            + (k(2.400191904047976e-9) * t100 + k(5.002599744127936e-6) * t99);
+        let t98 = k(0.5) / t51 * T::fused(t95, t95, t97 * t97);
+        let t99 = T::fused(rotor_wx, t94, rotor_wz * t92)
+            + T::fused(-t95, t93, t15 * t98);
+        let t100 = T::fused(-rotor_wy, t92, rotor_wx * t96)
+            - T::fused(-t97, t93, t13 * t98);
+        let t101 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
+        let t102 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
+        let t103 = T::fused(-inner_ring_wz, t101, inner_ring_wy * t102);
+        let t104 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
+        let t105 = T::fused(inner_ring_wx, t102, inner_ring_wz * t104);
+        let t106 = T::fused(inner_ring_wy, t104, inner_ring_wx * t101);
+        let t107 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
+        let t108 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
+        let t109 = T::fused(-rotor_wz, t107, rotor_wy * t108)
+            - T::fused(t106, t91, -T::fused(t103, t89, t105 * t90));
+        let t110 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
+        let t111 = T::fused(rotor_wx, t108, rotor_wz * t110)
+            + T::fused(t106, t27, T::fused(t103, t13, t105 * t22));
+        let t112 = T::fused(rotor_wy, t110, rotor_wx * t107)
+            + T::fused(t106, t29, T::fused(-t103, t15, t105 * t24));
+        let t113 = T::fused(
+            k(7.99744127936032e-6),
+            t112,
+            T::fused(k(1.2e-5), t109, k(1.9190404797601198e-9) * t111),
+        ) + T::fused(k(5.002599744127936e-6), t99, k(2.400191904047976e-9) * t100);
         let t114 = rotor_e0 * rotor_e3;
         let t115 = rotor_e1 * rotor_e2;
         let t116 = t115 + t114;
@@ -2109,91 +2748,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t118 = rotor_e2 * rotor_e3;
         let t119 = t118 - t117;
         let t120 = rotor_e0 * rotor_e0;
-        let t121 = k(0.5) - (t120 + rotor_e2 * rotor_e2);
-        let t122 = k(0.00032) * t119 - k(0.00024) * t121;
-        let t123 = k(0.00015992003998001) * t122
-            - (k(5e-6) * (rotor_wx * rotor_wz)
-                + (k(0.00016) * t119 + k(0.00024) * t116));
+        let t121 = k(0.5) - T::fused(rotor_e2, rotor_e2, t120);
+        let t122 = T::fused(-k(0.00024), t121, k(0.00032) * t119);
+        let t123 = T::fused(
+            k(0.00015992003998001),
+            t122,
+            -T::fused(
+                k(5e-6),
+                rotor_wx * rotor_wz,
+                T::fused(k(0.00024), t116, k(0.00016) * t119),
+            ),
+        );
         let t124 = t123 + t113;
-        let t125 = k(1.9190404797601198e-9) * t112
-            + (k(7.99856071964018e-6) * t111 + k(1.6e-5) * t109)
-            + (k(5.003999856071964e-6) * t100 + k(2.400191904047976e-9) * t99);
-        let t126 = k(0.0001199400299850075) * t122
-            - (k(5e-6) * (rotor_wx * rotor_wy)
-                - (k(0.00016) * t121 + k(0.00032) * t116));
+        let t125 = T::fused(
+            k(1.9190404797601198e-9),
+            t112,
+            T::fused(k(1.6e-5), t109, k(7.99856071964018e-6) * t111),
+        ) + T::fused(k(2.400191904047976e-9), t99, k(5.003999856071964e-6) * t100);
+        let t126 = T::fused(
+            k(0.0001199400299850075),
+            t122,
+            -T::fused(
+                k(5e-6),
+                rotor_wx * rotor_wy,
+                -T::fused(k(0.00032), t116, k(0.00016) * t121),
+            ),
+        );
         let t127 = t126 - t125;
-        let t128 = k(1.6) * t116 - (k(1.6e-5) * t100 + k(1.2e-5) * t99 + k(0.08) * t109);
-        let t129 = k(7.99856071964018e-6) * t100 + k(1.9190404797601198e-9) * t99
-            + (k(1.9190404797601198e-5) * t112 - k(1.43928035982009e-5) * t111
-                + k(0.08) * t111);
-        let t130 = k(1.199400299850075) * t122 + k(1.6) * t121 - t129;
-        let t131 = k(1.9190404797601198e-9) * t100 + k(7.99744127936032e-6) * t99
-            - (k(2.5587206396801598e-5) * t112 - k(1.9190404797601198e-5) * t111
-                - k(0.08) * t112);
-        let t132 = k(1.5992003998000999) * t122 - k(1.6) * t119 + t131;
-        let t133 = t24 * t132 - (t22 * t130 + t90 * t128);
-        let t134 = t29 * t132 - (t27 * t130 - t91 * t128);
-        let t135 = k(5e-5) * t134 - k(3e-5) * t133 + (t15 * t127 - t13 * t124);
-        let t136 = t15 * t132 + (t13 * t130 + t89 * t128);
-        let t137 = k(0.000125) * t133 - k(5e-5) * t136 + (t29 * t127 + t27 * t124);
-        let t138 = k(1e-6) * (inner_ring_wx * inner_ring_wy) - t137;
+        let t128 = T::fused(
+            k(1.6),
+            t116,
+            -T::fused(k(0.08), t109, T::fused(k(1.2e-5), t99, k(1.6e-5) * t100)),
+        );
+        let t129 = T::fused(k(1.9190404797601198e-9), t99, k(7.99856071964018e-6) * t100)
+            + T::fused(
+                k(0.08),
+                t111,
+                T::fused(-k(1.43928035982009e-5), t111, k(1.9190404797601198e-5) * t112),
+            );
+        let t130 = T::fused(k(1.6), t121, k(1.199400299850075) * t122) - t129;
+        let t131 = T::fused(k(7.99744127936032e-6), t99, k(1.9190404797601198e-9) * t100)
+            - T::fused(
+                -k(0.08),
+                t112,
+                T::fused(
+                    -k(1.9190404797601198e-5),
+                    t111,
+                    k(2.5587206396801598e-5) * t112,
+                ),
+            );
+        let t132 = T::fused(-k(1.6), t119, k(1.5992003998000999) * t122) + t131;
+        let t133 = T::fused(t24, t132, -T::fused(t90, t128, t22 * t130));
+        let t134 = T::fused(t29, t132, -T::fused(-t91, t128, t27 * t130));
+        let t135 = T::fused(-k(3e-5), t133, k(5e-5) * t134)
+            + T::fused(-t13, t124, t15 * t127);
+        let t136 = T::fused(t15, t132, T::fused(t89, t128, t13 * t130));
+        let t137 = T::fused(-k(5e-5), t136, k(0.000125) * t133)
+            + T::fused(t27, t124, t29 * t127);
+        let t138 = T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, -t137);
         let t139 = t62 * t138;
         let t140 = t66 * t68;
         let t141 = t69 * t65;
         let t142 = t66 * t69;
         let t143 = t68 * t65;
-        let t144 = outer_ring_wy * (k(2.0) * (t143 + t142))
-            + outer_ring_wx * (k(2.0) * (t141 - t140));
-        let t145 = k(0.5) - (t83 + t65 * t65);
-        let t146 = outer_ring_wz * (k(2.0) * t145) - t144;
+        let t144 = T::fused(
+            outer_ring_wx,
+            k(2.0) * (t141 - t140),
+            outer_ring_wy * (k(2.0) * (t143 + t142)),
+        );
+        let t145 = k(0.5) - T::fused(t65, t65, t83);
+        let t146 = T::fused(outer_ring_wz, k(2.0) * t145, -t144);
         let t147 = inner_ring_wz + t146;
         let t148 = k(2.0) * (t70 + t67);
         let t149 = k(2.0) * (t143 - t142);
-        let t150 = outer_ring_wz * t149 - (outer_ring_wy * t84 - outer_ring_wx * t148);
+        let t150 = T::fused(
+            outer_ring_wz,
+            t149,
+            -T::fused(-outer_ring_wx, t148, outer_ring_wy * t84),
+        );
         let t151 = inner_ring_wy - t150;
-        let t152 = k(2.0) * (k(0.5) - (t83 + t69 * t69));
+        let t152 = k(2.0) * (k(0.5) - T::fused(t69, t69, t83));
         let t153 = k(2.0) * (t141 + t140);
-        let t154 = outer_ring_wz * t153 + (outer_ring_wy * t71 - outer_ring_wx * t152);
+        let t154 = T::fused(
+            outer_ring_wz,
+            t153,
+            T::fused(-outer_ring_wx, t152, outer_ring_wy * t71),
+        );
         let t155 = inner_ring_wx - t154;
-        let t156 = k(0.5) / t145 * (t155 * t155 + t151 * t151);
-        let t157 = inner_ring_wy * t146 + inner_ring_wz * t150
-            - (t149 * t156 - t151 * t147);
-        let t158 = inner_ring_wz * t154 + inner_ring_wx * t146
-            - (t153 * t156 - t155 * t147);
-        let t159 = t82 * t158 - t64 * t157
-            - (t56 * t139 + (k(1e-6) * (inner_ring_wy * inner_ring_wz) - t135));
-        let t160 = k(0.000125) * t134 - k(3e-5) * t136 - (t24 * t127 + t22 * t124);
-        let t161 = t84 * (t87 * t158 - t82 * t157 - (t81 * t139 + t160));
-        let t162 = t84 * (t148 * t87 - t152 * t82) - t71 * (t148 * t82 - t152 * t64);
-        let t163 = outer_ring_wx * outer_ring_wy
-            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
-                * t0;
-        let t164 = t163 * (t149 * t88 + t153 * t85) - t1 * t162
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - (t161 - t71 * t159));
-        let t165 = t164 / (k(1e-6) - (t84 * t88 - t71 * t85));
-        let t166 = t157 - (t71 * t165 - t1 * t152 - t163 * t153);
-        let t167 = t158 - (t84 * t165 - t1 * t148 + t163 * t149);
-        let t168 = t62 * (t138 - (t81 * t167 - t56 * t166));
-        let t169 = k(5e-5) * t168 + k(3e-5) * t167;
-        let t170 = k(0.000125) * t168 - k(3e-5) * t166;
-        let t171 = k(0.000125) * t167 + k(5e-5) * t166;
-        let t172 = t99 + (t27 * t168 - (t22 * t167 + t13 * t166));
-        let t173 = t100 - (t29 * t168 - (t24 * t167 - t15 * t166));
-        let t174 = k(0.0002) * t173 + k(0.00015) * t172
-            + (t109 - (t91 * t171 - (t90 * t170 + t89 * t169)));
-        let t175 = t111 + (t27 * t171 + (t22 * t170 + t13 * t169));
-        let t176 = t112 + (t29 * t171 + (t24 * t170 - t15 * t169));
-        let t177 = k(1.2e-9) * t173 - k(1.6e-9) * t172
-            - (k(1.6e-5) * t176 - k(1.2e-5) * t175);
+        let t156 = k(0.5) / t145 * T::fused(t151, t151, t155 * t155);
+        let t157 = T::fused(inner_ring_wz, t150, inner_ring_wy * t146)
+            - T::fused(-t151, t147, t149 * t156);
+        let t158 = T::fused(inner_ring_wx, t146, inner_ring_wz * t154)
+            - T::fused(-t155, t147, t153 * t156);
+        let t159 = T::fused(-t64, t157, t82 * t158)
+            - T::fused(
+                t56,
+                t139,
+                T::fused(k(1e-6), inner_ring_wy * inner_ring_wz, -t135),
+            );
+        let t160 = T::fused(-k(3e-5), t136, k(0.000125) * t134)
+            - T::fused(t22, t124, t24 * t127);
+        let t161 = T::fused(
+            -t71,
+            t159,
+            t84 * (T::fused(-t82, t157, t87 * t158) - T::fused(t81, t139, t160)),
+        );
+        let t162 = T::fused(
+            -t71,
+            T::fused(-t152, t64, t148 * t82),
+            t84 * T::fused(-t152, t82, t148 * t87),
+        );
+        let t163 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
+            t0,
+            outer_ring_wx * outer_ring_wy,
+        );
+        let t164 = T::fused(-t1, t162, t163 * T::fused(t153, t85, t149 * t88))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t161);
+        let t165 = t164 / (k(1e-6) - T::fused(-t71, t85, t84 * t88));
+        let t166 = t157 - T::fused(-t163, t153, T::fused(-t1, t152, t71 * t165));
+        let t167 = t158 - T::fused(t163, t149, T::fused(-t1, t148, t84 * t165));
+        let t168 = t62 * (t138 - T::fused(-t56, t166, t81 * t167));
+        let t169 = T::fused(k(3e-5), t167, k(5e-5) * t168);
+        let t170 = T::fused(-k(3e-5), t166, k(0.000125) * t168);
+        let t171 = T::fused(k(5e-5), t166, k(0.000125) * t167);
+        let t172 = t99 + T::fused(t27, t168, -T::fused(t13, t166, t22 * t167));
+        let t173 = t100 - T::fused(t29, t168, -T::fused(-t15, t166, t24 * t167));
+        let t174 = T::fused(k(0.00015), t172, k(0.0002) * t173)
+            + (t109 - T::fused(t91, t171, -T::fused(t89, t169, t90 * t170)));
+        let t175 = t111 + T::fused(t27, t171, T::fused(t13, t169, t22 * t170));
+        let t176 = t112 + T::fused(t29, t171, T::fused(-t15, t169, t24 * t170));
+        let t177 = T::fused(-k(1.6e-9), t172, k(1.2e-9) * t173)
+            - T::fused(-k(1.2e-5), t175, k(1.6e-5) * t176);
         let t178 = t122 + t177;
-        let t179 = t175 + (k(0.0001) * t173 - k(14.992503748125937) * t178);
-        let t180 = k(2.0) * (t115 - t114) * t179
-            + k(2.0) * (k(0.5) - (t120 + rotor_e1 * rotor_e1)) * t174;
-        let t181 = t176 + (k(0.0001) * t172 + k(19.99000499750125) * t178);
+        let t179 = t175 + T::fused(-k(14.992503748125937), t178, k(0.0001) * t173);
+        let t180 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t120)),
+            t174,
+            k(2.0) * (t115 - t114) * t179,
+        );
+        let t181 = t176 + T::fused(k(19.99000499750125), t178, k(0.0001) * t172);
         let t182 = rotor_e0 * rotor_e2;
         let t183 = rotor_e1 * rotor_e3;
-        let t184 = k(2.0) * t119 * t181 + (k(2.0) * t121 * t179 + k(2.0) * t116 * t174);
-        let t185 = k(2.0) * (t118 + t117) * t179 - k(2.0) * (t183 - t182) * t174;
+        let t184 = T::fused(
+            k(2.0) * t119,
+            t181,
+            T::fused(k(2.0) * t116, t174, k(2.0) * t121 * t179),
+        );
+        let t185 = T::fused(
+            -(k(2.0) * (t183 - t182)),
+            t174,
+            k(2.0) * (t118 + t117) * t179,
+        );
         *out = [
             k(0.0),
             k(0.0),
@@ -2207,9 +2914,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             t166,
             -t167,
             -t168,
-            t180 - k(2.0) * (t183 + t182) * t181,
+            T::fused(-(k(2.0) * (t183 + t182)), t181, t180),
             -t184,
-            k(2.0) * (k(0.5) - (t120 + rotor_e3 * rotor_e3)) * t181 + t185,
+            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t120)), t181, t185),
             k(99950.02498750624) * t178,
             -t172,
             -t173,
@@ -2262,11 +2969,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.8) + k(0.08) * rotor_dsy;
-        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e3;
         let t7 = rotor_e1 * rotor_e2;
         let t8 = t7 - t6;
@@ -2274,19 +2981,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t10 = rotor_e1 * rotor_e3;
         let t11 = t10 + t9;
         let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(0.5) - (t12 + rotor_e2 * rotor_e2);
+        let t13 = k(0.5) - T::fused(rotor_e2, rotor_e2, t12);
         let t14 = rotor_e0 * rotor_e1;
         let t15 = rotor_e2 * rotor_e3;
         let t16 = t15 - t14;
-        let t17 = t2 * (k(0.0004) * t16 - k(0.0003) * t13)
-            + t0 * (k(0.0004) * t11 + k(0.0003) * t8);
+        let t17 = T::fused(
+            t0,
+            T::fused(k(0.0003), t8, k(0.0004) * t11),
+            t2 * T::fused(-k(0.0003), t13, k(0.0004) * t16),
+        );
         let t18 = t15 + t14;
-        let t19 = k(0.5) - (t12 + rotor_e3 * rotor_e3);
-        let t20 = k(1e-5) * rotor_dwx + (t4 * (k(0.0004) * t19 - k(0.0003) * t18) - t17);
-        let t21 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
+        let t19 = k(0.5) - T::fused(rotor_e3, rotor_e3, t12);
+        let t20 = T::fused(
+            k(1e-5),
+            rotor_dwx,
+            T::fused(t4, T::fused(-k(0.0003), t18, k(0.0004) * t19), -t17),
+        );
+        let t21 = k(0.5) - T::fused(rotor_e1, rotor_e1, t12);
         let t22 = k(2.0) * t21;
         let t23 = inner_ring_e0 * inner_ring_e0;
-        let t24 = k(0.5) - (t23 + inner_ring_e1 * inner_ring_e1);
+        let t24 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t23);
         let t25 = k(2.0) * t24;
         let t26 = t7 + t6;
         let t27 = k(2.0) * t26;
@@ -2300,100 +3014,156 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t35 = inner_ring_e1 * inner_ring_e3;
         let t36 = t35 - t34;
         let t37 = k(2.0) * t36;
-        let t38 = t2 * (k(0.0002) * t16 + k(0.0003) * t26)
-            + t0 * (k(0.0002) * t11 - k(0.0003) * t21);
-        let t39 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
-            - (t4 * (k(0.0002) * t19 - k(0.0003) * t32) - t38);
+        let t38 = T::fused(
+            t0,
+            T::fused(-k(0.0003), t21, k(0.0002) * t11),
+            t2 * T::fused(k(0.0003), t26, k(0.0002) * t16),
+        );
+        let t39 = T::fused(
+            k(5e-6),
+            T::fused(rotor_wx, rotor_wz, rotor_dwy),
+            -T::fused(t4, T::fused(-k(0.0003), t32, k(0.0002) * t19), -t38),
+        );
         let t40 = k(2.0) * t8;
         let t41 = k(2.0) * t13;
         let t42 = k(2.0) * t18;
-        let t43 = (t37 * t42 - (t31 * t41 + t25 * t40)) * t39
-            + (t37 * t33 + (t31 * t27 + t25 * t22)) * t20;
-        let t44 = t2 * (k(0.0002) * t13 + k(0.0004) * t26)
-            - t0 * (k(0.0002) * t8 + k(0.0004) * t21);
-        let t45 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
-            + (t4 * (k(0.0002) * t18 - k(0.0004) * t32) - t44);
+        let t43 = T::fused(
+            T::fused(t37, t33, T::fused(t25, t22, t31 * t27)),
+            t20,
+            T::fused(t37, t42, -T::fused(t25, t40, t31 * t41)) * t39,
+        );
+        let t44 = T::fused(
+            -t0,
+            T::fused(k(0.0004), t21, k(0.0002) * t8),
+            t2 * T::fused(k(0.0004), t26, k(0.0002) * t13),
+        );
+        let t45 = T::fused(
+            k(5e-6),
+            T::fused(rotor_wx, rotor_wy, -rotor_dwz),
+            T::fused(t4, T::fused(-k(0.0004), t32, k(0.0002) * t18), -t44),
+        );
         let t46 = k(2.0) * t11;
         let t47 = k(2.0) * t16;
         let t48 = k(2.0) * t19;
-        let t49 = (t37 * t48 - (t31 * t47 - t25 * t46)) * t45 + t43;
+        let t49 = T::fused(
+            T::fused(t37, t48, -T::fused(-t25, t46, t31 * t47)),
+            t45,
+            t43,
+        );
         let t50 = t29 - t28;
         let t51 = t35 + t34;
-        let t52 = k(0.5) - (t23 + inner_ring_e2 * inner_ring_e2);
+        let t52 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t23);
         let t53 = inner_ring_e0 * inner_ring_e1;
         let t54 = inner_ring_e2 * inner_ring_e3;
         let t55 = t54 - t53;
-        let t56 = t2 * (k(0.0001) * t55 - k(6e-5) * t52)
-            + t0 * (k(0.0001) * t51 + k(6e-5) * t50);
+        let t56 = T::fused(
+            t0,
+            T::fused(k(6e-5), t50, k(0.0001) * t51),
+            t2 * T::fused(-k(6e-5), t52, k(0.0001) * t55),
+        );
         let t57 = t54 + t53;
-        let t58 = k(0.5) - (t23 + inner_ring_e3 * inner_ring_e3);
-        let t59 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
-            + (t4 * (k(0.0001) * t58 - k(6e-5) * t57) - t56 - t49);
+        let t58 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t23);
+        let t59 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+            T::fused(t4, T::fused(-k(6e-5), t57, k(0.0001) * t58), -t56) - t49,
+        );
         let t60 = outer_ring_e0 * outer_ring_e0;
-        let t61 = k(2.0) * (k(0.5) - (t60 + outer_ring_e1 * outer_ring_e1));
+        let t61 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t60));
         let t62 = outer_ring_e0 * outer_ring_e3;
         let t63 = outer_ring_e1 * outer_ring_e2;
         let t64 = k(2.0) * (t63 + t62);
         let t65 = outer_ring_e0 * outer_ring_e2;
         let t66 = outer_ring_e1 * outer_ring_e3;
         let t67 = k(2.0) * (t66 - t65);
-        let t68 = t67 * t37 + (t64 * t31 + t61 * t25);
+        let t68 = T::fused(t67, t37, T::fused(t61, t25, t64 * t31));
         let t69 = k(2.0) * t50;
         let t70 = k(2.0) * t52;
         let t71 = k(2.0) * t57;
-        let t72 = t71 * t42 + (t69 * t40 + t70 * t41);
-        let t73 = t72 * t39 + (t71 * t33 - (t70 * t27 + t69 * t22)) * t20;
-        let t74 = t71 * t48 - (t69 * t46 - t70 * t47);
-        let t75 = t2 * (k(0.00025) * t55 + k(6e-5) * t30)
-            + t0 * (k(0.00025) * t51 - k(6e-5) * t24);
-        let t76 = t4 * (k(0.00025) * t58 - k(6e-5) * t36) - t75 + (t74 * t45 + t73);
-        let t77 = k(2e-6) * inner_ring_dwy + t76;
-        let t78 = t67 * t71 - (t64 * t70 + t61 * t69);
+        let t72 = T::fused(t71, t42, T::fused(t70, t41, t69 * t40));
+        let t73 = T::fused(
+            T::fused(t71, t33, -T::fused(t69, t22, t70 * t27)),
+            t20,
+            t72 * t39,
+        );
+        let t74 = T::fused(t71, t48, -T::fused(-t70, t47, t69 * t46));
+        let t75 = T::fused(
+            t0,
+            T::fused(-k(6e-5), t24, k(0.00025) * t51),
+            t2 * T::fused(k(6e-5), t30, k(0.00025) * t55),
+        );
+        let t76 = T::fused(t4, T::fused(-k(6e-5), t36, k(0.00025) * t58), -t75)
+            + T::fused(t74, t45, t73);
+        let t77 = T::fused(k(2e-6), inner_ring_dwy, t76);
+        let t78 = T::fused(t67, t71, -T::fused(t61, t69, t64 * t70));
         let t79 = k(2.0) * t51;
         let t80 = k(2.0) * t55;
         let t81 = k(2.0) * t58;
-        let t82 = t81 * t42 - (t79 * t40 - t80 * t41);
-        let t83 = t82 * t39 + (t81 * t33 - (t80 * t27 - t79 * t22)) * t20;
-        let t84 = t79 * t46 + t80 * t47 + t81 * t48;
-        let t85 = t2 * (k(0.00025) * t52 + k(0.0001) * t30)
-            - t0 * (k(0.00025) * t50 + k(0.0001) * t24);
-        let t86 = t4 * (k(0.00025) * t57 - k(0.0001) * t36) - t85 - (t84 * t45 + t83);
-        let t87 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) + t86;
-        let t88 = (t67 * t81 - (t64 * t80 - t61 * t79)) * t87 - (t78 * t77 - t68 * t59);
-        let t89 = k(2e-6) * outer_ring_dwx - t88;
-        let t90 = k(2.0) * (k(0.5) - (t60 + outer_ring_e3 * outer_ring_e3));
+        let t82 = T::fused(t81, t42, -T::fused(-t80, t41, t79 * t40));
+        let t83 = T::fused(
+            T::fused(t81, t33, -T::fused(-t79, t22, t80 * t27)),
+            t20,
+            t82 * t39,
+        );
+        let t84 = T::fused(t81, t48, T::fused(t80, t47, t79 * t46));
+        let t85 = T::fused(
+            -t0,
+            T::fused(k(0.0001), t24, k(0.00025) * t50),
+            t2 * T::fused(k(0.0001), t30, k(0.00025) * t52),
+        );
+        let t86 = T::fused(t4, T::fused(-k(0.0001), t36, k(0.00025) * t57), -t85)
+            - T::fused(t84, t45, t83);
+        let t87 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            t86,
+        );
+        let t88 = T::fused(
+            T::fused(t67, t81, -T::fused(-t61, t79, t64 * t80)),
+            t87,
+            -T::fused(-t68, t59, t78 * t77),
+        );
+        let t89 = T::fused(k(2e-6), outer_ring_dwx, -t88);
+        let t90 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t60));
         let t91 = k(2.0) * (t66 + t65);
-        let t92 = k(1.0) / (t91 * t67 - t61 * t90);
+        let t92 = k(1.0) / T::fused(-t61, t90, t91 * t67);
         let t93 = outer_ring_e0 * outer_ring_e1;
         let t94 = outer_ring_e2 * outer_ring_e3;
         let t95 = k(2.0) * (t94 - t93);
-        let t96 = (t90 * t71 - (t91 * t69 - t95 * t70)) * t77
-            - (t90 * t37 - (t95 * t31 - t91 * t25)) * t59;
-        let t97 = (t91 * t79 + t95 * t80 + t90 * t81) * t87 - t96;
-        let t98 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t97;
+        let t96 = T::fused(
+            -T::fused(t90, t37, -T::fused(-t91, t25, t95 * t31)),
+            t59,
+            T::fused(t90, t71, -T::fused(-t95, t70, t91 * t69)) * t77,
+        );
+        let t97 = T::fused(T::fused(t90, t81, T::fused(t95, t80, t91 * t79)), t87, -t96);
+        let t98 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t97,
+        );
         let t99 = k(2.0) * (t63 - t62);
-        let t100 = k(2.0) * (k(0.5) - (t60 + outer_ring_e2 * outer_ring_e2));
+        let t100 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t60));
         let t101 = k(2.0) * (t94 + t93);
-        let t102 = t101 * t37 - (t100 * t31 + t99 * t25);
-        let t103 = t101 * t71 + (t99 * t69 + t100 * t70);
-        let t104 = k(1.0) / (t68 * t103 - t78 * t102);
-        let t105 = k(1.0) / (t72 * t84 - t74 * t82);
+        let t102 = T::fused(t101, t37, -T::fused(t99, t25, t100 * t31));
+        let t103 = T::fused(t101, t71, T::fused(t100, t70, t99 * t69));
+        let t104 = k(1.0) / T::fused(-t78, t102, t68 * t103);
+        let t105 = k(1.0) / T::fused(-t74, t82, t72 * t84);
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            -(t91 * t92 * t98 + t61 * t92 * t89),
-            -(t90 * t92 * t98 + t67 * t92 * t89),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            -T::fused(t61 * t92, t89, t91 * t92 * t98),
+            -T::fused(t67 * t92, t89, t90 * t92 * t98),
             -t1,
             -t3,
             -t5,
-            t102 * t104 * t59 - t103 * t104 * t77,
-            t78 * t104 * t77 - t68 * t104 * t59,
+            T::fused(-(t103 * t104), t77, t102 * t104 * t59),
+            T::fused(-(t68 * t104), t59, t78 * t104 * t77),
             -t0,
             -t2,
             -t4,
-            t84 * t105 * t45 + t82 * t105 * t39,
-            t74 * t105 * t45 + t72 * t105 * t39,
+            T::fused(t82 * t105, t39, t84 * t105 * t45),
+            T::fused(t72 * t105, t39, t74 * t105 * t45),
         ];
     }
 }
@@ -2419,49 +3189,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x2.cos();
-        let t1 = x2.sin();
-        let t2 = t1 * (k(1.4e-9) * t0 + k(4.8e-9) * t1);
-        let t3 = k(2.52e-9) + (k(4.4e-10) * t1 - (t2 + k(1.08e-9) * t0));
+        let t0 = x2.sin();
+        let t1 = x2.cos();
+        let t2 = t1 * T::fused(-k(4.8e-9), t1, k(1.4e-9) * t0);
+        let t3 = k(2.28e-9) + T::fused(k(1.08e-9), t1, T::fused(-k(4.4e-10), t0, t2));
         let t4 = x1.sin();
-        let t5 = k(3e-10) * t0 - k(4e-10) * t1;
-        let t6 = k(6e-11) - t5;
+        let t5 = T::fused(-k(3e-10), t1, k(4e-10) * t0);
+        let t6 = k(6e-11) + t5;
         let t7 = x1.cos();
-        let t8 = k(1.2e-9) * t1 + k(1.6e-9) * t0;
-        let t9 = t1 * (k(4.8e-9) * t0 - k(1.4e-9) * t1);
+        let t8 = T::fused(k(1.6e-9), t1, k(1.2e-9) * t0);
+        let t9 = t1 * T::fused(k(1.4e-9), t1, k(4.8e-9) * t0);
         let t10 = t9 - t8;
-        let t11 = k(4.00335e-6) + t10;
+        let t11 = k(4.00195e-6) + t10;
         let t12 = k(0.5) * t8;
         let t13 = k(2e-10) - t12;
         let t14 = t4 * t13;
-        let t15 = u0 * (t13 - k(2.0) * (t4 * (t14 + t7 * t11)));
+        let t15 = u0 * T::fused(-k(2.0), t4 * T::fused(t7, t11, t14), t13);
         let t16 = t7 * t5;
-        let t17 = k(2.4e-9) - t2;
-        let t18 = k(2.0) * t5 - t17;
-        let t19 = u0 * (t17 - (t4 * (t16 - t4 * t18) + k(0.3) * t8));
-        let t20 = k(2.0)
-            * (t19 + (t9 - k(1.2) * (k(4.168166666666667e-6) - t5)) * (u1 * t7));
-        let t21 = t20
-            - u2 * (t16 + k(1.16e-9) * (t4 * (t1 - k(0.10344827586206896) * t0)));
-        let t22 = u2 * t21 + u1 * (t15 - u1 * (t7 * t6 - t4 * t3));
-        let t23 = u1 * t18;
-        let t24 = t7 * t8;
-        let t25 = u0 * (t24 + (t4 * t12 - t7 * (k(1.00064e-5) + k(2.0) * t9)));
-        let t26 = k(400000.0) * t16 + u1 * (t25 - t23) - u0 * t19;
-        let t27 = k(0.25) * t24
-            - k(1.2e-10) * (t4 * (k(9.666666666666666) * t0 + (t1 - k(83375.0))));
-        let t28 = k(99950.02498750624) * t27;
-        let t29 = u2 * (t25 - k(2.0) * t23 + k(0.25) * (u2 * t8)) + k(2e-5) * t7;
-        let t30 = k(99950.02498750624) * t5;
-        let t31 = t30 * t26 - (t29 + k(0.5) * (u0 * t15) - k(200000.0) * t14);
-        let t32 = t30 * t27 + (t7 * t3 + t4 * t6);
-        let t33 = k(1.0) / (t5 * t30 - (k(6.00345e-6) + t10));
-        let t34 = t33 * t32;
-        let t35 = k(8.001922e-6) - k(2.4) * t5 - t4 * (t7 * t13 - t4 * t11);
-        let t36 = (t34 * t31 - (t28 * t26 - t22))
-            / (t32 * t34 - (t27 * t28 + (t9 - t35)));
-        let t37 = t34 * t36 - t33 * t31;
-        *out = [t36, t37, t30 * t37 - (t28 * t36 - k(99950.02498750624) * t26)];
+        let t17 = k(2.4e-9) + t2;
+        let t18 = T::fused(k(2.0), t5, -t17);
+        let t19 = u0 * (t17 - T::fused(-k(0.3), t8, t4 * T::fused(-t4, t18, t16)));
+        let t20 = T::fused(
+            -u2,
+            T::fused(k(1.2e-10), t4 * T::fused(-k(9.666666666666666), t0, t1), t16),
+            k(2.0)
+                * T::fused(
+                    -T::fused(-k(1.2), k(4.1693333333333335e-6) + t5, t9),
+                    u1 * t7,
+                    t19,
+                ),
+        );
+        let t21 = T::fused(-u1, T::fused(-u1, T::fused(t4, t3, t7 * t6), t15), u2 * t20);
+        let t22 = u1 * t18;
+        let t23 = t7 * t8;
+        let t24 = u0
+            * (t23 + T::fused(-t7, T::fused(k(2.0), t9, k(1.00036e-5)), t4 * t12));
+        let t25 = T::fused(-u0, t19, T::fused(-u1, t24 + t22, k(400000.0) * t16));
+        let t26 = T::fused(
+            -k(1.16e-9),
+            t4 * T::fused(k(0.10344827586206896), t0, t1 - k(8625.0)),
+            k(0.25) * t23,
+        );
+        let t27 = k(99950.02498750624) * t26;
+        let t28 = T::fused(
+            k(2e-5),
+            t7,
+            u2 * T::fused(k(0.25), u2 * t8, T::fused(k(2.0), t22, t24)),
+        );
+        let t29 = k(99950.02498750624) * t5;
+        let t30 = T::fused(
+            t29,
+            t25,
+            -T::fused(-k(200000.0), t14, T::fused(k(0.5), u0 * t15, t28)),
+        );
+        let t31 = T::fused(t29, t26, T::fused(-t4, t6, t7 * t3));
+        let t32 = k(1.0) / T::fused(t5, t29, -(k(6.00205e-6) + t10));
+        let t33 = t32 * t31;
+        let t34 = T::fused(
+            -t4,
+            T::fused(-t4, t11, t7 * t13),
+            T::fused(k(2.4), t5, k(8.003322e-6)),
+        );
+        let t35 = T::fused(t33, t30, -T::fused(t27, t25, -t21))
+            / T::fused(t31, t33, -T::fused(t26, t27, t9 - t34));
+        let t36 = T::fused(-t32, t30, t33 * t35);
+        *out = [
+            -t35,
+            t36,
+            T::fused(-t29, t36, T::fused(-k(99950.02498750624), t25, t27 * t35)),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -2494,18 +3290,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t10 = k(0.5) * x2;
         let t11 = t10.sin();
         let t12 = t10.cos();
-        let t13 = t8 * t12 + t9 * t11;
-        let t14 = t5 * t12 - t7 * t11;
+        let t13 = T::fused(t9, t11, t8 * t12);
+        let t14 = T::fused(-t7, t11, t5 * t12);
         let t15 = t14 * t13;
-        let t16 = t9 * t12 - t8 * t11;
-        let t17 = t7 * t12 + t5 * t11;
+        let t16 = T::fused(-t8, t11, t9 * t12);
+        let t17 = T::fused(t5, t11, t7 * t12);
         let t18 = t17 * t16;
         let t19 = t18 + t15;
         let t20 = t14 * t16;
         let t21 = t17 * t13;
         let t22 = t21 - t20;
         let t23 = t14 * t14;
-        let t24 = k(0.5) - (t23 + t17 * t17);
+        let t24 = k(0.5) - T::fused(t17, t17, t23);
         let t25 = t5 * t8;
         let t26 = t7 * t9;
         let t27 = t26 + t25;
@@ -2513,50 +3309,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t29 = t7 * t8;
         let t30 = t29 - t28;
         let t31 = t5 * t5;
-        let t32 = k(0.5) - (t31 + t7 * t7);
-        let t33 = k(0.00025) * t32 - k(0.0001) * t30 + k(6e-5) * t27
-            - (k(0.0002) * t24 - k(0.0004) * t22 + k(0.0003) * t19);
+        let t32 = k(0.5) - T::fused(t7, t7, t31);
+        let t33 = T::fused(k(6e-5), t27, T::fused(-k(0.0001), t30, k(0.00025) * t32))
+            - T::fused(k(0.0003), t19, T::fused(-k(0.0004), t22, k(0.0002) * t24));
         let t34 = t14 * t17;
         let t35 = t13 * t16;
         let t36 = t35 - t34;
-        let t37 = k(0.5) - (t23 + t13 * t13);
+        let t37 = k(0.5) - T::fused(t13, t13, t23);
         let t38 = t21 + t20;
         let t39 = t5 * t7;
         let t40 = t8 * t9;
         let t41 = t40 - t39;
-        let t42 = k(0.5) - (t31 + t8 * t8);
+        let t42 = k(0.5) - T::fused(t8, t8, t31);
         let t43 = t29 + t28;
-        let t44 = k(0.00025) * t43 - k(0.0001) * t42 - k(6e-5) * t41
-            - (k(0.0002) * t38 - k(0.0004) * t37 - k(0.0003) * t36);
-        let t45 = k(0.5) - (t23 + t16 * t16);
+        let t44 = T::fused(-k(6e-5), t41, T::fused(-k(0.0001), t42, k(0.00025) * t43))
+            - T::fused(-k(0.0003), t36, T::fused(-k(0.0004), t37, k(0.0002) * t38));
+        let t45 = k(0.5) - T::fused(t16, t16, t23);
         let t46 = t35 + t34;
         let t47 = t18 - t15;
-        let t48 = k(0.5) - (t31 + t9 * t9);
+        let t48 = k(0.5) - T::fused(t9, t9, t31);
         let t49 = t40 + t39;
         let t50 = t26 - t25;
-        let t51 = k(0.00025) * t50 + k(0.0001) * t49 + k(6e-5) * t48
-            - (k(0.0002) * t47 + k(0.0004) * t46 + k(0.0003) * t45);
+        let t51 = T::fused(k(6e-5), t48, T::fused(k(0.0001), t49, k(0.00025) * t50))
+            - T::fused(k(0.0003), t45, T::fused(k(0.0004), t46, k(0.0002) * t47));
         let t52 = k(2.0) * t6;
         let t53 = u0 * (t4 * t52);
-        let t54 = u0 * (k(1.0) - t6 * t52);
-        let t55 = k(5e-5) * u1 + k(3e-5) * t54;
-        let t56 = k(0.000125) * u1 + k(3e-5) * t53;
-        let t57 = k(0.000125) * t54 - k(5e-5) * t53;
-        let t58 = k(2.0) * t27 * t57 - (k(2.0) * t30 * t56 + k(2.0) * t32 * t55);
+        let t54 = u0 * T::fused(-t6, t52, k(1.0));
+        let t55 = T::fused(k(3e-5), t54, k(5e-5) * u1);
+        let t56 = T::fused(k(3e-5), t53, k(0.000125) * u1);
+        let t57 = T::fused(-k(5e-5), t53, k(0.000125) * t54);
+        let t58 = T::fused(
+            k(2.0) * t27,
+            t57,
+            -T::fused(k(2.0) * t32, t55, k(2.0) * t30 * t56),
+        );
         let t59 = k(2.0) * t11;
-        let t60 = k(1.0) - t11 * t59;
+        let t60 = T::fused(-t11, t59, k(1.0));
         let t61 = t12 * t59;
-        let t62 = u1 * t61 + t60 * t54;
-        let t63 = u1 * t60 - t61 * t54;
-        let t64 = k(0.0002) * t63 + k(0.00015) * t62;
+        let t62 = T::fused(t60, t54, u1 * t61);
+        let t63 = T::fused(-t61, t54, u1 * t60);
+        let t64 = T::fused(k(0.00015), t62, k(0.0002) * t63);
         let t65 = u2 + t53;
-        let t66 = k(0.00015) * t65 + k(0.0001) * t63;
-        let t67 = k(0.0001) * t62 - k(0.0002) * t65;
-        let t68 = k(2.0) * t19 * t67 - (k(2.0) * t22 * t66 + k(2.0) * t24 * t64);
-        let t69 = k(2.0) * t41 * t57 + (k(2.0) * t42 * t56 + k(2.0) * t43 * t55);
-        let t70 = k(2.0) * t36 * t67 + (k(2.0) * t37 * t66 + k(2.0) * t38 * t64);
-        let t71 = k(2.0) * t48 * t57 + (k(2.0) * t49 * t56 - k(2.0) * t50 * t55);
-        let t72 = k(2.0) * t45 * t67 + (k(2.0) * t46 * t66 - k(2.0) * t47 * t64);
+        let t66 = T::fused(k(0.0001), t63, k(0.00015) * t65);
+        let t67 = T::fused(-k(0.0002), t65, k(0.0001) * t62);
+        let t68 = T::fused(
+            k(2.0) * t19,
+            t67,
+            -T::fused(k(2.0) * t24, t64, k(2.0) * t22 * t66),
+        );
+        let t69 = T::fused(
+            k(2.0) * t41,
+            t57,
+            T::fused(k(2.0) * t43, t55, k(2.0) * t42 * t56),
+        );
+        let t70 = T::fused(
+            k(2.0) * t36,
+            t67,
+            T::fused(k(2.0) * t38, t64, k(2.0) * t37 * t66),
+        );
+        let t71 = T::fused(
+            k(2.0) * t48,
+            t57,
+            T::fused(-(k(2.0) * t50), t55, k(2.0) * t49 * t56),
+        );
+        let t72 = T::fused(
+            k(2.0) * t45,
+            t67,
+            T::fused(-(k(2.0) * t47), t64, k(2.0) * t46 * t66),
+        );
         *y = [
             k(0.0),
             k(0.0),
@@ -2629,11 +3449,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t4 = x0.cos();
         let t5 = outer_ring_e2 * outer_ring_e2;
         let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
         let t8 = outer_ring_e3 * outer_ring_e3;
         let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
-        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
+        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
         let t12 = x1.sin();
         let t13 = inner_ring_e0 * inner_ring_e2;
         let t14 = inner_ring_e1 * inner_ring_e3;
@@ -2643,37 +3463,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t18 = k(2.0) * (t17 + t16);
         let t19 = inner_ring_e2 * inner_ring_e2;
         let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
         let t22 = inner_ring_e3 * inner_ring_e3;
         let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
         let t25 = outer_ring_e0 * outer_ring_e3;
         let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = k(2.0) * (t26 - t25) * t24
-            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
-        let t28 = t27
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t15;
+        let t27 = T::fused(
+            t18,
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            k(2.0) * (t26 - t25) * t24,
+        );
+        let t28 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
+            t15,
+            t27,
+        );
         let t29 = x1.cos();
-        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
-        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
-        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t30 = T::fused(
+            k(2.0) * (t26 + t25),
+            t18,
+            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        );
+        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
+        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
         let t33 = x2.sin();
-        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t35 = rotor_e2 * rotor_e2;
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t37 = T::fused(
+            k(2.0),
+            k(0.5) - (t36 + t35),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        );
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
-        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
+        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
         let t43 = x2.cos();
-        let t44 = k(2.0) * (t17 - t16) * t40
-            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
-        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
-        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        let t44 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
+            t37,
+            k(2.0) * (t17 - t16) * t40,
+        );
+        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
+        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
         x[0] = x0 + t11;
         x[1] = x1 + t32;
         x[2] = x2 + t46;
@@ -2701,62 +3538,124 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t0 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t1 = k(2.0) * t0;
-        let t2 = k(1.0) - t0 * t1;
-        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t4 = t3 * t1;
-        let t5 = t4 * (k(1.4e-9) * t2 - k(4.8e-9) * t4);
-        let t6 = k(2.52e-9) - (k(4.4e-10) * t4 - (t5 - k(1.08e-9) * t2));
-        let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t3 = t2 * t1;
+        let t4 = T::fused(-t0, t1, k(1.0));
+        let t5 = t4 * T::fused(k(4.8e-9), t4, k(1.4e-9) * t3);
+        let t6 = k(2.28e-9) + T::fused(k(1.08e-9), t4, -T::fused(-k(4.4e-10), t3, t5));
+        let t7 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t8 = k(2.0) * t7;
-        let t9 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t9 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t10 = t9 * t8;
-        let t11 = k(3e-10) * t2 + k(4e-10) * t4;
+        let t11 = T::fused(k(3e-10), t4, k(4e-10) * t3);
         let t12 = k(6e-11) - t11;
-        let t13 = k(1.0) - t7 * t8;
+        let t13 = T::fused(-t7, t8, k(1.0));
         let t14 = outer_ring_wz - inner_ring_wz;
-        let t15 = k(1.2e-9) * t4 - k(1.6e-9) * t2;
-        let t16 = t4 * (k(4.8e-9) * t2 + k(1.4e-9) * t4);
+        let t15 = T::fused(-k(1.6e-9), t4, k(1.2e-9) * t3);
+        let t16 = t4 * T::fused(-k(1.4e-9), t4, k(4.8e-9) * t3);
         let t17 = t16 - t15;
-        let t18 = k(4.00335e-6) - t17;
+        let t18 = k(4.00195e-6) - t17;
         let t19 = k(0.5) * t15;
         let t20 = k(2e-10) + t19;
         let t21 = t10 * t20;
-        let t22 = outer_ring_wy * (t20 - k(2.0) * (t10 * (t21 - t13 * t18)));
+        let t22 = outer_ring_wy * T::fused(-k(2.0), t10 * T::fused(-t13, t18, t21), t20);
         let t23 = t13 * t11;
         let t24 = inner_ring_wx - rotor_wx;
-        let t25 = k(2.4e-9) + t5;
-        let t26 = k(2.0) * t11 - t25;
-        let t27 = outer_ring_wy * (t25 + (t10 * (t23 + t10 * t26) + k(0.3) * t15));
-        let t28 = k(2.0)
-            * (t27 + (t16 + k(1.2) * (k(4.168166666666667e-6) - t11)) * (t14 * t13));
-        let t29 = t28
-            + t24 * (t23 + k(1.16e-9) * (t10 * (t4 + k(0.10344827586206896) * t2)));
-        let t30 = t24 * t29 + t14 * (t22 + t14 * (t13 * t12 + t10 * t6));
-        let t31 = t14 * t26;
-        let t32 = t13 * t15;
-        let t33 = outer_ring_wy
-            * (t32 - (t10 * t19 - t13 * (k(1.00064e-5) - k(2.0) * t16)));
-        let t34 = k(400000.0) * t23 + t14 * (t33 - t31) - outer_ring_wy * t27;
-        let t35 = k(0.25) * t32
-            - k(1.2e-10) * (t10 * (k(9.666666666666666) * t2 - (t4 + k(83375.0))));
-        let t36 = k(99950.02498750624) * t35;
-        let t37 = t24 * (t33 - k(2.0) * t31 - k(0.25) * (t24 * t15)) + k(2e-5) * t13;
-        let t38 = k(99950.02498750624) * t11;
-        let t39 = t38 * t34 - (t37 + k(0.5) * (outer_ring_wy * t22) + k(200000.0) * t21);
-        let t40 = t38 * t35 - (t13 * t6 - t10 * t12);
-        let t41 = k(1.0) / (t11 * t38 - (k(6.00345e-6) - t17));
-        let t42 = t41 * t40;
-        let t43 = k(8.001922e-6) - k(2.4) * t11 + t10 * (t13 * t20 + t10 * t18);
-        let t44 = (t42 * t39 - (t36 * t34 - t30))
-            / (t40 * t42 - (t35 * t36 - (t16 + t43)));
-        let t45 = t42 * t44 - t41 * t39;
-        *out = [-t44, t45, t38 * t45 - (t36 * t44 - k(99950.02498750624) * t34)];
+        let t25 = k(2.4e-9) - t5;
+        let t26 = T::fused(k(2.0), t11, t25);
+        let t27 = outer_ring_wy
+            * (t25 - T::fused(k(0.3), t15, t10 * T::fused(t10, t26, t23)));
+        let t28 = T::fused(
+            -t24,
+            T::fused(k(1.2e-10), t10 * T::fused(k(9.666666666666666), t3, t4), t23),
+            k(2.0)
+                * T::fused(
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t11, t16),
+                    t14 * t13,
+                    t27,
+                ),
+        );
+        let t29 = T::fused(
+            -t14,
+            T::fused(t14, T::fused(-t10, t6, t13 * t12), t22),
+            t24 * t28,
+        );
+        let t30 = t14 * t26;
+        let t31 = t13 * t15;
+        let t32 = outer_ring_wy
+            * (t31 - T::fused(-t13, T::fused(-k(2.0), t16, k(1.00036e-5)), t10 * t19));
+        let t33 = T::fused(
+            outer_ring_wy,
+            t27,
+            T::fused(t14, t32 - t30, k(400000.0) * t23),
+        );
+        let t34 = T::fused(
+            k(1.16e-9),
+            t10 * T::fused(k(0.10344827586206896), t3, -(t4 - k(8625.0))),
+            k(0.25) * t31,
+        );
+        let t35 = k(99950.02498750624) * t34;
+        let t36 = T::fused(
+            k(2e-5),
+            t13,
+            t24 * T::fused(-k(0.25), t24 * t15, T::fused(-k(2.0), t30, t32)),
+        );
+        let t37 = k(99950.02498750624) * t11;
+        let t38 = T::fused(
+            t37,
+            t33,
+            -T::fused(k(200000.0), t21, T::fused(k(0.5), outer_ring_wy * t22, t36)),
+        );
+        let t39 = T::fused(t37, t34, T::fused(t10, t12, t13 * t6));
+        let t40 = k(1.0) / T::fused(t11, t37, -(k(6.00205e-6) - t17));
+        let t41 = t40 * t39;
+        let t42 = T::fused(
+            t10,
+            T::fused(t10, t18, t13 * t20),
+            T::fused(-k(2.4), t11, k(8.003322e-6)),
+        );
+        let t43 = T::fused(t41, t38, -T::fused(t35, t33, t29))
+            / T::fused(t39, t41, -T::fused(t34, t35, -(t16 + t42)));
+        let t44 = T::fused(-t40, t38, t41 * t43);
+        *out = [
+            -t43,
+            t44,
+            T::fused(t37, t44, -T::fused(-k(99950.02498750624), t33, t35 * t43)),
+        ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 321 operations (132 ±, 187 ×, 2 ÷).
     fn corrected_accelerations(
@@ -2788,117 +3687,184 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t1 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = k(1.0) - t1 * t2;
-        let t4 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t5 = t4 * t2;
-        let t6 = t5 * (k(1.4e-9) * t3 - k(4.8e-9) * t5);
-        let t7 = k(2.52e-9) - (k(4.4e-10) * t5 - (t6 - k(1.08e-9) * t3));
-        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t3 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t4 = t3 * t2;
+        let t5 = T::fused(-t1, t2, k(1.0));
+        let t6 = t5 * T::fused(k(4.8e-9), t5, k(1.4e-9) * t4);
+        let t7 = k(2.28e-9) + T::fused(k(1.08e-9), t5, -T::fused(-k(4.4e-10), t4, t6));
+        let t8 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t9 = k(2.0) * t8;
-        let t10 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t10 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t11 = t10 * t9;
-        let t12 = k(3e-10) * t3 + k(4e-10) * t5;
+        let t12 = T::fused(k(3e-10), t5, k(4e-10) * t4);
         let t13 = k(6e-11) - t12;
-        let t14 = k(1.0) - t8 * t9;
+        let t14 = T::fused(-t8, t9, k(1.0));
         let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = k(1.2e-9) * t5 - k(1.6e-9) * t3;
-        let t17 = t5 * (k(4.8e-9) * t3 + k(1.4e-9) * t5);
+        let t16 = T::fused(-k(1.6e-9), t5, k(1.2e-9) * t4);
+        let t17 = t5 * T::fused(-k(1.4e-9), t5, k(4.8e-9) * t4);
         let t18 = t17 - t16;
-        let t19 = k(4.00335e-6) - t18;
+        let t19 = k(4.00195e-6) - t18;
         let t20 = k(0.5) * t16;
         let t21 = k(2e-10) + t20;
         let t22 = t11 * t21;
-        let t23 = outer_ring_wy * (t21 - k(2.0) * (t11 * (t22 - t14 * t19)));
+        let t23 = outer_ring_wy * T::fused(-k(2.0), t11 * T::fused(-t14, t19, t22), t21);
         let t24 = t14 * t12;
         let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) + t6;
-        let t27 = k(2.0) * t12 - t26;
-        let t28 = outer_ring_wy * (t26 + (t11 * (t24 + t11 * t27) + k(0.3) * t16));
-        let t29 = k(2.0)
-            * (t28 + (t17 + k(1.2) * (k(4.168166666666667e-6) - t12)) * (t15 * t14));
-        let t30 = t29
-            + t25 * (t24 + k(1.16e-9) * (t11 * (t5 + k(0.10344827586206896) * t3)));
-        let t31 = t25 * t30 + t15 * (t23 + t15 * (t14 * t13 + t11 * t7));
-        let t32 = t15 * t27;
-        let t33 = t14 * t16;
-        let t34 = outer_ring_wy
-            * (t33 - (t11 * t20 - t14 * (k(1.00064e-5) - k(2.0) * t17)));
-        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) - outer_ring_wy * t28;
-        let t36 = k(0.25) * t33
-            - k(1.2e-10) * (t11 * (k(9.666666666666666) * t3 - (t5 + k(83375.0))));
-        let t37 = k(99950.02498750624) * t36;
-        let t38 = t25 * (t34 - k(2.0) * t32 - k(0.25) * (t25 * t16)) + k(2e-5) * t14;
-        let t39 = k(99950.02498750624) * t12;
-        let t40 = t39 * t35 - (t38 + k(0.5) * (outer_ring_wy * t23) + k(200000.0) * t22);
-        let t41 = t39 * t36 - (t14 * t7 - t11 * t13);
-        let t42 = k(1.0) / (t12 * t39 - (k(6.00345e-6) - t18));
-        let t43 = t42 * t41;
-        let t44 = k(8.001922e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
-        let t45 = (t43 * t40 - (t37 * t35 - t31))
-            / (t41 * t43 - (t36 * t37 - (t17 + t44)));
-        let t46 = outer_ring_wx * outer_ring_wy;
-        let t47 = inner_ring_wy * t15 + (t0 * t14 - t11 * t45);
-        let t48 = inner_ring_wx * t15 - (t0 * t11 + t14 * t45);
-        let t49 = t43 * t45 - t42 * t40;
-        let t50 = t46 + t49;
-        let t51 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
-        let t52 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
-        let t53 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
-        let t54 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
-        let t55 = inner_ring_wy * t54 - inner_ring_wz * t53
-            - (rotor_wy * t52 - rotor_wz * t51);
-        let t56 = rotor_wz * t25 + (t5 * t50 - t3 * t48);
-        let t57 = rotor_wy * t25 + (t3 * t50 + t5 * t48);
-        let t58 = k(0.0002) * t57 - k(0.00015) * t56
-            + (t55 - (k(5e-5) * t50 + k(3e-5) * t48));
-        let t59 = rotor_e0 * rotor_e0;
-        let t60 = k(0.000125) * t50 - k(3e-5) * t47;
-        let t61 = k(0.000125) * t48 + k(5e-5) * t47;
-        let t62 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
-        let t63 = inner_ring_wz * t62 + inner_ring_wx * t54;
-        let t64 = inner_ring_wx * t53 + inner_ring_wy * t62;
-        let t65 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t66 = rotor_wz * t65 + rotor_wx * t52 - (t64 * t5 + t63 * t3);
-        let t67 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
-        let t68 = k(0.0001) * t57 + k(0.00015) * t67 - (t66 + (t5 * t61 + t3 * t60));
-        let t69 = rotor_e0 * rotor_e3;
-        let t70 = rotor_e1 * rotor_e2;
-        let t71 = k(2.0) * (t70 - t69) * t68
-            + k(2.0) * (k(0.5) - (t59 + rotor_e1 * rotor_e1)) * t58;
-        let t72 = rotor_wx * t51 + rotor_wy * t65 - (t64 * t3 - t63 * t5);
-        let t73 = k(0.0001) * t56 + k(0.0002) * t67 + (t72 + (t3 * t61 - t5 * t60));
-        let t74 = rotor_e0 * rotor_e2;
-        let t75 = rotor_e1 * rotor_e3;
-        let t76 = k(2.0) * (k(0.5) - (t59 + rotor_e2 * rotor_e2)) * t68
-            + k(2.0) * (t70 + t69) * t58;
-        let t77 = rotor_e0 * rotor_e1;
-        let t78 = rotor_e2 * rotor_e3;
-        let t79 = k(2.0) * (t78 + t77) * t68 - k(2.0) * (t75 - t74) * t58;
+        let t26 = k(2.4e-9) - t6;
+        let t27 = T::fused(k(2.0), t12, t26);
+        let t28 = outer_ring_wy
+            * (t26 - T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
+        let t29 = T::fused(
+            -t25,
+            T::fused(k(1.2e-10), t11 * T::fused(k(9.666666666666666), t4, t5), t24),
+            k(2.0)
+                * T::fused(
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t12, t17),
+                    t15 * t14,
+                    t28,
+                ),
+        );
+        let t30 = T::fused(
+            -t15,
+            T::fused(t15, T::fused(-t11, t7, t14 * t13), t23),
+            t25 * t29,
+        );
+        let t31 = t15 * t27;
+        let t32 = t14 * t16;
+        let t33 = outer_ring_wy
+            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00036e-5)), t11 * t20));
+        let t34 = T::fused(
+            outer_ring_wy,
+            t28,
+            T::fused(t15, t33 - t31, k(400000.0) * t24),
+        );
+        let t35 = T::fused(
+            k(1.16e-9),
+            t11 * T::fused(k(0.10344827586206896), t4, -(t5 - k(8625.0))),
+            k(0.25) * t32,
+        );
+        let t36 = k(99950.02498750624) * t35;
+        let t37 = T::fused(
+            k(2e-5),
+            t14,
+            t25 * T::fused(-k(0.25), t25 * t16, T::fused(-k(2.0), t31, t33)),
+        );
+        let t38 = k(99950.02498750624) * t12;
+        let t39 = T::fused(
+            t38,
+            t34,
+            -T::fused(k(200000.0), t22, T::fused(k(0.5), outer_ring_wy * t23, t37)),
+        );
+        let t40 = T::fused(t38, t35, T::fused(t11, t13, t14 * t7));
+        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00205e-6) - t18));
+        let t42 = t41 * t40;
+        let t43 = T::fused(
+            t11,
+            T::fused(t11, t19, t14 * t21),
+            T::fused(-k(2.4), t12, k(8.003322e-6)),
+        );
+        let t44 = T::fused(t42, t39, -T::fused(t36, t34, t30))
+            / T::fused(t40, t42, -T::fused(t35, t36, -(t17 + t43)));
+        let t45 = outer_ring_wx * outer_ring_wy;
+        let t46 = T::fused(inner_ring_wy, t15, T::fused(-t11, t44, t0 * t14));
+        let t47 = T::fused(inner_ring_wx, t15, -T::fused(t14, t44, t0 * t11));
+        let t48 = T::fused(-t41, t39, t42 * t44);
+        let t49 = t45 + t48;
+        let t50 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
+        let t51 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
+        let t52 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
+        let t53 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
+        let t54 = T::fused(-inner_ring_wz, t52, inner_ring_wy * t53)
+            - T::fused(-rotor_wz, t50, rotor_wy * t51);
+        let t55 = T::fused(rotor_wz, t25, T::fused(-t5, t47, t4 * t49));
+        let t56 = T::fused(rotor_wy, t25, T::fused(t4, t47, t5 * t49));
+        let t57 = T::fused(-k(0.00015), t55, k(0.0002) * t56)
+            + (t54 - T::fused(k(3e-5), t47, k(5e-5) * t49));
+        let t58 = rotor_e0 * rotor_e0;
+        let t59 = T::fused(-k(3e-5), t46, k(0.000125) * t49);
+        let t60 = T::fused(k(5e-5), t46, k(0.000125) * t47);
+        let t61 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
+        let t62 = T::fused(inner_ring_wx, t53, inner_ring_wz * t61);
+        let t63 = T::fused(inner_ring_wy, t61, inner_ring_wx * t52);
+        let t64 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
+        let t65 = T::fused(rotor_wx, t51, rotor_wz * t64) - T::fused(t62, t5, t63 * t4);
+        let t66 = T::fused(t38, t48, -T::fused(-k(99950.02498750624), t34, t36 * t44))
+            - t46;
+        let t67 = T::fused(k(0.00015), t66, k(0.0001) * t56)
+            - (t65 + T::fused(t5, t59, t4 * t60));
+        let t68 = rotor_e0 * rotor_e3;
+        let t69 = rotor_e1 * rotor_e2;
+        let t70 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t58)),
+            t57,
+            k(2.0) * (t69 - t68) * t67,
+        );
+        let t71 = T::fused(rotor_wy, t64, rotor_wx * t50) - T::fused(-t62, t4, t63 * t5);
+        let t72 = T::fused(k(0.0002), t66, k(0.0001) * t55)
+            + (t71 + T::fused(-t4, t59, t5 * t60));
+        let t73 = rotor_e0 * rotor_e2;
+        let t74 = rotor_e1 * rotor_e3;
+        let t75 = T::fused(
+            k(2.0) * (t69 + t68),
+            t57,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t58)) * t67,
+        );
+        let t76 = rotor_e0 * rotor_e1;
+        let t77 = rotor_e2 * rotor_e3;
+        let t78 = T::fused(-(k(2.0) * (t74 - t73)), t57, k(2.0) * (t77 + t76) * t67);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t45,
-            t46,
+            -t44,
+            t45,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t47,
-            t48,
-            t50,
-            -(k(2.0) * (t75 + t74) * t73 + t71),
-            t76 - k(2.0) * (t78 - t77) * t73,
-            k(2.0) * (k(0.5) - (t59 + rotor_e3 * rotor_e3)) * t73 - t79,
-            t67,
-            -t56,
-            t57,
+            -t46,
+            t47,
+            t49,
+            -T::fused(k(2.0) * (t74 + t73), t72, t70),
+            T::fused(-(k(2.0) * (t77 - t76)), t72, t75),
+            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t58)), t72, -t78),
+            t66,
+            -t55,
+            t56,
         ];
     }
     /// Writes λ: 233 operations (100 ±, 133 ×, 0 ÷).
@@ -2948,11 +3914,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.8) + k(0.08) * rotor_dsy;
-        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e3;
         let t7 = rotor_e1 * rotor_e2;
         let t8 = t7 - t6;
@@ -2960,15 +3926,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t10 = rotor_e1 * rotor_e3;
         let t11 = t10 + t9;
         let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(0.5) - (t12 + rotor_e2 * rotor_e2);
+        let t13 = k(0.5) - T::fused(rotor_e2, rotor_e2, t12);
         let t14 = rotor_e0 * rotor_e1;
         let t15 = rotor_e2 * rotor_e3;
         let t16 = t15 - t14;
-        let t17 = t2 * (k(0.0004) * t16 - k(0.0003) * t13)
-            + t0 * (k(0.0004) * t11 + k(0.0003) * t8);
+        let t17 = T::fused(
+            t0,
+            T::fused(k(0.0003), t8, k(0.0004) * t11),
+            t2 * T::fused(-k(0.0003), t13, k(0.0004) * t16),
+        );
         let t18 = t15 + t14;
-        let t19 = k(0.5) - (t12 + rotor_e3 * rotor_e3);
-        let t20 = k(1e-5) * rotor_dwx + (t4 * (k(0.0004) * t19 - k(0.0003) * t18) - t17);
+        let t19 = k(0.5) - T::fused(rotor_e3, rotor_e3, t12);
+        let t20 = T::fused(
+            k(1e-5),
+            rotor_dwx,
+            T::fused(t4, T::fused(-k(0.0003), t18, k(0.0004) * t19), -t17),
+        );
         let t21 = inner_ring_e0 * inner_ring_e3;
         let t22 = inner_ring_e1 * inner_ring_e2;
         let t23 = t22 - t21;
@@ -2976,70 +3949,132 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let t25 = inner_ring_e1 * inner_ring_e3;
         let t26 = t25 + t24;
         let t27 = inner_ring_e0 * inner_ring_e0;
-        let t28 = k(0.5) - (t27 + inner_ring_e2 * inner_ring_e2);
+        let t28 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t27);
         let t29 = inner_ring_e0 * inner_ring_e1;
         let t30 = inner_ring_e2 * inner_ring_e3;
         let t31 = t30 - t29;
-        let t32 = t2 * (k(0.0001) * t31 - k(6e-5) * t28)
-            + t0 * (k(0.0001) * t26 + k(6e-5) * t23);
+        let t32 = T::fused(
+            t0,
+            T::fused(k(6e-5), t23, k(0.0001) * t26),
+            t2 * T::fused(-k(6e-5), t28, k(0.0001) * t31),
+        );
         let t33 = t30 + t29;
-        let t34 = k(0.5) - (t27 + inner_ring_e3 * inner_ring_e3);
-        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
-            + (t4 * (k(0.0001) * t34 - k(6e-5) * t33) - t32 - t20);
-        let t36 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t34 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t27);
+        let t35 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+            T::fused(t4, T::fused(-k(6e-5), t33, k(0.0001) * t34), -t32) - t20,
+        );
+        let t36 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t37 = k(2.0) * t36;
-        let t38 = k(1.0) - t36 * t37;
-        let t39 = k(0.5) - (t27 + inner_ring_e1 * inner_ring_e1);
+        let t38 = T::fused(-t36, t37, k(1.0));
+        let t39 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t27);
         let t40 = t22 + t21;
-        let t41 = t2 * (k(0.00025) * t31 + k(6e-5) * t40)
-            + t0 * (k(0.00025) * t26 - k(6e-5) * t39);
+        let t41 = T::fused(
+            t0,
+            T::fused(-k(6e-5), t39, k(0.00025) * t26),
+            t2 * T::fused(k(6e-5), t40, k(0.00025) * t31),
+        );
         let t42 = t25 - t24;
-        let t43 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
+        let t43 = k(0.5) - T::fused(rotor_e1, rotor_e1, t12);
         let t44 = t7 + t6;
-        let t45 = t2 * (k(0.0002) * t16 + k(0.0003) * t44)
-            + t0 * (k(0.0002) * t11 - k(0.0003) * t43);
+        let t45 = T::fused(
+            t0,
+            T::fused(-k(0.0003), t43, k(0.0002) * t11),
+            t2 * T::fused(k(0.0003), t44, k(0.0002) * t16),
+        );
         let t46 = t10 - t9;
-        let t47 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy)
-            - (t4 * (k(0.0002) * t19 - k(0.0003) * t46) - t45);
-        let t48 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t47 = T::fused(
+            k(5e-6),
+            T::fused(rotor_wx, rotor_wz, rotor_dwy),
+            -T::fused(t4, T::fused(-k(0.0003), t46, k(0.0002) * t19), -t45),
+        );
+        let t48 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t49 = k(2.0) * t48;
-        let t50 = k(1.0) - t48 * t49;
-        let t51 = t2 * (k(0.0002) * t13 + k(0.0004) * t44)
-            - t0 * (k(0.0002) * t8 + k(0.0004) * t43);
-        let t52 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
-            + (t4 * (k(0.0002) * t18 - k(0.0004) * t46) - t51);
-        let t53 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t50 = T::fused(-t48, t49, k(1.0));
+        let t51 = T::fused(
+            -t0,
+            T::fused(k(0.0004), t43, k(0.0002) * t8),
+            t2 * T::fused(k(0.0004), t44, k(0.0002) * t13),
+        );
+        let t52 = T::fused(
+            k(5e-6),
+            T::fused(rotor_wx, rotor_wy, -rotor_dwz),
+            T::fused(t4, T::fused(-k(0.0004), t46, k(0.0002) * t18), -t51),
+        );
+        let t53 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t54 = t53 * t49;
-        let t55 = t54 * t52 - t50 * t47;
-        let t56 = k(2e-6) * inner_ring_dwy
-            - (t55 - (t4 * (k(0.00025) * t34 - k(6e-5) * t42) - t41));
-        let t57 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t55 = T::fused(-t50, t47, t54 * t52);
+        let t56 = T::fused(
+            k(2e-6),
+            inner_ring_dwy,
+            -(t55 - T::fused(t4, T::fused(-k(6e-5), t42, k(0.00025) * t34), -t41)),
+        );
+        let t57 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t58 = t57 * t37;
-        let t59 = t58 * t56 - t38 * t35;
-        let t60 = k(2e-6) * outer_ring_dwx + t59;
+        let t59 = T::fused(-t38, t35, t58 * t56);
+        let t60 = T::fused(k(2e-6), outer_ring_dwx, t59);
         let t61 = k(2.0) * outer_ring_e2;
-        let t62 = k(1.0) - outer_ring_e2 * t61;
-        let t63 = t2 * (k(0.00025) * t28 + k(0.0001) * t40)
-            - t0 * (k(0.00025) * t23 + k(0.0001) * t39);
-        let t64 = t50 * t52 + t54 * t47;
-        let t65 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            - (t64 - (t4 * (k(0.00025) * t33 - k(0.0001) * t42) - t63));
-        let t66 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t65;
+        let t62 = T::fused(-outer_ring_e2, t61, k(1.0));
+        let t63 = T::fused(
+            -t0,
+            T::fused(k(0.0001), t39, k(0.00025) * t23),
+            t2 * T::fused(k(0.0001), t40, k(0.00025) * t28),
+        );
+        let t64 = T::fused(t54, t47, t50 * t52);
+        let t65 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            -(t64 - T::fused(t4, T::fused(-k(0.0001), t42, k(0.00025) * t33), -t63)),
+        );
+        let t66 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t65,
+        );
         let t67 = outer_ring_e0 * t61;
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            t67 * t66 - t62 * t60,
-            -(t62 * t66 + t67 * t60),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            T::fused(-t62, t60, t67 * t66),
+            -T::fused(t67, t60, t62 * t66),
             -t1,
             -t3,
             -t5,
-            -(t38 * t56 + t58 * t35),
+            -T::fused(t58, t35, t38 * t56),
             t59,
             -t0,
             -t2,
@@ -3073,189 +4108,299 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCombinedOffsets<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t1 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = k(1.0) - t1 * t2;
-        let t4 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t5 = t4 * t2;
-        let t6 = t5 * (k(1.4e-9) * t3 - k(4.8e-9) * t5);
-        let t7 = k(2.52e-9) - (k(4.4e-10) * t5 - (t6 - k(1.08e-9) * t3));
-        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t3 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t4 = t3 * t2;
+        let t5 = T::fused(-t1, t2, k(1.0));
+        let t6 = t5 * T::fused(k(4.8e-9), t5, k(1.4e-9) * t4);
+        let t7 = k(2.28e-9) + T::fused(k(1.08e-9), t5, -T::fused(-k(4.4e-10), t4, t6));
+        let t8 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t9 = k(2.0) * t8;
-        let t10 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t10 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t11 = t10 * t9;
-        let t12 = k(3e-10) * t3 + k(4e-10) * t5;
+        let t12 = T::fused(k(3e-10), t5, k(4e-10) * t4);
         let t13 = k(6e-11) - t12;
-        let t14 = k(1.0) - t8 * t9;
+        let t14 = T::fused(-t8, t9, k(1.0));
         let t15 = outer_ring_wz - inner_ring_wz;
-        let t16 = k(1.2e-9) * t5 - k(1.6e-9) * t3;
-        let t17 = t5 * (k(4.8e-9) * t3 + k(1.4e-9) * t5);
+        let t16 = T::fused(-k(1.6e-9), t5, k(1.2e-9) * t4);
+        let t17 = t5 * T::fused(-k(1.4e-9), t5, k(4.8e-9) * t4);
         let t18 = t17 - t16;
-        let t19 = k(4.00335e-6) - t18;
+        let t19 = k(4.00195e-6) - t18;
         let t20 = k(0.5) * t16;
         let t21 = k(2e-10) + t20;
         let t22 = t11 * t21;
-        let t23 = outer_ring_wy * (t21 - k(2.0) * (t11 * (t22 - t14 * t19)));
+        let t23 = outer_ring_wy * T::fused(-k(2.0), t11 * T::fused(-t14, t19, t22), t21);
         let t24 = t14 * t12;
         let t25 = inner_ring_wx - rotor_wx;
-        let t26 = k(2.4e-9) + t6;
-        let t27 = k(2.0) * t12 - t26;
-        let t28 = outer_ring_wy * (t26 + (t11 * (t24 + t11 * t27) + k(0.3) * t16));
-        let t29 = k(2.0)
-            * (t28 + (t17 + k(1.2) * (k(4.168166666666667e-6) - t12)) * (t15 * t14));
-        let t30 = t29
-            + t25 * (t24 + k(1.16e-9) * (t11 * (t5 + k(0.10344827586206896) * t3)));
-        let t31 = t25 * t30 + t15 * (t23 + t15 * (t14 * t13 + t11 * t7));
-        let t32 = t15 * t27;
-        let t33 = t14 * t16;
-        let t34 = outer_ring_wy
-            * (t33 - (t11 * t20 - t14 * (k(1.00064e-5) - k(2.0) * t17)));
-        let t35 = k(400000.0) * t24 + t15 * (t34 - t32) - outer_ring_wy * t28;
-        let t36 = k(0.25) * t33
-            - k(1.2e-10) * (t11 * (k(9.666666666666666) * t3 - (t5 + k(83375.0))));
-        let t37 = k(99950.02498750624) * t36;
-        let t38 = t25 * (t34 - k(2.0) * t32 - k(0.25) * (t25 * t16)) + k(2e-5) * t14;
-        let t39 = k(99950.02498750624) * t12;
-        let t40 = t39 * t35 - (t38 + k(0.5) * (outer_ring_wy * t23) + k(200000.0) * t22);
-        let t41 = t39 * t36 - (t14 * t7 - t11 * t13);
-        let t42 = k(1.0) / (t12 * t39 - (k(6.00345e-6) - t18));
-        let t43 = t42 * t41;
-        let t44 = k(8.001922e-6) - k(2.4) * t12 + t11 * (t14 * t21 + t11 * t19);
-        let t45 = (t43 * t40 - (t37 * t35 - t31))
-            / (t41 * t43 - (t36 * t37 - (t17 + t44)));
-        let t46 = outer_ring_wx * outer_ring_wy;
-        let t47 = inner_ring_wy * t15 + (t0 * t14 - t11 * t45);
-        let t48 = inner_ring_wx * t15 - (t0 * t11 + t14 * t45);
-        let t49 = t43 * t45 - t42 * t40;
-        let t50 = t46 + t49;
-        let t51 = k(0.0001) * rotor_wz + k(0.00015) * rotor_wx;
-        let t52 = k(0.0002) * rotor_wx - k(0.0001) * rotor_wy;
-        let t53 = k(0.000125) * inner_ring_wz + k(3e-5) * inner_ring_wx;
-        let t54 = k(5e-5) * inner_ring_wx - k(0.000125) * inner_ring_wy;
-        let t55 = inner_ring_wy * t54 - inner_ring_wz * t53
-            - (rotor_wy * t52 - rotor_wz * t51);
-        let t56 = rotor_wz * t25 + (t5 * t50 - t3 * t48);
-        let t57 = rotor_wy * t25 + (t3 * t50 + t5 * t48);
-        let t58 = k(0.0002) * t57 - k(0.00015) * t56
-            + (t55 - (k(5e-5) * t50 + k(3e-5) * t48));
-        let t59 = rotor_e0 * rotor_e0;
-        let t60 = k(0.5) - (t59 + rotor_e1 * rotor_e1);
-        let t61 = k(0.000125) * t50 - k(3e-5) * t47;
-        let t62 = k(0.000125) * t48 + k(5e-5) * t47;
-        let t63 = k(3e-5) * inner_ring_wy + k(5e-5) * inner_ring_wz;
-        let t64 = inner_ring_wz * t63 + inner_ring_wx * t54;
-        let t65 = inner_ring_wx * t53 + inner_ring_wy * t63;
-        let t66 = k(0.00015) * rotor_wy + k(0.0002) * rotor_wz;
-        let t67 = rotor_wz * t66 + rotor_wx * t52 - (t65 * t5 + t64 * t3);
-        let t68 = t39 * t49 - (t37 * t45 - k(99950.02498750624) * t35) - t47;
-        let t69 = k(0.0001) * t57 + k(0.00015) * t68 - (t67 + (t5 * t62 + t3 * t61));
-        let t70 = rotor_e0 * rotor_e3;
-        let t71 = rotor_e1 * rotor_e2;
-        let t72 = t71 - t70;
-        let t73 = rotor_wx * t51 + rotor_wy * t66 - (t65 * t3 - t64 * t5);
-        let t74 = k(0.0001) * t56 + k(0.0002) * t68 + (t73 + (t3 * t62 - t5 * t61));
-        let t75 = rotor_e0 * rotor_e2;
-        let t76 = rotor_e1 * rotor_e3;
-        let t77 = t76 + t75;
-        let t78 = k(2.0) * t77 * t74 + (k(2.0) * t72 * t69 + k(2.0) * t60 * t58);
-        let t79 = t71 + t70;
-        let t80 = k(0.5) - (t59 + rotor_e2 * rotor_e2);
-        let t81 = rotor_e0 * rotor_e1;
-        let t82 = rotor_e2 * rotor_e3;
-        let t83 = t82 - t81;
-        let t84 = k(2.0) * t83 * t74 - (k(2.0) * t80 * t69 + k(2.0) * t79 * t58);
-        let t85 = t76 - t75;
-        let t86 = t82 + t81;
-        let t87 = k(0.5) - (t59 + rotor_e3 * rotor_e3);
-        let t88 = k(2.0) * t87 * t74 - (k(2.0) * t86 * t69 - k(2.0) * t85 * t58);
-        let t89 = k(0.08) * t78;
-        let t90 = k(0.8) - k(0.08) * t84;
-        let t91 = k(0.1) + t90;
-        let t92 = k(0.08) * t88;
-        let t93 = (k(0.0002) * t72 + k(0.0004) * t60) * t89
-            + (k(0.0002) * t80 + k(0.0004) * t79) * t90;
-        let t94 = t93 - (k(0.0002) * t86 - k(0.0004) * t85) * t92
-            - k(5e-6) * (rotor_wx * rotor_wy - t57);
-        let t95 = (k(0.0002) * t77 - k(0.0003) * t60) * t89
-            - (k(0.0002) * t83 + k(0.0003) * t79) * t90;
-        let t96 = t95 + (k(0.0002) * t87 - k(0.0003) * t85) * t92
-            - k(5e-6) * (rotor_wx * rotor_wz - t56);
-        let t97 = t5 * t96 + t3 * t94;
-        let t98 = inner_ring_e0 * inner_ring_e2;
-        let t99 = inner_ring_e1 * inner_ring_e3;
-        let t100 = t99 - t98;
-        let t101 = inner_ring_e0 * inner_ring_e1;
-        let t102 = inner_ring_e2 * inner_ring_e3;
-        let t103 = t102 + t101;
-        let t104 = inner_ring_e0 * inner_ring_e3;
-        let t105 = inner_ring_e1 * inner_ring_e2;
-        let t106 = t105 + t104;
-        let t107 = inner_ring_e0 * inner_ring_e0;
-        let t108 = k(0.5) - (t107 + inner_ring_e2 * inner_ring_e2);
-        let t109 = k(0.5) - (t107 + inner_ring_e1 * inner_ring_e1);
-        let t110 = t105 - t104;
-        let t111 = (k(0.00025) * t110 + k(0.0001) * t109) * t89
-            + (k(0.00025) * t108 + k(0.0001) * t106) * t90;
-        let t112 = t111 - (k(0.00025) * t103 - k(0.0001) * t100) * t92 - t97
-            - k(1e-6) * (inner_ring_wx * inner_ring_wy + t50);
-        let t113 = k(2.0) * outer_ring_e2;
-        let t114 = outer_ring_e0 * t113;
-        let t115 = t3 * t96 - t5 * t94;
-        let t116 = k(0.5) - (t107 + inner_ring_e3 * inner_ring_e3);
-        let t117 = t102 - t101;
-        let t118 = t99 + t98;
-        let t119 = (k(0.00025) * t118 - k(6e-5) * t109) * t89
-            - (k(0.00025) * t117 + k(6e-5) * t106) * t90;
-        let t120 = t119 + (k(0.00025) * t116 - k(6e-5) * t100) * t92 - t115
-            + k(2e-6) * t48;
-        let t121 = (k(0.0001) * t118 + k(6e-5) * t110) * t89
-            - (k(0.0001) * t117 - k(6e-5) * t108) * t90;
-        let t122 = (k(0.0004) * t77 + k(0.0003) * t72) * t89
-            - (k(0.0004) * t83 - k(0.0003) * t80) * t90;
-        let t123 = t122 + (k(0.0004) * t87 - k(0.0003) * t86) * t92 + k(1e-5) * t68;
-        let t124 = t123 - (t121 + (k(0.0001) * t116 - k(6e-5) * t103) * t92)
-            - k(1e-6) * (inner_ring_wy * inner_ring_wz + t47);
-        let t125 = t14 * t124 + t11 * t120;
-        let t126 = t125 - k(2e-6) * t0;
-        let t127 = k(1.0) - outer_ring_e2 * t113;
+        let t26 = k(2.4e-9) - t6;
+        let t27 = T::fused(k(2.0), t12, t26);
+        let t28 = outer_ring_wy
+            * (t26 - T::fused(k(0.3), t16, t11 * T::fused(t11, t27, t24)));
+        let t29 = T::fused(
+            -t25,
+            T::fused(k(1.2e-10), t11 * T::fused(k(9.666666666666666), t4, t5), t24),
+            k(2.0)
+                * T::fused(
+                    -T::fused(k(1.2), k(4.1693333333333335e-6) - t12, t17),
+                    t15 * t14,
+                    t28,
+                ),
+        );
+        let t30 = T::fused(
+            -t15,
+            T::fused(t15, T::fused(-t11, t7, t14 * t13), t23),
+            t25 * t29,
+        );
+        let t31 = t15 * t27;
+        let t32 = t14 * t16;
+        let t33 = outer_ring_wy
+            * (t32 - T::fused(-t14, T::fused(-k(2.0), t17, k(1.00036e-5)), t11 * t20));
+        let t34 = T::fused(
+            outer_ring_wy,
+            t28,
+            T::fused(t15, t33 - t31, k(400000.0) * t24),
+        );
+        let t35 = T::fused(
+            k(1.16e-9),
+            t11 * T::fused(k(0.10344827586206896), t4, -(t5 - k(8625.0))),
+            k(0.25) * t32,
+        );
+        let t36 = k(99950.02498750624) * t35;
+        let t37 = T::fused(
+            k(2e-5),
+            t14,
+            t25 * T::fused(-k(0.25), t25 * t16, T::fused(-k(2.0), t31, t33)),
+        );
+        let t38 = k(99950.02498750624) * t12;
+        let t39 = T::fused(
+            t38,
+            t34,
+            -T::fused(k(200000.0), t22, T::fused(k(0.5), outer_ring_wy * t23, t37)),
+        );
+        let t40 = T::fused(t38, t35, T::fused(t11, t13, t14 * t7));
+        let t41 = k(1.0) / T::fused(t12, t38, -(k(6.00205e-6) - t18));
+        let t42 = t41 * t40;
+        let t43 = T::fused(
+            t11,
+            T::fused(t11, t19, t14 * t21),
+            T::fused(-k(2.4), t12, k(8.003322e-6)),
+        );
+        let t44 = T::fused(t42, t39, -T::fused(t36, t34, t30))
+            / T::fused(t40, t42, -T::fused(t35, t36, -(t17 + t43)));
+        let t45 = outer_ring_wx * outer_ring_wy;
+        let t46 = T::fused(inner_ring_wy, t15, T::fused(-t11, t44, t0 * t14));
+        let t47 = T::fused(inner_ring_wx, t15, -T::fused(t14, t44, t0 * t11));
+        let t48 = T::fused(-t41, t39, t42 * t44);
+        let t49 = t45 + t48;
+        let t50 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
+        let t51 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
+        let t52 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
+        let t53 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
+        let t54 = T::fused(-inner_ring_wz, t52, inner_ring_wy * t53)
+            - T::fused(-rotor_wz, t50, rotor_wy * t51);
+        let t55 = T::fused(rotor_wz, t25, T::fused(-t5, t47, t4 * t49));
+        let t56 = T::fused(rotor_wy, t25, T::fused(t4, t47, t5 * t49));
+        let t57 = T::fused(-k(0.00015), t55, k(0.0002) * t56)
+            + (t54 - T::fused(k(3e-5), t47, k(5e-5) * t49));
+        let t58 = rotor_e0 * rotor_e0;
+        let t59 = k(0.5) - T::fused(rotor_e1, rotor_e1, t58);
+        let t60 = T::fused(-k(3e-5), t46, k(0.000125) * t49);
+        let t61 = T::fused(k(5e-5), t46, k(0.000125) * t47);
+        let t62 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
+        let t63 = T::fused(inner_ring_wx, t53, inner_ring_wz * t62);
+        let t64 = T::fused(inner_ring_wy, t62, inner_ring_wx * t52);
+        let t65 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
+        let t66 = T::fused(rotor_wx, t51, rotor_wz * t65) - T::fused(t63, t5, t64 * t4);
+        let t67 = T::fused(t38, t48, -T::fused(-k(99950.02498750624), t34, t36 * t44))
+            - t46;
+        let t68 = T::fused(k(0.00015), t67, k(0.0001) * t56)
+            - (t66 + T::fused(t5, t60, t4 * t61));
+        let t69 = rotor_e0 * rotor_e3;
+        let t70 = rotor_e1 * rotor_e2;
+        let t71 = t70 - t69;
+        let t72 = T::fused(rotor_wy, t65, rotor_wx * t50) - T::fused(-t63, t4, t64 * t5);
+        let t73 = T::fused(k(0.0002), t67, k(0.0001) * t55)
+            + (t72 + T::fused(-t4, t60, t5 * t61));
+        let t74 = rotor_e0 * rotor_e2;
+        let t75 = rotor_e1 * rotor_e3;
+        let t76 = t75 + t74;
+        let t77 = T::fused(
+            k(2.0) * t76,
+            t73,
+            T::fused(k(2.0) * t59, t57, k(2.0) * t71 * t68),
+        );
+        let t78 = t70 + t69;
+        let t79 = k(0.5) - T::fused(rotor_e2, rotor_e2, t58);
+        let t80 = rotor_e0 * rotor_e1;
+        let t81 = rotor_e2 * rotor_e3;
+        let t82 = t81 - t80;
+        let t83 = T::fused(
+            k(2.0) * t82,
+            t73,
+            -T::fused(k(2.0) * t78, t57, k(2.0) * t79 * t68),
+        );
+        let t84 = t75 - t74;
+        let t85 = t81 + t80;
+        let t86 = k(0.5) - T::fused(rotor_e3, rotor_e3, t58);
+        let t87 = T::fused(
+            k(2.0) * t86,
+            t73,
+            -T::fused(-(k(2.0) * t84), t57, k(2.0) * t85 * t68),
+        );
+        let t88 = k(0.08) * t77;
+        let t89 = T::fused(-k(0.08), t83, k(0.8));
+        let t90 = k(0.1) + t89;
+        let t91 = k(0.08) * t87;
+        let t92 = T::fused(
+            T::fused(k(0.0004), t78, k(0.0002) * t79),
+            t89,
+            T::fused(k(0.0004), t59, k(0.0002) * t71) * t88,
+        );
+        let t93 = T::fused(
+            -k(5e-6),
+            T::fused(rotor_wx, rotor_wy, -t56),
+            T::fused(-T::fused(-k(0.0004), t84, k(0.0002) * t85), t91, t92),
+        );
+        let t94 = T::fused(
+            -T::fused(k(0.0003), t78, k(0.0002) * t82),
+            t89,
+            T::fused(-k(0.0003), t59, k(0.0002) * t76) * t88,
+        );
+        let t95 = T::fused(
+            -k(5e-6),
+            T::fused(rotor_wx, rotor_wz, -t55),
+            T::fused(T::fused(-k(0.0003), t84, k(0.0002) * t86), t91, t94),
+        );
+        let t96 = T::fused(t5, t93, t4 * t95);
+        let t97 = inner_ring_e0 * inner_ring_e2;
+        let t98 = inner_ring_e1 * inner_ring_e3;
+        let t99 = t98 - t97;
+        let t100 = inner_ring_e0 * inner_ring_e1;
+        let t101 = inner_ring_e2 * inner_ring_e3;
+        let t102 = t101 + t100;
+        let t103 = inner_ring_e0 * inner_ring_e3;
+        let t104 = inner_ring_e1 * inner_ring_e2;
+        let t105 = t104 + t103;
+        let t106 = inner_ring_e0 * inner_ring_e0;
+        let t107 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t106);
+        let t108 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t106);
+        let t109 = t104 - t103;
+        let t110 = T::fused(
+            T::fused(k(0.0001), t105, k(0.00025) * t107),
+            t89,
+            T::fused(k(0.0001), t108, k(0.00025) * t109) * t88,
+        );
+        let t111 = T::fused(
+            -k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, t49),
+            T::fused(-T::fused(-k(0.0001), t99, k(0.00025) * t102), t91, t110) - t96,
+        );
+        let t112 = k(2.0) * outer_ring_e2;
+        let t113 = outer_ring_e0 * t112;
+        let t114 = T::fused(-t4, t93, t5 * t95);
+        let t115 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t106);
+        let t116 = t101 - t100;
+        let t117 = t98 + t97;
+        let t118 = T::fused(
+            -T::fused(k(6e-5), t105, k(0.00025) * t116),
+            t89,
+            T::fused(-k(6e-5), t108, k(0.00025) * t117) * t88,
+        );
+        let t119 = T::fused(
+            k(2e-6),
+            t47,
+            T::fused(T::fused(-k(6e-5), t99, k(0.00025) * t115), t91, t118) - t114,
+        );
+        let t120 = T::fused(
+            -T::fused(-k(6e-5), t107, k(0.0001) * t116),
+            t89,
+            T::fused(k(6e-5), t109, k(0.0001) * t117) * t88,
+        );
+        let t121 = T::fused(
+            -T::fused(-k(0.0003), t79, k(0.0004) * t82),
+            t89,
+            T::fused(k(0.0003), t71, k(0.0004) * t76) * t88,
+        );
+        let t122 = T::fused(
+            k(1e-5),
+            t67,
+            T::fused(T::fused(-k(0.0003), t85, k(0.0004) * t86), t91, t121),
+        );
+        let t123 = T::fused(
+            -k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, t46),
+            t122 - T::fused(T::fused(-k(6e-5), t102, k(0.0001) * t115), t91, t120),
+        );
+        let t124 = T::fused(t11, t119, t14 * t123);
+        let t125 = T::fused(-k(2e-6), t0, t124);
+        let t126 = T::fused(-outer_ring_e2, t112, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t45,
-            t46,
+            -t44,
+            t45,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t47,
-            t48,
-            t50,
-            -t78,
-            -t84,
+            -t46,
+            t47,
+            t49,
+            -t77,
+            -t83,
+            t87,
+            t67,
+            -t55,
+            t56,
             t88,
-            t68,
-            -t56,
-            t57,
-            t89,
-            -(k(0.1) + t91),
-            -t92,
-            t114 * t112 - t127 * t126,
-            -(t114 * t126 + t127 * t112),
-            t89,
+            -(k(0.1) + t90),
             -t91,
-            -t92,
-            t11 * t124 - t14 * t120,
-            t125,
-            t89,
+            T::fused(-t126, t125, t113 * t111),
+            -T::fused(t126, t111, t113 * t125),
+            t88,
             -t90,
-            -t92,
-            -t97,
-            -t115,
+            -t91,
+            T::fused(-t14, t119, t11 * t123),
+            t124,
+            t88,
+            -t89,
+            -t91,
+            -t96,
+            -t114,
         ];
     }
 }

@@ -14,9 +14,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: by relative Euler parameters, 347 operations, not rotations of the bodies 398
-//! * joint_accelerations: by normal form, 17 operations, not recursion 29
-//! * joint_accelerations_at: by normal form, 37 operations, not recursion 49, recursion on the bodies' spins 67
-//! * corrected_accelerations: by normal form in the bodies' frames, 79 operations, not recursion in the bodies' frames 90, recursion in the global frame 90, normal form in the global frame 79, recursion on the bodies' spins in the bodies' frames 100, recursion on the bodies' spins in the global frame 100, elimination in maximal coordinates 398
+//! * joint_accelerations: by normal form, 19 operations, not recursion 29
+//! * joint_accelerations_at: by normal form, 39 operations, not recursion 49, recursion on the bodies' spins 67
+//! * corrected_accelerations: by normal form in the bodies' frames, 80 operations, not recursion in the bodies' frames 90, recursion in the global frame 90, normal form in the global frame 80, recursion on the bodies' spins in the bodies' frames 100, recursion on the bodies' spins in the global frame 100, elimination in maximal coordinates 398
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -37,14 +37,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 189 | 314 | 3 | 506 | 9 of 21 | 1.0e9 | 506 |
 //! | solve_velocities | dependent velocities, eq. (19) | 93 | 149 | 3 | 245 | 9 of 18 | 8018 | 245 |
-//! | joint_accelerations | u̇ in joint coordinates | 4 | 12 | 1 | 17 | 0 of 3 | 28 | 18 |
+//! | joint_accelerations | u̇ in joint coordinates | 4 | 14 | 1 | 19 | 0 of 3 | 35 | 20 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 9 | 27 | 0 | 36 | 22 of 39 | 111 | 36 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 23 | 1 | 37 | 0 of 3 | 212 | 38 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 48 | 1 | 79 | 9 of 18 | 964 | 80 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 13 | 25 | 1 | 39 | 0 of 3 | 241 | 40 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 49 | 1 | 80 | 9 of 18 | 1010 | 81 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 | 571 | 96 |
-//! | corrected_solution | both | 45 | 74 | 1 | 120 | 18 of 33 | 6542 | 121 |
+//! | corrected_solution | both | 45 | 75 | 1 | 121 | 18 of 33 | 6790 | 122 |
 //!
 //! # Proof
 //!
@@ -175,41 +175,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeFreeNutation<T> {
             outer_ring_sy,
             outer_ring_sz,
             -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
             k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
             -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
             inner_ring_sx,
             inner_ring_sy,
             inner_ring_sz,
             -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
             k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
             -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
             rotor_sx,
             rotor_sy,
             rotor_sz,
             -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
             -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -244,6 +302,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
     /// Writes Φ: 99 operations (44 ±, 55 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -269,31 +480,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
         let t3 = k(2.0) * (t2 - t1);
         let t4 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2);
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
         let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = t5 + outer_ring_e1 * outer_ring_e1;
+        let t6 = T::fused(outer_ring_e1, outer_ring_e1, t5);
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (t2 + t1) * t9 - k(2.0) * (k(0.5) - t6) * t4;
+        let t10 = T::fused(-(k(2.0) * (k(0.5) - t6)), t4, k(2.0) * (t2 + t1) * t9);
         let t11 = inner_ring_e3 * inner_ring_e3;
         let t12 = inner_ring_e0 * inner_ring_e0;
         let t13 = k(2.0) * (k(0.5) - (t12 + t11));
         let t14 = outer_ring_e2 * outer_ring_e2;
-        let t15 = t0 * t13 - (t3 * t4 - k(2.0) * (k(0.5) - (t5 + t14)) * t9);
-        let t16 = rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1;
+        let t15 = T::fused(
+            t0,
+            t13,
+            -T::fused(-(k(2.0) * (k(0.5) - (t5 + t14))), t9, t3 * t4),
+        );
+        let t16 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
         let t17 = k(2.0) * (k(0.5) - t16);
-        let t18 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
+        let t18 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
         let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = k(2.0) * (k(0.5) - (t12 + t19)) * t18
-            + k(2.0) * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3)
-                * t17;
-        let t21 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
+        let t20 = T::fused(
+            k(2.0)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
+            t17,
+            k(2.0) * (k(0.5) - (t12 + t19)) * t18,
+        );
+        let t21 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
@@ -303,19 +521,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            t10
-                - k(2.0)
-                    * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2)
-                    * t13,
+            T::fused(
+                -(k(2.0)
+                    * T::fused(
+                        -outer_ring_e0,
+                        outer_ring_e2,
+                        outer_ring_e1 * outer_ring_e3,
+                    )),
+                t13,
+                t10,
+            ),
             -t15,
             rotor_rx - inner_ring_rx,
             rotor_ry - inner_ring_ry,
             rotor_rz - inner_ring_rz,
-            k(2.0) * (t8 + t7) * t21 - t20,
-            t9 * t18 - t4 * t17 - t13 * t21,
-            outer_ring_e3 * outer_ring_e3 + (t6 + t14) - k(1.0),
-            t11 + (t12 + inner_ring_e1 * inner_ring_e1 + t19) - k(1.0),
-            rotor_e3 * rotor_e3 + (t16 + rotor_e2 * rotor_e2) - k(1.0),
+            T::fused(k(2.0) * (t8 + t7), t21, -t20),
+            T::fused(-t13, t21, T::fused(-t4, t17, t9 * t18)),
+            T::fused(outer_ring_e3, outer_ring_e3, t6 + t14) - k(1.0),
+            t11 + (T::fused(inner_ring_e1, inner_ring_e1, t12) + t19) - k(1.0),
+            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t16)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 203 operations (84 ±, 119 ×, 0 ÷).
@@ -354,13 +578,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
-        let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
         let t6 = k(2.0) * (t1 + t0);
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
         let t11 = inner_ring_e0 * inner_ring_e2;
         let t12 = inner_ring_e1 * inner_ring_e3;
         let t13 = k(2.0) * (t12 + t11);
@@ -368,59 +592,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
+        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
-        let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
-        let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
+        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
+        let t23 = T::fused(
+            outer_ring_wz,
+            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
+            outer_ring_wy * t22,
+        );
+        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
         let t28 = k(2.0) * (t15 + t14);
         let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
+        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
         let t32 = k(2.0) * (t8 + t7);
-        let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
-            - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
-        let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
-            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
+        let t33 = T::fused(
+            -inner_ring_wy,
+            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
+            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+        );
+        let t34 = T::fused(
+            outer_ring_wz,
+            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
+            outer_ring_wx * t22,
+        );
+        let t35 = T::fused(
+            -inner_ring_wy,
+            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
+            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+        );
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
+        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
         let t38 = rotor_e0 * rotor_e3;
         let t39 = rotor_e1 * rotor_e2;
         let t40 = k(2.0) * (t39 + t38);
         let t41 = rotor_e0 * rotor_e2;
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
-        let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wz * t44
-            + inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37));
-        let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t44 = T::fused(t29, t43, T::fused(t24, t37, t27 * t40));
+        let t45 = T::fused(
+            inner_ring_wx,
+            T::fused(t18, t43, -T::fused(-t13, t37, t9 * t40)),
+            inner_ring_wz * t44,
+        );
+        let t46 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
         let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
         let t49 = rotor_e2 * rotor_e3;
         let t50 = k(2.0) * (t49 + t48);
         let t51 = k(2.0) * (t49 - t48);
         let t52 = k(2.0) * (t42 + t41);
-        let t53 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
-        let t54 = rotor_wy * (t32 * t53 - (t30 * t52 - t31 * t51))
-            + rotor_wz * (t32 * t50 + (t30 * t47 + t31 * t46));
-        let t55 = inner_ring_wx * (t32 * t43 - (t31 * t40 + t30 * t37))
-            - inner_ring_wy * t44;
-        let t56 = rotor_wy * (t13 * t52 + t9 * t51 + t18 * t53)
-            + rotor_wz * (t18 * t50 - (t13 * t47 - t9 * t46));
+        let t53 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
+        let t54 = T::fused(
+            rotor_wz,
+            T::fused(t32, t50, T::fused(t31, t46, t30 * t47)),
+            rotor_wy * T::fused(t32, t53, -T::fused(-t31, t51, t30 * t52)),
+        );
+        let t55 = T::fused(
+            -inner_ring_wy,
+            t44,
+            inner_ring_wx * T::fused(t32, t43, -T::fused(t30, t37, t31 * t40)),
+        );
+        let t56 = T::fused(
+            rotor_wz,
+            T::fused(t18, t50, -T::fused(-t9, t46, t13 * t47)),
+            rotor_wy * T::fused(t18, t53, T::fused(t9, t51, t13 * t52)),
+        );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -(t4 * outer_ring_wx + t2 * outer_ring_wz),
-            t6 * outer_ring_wx + t5 * outer_ring_wz,
+            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
+            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
@@ -454,25 +702,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_wx * (k(1e-5) * rotor_wx) + rotor_wy * (k(5e-6) * rotor_wy)
-            + rotor_wz * (k(5e-6) * rotor_wz);
-        let t1 = t0
-            + k(0.08)
-                * (rotor_sx * rotor_sx + rotor_sy * rotor_sy + rotor_sz * rotor_sz);
-        let t2 = inner_ring_wx * (k(1e-6) * inner_ring_wx)
-            + inner_ring_wy * (k(2e-6) * inner_ring_wy)
-            + inner_ring_wz * (k(1e-6) * inner_ring_wz);
-        let t3 = t2
-            + k(0.01)
-                * (inner_ring_sx * inner_ring_sx + inner_ring_sy * inner_ring_sy
-                    + inner_ring_sz * inner_ring_sz);
-        let t4 = outer_ring_wx * (k(2e-6) * outer_ring_wx)
-            + outer_ring_wy * (k(1e-6) * outer_ring_wy)
-            + outer_ring_wz * (k(1e-6) * outer_ring_wz);
-        let t5 = t4
-            + k(0.01)
-                * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
-                    + outer_ring_sz * outer_ring_sz);
+        let t0 = T::fused(
+            rotor_wz,
+            k(5e-6) * rotor_wz,
+            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+        );
+        let t1 = T::fused(
+            k(0.08),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            inner_ring_wz,
+            k(1e-6) * inner_ring_wz,
+            T::fused(
+                inner_ring_wy,
+                k(2e-6) * inner_ring_wy,
+                inner_ring_wx * (k(1e-6) * inner_ring_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.01),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            outer_ring_wz,
+            k(1e-6) * outer_ring_wz,
+            T::fused(
+                outer_ring_wy,
+                k(1e-6) * outer_ring_wy,
+                outer_ring_wx * (k(2e-6) * outer_ring_wx),
+            ),
+        );
+        let t5 = T::fused(
+            k(0.01),
+            T::fused(
+                outer_ring_sz,
+                outer_ring_sz,
+                T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
+            ),
+            t4,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
             potential: k(0.0),
@@ -502,7 +781,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = outer_ring_e2 * outer_ring_e2;
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
         let t5 = outer_ring_e3 * outer_ring_e3;
         let t6 = k(1.0) - (t5 + (t4 + t2));
         let t7 = inner_ring_e0 * inner_ring_e2;
@@ -513,36 +792,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let t12 = k(2.0) * (t11 + t10);
         let t13 = inner_ring_e2 * inner_ring_e2;
         let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t16 = inner_ring_e3 * inner_ring_e3;
         let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
         let t19 = outer_ring_e0 * outer_ring_e3;
         let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = k(2.0) * (t20 - t19) * t18
-            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
-        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
-        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t21 = T::fused(
+            t12,
+            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
+            k(2.0) * (t20 - t19) * t18,
+        );
+        let t22 = T::fused(
+            k(2.0) * (t20 + t19),
+            t12,
+            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+        );
+        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t24 = rotor_e2 * rotor_e2;
         let t25 = rotor_e0 * rotor_e0;
-        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t26 = T::fused(
+            k(2.0),
+            k(0.5) - (t25 + t24),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        );
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
-        let t31 = k(2.0) * (t11 - t10) * t29
-            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
+        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t31 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
+            t26,
+            k(2.0) * (t11 - t10) * t29,
+        );
         *out = [
             k(2.0) * (t1 + t0),
-            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
+            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
-                - t21,
-            t22 + k(2.0) * (t1 - t0) * t9,
+            T::fused(
+                k(2.0)
+                    * T::fused(
+                        outer_ring_e0,
+                        outer_ring_e1,
+                        outer_ring_e2 * outer_ring_e3,
+                    ),
+                t9,
+                -t21,
+            ),
+            T::fused(k(2.0) * (t1 - t0), t9, t22),
             inner_ring_wz - outer_ring_wz,
-            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
-            t31 + k(2.0) * (t28 + t27) * t23,
+            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
+            T::fused(k(2.0) * (t28 + t27), t23, t31),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -664,9 +965,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> GyroscopeFreeNutation<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeFreeNutation<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -685,23 +987,8 @@ impl<T: gyro_sim::Scalar> GyroscopeFreeNutation<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 506 operations (189 ±, 314 ×, 3 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -727,47 +1014,82 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e3 * outer_ring_e3
-            + (outer_ring_e0 * outer_ring_e0 + outer_ring_e1 * outer_ring_e1
-                + outer_ring_e2 * outer_ring_e2);
+        let t0 = T::fused(
+            outer_ring_e3,
+            outer_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                outer_ring_e2,
+                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+            ),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
         let t4 = outer_ring_e3 * t1;
         let t5 = outer_ring_e2 * t1;
-        let t6 = chart0_0 * t5 + chart0_1 * t4 - chart0_2 * t3 - chart0_3 * t2;
+        let t6 = T::fused(
+            -chart0_3,
+            t2,
+            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+        );
         let t7 = k(0.5) * t6;
         let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - (t4 * t4 + t8));
-        let t10 = k(2.0) * (t3 * t4 - t2 * t5);
+        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
+        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
         let t11 = t2 * t4;
         let t12 = t3 * t5;
         let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * (t3 * t2 + t5 * t4);
-        let t15 = k(2.0) * (k(0.5) - (t8 + t2 * t2));
+        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
+        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
         let t16 = k(2.0) * (t12 - t11);
-        let t17 = t16 * t13 + t9 * t15;
+        let t17 = T::fused(t9, t15, t16 * t13);
         let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * (t14 * (t13 * t7) - t10 * (t9 * t7));
-        let t20 = chart0_0 * (outer_ring_e0 + t3) + chart0_1 * (outer_ring_e1 + t2)
-            + chart0_2 * (outer_ring_e2 + t5);
-        let t21 = chart0_0 * t2 - chart0_1 * t3 - chart0_2 * t4 + chart0_3 * t5;
+        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t20 = T::fused(
+            chart0_2,
+            outer_ring_e2 + t5,
+            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+        );
+        let t21 = T::fused(
+            chart0_3,
+            t5,
+            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+        );
         let t22 = k(0.5) * t21;
-        let t23 = chart0_0 * t4 - chart0_1 * t5 + chart0_2 * t2 - chart0_3 * t3;
+        let t23 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+        );
         let t24 = k(0.5) * t23;
-        let t25 = t14 * (t15 * t22 - t13 * t24) + t10 * (t9 * t24 + t16 * t22);
-        let t26 = t18 * (t25 - (t20 + chart0_3 * (outer_ring_e3 + t4)) * t17);
-        let t27 = t18 * (t14 * (t15 * t7) + t10 * (t16 * t7));
-        let t28 = t3 - k(0.5) * (t2 * t27 - t5 * t26 - t4 * t19);
-        let t29 = t2 + k(0.5) * (t3 * t27 + t4 * t26 - t5 * t19);
-        let t30 = t5 + k(0.5) * (t4 * t27 - t3 * t26 + t2 * t19);
-        let t31 = t4 - k(0.5) * (t5 * t27 + t2 * t26 + t3 * t19);
+        let t25 = T::fused(
+            t10,
+            T::fused(t16, t22, t9 * t24),
+            t14 * T::fused(-t13, t24, t15 * t22),
+        );
+        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
+        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
+        let t28 = T::fused(
+            -k(0.5),
+            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
+            t3,
+        );
+        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
+        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
+        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
         let t32 = t29 * t30;
         let t33 = t28 * t31;
         let t34 = k(2.0) * (t33 - t32);
-        let t35 = inner_ring_e3 * inner_ring_e3
-            + (inner_ring_e0 * inner_ring_e0 + inner_ring_e1 * inner_ring_e1
-                + inner_ring_e2 * inner_ring_e2);
+        let t35 = T::fused(
+            inner_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                inner_ring_e2,
+                inner_ring_e2,
+                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t36 = k(0.5) * (t35 - k(3.0));
         let t37 = inner_ring_e2 * t36;
         let t38 = inner_ring_e1 * t36;
@@ -777,63 +1099,110 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         let t42 = t41 * t40;
         let t43 = k(2.0) * (t42 - t39);
         let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - (t44 + t30 * t30));
+        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
         let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - (t37 * t37 + t46));
-        let t48 = k(2.0) * (t28 * t29 + t30 * t31);
+        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
+        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
         let t49 = t37 * t40;
         let t50 = t41 * t38;
         let t51 = k(2.0) * (t50 + t49);
-        let t52 = t51 * t48 + (t47 * t45 + t43 * t34);
-        let t53 = k(2.0) * (k(0.5) - (t46 + t38 * t38));
-        let t54 = k(2.0) * (k(0.5) - (t29 * t29 + t44));
+        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
+        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
+        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
         let t55 = k(2.0) * (t42 + t39);
         let t56 = k(2.0) * (t33 + t32);
         let t57 = t38 * t40;
         let t58 = t41 * t37;
         let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * (t28 * t30 - t29 * t31);
-        let t61 = t60 * t59 + (t56 * t55 + t54 * t53);
-        let t62 = t59 * t48 + (t55 * t45 - t53 * t34);
-        let t63 = t51 * t60 + (t47 * t56 - t43 * t54);
-        let t64 = t63 * t62 - t61 * t52;
-        let t65 = chart1_0 * (inner_ring_e0 + t41) + chart1_1 * (inner_ring_e1 + t38)
-            + chart1_2 * (inner_ring_e2 + t37);
-        let t66 = chart1_0 * t37 + chart1_1 * t40 - chart1_2 * t41 - chart1_3 * t38;
+        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
+        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
+        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
+        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
+        let t64 = T::fused(-t61, t52, t63 * t62);
+        let t65 = T::fused(
+            chart1_2,
+            inner_ring_e2 + t37,
+            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
+        );
+        let t66 = T::fused(
+            -chart1_3,
+            t38,
+            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
+        );
         let t67 = k(0.5) * t66;
-        let t68 = chart1_0 * t38 - chart1_1 * t41 - chart1_2 * t40 + chart1_3 * t37;
+        let t68 = T::fused(
+            chart1_3,
+            t37,
+            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+        );
         let t69 = k(0.5) * t68;
         let t70 = k(2.0) * (t58 + t57);
         let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - (t46 + t40 * t40));
-        let t73 = t72 * t48 - (t71 * t45 - t70 * t34);
-        let t74 = t60 * t72 - (t56 * t71 + t54 * t70);
-        let t75 = t74 * (t52 * t67 - t62 * t69) + t73 * (t61 * t69 - t63 * t67);
-        let t76 = chart1_0 * t40 - chart1_1 * t37 + chart1_2 * t38 - chart1_3 * t41;
+        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
+        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
+        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t75 = T::fused(
+            t73,
+            T::fused(-t63, t67, t61 * t69),
+            t74 * T::fused(-t62, t69, t52 * t67),
+        );
+        let t76 = T::fused(
+            -chart1_3,
+            t41,
+            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+        );
         let t77 = k(0.5) * t76;
         let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78 * (t75 - (t65 + chart1_3 * (inner_ring_e3 + t40)) * t64);
-        let t80 = t78 * (t74 * (t52 * t77) - t73 * (t63 * t77));
-        let t81 = t78 * (t74 * (t62 * t77) - t73 * (t61 * t77));
-        let t82 = t41 + k(0.5) * (t38 * t81 - t37 * t80 + t40 * t79);
-        let t83 = t38 - k(0.5) * (t41 * t81 + t40 * t80 + t37 * t79);
-        let t84 = t37 - k(0.5) * (t40 * t81 - t41 * t80 - t38 * t79);
-        let t85 = t40 + k(0.5) * (t37 * t81 + t38 * t80 - t41 * t79);
-        let t86 = rotor_e3 * rotor_e3
-            + (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1 + rotor_e2 * rotor_e2);
+        let t79 = t78
+            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
+        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
+        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t82 = T::fused(
+            k(0.5),
+            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
+            t41,
+        );
+        let t83 = T::fused(
+            -k(0.5),
+            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
+            t38,
+        );
+        let t84 = T::fused(
+            -k(0.5),
+            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
+            t37,
+        );
+        let t85 = T::fused(
+            k(0.5),
+            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
+            t40,
+        );
+        let t86 = T::fused(
+            rotor_e3,
+            rotor_e3,
+            T::fused(
+                rotor_e2,
+                rotor_e2,
+                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+            ),
+        );
         let t87 = k(0.5) * (t86 - k(3.0));
         let t88 = rotor_e2 * t87;
         let t89 = rotor_e3 * t87;
         let t90 = rotor_e0 * t87;
         let t91 = rotor_e1 * t87;
-        let t92 = chart2_0 * t91 - chart2_1 * t90 - chart2_2 * t89 + chart2_3 * t88;
+        let t92 = T::fused(
+            chart2_3,
+            t88,
+            T::fused(-chart2_2, t89, T::fused(-chart2_1, t90, chart2_0 * t91)),
+        );
         let t93 = k(0.5) * t92;
-        let t94 = k(2.0) * (t82 * t85 - t83 * t84);
+        let t94 = k(2.0) * T::fused(-t83, t84, t82 * t85);
         let t95 = t91 * t89;
         let t96 = t90 * t88;
         let t97 = k(2.0) * (t96 + t95);
         let t98 = t82 * t82;
-        let t99 = k(2.0) * (k(0.5) - (t84 * t84 + t98));
+        let t99 = k(2.0) * (k(0.5) - T::fused(t84, t84, t98));
         let t100 = t88 * t89;
         let t101 = t90 * t91;
         let t102 = k(2.0) * (t101 - t100);
@@ -841,41 +1210,71 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         let t104 = t82 * t83;
         let t105 = k(2.0) * (t104 + t103);
         let t106 = t90 * t90;
-        let t107 = k(2.0) * (k(0.5) - (t89 * t89 + t106));
-        let t108 = t107 * t105 - (t102 * t99 - t97 * t94);
-        let t109 = k(2.0) * (t82 * t84 + t83 * t85);
-        let t110 = k(2.0) * (k(0.5) - (t106 + t91 * t91));
+        let t107 = k(2.0) * (k(0.5) - T::fused(t89, t89, t106));
+        let t108 = T::fused(t107, t105, -T::fused(-t97, t94, t102 * t99));
+        let t109 = k(2.0) * T::fused(t83, t85, t82 * t84);
+        let t110 = k(2.0) * (k(0.5) - T::fused(t91, t91, t106));
         let t111 = k(2.0) * (t104 - t103);
         let t112 = t91 * t88;
         let t113 = t90 * t89;
         let t114 = k(2.0) * (t113 + t112);
-        let t115 = k(2.0) * (k(0.5) - (t98 + t85 * t85));
+        let t115 = k(2.0) * (k(0.5) - T::fused(t85, t85, t98));
         let t116 = k(2.0) * (t96 - t95);
-        let t117 = t116 * t115 - (t114 * t111 + t110 * t109);
-        let t118 = t107 * t115 + (t102 * t111 + t97 * t109);
-        let t119 = t105 * t116 + (t99 * t114 - t94 * t110);
+        let t117 = T::fused(t116, t115, -T::fused(t110, t109, t114 * t111));
+        let t118 = T::fused(t107, t115, T::fused(t97, t109, t102 * t111));
+        let t119 = T::fused(t105, t116, T::fused(-t94, t110, t99 * t114));
         let t120 = k(2.0) * (t113 - t112);
-        let t121 = k(2.0) * (k(0.5) - (t106 + t88 * t88));
+        let t121 = k(2.0) * (k(0.5) - T::fused(t88, t88, t106));
         let t122 = k(2.0) * (t101 + t100);
-        let t123 = t105 * t122 + (t99 * t121 + t94 * t120);
-        let t124 = t122 * t115 - (t121 * t111 - t120 * t109);
-        let t125 = t108 * t124 - t123 * t118;
+        let t123 = T::fused(t105, t122, T::fused(t94, t120, t99 * t121));
+        let t124 = T::fused(t122, t115, -T::fused(-t120, t109, t121 * t111));
+        let t125 = T::fused(-t123, t118, t108 * t124);
         let t126 = k(1.0) / (t93 * t125);
-        let t127 = t126 * (t119 * (t118 * t93) - t117 * (t108 * t93));
-        let t128 = t126 * (t119 * (t124 * t93) - t117 * (t123 * t93));
-        let t129 = chart2_0 * (rotor_e0 + t90) + chart2_1 * (rotor_e1 + t91)
-            + chart2_2 * (rotor_e2 + t88);
-        let t130 = chart2_0 * t89 - chart2_1 * t88 + chart2_2 * t91 - chart2_3 * t90;
+        let t127 = t126 * T::fused(-t117, t108 * t93, t119 * (t118 * t93));
+        let t128 = t126 * T::fused(-t117, t123 * t93, t119 * (t124 * t93));
+        let t129 = T::fused(
+            chart2_2,
+            rotor_e2 + t88,
+            T::fused(chart2_1, rotor_e1 + t91, chart2_0 * (rotor_e0 + t90)),
+        );
+        let t130 = T::fused(
+            -chart2_3,
+            t90,
+            T::fused(chart2_2, t91, T::fused(-chart2_1, t88, chart2_0 * t89)),
+        );
         let t131 = k(0.5) * t130;
-        let t132 = chart2_0 * t88 + chart2_1 * t89 - chart2_2 * t90 - chart2_3 * t91;
+        let t132 = T::fused(
+            -chart2_3,
+            t91,
+            T::fused(-chart2_2, t90, T::fused(chart2_1, t89, chart2_0 * t88)),
+        );
         let t133 = k(0.5) * t132;
-        let t134 = t119 * (t118 * t131 - t124 * t133)
-            + t117 * (t123 * t133 - t108 * t131);
-        let t135 = t126 * (t134 + (t129 + chart2_3 * (rotor_e3 + t89)) * t125);
-        let t136 = t90 - k(0.5) * (t91 * t135 + t88 * t128 - t89 * t127);
-        let t137 = t91 + k(0.5) * (t90 * t135 - t89 * t128 - t88 * t127);
-        let t138 = t88 + k(0.5) * (t89 * t135 + t90 * t128 + t91 * t127);
-        let t139 = t89 - k(0.5) * (t88 * t135 - t91 * t128 + t90 * t127);
+        let t134 = T::fused(
+            t117,
+            T::fused(-t108, t131, t123 * t133),
+            t119 * T::fused(-t124, t133, t118 * t131),
+        );
+        let t135 = t126 * T::fused(T::fused(chart2_3, rotor_e3 + t89, t129), t125, t134);
+        let t136 = T::fused(
+            -k(0.5),
+            T::fused(-t89, t127, T::fused(t88, t128, t91 * t135)),
+            t90,
+        );
+        let t137 = T::fused(
+            k(0.5),
+            T::fused(-t88, t127, T::fused(-t89, t128, t90 * t135)),
+            t91,
+        );
+        let t138 = T::fused(
+            k(0.5),
+            T::fused(t91, t127, T::fused(t90, t128, t89 * t135)),
+            t88,
+        );
+        let t139 = T::fused(
+            -k(0.5),
+            T::fused(t90, t127, T::fused(-t91, t128, t88 * t135)),
+            t89,
+        );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
@@ -897,15 +1296,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         y[18] = -t137;
         y[19] = -t138;
         y[20] = -t139;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 245 operations (93 ±, 149 ×, 3 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -928,79 +1321,95 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t3 = outer_ring_e0 * outer_ring_e2;
         let t4 = outer_ring_e1 * outer_ring_e3;
         let t5 = k(2.0) * (t4 - t3);
         let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
-        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
-        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
-        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
-        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
+        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
+        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
+        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
         let t14 = outer_ring_e0 * outer_ring_e3;
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e3;
         let t18 = inner_ring_e1 * inner_ring_e2;
         let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t21 = inner_ring_e0 * inner_ring_e2;
         let t22 = inner_ring_e1 * inner_ring_e3;
         let t23 = k(2.0) * (t22 - t21);
         let t24 = outer_ring_e0 * outer_ring_e1;
         let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
         let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
         let t30 = k(2.0) * (t15 + t14);
         let t31 = inner_ring_e0 * inner_ring_e1;
         let t32 = inner_ring_e2 * inner_ring_e3;
         let t33 = k(2.0) * (t32 + t31);
-        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
-        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
-        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
-        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
+        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
+        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
+        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
         let t38 = k(2.0) * (t22 + t21);
         let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
-        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
-        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
-        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
-        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
-        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
-        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
-        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
+        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
+        let t42 = T::fused(
+            t11,
+            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
+            t10 * t41,
+        );
+        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t44 = T::fused(
+            t11,
+            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
+            outer_ring_wy * t41,
+        );
+        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
+        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
+        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
         let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
         let t50 = rotor_e0 * rotor_e3;
         let t51 = rotor_e1 * rotor_e2;
         let t52 = k(2.0) * (t51 - t50);
         let t53 = rotor_e0 * rotor_e1;
         let t54 = rotor_e2 * rotor_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
         let t57 = k(2.0) * (t54 - t53);
         let t58 = rotor_e0 * rotor_e2;
         let t59 = rotor_e1 * rotor_e3;
         let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
-        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
-        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
-        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
-        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
-        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
+        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
+        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
+        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
+        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
+        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
         let t67 = k(2.0) * (t51 + t50);
         let t68 = k(2.0) * (t59 - t58);
-        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
-        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
-        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
-        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
-        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
+        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
+        let t70 = T::fused(
+            -t47,
+            t69,
+            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        );
+        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t72 = T::fused(
+            inner_ring_wz,
+            t69,
+            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+        );
+        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
@@ -1014,104 +1423,45 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
         y[33] = k(0.0);
         y[34] = k(0.0);
         y[35] = k(0.0);
-        y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
-        y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
+        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
+        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeFreeNutation<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
@@ -1262,37 +1612,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
         let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + inner_ring_e3 * inner_ring_e3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
         let t6 = t5 * t3;
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
         let t10 = k(4.0) * outer_ring_e0;
         let t11 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2);
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
         let t12 = t5 * t2;
         let t13 = t5 * t1;
         let t14 = t5 * t0;
         let t15 = k(4.0) * inner_ring_e0;
         let t16 = k(2.0)
-            * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2);
+            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
         let t17 = k(2.0) * inner_ring_e1;
         let t18 = outer_ring_e0 * outer_ring_e3;
         let t19 = outer_ring_e1 * outer_ring_e2;
         let t20 = k(2.0) * (t19 + t18);
         let t21 = k(2.0) * inner_ring_e2;
         let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + outer_ring_e1 * outer_ring_e1));
+        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
         let t24 = k(2.0) * inner_ring_e0;
         let t25 = k(2.0) * inner_ring_e3;
         let t26 = k(4.0) * inner_ring_e3;
         let t27 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
-        let t28 = k(2.0) * (k(0.5) - (t22 + outer_ring_e2 * outer_ring_e2));
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
         let t29 = k(2.0) * (t19 - t18);
-        let t30 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
-        let t31 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
-        let t32 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1));
+        let t30 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t31 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
         let t33 = t32 * t25;
         let t34 = t32 * t21;
         let t35 = t32 * t17;
@@ -1300,10 +1650,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t37 = k(2.0) * rotor_e2;
         let t38 = k(2.0) * (t8 + t7);
         let t39 = k(2.0) * rotor_e3;
-        let t40 = k(2.0) * (k(0.5) - (t4 + inner_ring_e2 * inner_ring_e2));
+        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
         let t41 = k(4.0) * rotor_e0;
         let t42 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3);
+            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
         let t43 = k(4.0) * rotor_e1;
         let t44 = k(2.0) * rotor_e0;
         let t45 = k(2.0) * rotor_e1;
@@ -1325,44 +1675,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            t11 * t10 + t9 * t2 + t6,
-            t11 * (k(4.0) * outer_ring_e1) + t9 * t3 - t12,
-            t9 * t0 + t13,
-            t9 * t1 - t14,
-            t16 * t15 - (t23 * t21 + t20 * t17),
-            -(t23 * t25 + t20 * t24),
-            t20 * t25 - t23 * t24,
-            t16 * t26 - (t23 * t17 - t20 * t21),
-            -(t14 + (t11 * t2 - t9 * t10)),
-            t11 * t3 - t13,
-            t11 * t0 + t9 * (k(4.0) * outer_ring_e2) - t12,
-            -(t6 + t11 * t1),
-            t29 * t21 + t28 * t17 + t27 * t15,
-            t29 * t25 + t28 * t24,
-            t29 * t24 - t28 * t25,
-            t29 * t17 - t28 * t21 + t27 * t26,
+            T::fused(t9, t2, t11 * t10) + t6,
+            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
+            T::fused(t9, t0, t13),
+            T::fused(t9, t1, -t14),
+            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
+            -T::fused(t20, t24, t23 * t25),
+            T::fused(-t23, t24, t20 * t25),
+            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
+            -(t14 + T::fused(-t9, t10, t11 * t2)),
+            T::fused(t11, t3, -t13),
+            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
+            -T::fused(t11, t1, t6),
+            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
+            T::fused(t28, t24, t29 * t25),
+            T::fused(-t28, t25, t29 * t24),
+            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            t33 + t31 * t15 + t30 * t17,
-            t30 * t24 - t34,
-            t30 * t25 - (t35 - t31 * (k(4.0) * inner_ring_e2)),
-            t30 * t21 + t36,
-            t42 * t41 - t40 * t39 - t38 * t37,
-            t42 * t43 - t40 * t37 + t38 * t39,
-            -(t40 * t45 + t38 * t44),
-            t38 * t45 - t40 * t44,
-            t30 * t15 - (t34 + t31 * t17),
-            -(t33 + t31 * t24),
-            t31 * t25 - t36,
-            t30 * t26 - (t35 - t31 * t21),
-            t11 * t41 + t9 * t39 + t5 * t37,
-            t11 * t43 + t9 * t37 - t5 * t39,
-            t9 * t45 + t5 * t44,
-            t9 * t44 - t5 * t45,
+            T::fused(t30, t17, T::fused(t31, t15, t33)),
+            T::fused(t30, t24, -t34),
+            T::fused(t30, t25, -T::fused(-t31, k(4.0) * inner_ring_e2, t35)),
+            T::fused(t30, t21, t36),
+            T::fused(-t38, t37, T::fused(-t40, t39, t42 * t41)),
+            T::fused(t38, t39, T::fused(-t40, t37, t42 * t43)),
+            -T::fused(t38, t44, t40 * t45),
+            T::fused(-t40, t44, t38 * t45),
+            T::fused(t30, t15, -T::fused(t31, t17, t34)),
+            -T::fused(t31, t24, t33),
+            T::fused(t31, t25, -t36),
+            T::fused(t30, t26, -T::fused(-t31, t21, t35)),
+            T::fused(t5, t37, T::fused(t9, t39, t11 * t41)),
+            T::fused(-t5, t39, T::fused(t9, t37, t11 * t43)),
+            T::fused(t5, t44, t9 * t45),
+            T::fused(-t5, t45, t9 * t44),
             t1,
             t0,
             t3,
@@ -1393,14 +1743,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
         let t2 = outer_ring_e0 * outer_ring_e2;
         let t3 = outer_ring_e1 * outer_ring_e3;
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3));
+        let t8 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7));
         let t9 = inner_ring_e0 * inner_ring_e1;
         let t10 = inner_ring_e2 * inner_ring_e3;
         let t11 = k(2.0) * (t10 - t9);
@@ -1409,8 +1759,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t14 = inner_ring_e0 * inner_ring_e2;
         let t15 = inner_ring_e1 * inner_ring_e3;
         let t16 = k(2.0) * (t15 + t14);
-        let t17 = t5 * t16 + k(2.0) * (t13 - t12) * t11 + t1 * t8;
-        let t18 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t17 = T::fused(t1, t8, T::fused(k(2.0) * (t13 - t12), t11, t5 * t16));
+        let t18 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t19 = outer_ring_e0 * outer_ring_e3;
         let t20 = outer_ring_e1 * outer_ring_e2;
         let t21 = k(2.0) * (t20 - t19);
@@ -1418,27 +1768,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t23 = inner_ring_e0 * inner_ring_e3;
         let t24 = inner_ring_e1 * inner_ring_e2;
         let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2));
+        let t26 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7));
         let t27 = k(2.0) * (t20 + t19);
         let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1));
+        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7));
         let t30 = k(2.0) * (t24 + t23);
         let t31 = k(2.0) * (t15 - t14);
         let t32 = rotor_e0 * rotor_e0;
-        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1));
+        let t33 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32));
         let t34 = rotor_e0 * rotor_e3;
         let t35 = rotor_e1 * rotor_e2;
         let t36 = k(2.0) * (t35 + t34);
         let t37 = rotor_e0 * rotor_e2;
         let t38 = rotor_e1 * rotor_e3;
         let t39 = k(2.0) * (t38 - t37);
-        let t40 = t31 * t39 + (t30 * t36 + t29 * t33);
+        let t40 = T::fused(t31, t39, T::fused(t29, t33, t30 * t36));
         let t41 = rotor_e0 * rotor_e1;
         let t42 = rotor_e2 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
         let t44 = k(2.0) * (t38 + t37);
-        let t45 = k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3));
-        let t46 = k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2));
+        let t45 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32));
+        let t46 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32));
         let t47 = k(2.0) * (t35 - t34);
         let t48 = k(2.0) * (t42 + t41);
         *out = [
@@ -1456,27 +1806,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(-1.0),
             k(1.0),
             -t17,
-            t21 * t16 - t18 * t11 - t22 * t8,
-            t27 * t26 + t6 * t25 - t4 * t28,
-            t4 * t31 + (t27 * t30 + t6 * t29),
+            T::fused(-t22, t8, T::fused(-t18, t11, t21 * t16)),
+            T::fused(-t4, t28, T::fused(t6, t25, t27 * t26)),
+            T::fused(t4, t31, T::fused(t6, t29, t27 * t30)),
             t17,
-            t4 * t8 - (t27 * t11 - t6 * t16),
-            -(t22 * t28 + (t21 * t25 + t18 * t26)),
-            t22 * t31 - (t18 * t30 + t21 * t29),
+            T::fused(t4, t8, -T::fused(-t6, t16, t27 * t11)),
+            -T::fused(t22, t28, T::fused(t18, t26, t21 * t25)),
+            T::fused(t22, t31, -T::fused(t21, t29, t18 * t30)),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            t11 * t36 - t16 * t33 - t8 * t39,
+            T::fused(-t8, t39, T::fused(-t16, t33, t11 * t36)),
             -t40,
-            t28 * t45 - (t25 * t44 - t26 * t43),
-            t28 * t48 + (t25 * t47 + t26 * t46),
-            t26 * t36 + t25 * t33 - t28 * t39,
+            T::fused(t28, t45, -T::fused(-t26, t43, t25 * t44)),
+            T::fused(t28, t48, T::fused(t26, t46, t25 * t47)),
+            T::fused(-t28, t39, T::fused(t25, t33, t26 * t36)),
             t40,
-            -(t16 * t44 + t11 * t43 + t8 * t45),
-            t16 * t47 - t11 * t46 - t8 * t48,
+            -T::fused(t8, t45, T::fused(t11, t43, t16 * t44)),
+            T::fused(-t8, t48, T::fused(-t11, t46, t16 * t47)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1529,14 +1879,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t2 = outer_ring_e1 * outer_ring_e3;
         let t3 = k(2.0) * (t2 - t1);
         let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
         let t6 = outer_ring_e0 * outer_ring_e1;
         let t7 = outer_ring_e2 * outer_ring_e3;
         let t8 = k(2.0) * (t7 + t6);
         let t9 = outer_ring_wy * outer_ring_wz;
         let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
         let t13 = outer_ring_e0 * outer_ring_e3;
         let t14 = outer_ring_e1 * outer_ring_e2;
         let t15 = k(2.0) * (t14 - t13);
@@ -1549,95 +1899,130 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t22 = k(2.0) * (t21 - t20);
         let t23 = k(2.0) * (t14 + t13);
         let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
-        let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
+        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
+        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
+        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
+        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
-        let t31 = outer_ring_wx * outer_ring_wz * t30
-            - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
-        let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
+        let t31 = T::fused(
+            outer_ring_wx * outer_ring_wz,
+            t30,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+        );
+        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
         let t33 = inner_ring_e0 * inner_ring_e3;
         let t34 = inner_ring_e1 * inner_ring_e2;
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
-        let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
+        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
         let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
-            - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
-        let t43 = k(2.0)
-            * (outer_ring_wy * t42
-                + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
-        let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
-        let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
-        let t47 = inner_ring_wy * inner_ring_wz;
-        let t48 = inner_ring_wx * inner_ring_wx;
-        let t49 = inner_ring_wy * inner_ring_wy + t48;
-        let t50 = t49 * t26 + (t47 * t46 + t45 * t44) - t43 + t31;
-        let t51 = k(2.0)
-            * (outer_ring_wx * t42
-                + outer_ring_wz * (inner_ring_wx * t46 - inner_ring_wy * t44));
-        let t52 = t49 * t28 + (t47 * t41 + t45 * t37) + t51
-            + (t9 * t30 + (t5 * t28 - t0 * t26));
-        let t53 = rotor_e0 * rotor_e0;
-        let t54 = k(2.0) * (k(0.5) - (t53 + rotor_e1 * rotor_e1));
-        let t55 = rotor_e0 * rotor_e3;
-        let t56 = rotor_e1 * rotor_e2;
-        let t57 = k(2.0) * (t56 + t55);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 - t58);
-        let t61 = t36 * t60 + (t35 * t57 + t32 * t54);
-        let t62 = t40 * t60 - (t38 * t57 + t39 * t54);
-        let t63 = t25 * t60 - (t22 * t57 - t19 * t54);
-        let t64 = t47 * t63
-            + ((inner_ring_wz * inner_ring_wz + t48) * t62
-                - inner_ring_wx * inner_ring_wy * t61);
-        let t65 = k(2.0) * (t56 - t55);
-        let t66 = k(2.0) * (k(0.5) - (t53 + rotor_e2 * rotor_e2));
-        let t67 = rotor_e0 * rotor_e1;
-        let t68 = rotor_e2 * rotor_e3;
-        let t69 = k(2.0) * (t68 + t67);
-        let t70 = k(2.0) * (t59 + t58);
-        let t71 = k(2.0) * (t68 - t67);
-        let t72 = k(2.0) * (k(0.5) - (t53 + rotor_e3 * rotor_e3));
-        let t73 = rotor_wy * (t36 * t72 - (t35 * t71 - t32 * t70))
-            + rotor_wz * (t36 * t69 - (t35 * t66 + t32 * t65));
-        let t74 = t25 * t69 - (t19 * t65 - t22 * t66);
-        let t75 = t19 * t70 + t22 * t71 + t25 * t72;
-        let t76 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t75 + rotor_wz * t74) + inner_ring_wz * t73);
-        let t77 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t78 = t40 * t69 + (t39 * t65 + t38 * t66);
-        let t79 = rotor_wx * rotor_wy;
-        let t80 = t40 * t72 - (t39 * t70 - t38 * t71);
-        let t81 = rotor_wx * rotor_wz;
-        let t82 = t81 * t80 - (t79 * t78 - t77 * t62) + t76 + t64;
-        let t83 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t80 + rotor_wz * t78) - inner_ring_wy * t73);
-        let t84 = t81 * t75 - (t79 * t74 - t77 * t63) - t83
-            + (t49 * t63 + (t47 * t62 + t45 * t61));
+        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
+        let t42 = T::fused(
+            -inner_ring_wy,
+            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
+            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+        );
+        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
+        let t44 = inner_ring_wx * inner_ring_wz;
+        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
+        let t46 = inner_ring_wy * inner_ring_wz;
+        let t47 = inner_ring_wx * inner_ring_wx;
+        let t48 = T::fused(inner_ring_wy, inner_ring_wy, t47);
+        let t49 = T::fused(
+            -k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
+                outer_ring_wy * t42,
+            ),
+            T::fused(t48, t26, T::fused(t44, t43, t46 * t45)),
+        );
+        let t50 = T::fused(
+            k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
+                outer_ring_wx * t42,
+            ),
+            T::fused(t48, t28, T::fused(t44, t37, t46 * t41)),
+        );
+        let t51 = rotor_e0 * rotor_e0;
+        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t51));
+        let t53 = rotor_e0 * rotor_e3;
+        let t54 = rotor_e1 * rotor_e2;
+        let t55 = k(2.0) * (t54 + t53);
+        let t56 = rotor_e0 * rotor_e2;
+        let t57 = rotor_e1 * rotor_e3;
+        let t58 = k(2.0) * (t57 - t56);
+        let t59 = T::fused(t36, t58, T::fused(t32, t52, t35 * t55));
+        let t60 = T::fused(t40, t58, -T::fused(t39, t52, t38 * t55));
+        let t61 = T::fused(t25, t58, -T::fused(-t19, t52, t22 * t55));
+        let t62 = T::fused(
+            t46,
+            t61,
+            T::fused(
+                -(inner_ring_wx * inner_ring_wy),
+                t59,
+                T::fused(inner_ring_wz, inner_ring_wz, t47) * t60,
+            ),
+        );
+        let t63 = k(2.0) * (t54 - t53);
+        let t64 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t51));
+        let t65 = rotor_e0 * rotor_e1;
+        let t66 = rotor_e2 * rotor_e3;
+        let t67 = k(2.0) * (t66 + t65);
+        let t68 = k(2.0) * (t57 + t56);
+        let t69 = k(2.0) * (t66 - t65);
+        let t70 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t51));
+        let t71 = T::fused(
+            rotor_wz,
+            T::fused(t36, t67, -T::fused(t32, t63, t35 * t64)),
+            rotor_wy * T::fused(t36, t70, -T::fused(-t32, t68, t35 * t69)),
+        );
+        let t72 = T::fused(t25, t67, -T::fused(-t22, t64, t19 * t63));
+        let t73 = T::fused(t25, t70, T::fused(t22, t69, t19 * t68));
+        let t74 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t75 = T::fused(t40, t67, T::fused(t38, t64, t39 * t63));
+        let t76 = rotor_wx * rotor_wy;
+        let t77 = T::fused(t40, t70, -T::fused(-t38, t69, t39 * t68));
+        let t78 = rotor_wx * rotor_wz;
+        let t79 = T::fused(
+            k(2.0),
+            T::fused(
+                inner_ring_wz,
+                t71,
+                inner_ring_wx * T::fused(rotor_wz, t72, rotor_wy * t73),
+            ),
+            T::fused(t78, t77, -T::fused(-t74, t60, t76 * t75)),
+        );
+        let t80 = T::fused(
+            -k(2.0),
+            T::fused(
+                -inner_ring_wy,
+                t71,
+                inner_ring_wx * T::fused(rotor_wz, t75, rotor_wy * t77),
+            ),
+            T::fused(t78, t73, -T::fused(-t74, t61, t76 * t72)),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t11 * t9 + (t8 * t5 - t3 * t0),
-            t15 * t5 + t12 * t0 - t16 * t9,
+            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
+            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -t50,
-            -t52,
+            -(t49 + t31),
+            -(t50 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
             k(0.0),
             k(0.0),
             k(0.0),
-            t82,
-            -t84,
+            t79 + t62,
+            -(t80 + T::fused(t48, t61, T::fused(t44, t59, t46 * t60))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
@@ -1697,22 +2082,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
             * (k(0.5)
                 / (k(0.5)
-                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
-        let t1 = outer_ring_wy * outer_ring_wz
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
-                * t0;
-        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
-            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
-        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+                    - T::fused(
+                        outer_ring_e2,
+                        outer_ring_e2,
+                        outer_ring_e0 * outer_ring_e0,
+                    )));
+        let t1 = T::fused(
+            -(k(2.0)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_e1,
+                    outer_ring_e2 * outer_ring_e3,
+                )),
+            t0,
+            outer_ring_wy * outer_ring_wz,
+        );
+        let t2 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t3 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t4 = t3 * t2;
-        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
-            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
-        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t5 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t6 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t7 = t6 * t5;
         let t8 = t7 + t4;
         let t9 = k(1e-5) * t8;
@@ -1727,85 +2151,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t18 = t17 - t16;
         let t19 = k(2.0) * t18;
         let t20 = t3 * t3;
-        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t21 = k(0.5) - T::fused(t2, t2, t20);
         let t22 = k(2.0) * t21;
-        let t23 = t22 * t14 - t19 * t9;
-        let t24 = k(1.0) / (k(1e-6) + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+        let t23 = T::fused(-t19, t9, t22 * t14);
+        let t24 = k(1.0)
+            / (k(1e-6) + T::fused(t19, k(1e-5) * t18, t22 * (k(1e-5) * t21)));
         let t25 = t24 * t23;
-        let t26 = t23 * t25 - (k(1e-6) + (t15 * t14 + t10 * t9));
-        let t27 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t28 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t26 = T::fused(t23, t25, -(k(1e-6) + T::fused(t10, t9, t15 * t14)));
+        let t27 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t28 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t29 = t28 * t27;
-        let t30 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
-            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
-        let t31 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
-            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t30 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t31 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
         let t32 = t31 * t30;
         let t33 = k(2.0) * (t32 - t29);
-        let t34 = k(0.5) - (t20 + t5 * t5);
+        let t34 = k(0.5) - T::fused(t5, t5, t20);
         let t35 = k(2.0) * t34;
         let t36 = t17 + t16;
         let t37 = k(2.0) * t36;
         let t38 = k(1e-5) * t34;
         let t39 = k(1e-5) * t36;
-        let t40 = t22 * t39 + t19 * t38;
-        let t41 = t40 * t25 - (t37 * t14 - t35 * t9);
+        let t40 = T::fused(t19, t38, t22 * t39);
+        let t41 = T::fused(t40, t25, -T::fused(-t35, t9, t37 * t14));
         let t42 = t28 * t28;
-        let t43 = k(2.0) * (k(0.5) - (t42 + t30 * t30));
-        let t44 = t43 * t41 - t33 * t26;
-        let t45 = t40 * (t24 * t40) - (k(2e-6) + (t37 * t39 + t35 * t38));
-        let t46 = t43 * t45 - t33 * t41;
-        let t47 = k(0.5) - (t20 + t6 * t6);
-        let t48 = inner_ring_wz * (k(2.0) * (t12 + t11))
-            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t47));
+        let t43 = k(2.0) * (k(0.5) - T::fused(t30, t30, t42));
+        let t44 = T::fused(-t33, t26, t43 * t41);
+        let t45 = T::fused(t40, t24 * t40, -(k(2e-6) + T::fused(t35, t38, t37 * t39)));
+        let t46 = T::fused(-t33, t41, t43 * t45);
+        let t47 = k(0.5) - T::fused(t6, t6, t20);
+        let t48 = T::fused(
+            inner_ring_wz,
+            k(2.0) * (t12 + t11),
+            T::fused(-inner_ring_wx, k(2.0) * t47, inner_ring_wy * (k(2.0) * (t7 - t4))),
+        );
         let t49 = rotor_wx - t48;
-        let t50 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
+        let t50 = T::fused(
+            inner_ring_wz,
+            t22,
+            -T::fused(inner_ring_wx, t15, inner_ring_wy * t37),
+        );
         let t51 = rotor_wz + t50;
-        let t52 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
+        let t52 = T::fused(
+            inner_ring_wz,
+            t19,
+            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t35),
+        );
         let t53 = rotor_wy - t52;
-        let t54 = k(0.5) / t47 * (t53 * t53 + t51 * t51);
-        let t55 = rotor_wz * t48 + rotor_wx * t50 + (t15 * t54 - t51 * t49);
-        let t56 = k(5e-6) * (rotor_wx * rotor_wz - t55);
-        let t57 = rotor_wx * t52 - rotor_wy * t48 - (t10 * t54 - t53 * t49);
-        let t58 = k(5e-6) * (rotor_wx * rotor_wy + t57);
-        let t59 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t58 + t19 * t56);
+        let t54 = k(0.5) / t47 * T::fused(t51, t51, t53 * t53);
+        let t55 = T::fused(rotor_wx, t50, rotor_wz * t48)
+            + T::fused(-t51, t49, t15 * t54);
+        let t56 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t55);
+        let t57 = T::fused(-rotor_wy, t48, rotor_wx * t52)
+            - T::fused(-t53, t49, t10 * t54);
+        let t58 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t57);
+        let t59 = T::fused(
+            k(1e-6),
+            inner_ring_wx * inner_ring_wy,
+            T::fused(t19, t56, t22 * t58),
+        );
         let t60 = t24 * t59;
-        let t61 = t23 * t60
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t58 - t10 * t56));
+        let t61 = T::fused(
+            t23,
+            t60,
+            -T::fused(
+                k(1e-6),
+                inner_ring_wy * inner_ring_wz,
+                T::fused(-t10, t56, t15 * t58),
+            ),
+        );
         let t62 = t28 * t30;
         let t63 = t31 * t27;
         let t64 = t28 * t31;
         let t65 = t30 * t27;
-        let t66 = outer_ring_wy * (k(2.0) * (t65 + t64))
-            + outer_ring_wx * (k(2.0) * (t63 - t62));
-        let t67 = k(0.5) - (t42 + t27 * t27);
-        let t68 = outer_ring_wz * (k(2.0) * t67) - t66;
+        let t66 = T::fused(
+            outer_ring_wx,
+            k(2.0) * (t63 - t62),
+            outer_ring_wy * (k(2.0) * (t65 + t64)),
+        );
+        let t67 = k(0.5) - T::fused(t27, t27, t42);
+        let t68 = T::fused(outer_ring_wz, k(2.0) * t67, -t66);
         let t69 = inner_ring_wz + t68;
         let t70 = k(2.0) * (t32 + t29);
         let t71 = k(2.0) * (t65 - t64);
-        let t72 = outer_ring_wz * t71 - (outer_ring_wy * t43 - outer_ring_wx * t70);
+        let t72 = T::fused(
+            outer_ring_wz,
+            t71,
+            -T::fused(-outer_ring_wx, t70, outer_ring_wy * t43),
+        );
         let t73 = inner_ring_wy - t72;
-        let t74 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
+        let t74 = k(2.0) * (k(0.5) - T::fused(t31, t31, t42));
         let t75 = k(2.0) * (t63 + t62);
-        let t76 = outer_ring_wz * t75 + (outer_ring_wy * t33 - outer_ring_wx * t74);
+        let t76 = T::fused(
+            outer_ring_wz,
+            t75,
+            T::fused(-outer_ring_wx, t74, outer_ring_wy * t33),
+        );
         let t77 = inner_ring_wx - t76;
-        let t78 = k(0.5) / t67 * (t77 * t77 + t73 * t73);
-        let t79 = inner_ring_wy * t68 + inner_ring_wz * t72 - (t71 * t78 - t73 * t69);
-        let t80 = inner_ring_wz * t76 + inner_ring_wx * t68 - (t75 * t78 - t77 * t69);
-        let t81 = t45 * t80 - t41 * t79 + (t40 * t60 - (t37 * t58 + t35 * t56));
-        let t82 = t43 * t81 - t33 * (t41 * t80 - t26 * t79 + t61);
-        let t83 = t43 * (t70 * t45 - t74 * t41) - t33 * (t70 * t41 - t74 * t26);
-        let t84 = outer_ring_wx * outer_ring_wy
-            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
-                * t0;
-        let t85 = t84 * (t71 * t46 + t75 * t44) - t1 * t83
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz) - t82);
-        let t86 = t85 / (k(1e-6) - (t43 * t46 - t33 * t44));
-        let t87 = t79 + (t84 * t75 - (t33 * t86 - t1 * t74));
-        let t88 = t80 - (t84 * t71 + (t43 * t86 - t1 * t70));
-        let t89 = t24 * (t59 + (t40 * t88 - t23 * t87));
+        let t78 = k(0.5) / t67 * T::fused(t73, t73, t77 * t77);
+        let t79 = T::fused(inner_ring_wz, t72, inner_ring_wy * t68)
+            - T::fused(-t73, t69, t71 * t78);
+        let t80 = T::fused(inner_ring_wx, t68, inner_ring_wz * t76)
+            - T::fused(-t77, t69, t75 * t78);
+        let t81 = T::fused(-t41, t79, t45 * t80)
+            + T::fused(t40, t60, -T::fused(t35, t56, t37 * t58));
+        let t82 = T::fused(-t33, T::fused(-t26, t79, t41 * t80) + t61, t43 * t81);
+        let t83 = T::fused(
+            -t33,
+            T::fused(-t74, t26, t70 * t41),
+            t43 * T::fused(-t74, t41, t70 * t45),
+        );
+        let t84 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
+            t0,
+            outer_ring_wx * outer_ring_wy,
+        );
+        let t85 = T::fused(-t1, t83, t84 * T::fused(t75, t44, t71 * t46))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t82);
+        let t86 = t85 / (k(1e-6) - T::fused(-t33, t44, t43 * t46));
+        let t87 = t79 + T::fused(t84, t75, -T::fused(-t1, t74, t33 * t86));
+        let t88 = t80 - T::fused(t84, t71, T::fused(-t1, t70, t43 * t86));
+        let t89 = t24 * (t59 + T::fused(-t23, t87, t40 * t88));
         *out = [
             k(0.0),
             k(0.0),
@@ -1823,8 +2321,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t55 + (t19 * t89 - (t35 * t88 + t10 * t87))),
-            t22 * t89 - (t37 * t88 - t15 * t87) - t57,
+            -(t55 + T::fused(t19, t89, -T::fused(t10, t87, t35 * t88))),
+            T::fused(t22, t89, -T::fused(-t15, t87, t37 * t88)) - t57,
         ];
     }
     /// Writes λ: 283 operations (105 ±, 175 ×, 3 ÷).
@@ -1874,15 +2372,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
         let t2 = k(0.08) * rotor_dsy;
-        let t3 = k(0.01) * inner_ring_dsy + t2;
+        let t3 = T::fused(k(0.01), inner_ring_dsy, t2);
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
         let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
+        let t9 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t8));
         let t10 = rotor_e0 * rotor_e3;
         let t11 = rotor_e1 * rotor_e2;
         let t12 = k(2.0) * (t11 + t10);
@@ -1897,81 +2395,110 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t21 = k(2.0) * (t20 - t19);
         let t22 = k(1e-5) * rotor_dwx;
         let t23 = k(2.0) * (t11 - t10);
-        let t24 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
+        let t24 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t6));
         let t25 = rotor_e0 * rotor_e1;
         let t26 = rotor_e2 * rotor_e3;
         let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t29 = t28 * (t21 * t27 - (t15 * t24 + t9 * t23))
-            + t22 * (t21 * t18 + (t15 * t12 + t9 * t7));
+        let t28 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t29 = T::fused(
+            t22,
+            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
+            t28 * T::fused(t21, t27, -T::fused(t9, t23, t15 * t24)),
+        );
         let t30 = k(2.0) * (t17 + t16);
         let t31 = k(2.0) * (t26 - t25);
-        let t32 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t33 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t34 = t33 * (t21 * t32 - (t15 * t31 - t9 * t30)) + t29;
-        let t35 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t34;
+        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t6));
+        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t34 = T::fused(t33, T::fused(t21, t32, -T::fused(-t9, t30, t15 * t31)), t29);
+        let t35 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+            -t34,
+        );
         let t36 = outer_ring_e0 * outer_ring_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + outer_ring_e1 * outer_ring_e1));
+        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t36));
         let t38 = outer_ring_e0 * outer_ring_e3;
         let t39 = outer_ring_e1 * outer_ring_e2;
         let t40 = k(2.0) * (t39 + t38);
         let t41 = outer_ring_e0 * outer_ring_e2;
         let t42 = outer_ring_e1 * outer_ring_e3;
         let t43 = k(2.0) * (t42 - t41);
-        let t44 = t43 * t21 + (t40 * t15 + t37 * t9);
+        let t44 = T::fused(t43, t21, T::fused(t37, t9, t40 * t15));
         let t45 = k(2.0) * (t14 - t13);
-        let t46 = k(2.0) * (k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2));
+        let t46 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8));
         let t47 = inner_ring_e0 * inner_ring_e1;
         let t48 = inner_ring_e2 * inner_ring_e3;
         let t49 = k(2.0) * (t48 + t47);
-        let t50 = t49 * t27 + (t45 * t23 + t46 * t24);
-        let t51 = t28 * t50 + t22 * (t49 * t18 - (t46 * t12 + t45 * t7));
-        let t52 = t49 * t32 - (t45 * t30 - t46 * t31);
-        let t53 = k(2e-6) * inner_ring_dwy + (t33 * t52 + t51);
-        let t54 = t43 * t49 - (t40 * t46 + t37 * t45);
+        let t50 = T::fused(t49, t27, T::fused(t46, t24, t45 * t23));
+        let t51 = T::fused(
+            t22,
+            T::fused(t49, t18, -T::fused(t45, t7, t46 * t12)),
+            t28 * t50,
+        );
+        let t52 = T::fused(t49, t32, -T::fused(-t46, t31, t45 * t30));
+        let t53 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t33, t52, t51));
+        let t54 = T::fused(t43, t49, -T::fused(t37, t45, t40 * t46));
         let t55 = k(2.0) * (t20 + t19);
         let t56 = k(2.0) * (t48 - t47);
-        let t57 = k(2.0) * (k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3));
-        let t58 = t57 * t27 - (t55 * t23 - t56 * t24);
-        let t59 = t28 * t58 + t22 * (t57 * t18 - (t56 * t12 - t55 * t7));
-        let t60 = t55 * t30 + t56 * t31 + t57 * t32;
-        let t61 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            - (t33 * t60 + t59);
-        let t62 = (t43 * t57 - (t40 * t56 - t37 * t55)) * t61 - (t54 * t53 - t44 * t35);
-        let t63 = k(2e-6) * outer_ring_dwx - t62;
-        let t64 = k(2.0) * (k(0.5) - (t36 + outer_ring_e3 * outer_ring_e3));
+        let t57 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8));
+        let t58 = T::fused(t57, t27, -T::fused(-t56, t24, t55 * t23));
+        let t59 = T::fused(
+            t22,
+            T::fused(t57, t18, -T::fused(-t55, t7, t56 * t12)),
+            t28 * t58,
+        );
+        let t60 = T::fused(t57, t32, T::fused(t56, t31, t55 * t30));
+        let t61 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            -T::fused(t33, t60, t59),
+        );
+        let t62 = T::fused(
+            T::fused(t43, t57, -T::fused(-t37, t55, t40 * t56)),
+            t61,
+            -T::fused(-t44, t35, t54 * t53),
+        );
+        let t63 = T::fused(k(2e-6), outer_ring_dwx, -t62);
+        let t64 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t36));
         let t65 = k(2.0) * (t42 + t41);
-        let t66 = k(1.0) / (t65 * t43 - t37 * t64);
+        let t66 = k(1.0) / T::fused(-t37, t64, t65 * t43);
         let t67 = outer_ring_e0 * outer_ring_e1;
         let t68 = outer_ring_e2 * outer_ring_e3;
         let t69 = k(2.0) * (t68 - t67);
-        let t70 = (t64 * t49 - (t65 * t45 - t69 * t46)) * t53
-            - (t64 * t21 - (t69 * t15 - t65 * t9)) * t35;
-        let t71 = (t65 * t55 + t69 * t56 + t64 * t57) * t61 - t70;
-        let t72 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t71;
+        let t70 = T::fused(
+            -T::fused(t64, t21, -T::fused(-t65, t9, t69 * t15)),
+            t35,
+            T::fused(t64, t49, -T::fused(-t69, t46, t65 * t45)) * t53,
+        );
+        let t71 = T::fused(T::fused(t64, t57, T::fused(t69, t56, t65 * t55)), t61, -t70);
+        let t72 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t71,
+        );
         let t73 = k(2.0) * (t39 - t38);
-        let t74 = k(2.0) * (k(0.5) - (t36 + outer_ring_e2 * outer_ring_e2));
+        let t74 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t36));
         let t75 = k(2.0) * (t68 + t67);
-        let t76 = t75 * t21 - (t74 * t15 + t73 * t9);
-        let t77 = t75 * t49 + (t73 * t45 + t74 * t46);
-        let t78 = k(1.0) / (t44 * t77 - t54 * t76);
-        let t79 = k(1.0) / (t50 * t60 - t52 * t58);
+        let t76 = T::fused(t75, t21, -T::fused(t73, t9, t74 * t15));
+        let t77 = T::fused(t75, t49, T::fused(t74, t46, t73 * t45));
+        let t78 = k(1.0) / T::fused(-t54, t76, t44 * t77);
+        let t79 = k(1.0) / T::fused(-t52, t58, t50 * t60);
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            -(t65 * t66 * t72 + t37 * t66 * t63),
-            -(t64 * t66 * t72 + t43 * t66 * t63),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -T::fused(k(0.01), outer_ring_dsy, t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            -T::fused(t37 * t66, t63, t65 * t66 * t72),
+            -T::fused(t43 * t66, t63, t64 * t66 * t72),
             -t1,
             -t3,
             -t5,
-            t76 * t78 * t35 - t77 * t78 * t53,
-            t54 * t78 * t53 - t44 * t78 * t35,
+            T::fused(-(t77 * t78), t53, t76 * t78 * t35),
+            T::fused(-(t44 * t78), t35, t54 * t78 * t53),
             -t0,
             -t2,
             -t4,
-            t33 * (t60 * t79) + t28 * (t58 * t79),
-            t33 * (t52 * t79) + t28 * (t50 * t79),
+            T::fused(t28, t58 * t79, t33 * (t60 * t79)),
+            T::fused(t28, t50 * t79, t33 * (t52 * t79)),
         ];
     }
 }
@@ -1989,7 +2516,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 17 operations (4 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 19 operations (4 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -1997,15 +2524,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6666666666666667)
-            * ((u2 - k(0.2) * t3) / (k(1.3333333333333333) - t2 * t2));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = T::fused(-k(0.2), t4, u2) * t2 / T::fused(k(6e-6), t0 * t0, k(2e-6));
         *out = [
-            -(t4 * t1),
-            k(1.6666666666666667) * (u0 * t0 * (u2 + k(0.4) * t3)),
-            -(t1 * (u0 - t2 * t4)),
+            -t5,
+            k(166666.66666666666) * (t1 * (u0 * T::fused(k(0.4), t4, u2))),
+            T::fused(-k(100000.0), u0 * t2, t3 * t5),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2041,9 +2568,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let t12 = t10.cos();
         let t13 = k(2.0) * t6;
         let t14 = u0 * (t4 * t13);
-        let t15 = u0 * (k(1.0) - t6 * t13);
+        let t15 = u0 * T::fused(-t6, t13, k(1.0));
         let t16 = k(2.0) * t11;
-        let t17 = k(1.0) - t11 * t16;
+        let t17 = T::fused(-t11, t16, k(1.0));
         let t18 = t12 * t16;
         *y = [
             k(0.0),
@@ -2063,10 +2590,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t5 * t12 - t7 * t11,
-            t7 * t12 + t5 * t11,
-            t8 * t12 + t9 * t11,
-            t9 * t12 - t8 * t11,
+            T::fused(-t7, t11, t5 * t12),
+            T::fused(t5, t11, t7 * t12),
+            T::fused(t9, t11, t8 * t12),
+            T::fused(-t8, t11, t9 * t12),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -2083,8 +2610,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             u2 + t14,
-            u1 * t18 + t17 * t15,
-            u1 * t17 - t18 * t15,
+            T::fused(t17, t15, u1 * t18),
+            T::fused(-t18, t15, u1 * t17),
         ];
     }
     /// Writes the joint state of a maximal state: 135 operations (63 ±, 72 ×, 0 ÷) and 9 functions.
@@ -2117,11 +2644,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let t4 = x0.cos();
         let t5 = outer_ring_e2 * outer_ring_e2;
         let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
         let t8 = outer_ring_e3 * outer_ring_e3;
         let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
-        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
+        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
         let t12 = x1.sin();
         let t13 = inner_ring_e0 * inner_ring_e2;
         let t14 = inner_ring_e1 * inner_ring_e3;
@@ -2131,37 +2658,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let t18 = k(2.0) * (t17 + t16);
         let t19 = inner_ring_e2 * inner_ring_e2;
         let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
         let t22 = inner_ring_e3 * inner_ring_e3;
         let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
         let t25 = outer_ring_e0 * outer_ring_e3;
         let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = k(2.0) * (t26 - t25) * t24
-            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
-        let t28 = t27
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t15;
+        let t27 = T::fused(
+            t18,
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            k(2.0) * (t26 - t25) * t24,
+        );
+        let t28 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
+            t15,
+            t27,
+        );
         let t29 = x1.cos();
-        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
-        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
-        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t30 = T::fused(
+            k(2.0) * (t26 + t25),
+            t18,
+            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        );
+        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
+        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
         let t33 = x2.sin();
-        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t35 = rotor_e2 * rotor_e2;
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t37 = T::fused(
+            k(2.0),
+            k(0.5) - (t36 + t35),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        );
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
-        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
+        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
         let t43 = x2.cos();
-        let t44 = k(2.0) * (t17 - t16) * t40
-            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
-        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
-        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        let t44 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
+            t37,
+            k(2.0) * (t17 - t16) * t40,
+        );
+        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
+        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
         x[0] = x0 + t11;
         x[1] = x1 + t32;
         x[2] = x2 + t46;
@@ -2169,7 +2713,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 37 operations (13 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 39 operations (13 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2185,25 +2729,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t0 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t1 = k(2.0) * t0;
-        let t2 = k(1.0) - t0 * t1;
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t5 = t4 * t1;
-        let t6 = outer_ring_wy * t5;
-        let t7 = inner_ring_wx - rotor_wx;
-        let t8 = k(1.6666666666666667)
-            * ((t7 - k(0.2) * t6) / (k(1.3333333333333333) - t5 * t5));
+        let t2 = T::fused(-t0, t1, k(1.0));
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t6 = t5 * t1;
+        let t7 = outer_ring_wy * t6;
+        let t8 = inner_ring_wx - rotor_wx;
+        let t9 = T::fused(-k(0.2), t7, t8) * t4 / T::fused(k(6e-6), t2 * t2, k(2e-6));
         *out = [
-            -(t8 * t3),
-            -(k(1.6666666666666667) * (outer_ring_wy * t2 * (t7 + k(0.4) * t6))),
-            t3 * (outer_ring_wy - t5 * t8),
+            -t9,
+            -(k(166666.66666666666) * (t3 * (outer_ring_wy * T::fused(k(0.4), t7, t8)))),
+            T::fused(-t6, t9, k(100000.0) * (outer_ring_wy * t4)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 79 operations (30 ±, 48 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 80 operations (30 ±, 49 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2233,32 +2791,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = k(1.0) - t1 * t2;
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6666666666666667)
-            * ((t9 - k(0.2) * t8) / (k(1.3333333333333333) - t7 * t7));
-        let t11 = t10 * t5;
+        let t3 = T::fused(-t1, t2, k(1.0));
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-k(0.2), t9, t10) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
-        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
-        let t15 = t12
-            - k(1.6666666666666667) * (outer_ring_wy * t3 * (t9 + k(0.4) * t8));
-        let t16 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t17 = k(2.0) * t16;
-        let t18 = k(1.0) - t16 * t17;
-        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t20 = t19 * t17;
+        let t13 = t8 * t11;
+        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
+        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
+        let t16 = T::fused(
+            -k(166666.66666666666),
+            t4 * (outer_ring_wy * T::fused(k(0.4), t9, t10)),
+            t12,
+        );
+        let t17 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t18 = k(2.0) * t17;
+        let t19 = T::fused(-t17, t18, k(1.0));
+        let t20 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t21 = t20 * t18;
         *out = [
             k(0.0),
             k(0.0),
@@ -2269,15 +2858,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
+            t16,
             k(0.0),
             k(0.0),
             k(0.0),
-            t5 * (outer_ring_wy - t7 * t10) - t13,
-            -(rotor_wz * t9 + (t20 * t15 - t18 * t14)),
-            rotor_wy * t9 + (t18 * t15 + t20 * t14),
+            -(T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14),
+            -T::fused(rotor_wz, t10, T::fused(-t19, t15, t21 * t16)),
+            T::fused(rotor_wy, t10, T::fused(t21, t15, t19 * t16)),
         ];
     }
     /// Writes λ: 96 operations (37 ±, 59 ×, 0 ÷).
@@ -2327,49 +2916,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
         let t2 = k(0.08) * rotor_dsy;
-        let t3 = k(0.01) * inner_ring_dsy + t2;
+        let t3 = T::fused(k(0.01), inner_ring_dsy, t2);
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
-        let t6 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
-            - k(1e-5) * rotor_dwx;
-        let t7 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
+        let t6 = T::fused(
+            -k(1e-5),
+            rotor_dwx,
+            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+        );
+        let t7 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t8 = k(2.0) * t7;
-        let t9 = k(1.0) - t7 * t8;
-        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t11 = k(2.0) * t10;
-        let t12 = k(1.0) - t10 * t11;
-        let t13 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t14 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t12 = T::fused(-t10, t11, k(1.0));
+        let t13 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t14 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t15 = t14 * t11;
-        let t16 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t17 = t16 * t15 - t13 * t12;
-        let t18 = k(2e-6) * inner_ring_dwy - t17;
-        let t19 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t16 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t17 = T::fused(-t13, t12, t16 * t15);
+        let t18 = T::fused(k(2e-6), inner_ring_dwy, -t17);
+        let t19 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t20 = t19 * t8;
-        let t21 = t20 * t18 - t9 * t6;
-        let t22 = k(2e-6) * outer_ring_dwx + t21;
+        let t21 = T::fused(-t9, t6, t20 * t18);
+        let t22 = T::fused(k(2e-6), outer_ring_dwx, t21);
         let t23 = k(2.0) * outer_ring_e2;
-        let t24 = k(1.0) - outer_ring_e2 * t23;
-        let t25 = t16 * t12 + t13 * t15;
-        let t26 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz)
-            - (k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) - t25);
+        let t24 = T::fused(-outer_ring_e2, t23, k(1.0));
+        let t25 = T::fused(t13, t15, t16 * t12);
+        let t26 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -T::fused(
+                k(1e-6),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                -t25,
+            ),
+        );
         let t27 = outer_ring_e0 * t23;
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            t27 * t26 - t24 * t22,
-            -(t24 * t26 + t27 * t22),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -T::fused(k(0.01), outer_ring_dsy, t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            T::fused(-t24, t22, t27 * t26),
+            -T::fused(t27, t22, t24 * t26),
             -t1,
             -t3,
             -t5,
-            -(t9 * t18 + t20 * t6),
+            -T::fused(t20, t6, t9 * t18),
             t21,
             -t0,
             -t2,
@@ -2378,7 +3005,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             -t17,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 120 operations (45 ±, 74 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 121 operations (45 ±, 75 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2403,47 +3030,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = k(1.0) - t1 * t2;
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = t4 * t3;
-        let t6 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = inner_ring_wx - rotor_wx;
-        let t10 = k(1.6666666666666667)
-            * ((t9 - k(0.2) * t8) / (k(1.3333333333333333) - t7 * t7));
-        let t11 = t10 * t5;
+        let t3 = T::fused(-t1, t2, k(1.0));
+        let t4 = k(1e-5) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t8 = t7 * t2;
+        let t9 = outer_ring_wy * t8;
+        let t10 = inner_ring_wx - rotor_wx;
+        let t11 = T::fused(-k(0.2), t9, t10) * t6 / T::fused(k(6e-6), t3 * t3, k(2e-6));
         let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = inner_ring_wy * t4 + (t0 * t3 - t7 * t11);
-        let t14 = inner_ring_wx * t4 - (t0 * t7 + t3 * t11);
-        let t15 = t12
-            - k(1.6666666666666667) * (outer_ring_wy * t3 * (t9 + k(0.4) * t8));
-        let t16 = t5 * (outer_ring_wy - t7 * t10) - t13;
-        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t18 = k(2.0) * t17;
-        let t19 = k(1.0) - t17 * t18;
-        let t20 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t21 = t20 * t18;
-        let t22 = rotor_wz * t9 + (t21 * t15 - t19 * t14);
-        let t23 = rotor_wy * t9 + (t19 * t15 + t21 * t14);
-        let t24 = k(5e-6) * (rotor_wx * rotor_wy - t23);
-        let t25 = k(5e-6) * (rotor_wx * rotor_wz - t22);
-        let t26 = t21 * t25 + t19 * t24;
-        let t27 = t26 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t15);
-        let t28 = k(2.0) * outer_ring_e2;
-        let t29 = outer_ring_e0 * t28;
-        let t30 = t19 * t25 - t21 * t24;
-        let t31 = t30 + k(2e-6) * t14;
-        let t32 = k(1e-5) * t16 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t13);
-        let t33 = t3 * t32 + t7 * t31;
-        let t34 = t33 - k(2e-6) * t0;
-        let t35 = k(1.0) - outer_ring_e2 * t28;
+        let t13 = t8 * t11;
+        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
+        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
+        let t16 = T::fused(
+            -k(166666.66666666666),
+            t4 * (outer_ring_wy * T::fused(k(0.4), t9, t10)),
+            t12,
+        );
+        let t17 = T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14;
+        let t18 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(-t18, t19, k(1.0));
+        let t21 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t22 = t21 * t19;
+        let t23 = T::fused(rotor_wz, t10, T::fused(-t20, t15, t22 * t16));
+        let t24 = T::fused(rotor_wy, t10, T::fused(t22, t15, t20 * t16));
+        let t25 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t24);
+        let t26 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t23);
+        let t27 = T::fused(t20, t25, t22 * t26);
+        let t28 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t16), t27);
+        let t29 = k(2.0) * outer_ring_e2;
+        let t30 = outer_ring_e0 * t29;
+        let t31 = T::fused(-t22, t25, t20 * t26);
+        let t32 = T::fused(k(2e-6), t15, t31);
+        let t33 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, t14),
+            k(1e-5) * t17,
+        );
+        let t34 = T::fused(-t8, t32, t3 * t33);
+        let t35 = T::fused(k(2e-6), t0, t34);
+        let t36 = T::fused(-outer_ring_e2, t29, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
@@ -2454,30 +3116,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFreeNutation<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
-            t14,
+            -t14,
             t15,
-            k(0.0),
-            k(0.0),
-            k(0.0),
             t16,
-            -t22,
-            t23,
             k(0.0),
             k(0.0),
             k(0.0),
-            t29 * t27 - t35 * t34,
-            -(t29 * t34 + t35 * t27),
+            -t17,
+            -t23,
+            t24,
             k(0.0),
             k(0.0),
             k(0.0),
-            t7 * t32 - t3 * t31,
-            t33,
+            T::fused(t30, t28, t36 * t35),
+            T::fused(-t36, t28, t30 * t35),
             k(0.0),
             k(0.0),
             k(0.0),
-            t26,
-            t30,
+            -T::fused(t3, t32, t8 * t33),
+            -t34,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t27,
+            t31,
         ];
     }
 }

@@ -12,9 +12,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: by relative Euler parameters, 616 operations, not rotations of the bodies 664
-//! * joint_accelerations: by normal form, 18 operations, not recursion 39
-//! * joint_accelerations_at: by normal form, 39 operations, not recursion 60, recursion on the bodies' spins 78
-//! * corrected_accelerations: by normal form in the bodies' frames, 150 operations, not recursion in the bodies' frames 170, recursion in the global frame 172, normal form in the global frame 152, recursion on the bodies' spins in the bodies' frames 176, recursion on the bodies' spins in the global frame 178, elimination in maximal coordinates 664
+//! * joint_accelerations: by normal form, 20 operations, not recursion 39
+//! * joint_accelerations_at: by normal form, 41 operations, not recursion 60, recursion on the bodies' spins 78
+//! * corrected_accelerations: by normal form in the bodies' frames, 151 operations, not recursion in the bodies' frames 170, recursion in the global frame 172, normal form in the global frame 153, recursion on the bodies' spins in the bodies' frames 176, recursion on the bodies' spins in the global frame 178, elimination in maximal coordinates 664
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -35,14 +35,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 12 of 28 | 1.1e9 | 514 |
 //! | solve_velocities | dependent velocities, eq. (19) | 112 | 185 | 3 | 300 | 12 of 24 | 23546 | 300 |
-//! | joint_accelerations | u̇ in joint coordinates | 5 | 12 | 1 | 18 | 0 of 3 | 29 | 19 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 | 36 | 21 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 28 of 52 | 291 | 78 |
 //! | to_joints | (x, u) of a maximal state | 82 | 95 | 0 | 177 | 0 of 6 | 612 | 177 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 23 | 1 | 39 | 0 of 3 | 218 | 40 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 92 | 1 | 150 | 12 of 24 | 2524 | 151 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 | 247 | 42 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 12 of 24 | 2594 | 152 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 | 2605 | 213 |
-//! | corrected_solution | both | 117 | 183 | 2 | 302 | 12 of 45 | 59333 | 304 |
+//! | corrected_solution | both | 117 | 184 | 2 | 303 | 12 of 45 | 60646 | 305 |
 //!
 //! # Proof
 //!
@@ -195,49 +195,127 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMaximal<T> {
             base_sx,
             base_sy,
             base_sz,
-            -(k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz)),
-            k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz),
-            k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz),
-            -(k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz)),
+            -(k(0.5)
+                * T::fused(
+                    base_e3,
+                    base_wz,
+                    T::fused(base_e2, base_wy, base_e1 * base_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    base_e2,
+                    base_wz,
+                    T::fused(-base_e3, base_wy, base_e0 * base_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -base_e1,
+                    base_wz,
+                    T::fused(base_e0, base_wy, base_e3 * base_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -base_e0,
+                    base_wz,
+                    T::fused(-base_e1, base_wy, base_e2 * base_wx),
+                )),
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
             -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
             k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
             -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
             inner_ring_sx,
             inner_ring_sy,
             inner_ring_sz,
             -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
             k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
             -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
             rotor_sx,
             rotor_sy,
             rotor_sz,
             -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
             -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -278,6 +356,202 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let base_sx = y[28];
+        let base_sy = y[29];
+        let base_sz = y[30];
+        let outer_ring_sx = y[34];
+        let outer_ring_sy = y[35];
+        let outer_ring_sz = y[36];
+        let inner_ring_sx = y[40];
+        let inner_ring_sy = y[41];
+        let inner_ring_sz = y[42];
+        let rotor_sx = y[46];
+        let rotor_sy = y[47];
+        let rotor_sz = y[48];
+        let base_wx = y[31];
+        let base_wy = y[32];
+        let base_wz = y[33];
+        let outer_ring_wx = y[37];
+        let outer_ring_wy = y[38];
+        let outer_ring_wz = y[39];
+        let inner_ring_wx = y[43];
+        let inner_ring_wy = y[44];
+        let inner_ring_wz = y[45];
+        let rotor_wx = y[49];
+        let rotor_wy = y[50];
+        let rotor_wz = y[51];
+        *dy = [
+            base_sx,
+            base_sy,
+            base_sz,
+            -(k(0.5)
+                * T::fused(
+                    base_e3,
+                    base_wz,
+                    T::fused(base_e2, base_wy, base_e1 * base_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    base_e2,
+                    base_wz,
+                    T::fused(-base_e3, base_wy, base_e0 * base_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -base_e1,
+                    base_wz,
+                    T::fused(base_e0, base_wy, base_e3 * base_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -base_e0,
+                    base_wz,
+                    T::fused(-base_e1, base_wy, base_e2 * base_wx),
+                )),
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            accelerations[18],
+            accelerations[19],
+            accelerations[20],
+            accelerations[21],
+            accelerations[22],
+            accelerations[23],
+        ];
+    }
     /// Writes Φ: 148 operations (68 ±, 80 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -317,35 +591,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let t5 = k(2.0) * (t4 - t3);
         let t6 = base_e0 * base_e2;
         let t7 = base_e1 * base_e3;
-        let t8 = k(2.0) * (t7 + t6) * t5
-            - k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t2;
+        let t8 = T::fused(
+            -(k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3)),
+            t2,
+            k(2.0) * (t7 + t6) * t5,
+        );
         let t9 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t10 = base_e3 * base_e3;
         let t11 = base_e0 * base_e0;
-        let t12 = t11 + base_e1 * base_e1;
-        let t13 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t2
-            + k(2.0) * (k(0.5) - t12) * t5;
+        let t12 = T::fused(base_e1, base_e1, t11);
+        let t13 = T::fused(
+            k(2.0) * (k(0.5) - t12),
+            t5,
+            k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2) * t2,
+        );
         let t14 = inner_ring_e0 * inner_ring_e2;
         let t15 = inner_ring_e1 * inner_ring_e3;
         let t16 = k(2.0) * (t15 + t14);
-        let t17 = t1 + outer_ring_e1 * outer_ring_e1;
+        let t17 = T::fused(outer_ring_e1, outer_ring_e1, t1);
         let t18 = inner_ring_e0 * inner_ring_e1;
         let t19 = inner_ring_e2 * inner_ring_e3;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (t4 + t3) * t20 - k(2.0) * (k(0.5) - t17) * t16;
+        let t21 = T::fused(-(k(2.0) * (k(0.5) - t17)), t16, k(2.0) * (t4 + t3) * t20);
         let t22 = inner_ring_e3 * inner_ring_e3;
         let t23 = inner_ring_e0 * inner_ring_e0;
         let t24 = k(2.0) * (k(0.5) - (t23 + t22));
-        let t25 = t23 + inner_ring_e1 * inner_ring_e1;
+        let t25 = T::fused(inner_ring_e1, inner_ring_e1, t23);
         let t26 = inner_ring_e0 * inner_ring_e3;
         let t27 = inner_ring_e1 * inner_ring_e2;
-        let t28 = rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1;
+        let t28 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
         let t29 = k(2.0) * (k(0.5) - t28);
-        let t30 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
+        let t30 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
         let t31 = inner_ring_e2 * inner_ring_e2;
-        let t32 = k(2.0) * (k(0.5) - (t23 + t31)) * t30 + k(2.0) * (t27 - t26) * t29;
-        let t33 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
+        let t32 = T::fused(
+            k(2.0) * (t27 - t26),
+            t29,
+            k(2.0) * (k(0.5) - (t23 + t31)) * t30,
+        );
+        let t33 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             base_rx,
             base_ry,
@@ -356,25 +640,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             outer_ring_rx - base_rx,
             outer_ring_ry - base_ry,
             outer_ring_rz - base_rz,
-            t8 - k(2.0) * (k(0.5) - (t11 + t10)) * t9,
-            k(2.0) * (t7 - t6) * t9 - t13,
+            T::fused(-(k(2.0) * (k(0.5) - (t11 + t10))), t9, t8),
+            T::fused(k(2.0) * (t7 - t6), t9, -t13),
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            t21
-                - k(2.0)
-                    * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2)
-                    * t24,
-            t5 * t16 - t2 * t20 - t9 * t24,
-            rotor_rx - (inner_ring_rx - k(0.00025) * (k(0.5) - t25)),
-            rotor_ry - (inner_ring_ry + k(0.00025) * (t27 + t26)),
-            rotor_rz - (inner_ring_rz + k(0.00025) * (t15 - t14)),
-            k(2.0) * (t19 + t18) * t33 - t32,
-            t20 * t30 - t16 * t29 - t24 * t33,
-            t10 + (t12 + base_e2 * base_e2) - k(1.0),
-            outer_ring_e3 * outer_ring_e3 + (t17 + t0) - k(1.0),
+            T::fused(
+                -(k(2.0)
+                    * T::fused(
+                        -outer_ring_e0,
+                        outer_ring_e2,
+                        outer_ring_e1 * outer_ring_e3,
+                    )),
+                t24,
+                t21,
+            ),
+            T::fused(-t9, t24, T::fused(-t2, t20, t5 * t16)),
+            rotor_rx - T::fused(-k(0.00025), k(0.5) - t25, inner_ring_rx),
+            rotor_ry - T::fused(k(0.00025), t27 + t26, inner_ring_ry),
+            rotor_rz - T::fused(k(0.00025), t15 - t14, inner_ring_rz),
+            T::fused(k(2.0) * (t19 + t18), t33, -t32),
+            T::fused(-t24, t33, T::fused(-t16, t29, t20 * t30)),
+            t10 + T::fused(base_e2, base_e2, t12) - k(1.0),
+            T::fused(outer_ring_e3, outer_ring_e3, t17 + t0) - k(1.0),
             t22 + (t25 + t31) - k(1.0),
-            rotor_e3 * rotor_e3 + (t28 + rotor_e2 * rotor_e2) - k(1.0),
+            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t28)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 313 operations (129 ±, 184 ×, 0 ÷).
@@ -423,9 +713,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let t1 = outer_ring_e1 * outer_ring_e2;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = base_e0 * base_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + base_e1 * base_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(base_e1, base_e1, t3));
         let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + outer_ring_e2 * outer_ring_e2));
+        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t5));
         let t7 = base_e0 * base_e3;
         let t8 = base_e1 * base_e2;
         let t9 = k(2.0) * (t8 + t7);
@@ -435,28 +725,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let t13 = base_e0 * base_e2;
         let t14 = base_e1 * base_e3;
         let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (t8 - t7) * t2
-            + k(2.0) * (k(0.5) - (t3 + base_e2 * base_e2)) * t6;
+        let t16 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(base_e2, base_e2, t3)),
+            t6,
+            k(2.0) * (t8 - t7) * t2,
+        );
         let t17 = base_e0 * base_e1;
         let t18 = base_e2 * base_e3;
-        let t19 = k(2.0) * (t18 + t17) * t12 + t16;
-        let t20 = base_wx * t19 - base_wy * (t15 * t12 - (t9 * t6 + t4 * t2));
-        let t21 = k(2.0) * (k(0.5) - (t5 + outer_ring_e1 * outer_ring_e1));
+        let t19 = T::fused(k(2.0) * (t18 + t17), t12, t16);
+        let t20 = T::fused(
+            -base_wy,
+            T::fused(t15, t12, -T::fused(t4, t2, t9 * t6)),
+            base_wx * t19,
+        );
+        let t21 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t5));
         let t22 = k(2.0) * (t14 + t13);
         let t23 = k(2.0) * (t1 + t0);
         let t24 = k(2.0) * (t18 - t17);
         let t25 = outer_ring_e0 * outer_ring_e2;
         let t26 = outer_ring_e1 * outer_ring_e3;
         let t27 = k(2.0) * (t26 - t25);
-        let t28 = k(2.0) * (k(0.5) - (t3 + base_e3 * base_e3));
-        let t29 = k(2.0) * (k(0.5) - (t5 + outer_ring_e3 * outer_ring_e3));
+        let t28 = k(2.0) * (k(0.5) - T::fused(base_e3, base_e3, t3));
+        let t29 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t5));
         let t30 = k(2.0) * (t11 - t10);
         let t31 = k(2.0) * (t26 + t25);
-        let t32 = outer_ring_wx * (t22 * t31 + t24 * t30 + t28 * t29)
-            + outer_ring_wz * (t28 * t27 - (t24 * t23 - t22 * t21));
-        let t33 = base_wy * (t28 * t12 - (t22 * t2 - t24 * t6)) + base_wz * t19;
-        let t34 = outer_ring_wx * (t15 * t29 - (t9 * t30 - t4 * t31))
-            + outer_ring_wz * (t15 * t27 + (t9 * t23 + t4 * t21));
+        let t32 = T::fused(
+            outer_ring_wz,
+            T::fused(t28, t27, -T::fused(-t22, t21, t24 * t23)),
+            outer_ring_wx * T::fused(t28, t29, T::fused(t24, t30, t22 * t31)),
+        );
+        let t33 = T::fused(
+            base_wz,
+            t19,
+            base_wy * T::fused(t28, t12, -T::fused(-t24, t6, t22 * t2)),
+        );
+        let t34 = T::fused(
+            outer_ring_wz,
+            T::fused(t15, t27, T::fused(t4, t21, t9 * t23)),
+            outer_ring_wx * T::fused(t15, t29, -T::fused(-t4, t31, t9 * t30)),
+        );
         let t35 = inner_ring_e0 * inner_ring_e1;
         let t36 = inner_ring_e2 * inner_ring_e3;
         let t37 = k(2.0) * (t36 - t35);
@@ -464,56 +771,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let t39 = inner_ring_e1 * inner_ring_e3;
         let t40 = k(2.0) * (t39 + t38);
         let t41 = inner_ring_e0 * inner_ring_e0;
-        let t42 = k(2.0) * (k(0.5) - (t41 + inner_ring_e3 * inner_ring_e3));
-        let t43 = t31 * t40 + t30 * t37 + t29 * t42;
-        let t44 = outer_ring_wy * t43
-            + outer_ring_wz * (t12 * t42 - (t2 * t40 - t6 * t37));
-        let t45 = k(2.0) * (k(0.5) - (t41 + inner_ring_e1 * inner_ring_e1));
+        let t42 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t41));
+        let t43 = T::fused(t29, t42, T::fused(t30, t37, t31 * t40));
+        let t44 = T::fused(
+            outer_ring_wz,
+            T::fused(t12, t42, -T::fused(-t6, t37, t2 * t40)),
+            outer_ring_wy * t43,
+        );
+        let t45 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t41));
         let t46 = inner_ring_e0 * inner_ring_e3;
         let t47 = inner_ring_e1 * inner_ring_e2;
         let t48 = k(2.0) * (t47 + t46);
         let t49 = k(2.0) * (t39 - t38);
         let t50 = k(2.0) * (t47 - t46);
-        let t51 = k(2.0) * (k(0.5) - (t41 + inner_ring_e2 * inner_ring_e2));
+        let t51 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t41));
         let t52 = k(2.0) * (t36 + t35);
-        let t53 = inner_ring_wx * (t27 * t52 - (t23 * t51 + t21 * t50))
-            - inner_ring_wy * (t27 * t49 + (t23 * t48 + t21 * t45));
-        let t54 = outer_ring_wx * t43
-            + outer_ring_wz * (t27 * t42 - (t23 * t37 - t21 * t40));
-        let t55 = inner_ring_wx * (t12 * t52 + (t2 * t50 + t6 * t51))
-            - inner_ring_wy * (t12 * t49 - (t6 * t48 + t2 * t45));
+        let t53 = T::fused(
+            -inner_ring_wy,
+            T::fused(t27, t49, T::fused(t21, t45, t23 * t48)),
+            inner_ring_wx * T::fused(t27, t52, -T::fused(t21, t50, t23 * t51)),
+        );
+        let t54 = T::fused(
+            outer_ring_wz,
+            T::fused(t27, t42, -T::fused(-t21, t40, t23 * t37)),
+            outer_ring_wx * t43,
+        );
+        let t55 = T::fused(
+            -inner_ring_wy,
+            T::fused(t12, t49, -T::fused(t2, t45, t6 * t48)),
+            inner_ring_wx * T::fused(t12, t52, T::fused(t6, t51, t2 * t50)),
+        );
         let t56 = rotor_e0 * rotor_e0;
-        let t57 = k(2.0) * (k(0.5) - (t56 + rotor_e1 * rotor_e1));
+        let t57 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t56));
         let t58 = rotor_e0 * rotor_e3;
         let t59 = rotor_e1 * rotor_e2;
         let t60 = k(2.0) * (t59 + t58);
         let t61 = rotor_e0 * rotor_e2;
         let t62 = rotor_e1 * rotor_e3;
         let t63 = k(2.0) * (t62 - t61);
-        let t64 = t49 * t63 + (t48 * t60 + t45 * t57);
-        let t65 = inner_ring_wz * t64
-            + inner_ring_wx * (t42 * t63 - (t37 * t60 - t40 * t57));
-        let t66 = k(2.0) * (k(0.5) - (t56 + rotor_e2 * rotor_e2));
+        let t64 = T::fused(t49, t63, T::fused(t45, t57, t48 * t60));
+        let t65 = T::fused(
+            inner_ring_wx,
+            T::fused(t42, t63, -T::fused(-t40, t57, t37 * t60)),
+            inner_ring_wz * t64,
+        );
+        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t56));
         let t67 = k(2.0) * (t59 - t58);
         let t68 = rotor_e0 * rotor_e1;
         let t69 = rotor_e2 * rotor_e3;
         let t70 = k(2.0) * (t69 + t68);
         let t71 = k(2.0) * (t69 - t68);
         let t72 = k(2.0) * (t62 + t61);
-        let t73 = k(2.0) * (k(0.5) - (t56 + rotor_e3 * rotor_e3));
-        let t74 = rotor_wy * (t52 * t73 - (t50 * t72 - t51 * t71))
-            + rotor_wz * (t52 * t70 + (t50 * t67 + t51 * t66));
-        let t75 = inner_ring_wx * (t52 * t63 - (t51 * t60 + t50 * t57))
-            - inner_ring_wy * t64;
-        let t76 = rotor_wy * (t40 * t72 + t37 * t71 + t42 * t73)
-            + rotor_wz * (t42 * t70 - (t40 * t67 - t37 * t66));
+        let t73 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t56));
+        let t74 = T::fused(
+            rotor_wz,
+            T::fused(t52, t70, T::fused(t51, t66, t50 * t67)),
+            rotor_wy * T::fused(t52, t73, -T::fused(-t51, t71, t50 * t72)),
+        );
+        let t75 = T::fused(
+            -inner_ring_wy,
+            t64,
+            inner_ring_wx * T::fused(t52, t63, -T::fused(t50, t57, t51 * t60)),
+        );
+        let t76 = T::fused(
+            rotor_wz,
+            T::fused(t42, t70, -T::fused(-t37, t66, t40 * t67)),
+            rotor_wy * T::fused(t42, t73, T::fused(t37, t71, t40 * t72)),
+        );
         *out = [
             base_sx,
             base_sy,
             base_sz,
-            k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz),
-            k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz),
-            -(k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz)),
+            k(0.5)
+                * T::fused(
+                    base_e2,
+                    base_wz,
+                    T::fused(-base_e3, base_wy, base_e0 * base_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -base_e1,
+                    base_wz,
+                    T::fused(base_e0, base_wy, base_e3 * base_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -base_e0,
+                    base_wz,
+                    T::fused(-base_e1, base_wy, base_e2 * base_wx),
+                )),
             outer_ring_sx - base_sx,
             outer_ring_sy - base_sy,
             outer_ring_sz - base_sz,
@@ -525,14 +871,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
             -(t53 + t44),
             t54 - t55,
             rotor_sx
-                - (inner_ring_sx
-                    + k(0.000125) * (t50 * inner_ring_wz - t40 * inner_ring_wy)),
+                - T::fused(
+                    k(0.000125),
+                    T::fused(-t40, inner_ring_wy, t50 * inner_ring_wz),
+                    inner_ring_sx,
+                ),
             rotor_sy
-                - (inner_ring_sy
-                    - k(0.000125) * (t51 * inner_ring_wz + t37 * inner_ring_wy)),
+                - T::fused(
+                    -k(0.000125),
+                    T::fused(t37, inner_ring_wy, t51 * inner_ring_wz),
+                    inner_ring_sy,
+                ),
             rotor_sz
-                - (inner_ring_sz
-                    + k(0.000125) * (t52 * inner_ring_wz + t42 * inner_ring_wy)),
+                - T::fused(
+                    k(0.000125),
+                    T::fused(t42, inner_ring_wy, t52 * inner_ring_wz),
+                    inner_ring_sz,
+                ),
             t74 - t65,
             -(t76 + t75),
         ];
@@ -568,31 +923,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let rotor_wx = y[49];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let t0 = rotor_wx * (k(1e-5) * rotor_wx) + rotor_wy * (k(5e-6) * rotor_wy)
-            + rotor_wz * (k(5e-6) * rotor_wz);
-        let t1 = t0
-            + k(0.08)
-                * (rotor_sx * rotor_sx + rotor_sy * rotor_sy + rotor_sz * rotor_sz);
-        let t2 = inner_ring_wx * (k(1e-6) * inner_ring_wx)
-            + inner_ring_wy * (k(2e-6) * inner_ring_wy)
-            + inner_ring_wz * (k(1e-6) * inner_ring_wz);
-        let t3 = t2
-            + k(0.01)
-                * (inner_ring_sx * inner_ring_sx + inner_ring_sy * inner_ring_sy
-                    + inner_ring_sz * inner_ring_sz);
-        let t4 = outer_ring_wx * (k(2e-6) * outer_ring_wx)
-            + outer_ring_wy * (k(1e-6) * outer_ring_wy)
-            + outer_ring_wz * (k(1e-6) * outer_ring_wz);
-        let t5 = t4
-            + k(0.01)
-                * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
-                    + outer_ring_sz * outer_ring_sz);
-        let t6 = base_wx * (k(1e-7) * base_wx) + base_wy * (k(1e-7) * base_wy)
-            + base_wz * (k(1e-7) * base_wz);
-        let t7 = t6
-            + k(0.001) * (base_sx * base_sx + base_sy * base_sy + base_sz * base_sz);
-        let t8 = k(0.01) * base_ry + k(0.1) * outer_ring_ry + k(0.1) * inner_ring_ry
-            + k(0.8) * rotor_ry;
+        let t0 = T::fused(
+            rotor_wz,
+            k(5e-6) * rotor_wz,
+            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+        );
+        let t1 = T::fused(
+            k(0.08),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            inner_ring_wz,
+            k(1e-6) * inner_ring_wz,
+            T::fused(
+                inner_ring_wy,
+                k(2e-6) * inner_ring_wy,
+                inner_ring_wx * (k(1e-6) * inner_ring_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.01),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            outer_ring_wz,
+            k(1e-6) * outer_ring_wz,
+            T::fused(
+                outer_ring_wy,
+                k(1e-6) * outer_ring_wy,
+                outer_ring_wx * (k(2e-6) * outer_ring_wx),
+            ),
+        );
+        let t5 = T::fused(
+            k(0.01),
+            T::fused(
+                outer_ring_sz,
+                outer_ring_sz,
+                T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
+            ),
+            t4,
+        );
+        let t6 = T::fused(
+            base_wz,
+            k(1e-7) * base_wz,
+            T::fused(base_wy, k(1e-7) * base_wy, base_wx * (k(1e-7) * base_wx)),
+        );
+        let t7 = T::fused(
+            k(0.001),
+            T::fused(base_sz, base_sz, T::fused(base_sy, base_sy, base_sx * base_sx)),
+            t6,
+        );
+        let t8 = T::fused(
+            k(0.8),
+            rotor_ry,
+            T::fused(
+                k(0.1),
+                inner_ring_ry,
+                T::fused(k(0.1), outer_ring_ry, k(0.01) * base_ry),
+            ),
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t7 + t5 + t3 + t1),
             potential: t8,
@@ -625,26 +1024,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let rotor_wx = y[49];
         let t0 = outer_ring_e2 * outer_ring_e2;
         let t1 = outer_ring_e0 * outer_ring_e0;
-        let t2 = t1 + outer_ring_e1 * outer_ring_e1;
+        let t2 = T::fused(outer_ring_e1, outer_ring_e1, t1);
         let t3 = outer_ring_e3 * outer_ring_e3;
         let t4 = k(1.0) - (t3 + (t2 + t0));
-        let t5 = k(2.0) * (k(0.5) - (t1 + t3)) - t4;
+        let t5 = T::fused(k(2.0), k(0.5) - (t1 + t3), -t4);
         let t6 = base_e0 * base_e2;
         let t7 = base_e1 * base_e3;
         let t8 = outer_ring_e0 * outer_ring_e1;
         let t9 = outer_ring_e2 * outer_ring_e3;
         let t10 = k(2.0) * (t9 - t8);
         let t11 = base_e0 * base_e0;
-        let t12 = t11 + base_e1 * base_e1;
+        let t12 = T::fused(base_e1, base_e1, t11);
         let t13 = base_e3 * base_e3;
-        let t14 = k(1.0) - (t13 + (t12 + base_e2 * base_e2));
+        let t14 = k(1.0) - (t13 + T::fused(base_e2, base_e2, t12));
         let t15 = outer_ring_e0 * outer_ring_e2;
         let t16 = outer_ring_e1 * outer_ring_e3;
         let t17 = k(2.0) * (t16 + t15);
-        let t18 = t17 * (k(2.0) * (k(0.5) - t12) - t14)
-            - k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t10;
-        let t19 = k(2.0) * (t7 + t6) * t17
-            + k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t10;
+        let t18 = T::fused(
+            -(k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2)),
+            t10,
+            t17 * T::fused(k(2.0), k(0.5) - t12, -t14),
+        );
+        let t19 = T::fused(
+            k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3),
+            t10,
+            k(2.0) * (t7 + t6) * t17,
+        );
         let t20 = inner_ring_e0 * inner_ring_e2;
         let t21 = inner_ring_e1 * inner_ring_e3;
         let t22 = k(2.0) * (t21 - t20);
@@ -653,35 +1058,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         let t25 = k(2.0) * (t24 + t23);
         let t26 = inner_ring_e2 * inner_ring_e2;
         let t27 = inner_ring_e0 * inner_ring_e0;
-        let t28 = t27 + inner_ring_e1 * inner_ring_e1;
+        let t28 = T::fused(inner_ring_e1, inner_ring_e1, t27);
         let t29 = inner_ring_e3 * inner_ring_e3;
         let t30 = k(1.0) - (t29 + (t28 + t26));
-        let t31 = k(2.0) * (k(0.5) - t28) - t30;
+        let t31 = T::fused(k(2.0), k(0.5) - t28, -t30);
         let t32 = outer_ring_e0 * outer_ring_e3;
         let t33 = outer_ring_e1 * outer_ring_e2;
-        let t34 = k(2.0) * (t33 - t32) * t31
-            + t25 * (k(2.0) * (k(0.5) - (t1 + t0)) - t4);
-        let t35 = (k(2.0) * (k(0.5) - t2) - t4) * t31 + k(2.0) * (t33 + t32) * t25;
-        let t36 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t34 = T::fused(
+            t25,
+            T::fused(k(2.0), k(0.5) - (t1 + t0), -t4),
+            k(2.0) * (t33 - t32) * t31,
+        );
+        let t35 = T::fused(
+            k(2.0) * (t33 + t32),
+            t25,
+            T::fused(k(2.0), k(0.5) - t2, -t4) * t31,
+        );
+        let t36 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t37 = rotor_e2 * rotor_e2;
         let t38 = rotor_e0 * rotor_e0;
-        let t39 = k(2.0) * (k(0.5) - (t38 + t37))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t38 + rotor_e1 * rotor_e1 + t37)));
+        let t39 = T::fused(
+            k(2.0),
+            k(0.5) - (t38 + t37),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t38) + t37)),
+        );
         let t40 = inner_ring_e0 * inner_ring_e1;
         let t41 = inner_ring_e2 * inner_ring_e3;
-        let t42 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t43 = k(2.0) * (t21 + t20) * t42 - k(2.0) * (t41 - t40) * t39;
-        let t44 = k(2.0) * (t24 - t23) * t42
-            + (k(2.0) * (k(0.5) - (t27 + t26)) - t30) * t39;
+        let t42 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t43 = T::fused(-(k(2.0) * (t41 - t40)), t39, k(2.0) * (t21 + t20) * t42);
+        let t44 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t27 + t26), -t30),
+            t39,
+            k(2.0) * (t24 - t23) * t42,
+        );
         *out = [
-            -(t18 + k(2.0) * (t7 - t6) * t5),
-            t19 + (k(2.0) * (k(0.5) - (t11 + t13)) - t14) * t5,
+            -T::fused(k(2.0) * (t7 - t6), t5, t18),
+            T::fused(T::fused(k(2.0), k(0.5) - (t11 + t13), -t14), t5, t19),
             outer_ring_wy - base_wy,
-            k(2.0) * (t9 + t8) * t22 - t34,
-            t35 + k(2.0) * (t16 - t15) * t22,
+            T::fused(k(2.0) * (t9 + t8), t22, -t34),
+            T::fused(k(2.0) * (t16 - t15), t22, t35),
             inner_ring_wz - outer_ring_wz,
-            t43 - t36 * (k(2.0) * (k(0.5) - (t27 + t29)) - t30),
-            t44 + k(2.0) * (t41 + t40) * t36,
+            T::fused(-t36, T::fused(k(2.0), k(0.5) - (t27 + t29), -t30), t43),
+            T::fused(k(2.0) * (t41 + t40), t36, t44),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -827,9 +1246,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMaximal<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> GyroscopeMaximal<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMaximal<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 52]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[10];
         let outer_ring_e1 = y[11];
         let outer_ring_e2 = y[12];
@@ -848,23 +1268,8 @@ impl<T: gyro_sim::Scalar> GyroscopeMaximal<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
         let outer_ring_e1 = y[11];
@@ -890,47 +1295,82 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e3 * outer_ring_e3
-            + (outer_ring_e0 * outer_ring_e0 + outer_ring_e1 * outer_ring_e1
-                + outer_ring_e2 * outer_ring_e2);
+        let t0 = T::fused(
+            outer_ring_e3,
+            outer_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                outer_ring_e2,
+                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+            ),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
         let t4 = outer_ring_e3 * t1;
         let t5 = outer_ring_e2 * t1;
-        let t6 = chart0_0 * t5 + chart0_1 * t4 - chart0_2 * t3 - chart0_3 * t2;
+        let t6 = T::fused(
+            -chart0_3,
+            t2,
+            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+        );
         let t7 = k(0.5) * t6;
         let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - (t4 * t4 + t8));
-        let t10 = k(2.0) * (t3 * t4 - t2 * t5);
+        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
+        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
         let t11 = t2 * t4;
         let t12 = t3 * t5;
         let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * (t3 * t2 + t5 * t4);
-        let t15 = k(2.0) * (k(0.5) - (t8 + t2 * t2));
+        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
+        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
         let t16 = k(2.0) * (t12 - t11);
-        let t17 = t13 * t16 + t9 * t15;
+        let t17 = T::fused(t9, t15, t13 * t16);
         let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * (t14 * (t13 * t7) - t10 * (t9 * t7));
-        let t20 = chart0_0 * (outer_ring_e0 + t3) + chart0_1 * (outer_ring_e1 + t2)
-            + chart0_2 * (outer_ring_e2 + t5);
-        let t21 = chart0_0 * t2 - chart0_1 * t3 - chart0_2 * t4 + chart0_3 * t5;
+        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t20 = T::fused(
+            chart0_2,
+            outer_ring_e2 + t5,
+            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+        );
+        let t21 = T::fused(
+            chart0_3,
+            t5,
+            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+        );
         let t22 = k(0.5) * t21;
-        let t23 = chart0_0 * t4 - chart0_1 * t5 + chart0_2 * t2 - chart0_3 * t3;
+        let t23 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+        );
         let t24 = k(0.5) * t23;
-        let t25 = t14 * (t15 * t22 - t13 * t24) + t10 * (t9 * t24 + t16 * t22);
-        let t26 = t18 * (t25 - (t20 + chart0_3 * (outer_ring_e3 + t4)) * t17);
-        let t27 = t18 * (t14 * (t15 * t7) + t10 * (t16 * t7));
-        let t28 = t3 - k(0.5) * (t2 * t27 - t5 * t26 - t4 * t19);
-        let t29 = t2 + k(0.5) * (t3 * t27 + t4 * t26 - t5 * t19);
-        let t30 = t5 + k(0.5) * (t4 * t27 - t3 * t26 + t2 * t19);
-        let t31 = t4 - k(0.5) * (t5 * t27 + t2 * t26 + t3 * t19);
+        let t25 = T::fused(
+            t10,
+            T::fused(t16, t22, t9 * t24),
+            t14 * T::fused(-t13, t24, t15 * t22),
+        );
+        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
+        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
+        let t28 = T::fused(
+            -k(0.5),
+            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
+            t3,
+        );
+        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
+        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
+        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
         let t32 = t29 * t30;
         let t33 = t28 * t31;
         let t34 = k(2.0) * (t33 - t32);
-        let t35 = inner_ring_e3 * inner_ring_e3
-            + (inner_ring_e0 * inner_ring_e0 + inner_ring_e1 * inner_ring_e1
-                + inner_ring_e2 * inner_ring_e2);
+        let t35 = T::fused(
+            inner_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                inner_ring_e2,
+                inner_ring_e2,
+                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t36 = k(0.5) * (t35 - k(3.0));
         let t37 = inner_ring_e2 * t36;
         let t38 = inner_ring_e1 * t36;
@@ -940,67 +1380,114 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         let t42 = t41 * t40;
         let t43 = k(2.0) * (t42 - t39);
         let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - (t44 + t30 * t30));
+        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
         let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - (t37 * t37 + t46));
-        let t48 = k(2.0) * (t28 * t29 + t30 * t31);
+        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
+        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
         let t49 = t37 * t40;
         let t50 = t41 * t38;
         let t51 = k(2.0) * (t50 + t49);
-        let t52 = t51 * t48 + (t47 * t45 + t43 * t34);
-        let t53 = k(2.0) * (k(0.5) - (t46 + t38 * t38));
-        let t54 = k(2.0) * (k(0.5) - (t29 * t29 + t44));
+        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
+        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
+        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
         let t55 = k(2.0) * (t42 + t39);
         let t56 = k(2.0) * (t33 + t32);
         let t57 = t38 * t40;
         let t58 = t41 * t37;
         let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * (t28 * t30 - t29 * t31);
-        let t61 = t60 * t59 + (t56 * t55 + t54 * t53);
-        let t62 = t59 * t48 + (t55 * t45 - t53 * t34);
-        let t63 = t51 * t60 + (t47 * t56 - t43 * t54);
-        let t64 = t63 * t62 - t61 * t52;
-        let t65 = chart1_0 * (inner_ring_e0 + t41) + chart1_1 * (inner_ring_e1 + t38)
-            + chart1_2 * (inner_ring_e2 + t37);
-        let t66 = chart1_0 * t37 + chart1_1 * t40 - chart1_2 * t41 - chart1_3 * t38;
+        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
+        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
+        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
+        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
+        let t64 = T::fused(-t61, t52, t63 * t62);
+        let t65 = T::fused(
+            chart1_2,
+            inner_ring_e2 + t37,
+            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
+        );
+        let t66 = T::fused(
+            -chart1_3,
+            t38,
+            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
+        );
         let t67 = k(0.5) * t66;
-        let t68 = chart1_0 * t38 - chart1_1 * t41 - chart1_2 * t40 + chart1_3 * t37;
+        let t68 = T::fused(
+            chart1_3,
+            t37,
+            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+        );
         let t69 = k(0.5) * t68;
         let t70 = k(2.0) * (t58 + t57);
         let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - (t46 + t40 * t40));
-        let t73 = t72 * t48 - (t71 * t45 - t70 * t34);
-        let t74 = t60 * t72 - (t56 * t71 + t54 * t70);
-        let t75 = t74 * (t52 * t67 - t62 * t69) + t73 * (t61 * t69 - t63 * t67);
-        let t76 = chart1_0 * t40 - chart1_1 * t37 + chart1_2 * t38 - chart1_3 * t41;
+        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
+        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
+        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t75 = T::fused(
+            t73,
+            T::fused(-t63, t67, t61 * t69),
+            t74 * T::fused(-t62, t69, t52 * t67),
+        );
+        let t76 = T::fused(
+            -chart1_3,
+            t41,
+            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+        );
         let t77 = k(0.5) * t76;
         let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78 * (t75 - (t65 + chart1_3 * (inner_ring_e3 + t40)) * t64);
-        let t80 = t78 * (t74 * (t52 * t77) - t73 * (t63 * t77));
-        let t81 = t78 * (t74 * (t62 * t77) - t73 * (t61 * t77));
-        let t82 = t41 + k(0.5) * (t38 * t81 - t37 * t80 + t40 * t79);
-        let t83 = t38 - k(0.5) * (t41 * t81 + t40 * t80 + t37 * t79);
-        let t84 = t37 - k(0.5) * (t40 * t81 - t41 * t80 - t38 * t79);
-        let t85 = t40 + k(0.5) * (t37 * t81 + t38 * t80 - t41 * t79);
+        let t79 = t78
+            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
+        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
+        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t82 = T::fused(
+            k(0.5),
+            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
+            t41,
+        );
+        let t83 = T::fused(
+            -k(0.5),
+            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
+            t38,
+        );
+        let t84 = T::fused(
+            -k(0.5),
+            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
+            t37,
+        );
+        let t85 = T::fused(
+            k(0.5),
+            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
+            t40,
+        );
         let t86 = t82 * t82;
         let t87 = t83 * t84;
         let t88 = t82 * t85;
         let t89 = t83 * t85;
         let t90 = t82 * t84;
-        let t91 = rotor_e3 * rotor_e3
-            + (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1 + rotor_e2 * rotor_e2);
+        let t91 = T::fused(
+            rotor_e3,
+            rotor_e3,
+            T::fused(
+                rotor_e2,
+                rotor_e2,
+                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+            ),
+        );
         let t92 = k(0.5) * (t91 - k(3.0));
         let t93 = rotor_e2 * t92;
         let t94 = rotor_e3 * t92;
         let t95 = rotor_e0 * t92;
         let t96 = rotor_e1 * t92;
-        let t97 = chart2_0 * t96 - chart2_1 * t95 - chart2_2 * t94 + chart2_3 * t93;
+        let t97 = T::fused(
+            chart2_3,
+            t93,
+            T::fused(-chart2_2, t94, T::fused(-chart2_1, t95, chart2_0 * t96)),
+        );
         let t98 = k(0.5) * t97;
         let t99 = k(2.0) * (t88 - t87);
         let t100 = t96 * t94;
         let t101 = t95 * t93;
         let t102 = k(2.0) * (t101 + t100);
-        let t103 = k(2.0) * (k(0.5) - (t84 * t84 + t86));
+        let t103 = k(2.0) * (k(0.5) - T::fused(t84, t84, t86));
         let t104 = t93 * t94;
         let t105 = t95 * t96;
         let t106 = k(2.0) * (t105 - t104);
@@ -1008,41 +1495,71 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         let t108 = t82 * t83;
         let t109 = k(2.0) * (t108 + t107);
         let t110 = t95 * t95;
-        let t111 = k(2.0) * (k(0.5) - (t94 * t94 + t110));
-        let t112 = t111 * t109 - (t106 * t103 - t102 * t99);
+        let t111 = k(2.0) * (k(0.5) - T::fused(t94, t94, t110));
+        let t112 = T::fused(t111, t109, -T::fused(-t102, t99, t106 * t103));
         let t113 = k(2.0) * (t90 + t89);
-        let t114 = k(2.0) * (k(0.5) - (t110 + t96 * t96));
+        let t114 = k(2.0) * (k(0.5) - T::fused(t96, t96, t110));
         let t115 = k(2.0) * (t108 - t107);
         let t116 = t96 * t93;
         let t117 = t95 * t94;
         let t118 = k(2.0) * (t117 + t116);
-        let t119 = k(2.0) * (k(0.5) - (t86 + t85 * t85));
+        let t119 = k(2.0) * (k(0.5) - T::fused(t85, t85, t86));
         let t120 = k(2.0) * (t101 - t100);
-        let t121 = t120 * t119 - (t118 * t115 + t114 * t113);
-        let t122 = t111 * t119 + (t106 * t115 + t102 * t113);
-        let t123 = t109 * t120 + (t103 * t118 - t99 * t114);
+        let t121 = T::fused(t120, t119, -T::fused(t114, t113, t118 * t115));
+        let t122 = T::fused(t111, t119, T::fused(t102, t113, t106 * t115));
+        let t123 = T::fused(t109, t120, T::fused(-t99, t114, t103 * t118));
         let t124 = k(2.0) * (t117 - t116);
-        let t125 = k(2.0) * (k(0.5) - (t110 + t93 * t93));
+        let t125 = k(2.0) * (k(0.5) - T::fused(t93, t93, t110));
         let t126 = k(2.0) * (t105 + t104);
-        let t127 = t109 * t126 + (t103 * t125 + t99 * t124);
-        let t128 = t126 * t119 - (t125 * t115 - t124 * t113);
-        let t129 = t112 * t128 - t127 * t122;
+        let t127 = T::fused(t109, t126, T::fused(t99, t124, t103 * t125));
+        let t128 = T::fused(t126, t119, -T::fused(-t124, t113, t125 * t115));
+        let t129 = T::fused(-t127, t122, t112 * t128);
         let t130 = k(1.0) / (t98 * t129);
-        let t131 = t130 * (t123 * (t122 * t98) - t121 * (t112 * t98));
-        let t132 = t130 * (t123 * (t128 * t98) - t121 * (t127 * t98));
-        let t133 = chart2_0 * (rotor_e0 + t95) + chart2_1 * (rotor_e1 + t96)
-            + chart2_2 * (rotor_e2 + t93);
-        let t134 = chart2_0 * t94 - chart2_1 * t93 + chart2_2 * t96 - chart2_3 * t95;
+        let t131 = t130 * T::fused(-t121, t112 * t98, t123 * (t122 * t98));
+        let t132 = t130 * T::fused(-t121, t127 * t98, t123 * (t128 * t98));
+        let t133 = T::fused(
+            chart2_2,
+            rotor_e2 + t93,
+            T::fused(chart2_1, rotor_e1 + t96, chart2_0 * (rotor_e0 + t95)),
+        );
+        let t134 = T::fused(
+            -chart2_3,
+            t95,
+            T::fused(chart2_2, t96, T::fused(-chart2_1, t93, chart2_0 * t94)),
+        );
         let t135 = k(0.5) * t134;
-        let t136 = chart2_0 * t93 + chart2_1 * t94 - chart2_2 * t95 - chart2_3 * t96;
+        let t136 = T::fused(
+            -chart2_3,
+            t96,
+            T::fused(-chart2_2, t95, T::fused(chart2_1, t94, chart2_0 * t93)),
+        );
         let t137 = k(0.5) * t136;
-        let t138 = t123 * (t122 * t135 - t128 * t137)
-            + t121 * (t127 * t137 - t112 * t135);
-        let t139 = t130 * (t138 + (t133 + chart2_3 * (rotor_e3 + t94)) * t129);
-        let t140 = t95 - k(0.5) * (t96 * t139 + t93 * t132 - t94 * t131);
-        let t141 = t96 + k(0.5) * (t95 * t139 - t94 * t132 - t93 * t131);
-        let t142 = t93 + k(0.5) * (t94 * t139 + t95 * t132 + t96 * t131);
-        let t143 = t94 - k(0.5) * (t93 * t139 - t96 * t132 + t95 * t131);
+        let t138 = T::fused(
+            t121,
+            T::fused(-t112, t135, t127 * t137),
+            t123 * T::fused(-t128, t137, t122 * t135),
+        );
+        let t139 = t130 * T::fused(T::fused(chart2_3, rotor_e3 + t94, t133), t129, t138);
+        let t140 = T::fused(
+            -k(0.5),
+            T::fused(-t94, t131, T::fused(t93, t132, t96 * t139)),
+            t95,
+        );
+        let t141 = T::fused(
+            k(0.5),
+            T::fused(-t93, t131, T::fused(-t94, t132, t95 * t139)),
+            t96,
+        );
+        let t142 = T::fused(
+            k(0.5),
+            T::fused(t96, t131, T::fused(t95, t132, t94 * t139)),
+            t93,
+        );
+        let t143 = T::fused(
+            -k(0.5),
+            T::fused(t95, t131, T::fused(-t96, t132, t93 * t139)),
+            t94,
+        );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
@@ -1064,22 +1581,16 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         y[18] = -t83;
         y[19] = -t84;
         y[20] = -t85;
-        y[21] = -(k(0.00025) * (k(0.5) - (t86 + t83 * t83)));
+        y[21] = -(k(0.00025) * (k(0.5) - T::fused(t83, t83, t86)));
         y[22] = k(0.00025) * (t88 + t87);
         y[23] = -(k(0.00025) * (t90 - t89));
         y[24] = -t140;
         y[25] = -t141;
         y[26] = -t142;
         y[27] = -t143;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 300 operations (112 ±, 185 ×, 3 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let base_e0 = y[3];
         let base_e1 = y[4];
@@ -1106,93 +1617,109 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         let rotor_wy = y[50];
         let rotor_wz = y[51];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t2 = base_e0 * base_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + base_e1 * base_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(base_e1, base_e1, t2));
         let t4 = outer_ring_e0 * outer_ring_e3;
         let t5 = outer_ring_e1 * outer_ring_e2;
         let t6 = k(2.0) * (t5 + t4);
-        let t7 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3);
+        let t7 = k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2);
         let t8 = outer_ring_e0 * outer_ring_e2;
         let t9 = outer_ring_e1 * outer_ring_e3;
         let t10 = k(2.0) * (t9 - t8);
         let t11 = base_e0 * base_e2;
         let t12 = base_e1 * base_e3;
         let t13 = k(2.0) * (t12 - t11);
-        let t14 = t13 * t10 + (t7 * t6 + t3 * t1);
-        let t15 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t16 = k(2.0) * (k(0.5) - (t2 + base_e3 * base_e3));
+        let t14 = T::fused(t13, t10, T::fused(t3, t1, t7 * t6));
+        let t15 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t16 = k(2.0) * (k(0.5) - T::fused(base_e3, base_e3, t2));
         let t17 = outer_ring_e0 * outer_ring_e1;
         let t18 = outer_ring_e2 * outer_ring_e3;
         let t19 = k(2.0) * (t18 - t17);
-        let t20 = k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1);
+        let t20 = k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3);
         let t21 = k(2.0) * (t9 + t8);
         let t22 = k(2.0) * (t12 + t11);
-        let t23 = t22 * t21 + t20 * t19 + t16 * t15;
-        let t24 = t13 * t15 - (t7 * t19 - t3 * t21);
-        let t25 = t16 * t10 - (t20 * t6 - t22 * t1);
-        let t26 = k(1.0) / (t25 * t24 - t23 * t14);
-        let t27 = outer_ring_wx * t24 + outer_ring_wz * t14;
-        let t28 = outer_ring_wx * t23 + outer_ring_wz * t25;
-        let t29 = outer_ring_wx + t28 * (t14 * t26) - t27 * (t25 * t26);
-        let t30 = outer_ring_wz - t28 * (t24 * t26) + t27 * (t23 * t26);
+        let t23 = T::fused(t16, t15, T::fused(t20, t19, t22 * t21));
+        let t24 = T::fused(t13, t15, -T::fused(-t3, t21, t7 * t19));
+        let t25 = T::fused(t16, t10, -T::fused(-t22, t1, t20 * t6));
+        let t26 = k(1.0) / T::fused(-t23, t14, t25 * t24);
+        let t27 = T::fused(outer_ring_wz, t14, outer_ring_wx * t24);
+        let t28 = T::fused(outer_ring_wz, t25, outer_ring_wx * t23);
+        let t29 = T::fused(-t27, t25 * t26, T::fused(t28, t14 * t26, outer_ring_wx));
+        let t30 = T::fused(t27, t23 * t26, T::fused(-t28, t24 * t26, outer_ring_wz));
         let t31 = inner_ring_e0 * inner_ring_e0;
-        let t32 = k(2.0) * (k(0.5) - (t31 + inner_ring_e1 * inner_ring_e1));
+        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t31));
         let t33 = k(2.0) * (t5 - t4);
         let t34 = inner_ring_e0 * inner_ring_e3;
         let t35 = inner_ring_e1 * inner_ring_e2;
         let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t38 = inner_ring_e0 * inner_ring_e2;
         let t39 = inner_ring_e1 * inner_ring_e3;
         let t40 = k(2.0) * (t39 - t38);
         let t41 = k(2.0) * (t18 + t17);
-        let t42 = t41 * t40 - (t37 * t36 + t33 * t32);
+        let t42 = T::fused(t41, t40, -T::fused(t33, t32, t37 * t36));
         let t43 = k(2.0) * (t35 - t34);
-        let t44 = k(2.0) * (k(0.5) - (t31 + inner_ring_e2 * inner_ring_e2));
+        let t44 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t31));
         let t45 = inner_ring_e0 * inner_ring_e1;
         let t46 = inner_ring_e2 * inner_ring_e3;
         let t47 = k(2.0) * (t46 + t45);
-        let t48 = t10 * t47 - (t6 * t44 + t1 * t43);
-        let t49 = t41 * t47 + (t33 * t43 + t37 * t44);
-        let t50 = t10 * t40 + (t6 * t36 + t1 * t32);
-        let t51 = k(1.0) / (t50 * t49 - t48 * t42);
+        let t48 = T::fused(t10, t47, -T::fused(t1, t43, t6 * t44));
+        let t49 = T::fused(t41, t47, T::fused(t37, t44, t33 * t43));
+        let t50 = T::fused(t10, t40, T::fused(t1, t32, t6 * t36));
+        let t51 = k(1.0) / T::fused(-t48, t42, t50 * t49);
         let t52 = k(2.0) * (t39 + t38);
         let t53 = k(2.0) * (t46 - t45);
-        let t54 = k(2.0) * (k(0.5) - (t31 + inner_ring_e3 * inner_ring_e3));
-        let t55 = t21 * t52 + t19 * t53 + t15 * t54;
-        let t56 = t29 * t55 + t30 * (t10 * t54 - (t6 * t53 - t1 * t52));
-        let t57 = t56 - (inner_ring_wx * t49 - inner_ring_wy * t42);
-        let t58 = outer_ring_wy * t55 + t30 * (t41 * t54 - (t33 * t52 - t37 * t53));
-        let t59 = t58 + (inner_ring_wx * t48 - inner_ring_wy * t50);
-        let t60 = inner_ring_wx + t59 * (t42 * t51) + t57 * (t50 * t51);
-        let t61 = inner_ring_wy + t59 * (t49 * t51) + t57 * (t48 * t51);
+        let t54 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t31));
+        let t55 = T::fused(t15, t54, T::fused(t19, t53, t21 * t52));
+        let t56 = T::fused(
+            t30,
+            T::fused(t10, t54, -T::fused(-t1, t52, t6 * t53)),
+            t29 * t55,
+        );
+        let t57 = t56 - T::fused(-inner_ring_wy, t42, inner_ring_wx * t49);
+        let t58 = T::fused(
+            t30,
+            T::fused(t41, t54, -T::fused(-t37, t53, t33 * t52)),
+            outer_ring_wy * t55,
+        );
+        let t59 = t58 + T::fused(-inner_ring_wy, t50, inner_ring_wx * t48);
+        let t60 = T::fused(t57, t50 * t51, T::fused(t59, t42 * t51, inner_ring_wx));
+        let t61 = T::fused(t57, t48 * t51, T::fused(t59, t49 * t51, inner_ring_wy));
         let t62 = rotor_e0 * rotor_e0;
-        let t63 = k(2.0) * (k(0.5) - (t62 + rotor_e2 * rotor_e2));
+        let t63 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t62));
         let t64 = rotor_e0 * rotor_e3;
         let t65 = rotor_e1 * rotor_e2;
         let t66 = k(2.0) * (t65 - t64);
         let t67 = rotor_e0 * rotor_e1;
         let t68 = rotor_e2 * rotor_e3;
         let t69 = k(2.0) * (t68 + t67);
-        let t70 = t54 * t69 - (t52 * t66 - t53 * t63);
+        let t70 = T::fused(t54, t69, -T::fused(-t53, t63, t52 * t66));
         let t71 = k(2.0) * (t68 - t67);
         let t72 = rotor_e0 * rotor_e2;
         let t73 = rotor_e1 * rotor_e3;
         let t74 = k(2.0) * (t73 + t72);
-        let t75 = k(2.0) * (k(0.5) - (t62 + rotor_e3 * rotor_e3));
-        let t76 = t47 * t75 - (t43 * t74 - t44 * t71);
-        let t77 = t52 * t74 + t53 * t71 + t54 * t75;
-        let t78 = t47 * t69 + (t43 * t66 + t44 * t63);
-        let t79 = k(1.0) / (t78 * t77 - t76 * t70);
-        let t80 = k(2.0) * (k(0.5) - (t62 + rotor_e1 * rotor_e1));
+        let t75 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t62));
+        let t76 = T::fused(t47, t75, -T::fused(-t44, t71, t43 * t74));
+        let t77 = T::fused(t54, t75, T::fused(t53, t71, t52 * t74));
+        let t78 = T::fused(t47, t69, T::fused(t44, t63, t43 * t66));
+        let t79 = k(1.0) / T::fused(-t76, t70, t78 * t77);
+        let t80 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t62));
         let t81 = k(2.0) * (t65 + t64);
         let t82 = k(2.0) * (t73 - t72);
-        let t83 = t40 * t82 + (t36 * t81 + t32 * t80);
-        let t84 = t60 * (t47 * t82 - (t44 * t81 + t43 * t80)) - t61 * t83;
-        let t85 = t84 + (rotor_wy * t77 + rotor_wz * t70);
-        let t86 = t60 * (t54 * t82 - (t53 * t81 - t52 * t80)) + inner_ring_wz * t83;
-        let t87 = t86 - (rotor_wy * t76 + rotor_wz * t78);
+        let t83 = T::fused(t40, t82, T::fused(t32, t80, t36 * t81));
+        let t84 = T::fused(
+            -t61,
+            t83,
+            t60 * T::fused(t47, t82, -T::fused(t43, t80, t44 * t81)),
+        );
+        let t85 = t84 + T::fused(rotor_wz, t70, rotor_wy * t77);
+        let t86 = T::fused(
+            inner_ring_wz,
+            t83,
+            t60 * T::fused(t54, t82, -T::fused(-t52, t80, t53 * t81)),
+        );
+        let t87 = t86 - T::fused(rotor_wz, t78, rotor_wy * t76);
         y[28] = k(0.0);
         y[29] = k(0.0);
         y[30] = k(0.0);
@@ -1209,130 +1736,48 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
         y[42] = k(0.0);
         y[43] = t60;
         y[44] = t61;
-        y[46] = -(k(0.000125) * (t52 * t61 - t43 * inner_ring_wz));
-        y[47] = -(k(0.000125) * (t53 * t61 + t44 * inner_ring_wz));
-        y[48] = k(0.000125) * (t54 * t61 + t47 * inner_ring_wz);
-        y[50] = rotor_wy - t87 * (t70 * t79) - t85 * (t78 * t79);
-        y[51] = rotor_wz + t87 * (t77 * t79) + t85 * (t76 * t79);
+        y[46] = -(k(0.000125) * T::fused(-t43, inner_ring_wz, t52 * t61));
+        y[47] = -(k(0.000125) * T::fused(t44, inner_ring_wz, t53 * t61));
+        y[48] = k(0.000125) * T::fused(t47, inner_ring_wz, t54 * t61);
+        y[50] = T::fused(-t85, t78 * t79, T::fused(-t87, t70 * t79, rotor_wy));
+        y[51] = T::fused(t85, t76 * t79, T::fused(t87, t77 * t79, rotor_wz));
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeMaximal<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 96 operations (32 ±, 64 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let base_e0 = y[3];
-        let base_e1 = y[4];
-        let base_e2 = y[5];
-        let base_e3 = y[6];
-        let outer_ring_e0 = y[10];
-        let outer_ring_e1 = y[11];
-        let outer_ring_e2 = y[12];
-        let outer_ring_e3 = y[13];
-        let inner_ring_e0 = y[17];
-        let inner_ring_e1 = y[18];
-        let inner_ring_e2 = y[19];
-        let inner_ring_e3 = y[20];
-        let rotor_e0 = y[24];
-        let rotor_e1 = y[25];
-        let rotor_e2 = y[26];
-        let rotor_e3 = y[27];
-        let base_sx = y[28];
-        let base_sy = y[29];
-        let base_sz = y[30];
-        let outer_ring_sx = y[34];
-        let outer_ring_sy = y[35];
-        let outer_ring_sz = y[36];
-        let inner_ring_sx = y[40];
-        let inner_ring_sy = y[41];
-        let inner_ring_sz = y[42];
-        let rotor_sx = y[46];
-        let rotor_sy = y[47];
-        let rotor_sz = y[48];
-        let base_wx = y[31];
-        let base_wy = y[32];
-        let base_wz = y[33];
-        let outer_ring_wx = y[37];
-        let outer_ring_wy = y[38];
-        let outer_ring_wz = y[39];
-        let inner_ring_wx = y[43];
-        let inner_ring_wy = y[44];
-        let inner_ring_wz = y[45];
-        let rotor_wx = y[49];
-        let rotor_wy = y[50];
-        let rotor_wz = y[51];
-        *dy = [
-            base_sx,
-            base_sy,
-            base_sz,
-            -(k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz)),
-            k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz),
-            k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz),
-            -(k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz)),
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            accelerations[18],
-            accelerations[19],
-            accelerations[20],
-            accelerations[21],
-            accelerations[22],
-            accelerations[23],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
@@ -1540,10 +1985,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_e3 = y[27];
         let t0 = k(4.0) * base_e0;
         let t1 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t2 = k(2.0) * base_e1;
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
         let t5 = t4 * t2;
         let t6 = k(2.0) * base_e2;
         let t7 = outer_ring_e0 * outer_ring_e3;
@@ -1556,9 +2001,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t14 = t4 * t6;
         let t15 = k(2.0) * outer_ring_e1;
         let t16 = base_e0 * base_e0;
-        let t17 = k(2.0) * (k(0.5) - (t16 + base_e3 * base_e3));
+        let t17 = k(2.0) * (k(0.5) - T::fused(base_e3, base_e3, t16));
         let t18 = k(4.0) * outer_ring_e0;
-        let t19 = k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1);
+        let t19 = k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3);
         let t20 = k(2.0) * outer_ring_e3;
         let t21 = base_e0 * base_e2;
         let t22 = base_e1 * base_e3;
@@ -1567,26 +2012,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t25 = k(2.0) * outer_ring_e2;
         let t26 = k(4.0) * outer_ring_e2;
         let t27 = k(2.0) * (t22 - t21);
-        let t28 = k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3);
-        let t29 = k(2.0) * (k(0.5) - (t16 + base_e1 * base_e1));
+        let t28 = k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2);
+        let t29 = k(2.0) * (k(0.5) - T::fused(base_e1, base_e1, t16));
         let t30 = inner_ring_e0 * inner_ring_e0;
-        let t31 = k(2.0) * (k(0.5) - (t30 + inner_ring_e3 * inner_ring_e3));
+        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t30));
         let t32 = t31 * t25;
         let t33 = inner_ring_e0 * inner_ring_e1;
         let t34 = inner_ring_e2 * inner_ring_e3;
         let t35 = k(2.0) * (t34 - t33);
         let t36 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2);
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
         let t37 = t31 * t20;
         let t38 = t31 * t24;
         let t39 = t31 * t15;
         let t40 = k(4.0) * inner_ring_e0;
         let t41 = k(2.0)
-            * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2);
+            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
         let t42 = k(2.0) * inner_ring_e1;
         let t43 = k(2.0) * (t8 + t7);
         let t44 = k(2.0) * inner_ring_e2;
-        let t45 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
+        let t45 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
         let t46 = k(2.0) * inner_ring_e0;
         let t47 = k(2.0) * inner_ring_e3;
         let t48 = k(4.0) * inner_ring_e3;
@@ -1594,9 +2039,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t50 = k(0.00025) * inner_ring_e2;
         let t51 = k(0.00025) * inner_ring_e1;
         let t52 = k(0.00025) * inner_ring_e0;
-        let t53 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
-        let t54 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
-        let t55 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1));
+        let t53 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t54 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t55 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
         let t56 = t55 * t47;
         let t57 = t55 * t44;
         let t58 = t55 * t42;
@@ -1604,10 +2049,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t60 = k(2.0) * rotor_e2;
         let t61 = k(2.0) * (t34 + t33);
         let t62 = k(2.0) * rotor_e3;
-        let t63 = k(2.0) * (k(0.5) - (t30 + inner_ring_e2 * inner_ring_e2));
+        let t63 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t30));
         let t64 = k(4.0) * rotor_e0;
         let t65 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3);
+            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
         let t66 = k(4.0) * rotor_e1;
         let t67 = k(2.0) * rotor_e0;
         let t68 = k(2.0) * rotor_e1;
@@ -1624,44 +2069,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            t9 * t6 + t5 + t1 * t0,
-            t9 * t12 + t11,
-            t9 * t10 - t13,
-            t9 * t2 - t14 + t1 * (k(4.0) * base_e3),
-            -(t23 * t20 - t19 * t18 + t17 * t15),
-            t23 * t25 - t17 * t24,
-            t23 * t15 + t19 * t26 - t17 * t20,
-            -(t23 * t24 + t17 * t25),
-            -(t13 - t9 * t0 + t1 * t6),
-            t1 * t12 - (t14 - t9 * (k(4.0) * base_e1)),
-            -(t5 + t1 * t10),
-            t1 * t2 - t11,
-            t29 * t20 + t28 * t18 + t27 * t15,
-            t27 * t24 - t29 * t25,
-            t27 * t20 - (t29 * t15 - t28 * t26),
-            t29 * t24 + t27 * t25,
+            T::fused(t1, t0, T::fused(t9, t6, t5)),
+            T::fused(t9, t12, t11),
+            T::fused(t9, t10, -t13),
+            T::fused(t1, k(4.0) * base_e3, T::fused(t9, t2, -t14)),
+            -T::fused(t17, t15, T::fused(-t19, t18, t23 * t20)),
+            T::fused(-t17, t24, t23 * t25),
+            T::fused(-t17, t20, T::fused(t19, t26, t23 * t15)),
+            -T::fused(t17, t25, t23 * t24),
+            -T::fused(t1, t6, T::fused(-t9, t0, t13)),
+            T::fused(t1, t12, -T::fused(-t9, k(4.0) * base_e1, t14)),
+            -T::fused(t1, t10, t5),
+            T::fused(t1, t2, -t11),
+            T::fused(t27, t15, T::fused(t28, t18, t29 * t20)),
+            T::fused(-t29, t25, t27 * t24),
+            T::fused(t27, t20, -T::fused(-t28, t26, t29 * t15)),
+            T::fused(t27, t25, t29 * t24),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            t36 * t18 + t35 * t20 + t32,
-            t36 * (k(4.0) * outer_ring_e1) + t35 * t25 - t37,
-            t35 * t15 + t38,
-            t35 * t24 - t39,
-            t41 * t40 - (t45 * t44 + t43 * t42),
-            -(t45 * t47 + t43 * t46),
-            t43 * t47 - t45 * t46,
-            t41 * t48 - (t45 * t42 - t43 * t44),
-            -(t39 + (t36 * t20 - t35 * t18)),
-            t36 * t25 - t38,
-            t36 * t15 + t35 * t26 - t37,
-            -(t32 + t36 * t24),
-            t9 * t44 + t4 * t42 + t1 * t40,
-            t9 * t47 + t4 * t46,
-            t9 * t46 - t4 * t47,
-            t9 * t42 - t4 * t44 + t1 * t48,
+            T::fused(t35, t20, t36 * t18) + t32,
+            T::fused(t35, t25, t36 * (k(4.0) * outer_ring_e1)) - t37,
+            T::fused(t35, t15, t38),
+            T::fused(t35, t24, -t39),
+            T::fused(t41, t40, -T::fused(t43, t42, t45 * t44)),
+            -T::fused(t43, t46, t45 * t47),
+            T::fused(-t45, t46, t43 * t47),
+            T::fused(t41, t48, -T::fused(-t43, t44, t45 * t42)),
+            -(t39 + T::fused(-t35, t18, t36 * t20)),
+            T::fused(t36, t25, -t38),
+            T::fused(t35, t26, t36 * t15) - t37,
+            -T::fused(t36, t24, t32),
+            T::fused(t1, t40, T::fused(t4, t42, t9 * t44)),
+            T::fused(t4, t46, t9 * t47),
+            T::fused(-t4, t47, t9 * t46),
+            T::fused(t1, t48, T::fused(-t4, t44, t9 * t42)),
             k(-1.0),
             -(k(0.0005) * inner_ring_e0),
             -(k(0.0005) * inner_ring_e1),
@@ -1678,22 +2123,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             t52,
             -t51,
             k(1.0),
-            t56 + t54 * t40 + t53 * t42,
-            t53 * t46 - t57,
-            t53 * t47 - (t58 - t54 * (k(4.0) * inner_ring_e2)),
-            t53 * t44 + t59,
-            t65 * t64 - t63 * t62 - t61 * t60,
-            t65 * t66 - t63 * t60 + t61 * t62,
-            -(t63 * t68 + t61 * t67),
-            t61 * t68 - t63 * t67,
-            t53 * t40 - (t57 + t54 * t42),
-            -(t56 + t54 * t46),
-            t54 * t47 - t59,
-            t53 * t48 - (t58 - t54 * t44),
-            t36 * t64 + t35 * t62 + t31 * t60,
-            t36 * t66 + t35 * t60 - t31 * t62,
-            t35 * t68 + t31 * t67,
-            t35 * t67 - t31 * t68,
+            T::fused(t53, t42, T::fused(t54, t40, t56)),
+            T::fused(t53, t46, -t57),
+            T::fused(t53, t47, -T::fused(-t54, k(4.0) * inner_ring_e2, t58)),
+            T::fused(t53, t44, t59),
+            T::fused(-t61, t60, T::fused(-t63, t62, t65 * t64)),
+            T::fused(t61, t62, T::fused(-t63, t60, t65 * t66)),
+            -T::fused(t61, t67, t63 * t68),
+            T::fused(-t63, t67, t61 * t68),
+            T::fused(t53, t40, -T::fused(t54, t42, t57)),
+            -T::fused(t54, t46, t56),
+            T::fused(t54, t47, -t59),
+            T::fused(t53, t48, -T::fused(-t54, t44, t58)),
+            T::fused(t31, t60, T::fused(t35, t62, t36 * t64)),
+            T::fused(-t31, t62, T::fused(t35, t60, t36 * t66)),
+            T::fused(t31, t67, t35 * t68),
+            T::fused(-t31, t68, t35 * t67),
             t10,
             t2,
             t6,
@@ -1736,39 +2181,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t2 = k(0.5) * base_e2;
         let t3 = k(0.5) * base_e1;
         let t4 = outer_ring_e0 * outer_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + outer_ring_e2 * outer_ring_e2));
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t4));
         let t6 = base_e0 * base_e0;
         let t7 = outer_ring_e0 * outer_ring_e3;
         let t8 = outer_ring_e1 * outer_ring_e2;
         let t9 = k(2.0) * (t8 - t7);
         let t10 = base_e0 * base_e3;
         let t11 = base_e1 * base_e2;
-        let t12 = k(2.0) * (t11 - t10) * t9
-            + k(2.0) * (k(0.5) - (t6 + base_e2 * base_e2)) * t5;
+        let t12 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(base_e2, base_e2, t6)),
+            t5,
+            k(2.0) * (t11 - t10) * t9,
+        );
         let t13 = outer_ring_e0 * outer_ring_e1;
         let t14 = outer_ring_e2 * outer_ring_e3;
         let t15 = k(2.0) * (t14 + t13);
         let t16 = base_e0 * base_e1;
         let t17 = base_e2 * base_e3;
-        let t18 = k(2.0) * (t17 + t16) * t15 + t12;
-        let t19 = k(2.0) * (k(0.5) - (t6 + base_e1 * base_e1));
+        let t18 = T::fused(k(2.0) * (t17 + t16), t15, t12);
+        let t19 = k(2.0) * (k(0.5) - T::fused(base_e1, base_e1, t6));
         let t20 = k(2.0) * (t11 + t10);
         let t21 = base_e0 * base_e2;
         let t22 = base_e1 * base_e3;
         let t23 = k(2.0) * (t22 - t21);
-        let t24 = k(2.0) * (k(0.5) - (t4 + outer_ring_e3 * outer_ring_e3));
-        let t25 = k(2.0) * (k(0.5) - (t6 + base_e3 * base_e3));
+        let t24 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t4));
+        let t25 = k(2.0) * (k(0.5) - T::fused(base_e3, base_e3, t6));
         let t26 = k(2.0) * (t14 - t13);
         let t27 = k(2.0) * (t17 - t16);
         let t28 = outer_ring_e0 * outer_ring_e2;
         let t29 = outer_ring_e1 * outer_ring_e3;
         let t30 = k(2.0) * (t29 + t28);
         let t31 = k(2.0) * (t22 + t21);
-        let t32 = k(2.0) * (k(0.5) - (t4 + outer_ring_e1 * outer_ring_e1));
+        let t32 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t4));
         let t33 = k(2.0) * (t8 + t7);
         let t34 = k(2.0) * (t29 - t28);
         let t35 = inner_ring_e0 * inner_ring_e0;
-        let t36 = k(0.5) - (t35 + inner_ring_e3 * inner_ring_e3);
+        let t36 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t35);
         let t37 = k(2.0) * t36;
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
@@ -1778,33 +2226,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t43 = inner_ring_e1 * inner_ring_e3;
         let t44 = t43 + t42;
         let t45 = k(2.0) * t44;
-        let t46 = t30 * t45 + t26 * t41 + t24 * t37;
+        let t46 = T::fused(t24, t37, T::fused(t26, t41, t30 * t45));
         let t47 = inner_ring_e0 * inner_ring_e3;
         let t48 = inner_ring_e1 * inner_ring_e2;
         let t49 = t48 - t47;
         let t50 = k(2.0) * t49;
-        let t51 = k(0.5) - (t35 + inner_ring_e2 * inner_ring_e2);
+        let t51 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t35);
         let t52 = k(2.0) * t51;
         let t53 = t39 + t38;
         let t54 = k(2.0) * t53;
-        let t55 = k(2.0) * (k(0.5) - (t35 + inner_ring_e1 * inner_ring_e1));
+        let t55 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t35));
         let t56 = k(2.0) * (t48 + t47);
         let t57 = k(2.0) * (t43 - t42);
         let t58 = rotor_e0 * rotor_e0;
-        let t59 = k(2.0) * (k(0.5) - (t58 + rotor_e1 * rotor_e1));
+        let t59 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t58));
         let t60 = rotor_e0 * rotor_e3;
         let t61 = rotor_e1 * rotor_e2;
         let t62 = k(2.0) * (t61 + t60);
         let t63 = rotor_e0 * rotor_e2;
         let t64 = rotor_e1 * rotor_e3;
         let t65 = k(2.0) * (t64 - t63);
-        let t66 = t57 * t65 + (t56 * t62 + t55 * t59);
+        let t66 = T::fused(t57, t65, T::fused(t55, t59, t56 * t62));
         let t67 = rotor_e0 * rotor_e1;
         let t68 = rotor_e2 * rotor_e3;
         let t69 = k(2.0) * (t68 - t67);
         let t70 = k(2.0) * (t64 + t63);
-        let t71 = k(2.0) * (k(0.5) - (t58 + rotor_e3 * rotor_e3));
-        let t72 = k(2.0) * (k(0.5) - (t58 + rotor_e2 * rotor_e2));
+        let t71 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t58));
+        let t72 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t58));
         let t73 = k(2.0) * (t61 - t60);
         let t74 = k(2.0) * (t68 + t67);
         *out = [
@@ -1827,13 +2275,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(-1.0),
             k(1.0),
             -t18,
-            t23 * t15 - (t20 * t5 + t19 * t9),
-            t31 * t30 + t27 * t26 + t25 * t24,
-            t25 * t34 - (t27 * t33 - t31 * t32),
-            t25 * t15 - (t31 * t9 - t27 * t5),
+            T::fused(t23, t15, -T::fused(t19, t9, t20 * t5)),
+            T::fused(t25, t24, T::fused(t27, t26, t31 * t30)),
+            T::fused(t25, t34, -T::fused(-t31, t32, t27 * t33)),
+            T::fused(t25, t15, -T::fused(-t27, t5, t31 * t9)),
             t18,
-            t20 * t26 - t19 * t30 - t23 * t24,
-            -(t23 * t34 + (t20 * t33 + t19 * t32)),
+            T::fused(-t23, t24, T::fused(-t19, t30, t20 * t26)),
+            -T::fused(t23, t34, T::fused(t19, t32, t20 * t33)),
             k(-1.0),
             k(1.0),
             k(-1.0),
@@ -1841,13 +2289,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(-1.0),
             k(1.0),
             -t46,
-            t9 * t45 - t5 * t41 - t15 * t37,
-            t33 * t52 + t32 * t50 - t34 * t54,
-            t34 * t57 + (t33 * t56 + t32 * t55),
+            T::fused(-t15, t37, T::fused(-t5, t41, t9 * t45)),
+            T::fused(-t34, t54, T::fused(t32, t50, t33 * t52)),
+            T::fused(t34, t57, T::fused(t32, t55, t33 * t56)),
             t46,
-            t34 * t37 - (t33 * t41 - t32 * t45),
-            -(t15 * t54 + (t9 * t50 + t5 * t52)),
-            t15 * t57 - (t5 * t56 + t9 * t55),
+            T::fused(t34, t37, -T::fused(-t32, t45, t33 * t41)),
+            -T::fused(t15, t54, T::fused(t5, t52, t9 * t50)),
+            T::fused(t15, t57, -T::fused(t9, t55, t5 * t56)),
             k(-1.0),
             k(0.00025) * t44,
             -(k(0.00025) * t49),
@@ -1860,14 +2308,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             -(k(0.00025) * t36),
             -(k(0.00025) * t53),
             k(1.0),
-            t41 * t62 - t45 * t59 - t37 * t65,
+            T::fused(-t37, t65, T::fused(-t45, t59, t41 * t62)),
             -t66,
-            t54 * t71 - (t50 * t70 - t52 * t69),
-            t54 * t74 + (t50 * t73 + t52 * t72),
-            t52 * t62 + t50 * t59 - t54 * t65,
+            T::fused(t54, t71, -T::fused(-t52, t69, t50 * t70)),
+            T::fused(t54, t74, T::fused(t52, t72, t50 * t73)),
+            T::fused(-t54, t65, T::fused(t50, t59, t52 * t62)),
             t66,
-            -(t45 * t70 + t41 * t69 + t37 * t71),
-            t45 * t73 - t41 * t72 - t37 * t74,
+            -T::fused(t37, t71, T::fused(t41, t69, t45 * t70)),
+            T::fused(-t37, t74, T::fused(-t41, t72, t45 * t73)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1928,17 +2376,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_wx = y[49];
         let rotor_wy = y[50];
         let rotor_wz = y[51];
-        let t0 = k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
-        let t1 = k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
-        let t2 = k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
-        let t3 = k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
+        let t0 = k(0.5)
+            * T::fused(base_e3, base_wz, T::fused(base_e2, base_wy, base_e1 * base_wx));
+        let t1 = k(0.5)
+            * T::fused(
+                -base_e0,
+                base_wz,
+                T::fused(-base_e1, base_wy, base_e2 * base_wx),
+            );
+        let t2 = k(0.5)
+            * T::fused(-base_e1, base_wz, T::fused(base_e0, base_wy, base_e3 * base_wx));
+        let t3 = k(0.5)
+            * T::fused(base_e2, base_wz, T::fused(-base_e3, base_wy, base_e0 * base_wx));
         let t4 = outer_ring_e0 * outer_ring_e3;
         let t5 = outer_ring_e1 * outer_ring_e2;
         let t6 = k(2.0) * (t5 - t4);
         let t7 = base_e0 * base_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + base_e1 * base_e1));
+        let t8 = k(2.0) * (k(0.5) - T::fused(base_e1, base_e1, t7));
         let t9 = outer_ring_e0 * outer_ring_e0;
-        let t10 = k(2.0) * (k(0.5) - (t9 + outer_ring_e2 * outer_ring_e2));
+        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t9));
         let t11 = base_e0 * base_e3;
         let t12 = base_e1 * base_e2;
         let t13 = k(2.0) * (t12 + t11);
@@ -1948,151 +2404,199 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t17 = base_e0 * base_e2;
         let t18 = base_e1 * base_e3;
         let t19 = k(2.0) * (t18 - t17);
-        let t20 = t19 * t16 - (t13 * t10 + t8 * t6);
+        let t20 = T::fused(t19, t16, -T::fused(t8, t6, t13 * t10));
         let t21 = base_wx * base_wz;
-        let t22 = k(2.0) * (k(0.5) - (t7 + base_e2 * base_e2));
+        let t22 = k(2.0) * (k(0.5) - T::fused(base_e2, base_e2, t7));
         let t23 = k(2.0) * (t12 - t11);
         let t24 = base_e0 * base_e1;
         let t25 = base_e2 * base_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = t26 * t16 + (t23 * t6 + t22 * t10);
+        let t27 = T::fused(t26, t16, T::fused(t22, t10, t23 * t6));
         let t28 = k(2.0) * (t25 - t24);
         let t29 = k(2.0) * (t18 + t17);
-        let t30 = k(2.0) * (k(0.5) - (t7 + base_e3 * base_e3));
-        let t31 = t30 * t16 - (t29 * t6 - t28 * t10);
+        let t30 = k(2.0) * (k(0.5) - T::fused(base_e3, base_e3, t7));
+        let t31 = T::fused(t30, t16, -T::fused(-t28, t10, t29 * t6));
         let t32 = base_wy * base_wy;
-        let t33 = (t32 + base_wx * base_wx) * t31
-            + (base_wy * base_wz * t27 + t21 * t20);
-        let t34 = k(2.0) * (k(0.5) - (t9 + outer_ring_e1 * outer_ring_e1));
+        let t33 = T::fused(
+            T::fused(base_wx, base_wx, t32),
+            t31,
+            T::fused(t21, t20, base_wy * base_wz * t27),
+        );
+        let t34 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t9));
         let t35 = k(2.0) * (t5 + t4);
         let t36 = outer_ring_e0 * outer_ring_e2;
         let t37 = outer_ring_e1 * outer_ring_e3;
         let t38 = k(2.0) * (t37 - t36);
-        let t39 = t19 * t38 + (t13 * t35 + t8 * t34);
+        let t39 = T::fused(t19, t38, T::fused(t8, t34, t13 * t35));
         let t40 = k(2.0) * (t37 + t36);
         let t41 = k(2.0) * (t15 - t14);
-        let t42 = k(2.0) * (k(0.5) - (t9 + outer_ring_e3 * outer_ring_e3));
-        let t43 = t19 * t42 - (t13 * t41 - t8 * t40);
-        let t44 = outer_ring_wx * (t26 * t42 - (t23 * t40 - t22 * t41))
-            + outer_ring_wz * (t26 * t38 - (t22 * t35 + t23 * t34));
-        let t45 = k(2.0)
-            * (base_wx * t44 - base_wy * (outer_ring_wx * t43 + outer_ring_wz * t39));
-        let t46 = t30 * t38 - (t28 * t35 - t29 * t34);
-        let t47 = outer_ring_wx * outer_ring_wy;
-        let t48 = outer_ring_wz * outer_ring_wz;
-        let t49 = t48 + outer_ring_wx * outer_ring_wx;
-        let t50 = t29 * t40 + t28 * t41 + t30 * t42;
-        let t51 = outer_ring_wy * outer_ring_wz;
-        let t52 = t51 * t50 + (t49 * t31 - t47 * t46) + t45 + t33;
-        let t53 = t21 * t31
-            - (base_wx * base_wy * t27 - (base_wz * base_wz + t32) * t20);
-        let t54 = k(2.0)
-            * (base_wy * (outer_ring_wx * t50 + outer_ring_wz * t46) + base_wz * t44);
-        let t55 = t51 * t43 + (t49 * t20 - t47 * t39) + t54 + t53;
-        let t56 = inner_ring_e0 * inner_ring_e2;
-        let t57 = inner_ring_e1 * inner_ring_e3;
-        let t58 = k(2.0) * (t57 + t56);
-        let t59 = inner_ring_e0 * inner_ring_e1;
-        let t60 = inner_ring_e2 * inner_ring_e3;
-        let t61 = k(2.0) * (t60 - t59);
-        let t62 = inner_ring_e0 * inner_ring_e0;
-        let t63 = k(2.0) * (k(0.5) - (t62 + inner_ring_e3 * inner_ring_e3));
-        let t64 = t38 * t63 - (t35 * t61 - t34 * t58);
-        let t65 = t16 * t63 - (t6 * t58 - t10 * t61);
-        let t66 = t40 * t58 + t41 * t61 + t42 * t63;
-        let t67 = outer_ring_wx * outer_ring_wz * t66
-            - (t47 * t65 - (t48 + outer_ring_wy * outer_ring_wy) * t64);
-        let t68 = k(2.0) * (k(0.5) - (t62 + inner_ring_e1 * inner_ring_e1));
-        let t69 = inner_ring_e0 * inner_ring_e3;
-        let t70 = inner_ring_e1 * inner_ring_e2;
-        let t71 = k(2.0) * (t70 + t69);
-        let t72 = k(2.0) * (t57 - t56);
-        let t73 = t16 * t72 - (t10 * t71 + t6 * t68);
-        let t74 = k(2.0) * (k(0.5) - (t62 + inner_ring_e2 * inner_ring_e2));
-        let t75 = k(2.0) * (t70 - t69);
-        let t76 = k(2.0) * (t60 + t59);
-        let t77 = t16 * t76 + (t6 * t75 + t10 * t74);
-        let t78 = inner_ring_wx * (t42 * t76 - (t40 * t75 - t41 * t74))
-            - inner_ring_wy * (t42 * t72 - (t41 * t71 - t40 * t68));
-        let t79 = k(2.0)
-            * (outer_ring_wy * t78
-                + outer_ring_wz * (inner_ring_wx * t77 - inner_ring_wy * t73));
-        let t80 = t38 * t72 + (t35 * t71 + t34 * t68);
-        let t81 = inner_ring_wx * inner_ring_wz;
-        let t82 = t38 * t76 - (t35 * t74 + t34 * t75);
-        let t83 = inner_ring_wy * inner_ring_wz;
-        let t84 = inner_ring_wx * inner_ring_wx;
-        let t85 = inner_ring_wy * inner_ring_wy;
-        let t86 = t85 + t84;
-        let t87 = t86 * t64 + (t83 * t82 + t81 * t80) - t79 + t67;
-        let t88 = k(2.0)
-            * (outer_ring_wx * t78
-                + outer_ring_wz * (inner_ring_wx * t82 - inner_ring_wy * t80));
-        let t89 = t86 * t65 + (t83 * t77 + t81 * t73) + t88
-            + (t51 * t66 + (t49 * t65 - t47 * t64));
-        let t90 = inner_ring_wz * inner_ring_wz;
-        let t91 = t90 + t85;
-        let t92 = inner_ring_wx * inner_ring_wy;
-        let t93 = rotor_e0 * rotor_e0;
-        let t94 = k(2.0) * (k(0.5) - (t93 + rotor_e1 * rotor_e1));
-        let t95 = rotor_e0 * rotor_e3;
-        let t96 = rotor_e1 * rotor_e2;
-        let t97 = k(2.0) * (t96 + t95);
-        let t98 = rotor_e0 * rotor_e2;
-        let t99 = rotor_e1 * rotor_e3;
-        let t100 = k(2.0) * (t99 - t98);
-        let t101 = t72 * t100 + (t71 * t97 + t68 * t94);
-        let t102 = t76 * t100 - (t74 * t97 + t75 * t94);
-        let t103 = t63 * t100 - (t61 * t97 - t58 * t94);
-        let t104 = k(2.0) * (t96 - t95);
-        let t105 = k(2.0) * (k(0.5) - (t93 + rotor_e2 * rotor_e2));
-        let t106 = rotor_e0 * rotor_e1;
-        let t107 = rotor_e2 * rotor_e3;
-        let t108 = k(2.0) * (t107 + t106);
-        let t109 = k(2.0) * (t99 + t98);
-        let t110 = k(2.0) * (t107 - t106);
-        let t111 = k(2.0) * (k(0.5) - (t93 + rotor_e3 * rotor_e3));
-        let t112 = rotor_wy * (t72 * t111 - (t71 * t110 - t68 * t109))
-            + rotor_wz * (t72 * t108 - (t71 * t105 + t68 * t104));
-        let t113 = t63 * t108 - (t58 * t104 - t61 * t105);
-        let t114 = t58 * t109 + t61 * t110 + t63 * t111;
-        let t115 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t114 + rotor_wz * t113)
-                + inner_ring_wz * t112);
-        let t116 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t117 = t76 * t108 + (t75 * t104 + t74 * t105);
-        let t118 = rotor_wx * rotor_wy;
-        let t119 = t76 * t111 - (t75 * t109 - t74 * t110);
-        let t120 = rotor_wx * rotor_wz;
-        let t121 = t120 * t119 - (t118 * t117 - t116 * t102) + t115
-            + (t83 * t103 + ((t90 + t84) * t102 - t92 * t101));
-        let t122 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t119 + rotor_wz * t117)
-                - inner_ring_wy * t112);
-        let t123 = t120 * t114 - (t118 * t113 - t116 * t103) - t122
-            + (t86 * t103 + (t83 * t102 + t81 * t101));
+        let t42 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t9));
+        let t43 = T::fused(t19, t42, -T::fused(-t8, t40, t13 * t41));
+        let t44 = T::fused(
+            outer_ring_wz,
+            T::fused(t26, t38, -T::fused(t23, t34, t22 * t35)),
+            outer_ring_wx * T::fused(t26, t42, -T::fused(-t22, t41, t23 * t40)),
+        );
+        let t45 = T::fused(t30, t38, -T::fused(-t29, t34, t28 * t35));
+        let t46 = outer_ring_wx * outer_ring_wy;
+        let t47 = outer_ring_wz * outer_ring_wz;
+        let t48 = T::fused(outer_ring_wx, outer_ring_wx, t47);
+        let t49 = T::fused(t30, t42, T::fused(t28, t41, t29 * t40));
+        let t50 = outer_ring_wy * outer_ring_wz;
+        let t51 = T::fused(
+            k(2.0),
+            T::fused(
+                -base_wy,
+                T::fused(outer_ring_wz, t39, outer_ring_wx * t43),
+                base_wx * t44,
+            ),
+            T::fused(t50, t49, T::fused(-t46, t45, t48 * t31)),
+        );
+        let t52 = T::fused(
+            t21,
+            t31,
+            -T::fused(-T::fused(base_wz, base_wz, t32), t20, base_wx * base_wy * t27),
+        );
+        let t53 = T::fused(
+            k(2.0),
+            T::fused(
+                base_wz,
+                t44,
+                base_wy * T::fused(outer_ring_wz, t45, outer_ring_wx * t49),
+            ),
+            T::fused(t50, t43, T::fused(-t46, t39, t48 * t20)),
+        );
+        let t54 = inner_ring_e0 * inner_ring_e2;
+        let t55 = inner_ring_e1 * inner_ring_e3;
+        let t56 = k(2.0) * (t55 + t54);
+        let t57 = inner_ring_e0 * inner_ring_e1;
+        let t58 = inner_ring_e2 * inner_ring_e3;
+        let t59 = k(2.0) * (t58 - t57);
+        let t60 = inner_ring_e0 * inner_ring_e0;
+        let t61 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t60));
+        let t62 = T::fused(t38, t61, -T::fused(-t34, t56, t35 * t59));
+        let t63 = T::fused(t16, t61, -T::fused(-t10, t59, t6 * t56));
+        let t64 = T::fused(t42, t61, T::fused(t41, t59, t40 * t56));
+        let t65 = T::fused(
+            outer_ring_wx * outer_ring_wz,
+            t64,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t47), t62, t46 * t63),
+        );
+        let t66 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t60));
+        let t67 = inner_ring_e0 * inner_ring_e3;
+        let t68 = inner_ring_e1 * inner_ring_e2;
+        let t69 = k(2.0) * (t68 + t67);
+        let t70 = k(2.0) * (t55 - t54);
+        let t71 = T::fused(t16, t70, -T::fused(t6, t66, t10 * t69));
+        let t72 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t60));
+        let t73 = k(2.0) * (t68 - t67);
+        let t74 = k(2.0) * (t58 + t57);
+        let t75 = T::fused(t16, t74, T::fused(t10, t72, t6 * t73));
+        let t76 = T::fused(
+            -inner_ring_wy,
+            T::fused(t42, t70, -T::fused(-t40, t66, t41 * t69)),
+            inner_ring_wx * T::fused(t42, t74, -T::fused(-t41, t72, t40 * t73)),
+        );
+        let t77 = T::fused(t38, t70, T::fused(t34, t66, t35 * t69));
+        let t78 = inner_ring_wx * inner_ring_wz;
+        let t79 = T::fused(t38, t74, -T::fused(t34, t73, t35 * t72));
+        let t80 = inner_ring_wy * inner_ring_wz;
+        let t81 = inner_ring_wx * inner_ring_wx;
+        let t82 = inner_ring_wy * inner_ring_wy;
+        let t83 = t82 + t81;
+        let t84 = T::fused(
+            -k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t71, inner_ring_wx * t75),
+                outer_ring_wy * t76,
+            ),
+            T::fused(t83, t62, T::fused(t78, t77, t80 * t79)),
+        );
+        let t85 = T::fused(
+            k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t77, inner_ring_wx * t79),
+                outer_ring_wx * t76,
+            ),
+            T::fused(t83, t63, T::fused(t78, t71, t80 * t75)),
+        );
+        let t86 = inner_ring_wz * inner_ring_wz;
+        let t87 = t86 + t82;
+        let t88 = inner_ring_wx * inner_ring_wy;
+        let t89 = rotor_e0 * rotor_e0;
+        let t90 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t89));
+        let t91 = rotor_e0 * rotor_e3;
+        let t92 = rotor_e1 * rotor_e2;
+        let t93 = k(2.0) * (t92 + t91);
+        let t94 = rotor_e0 * rotor_e2;
+        let t95 = rotor_e1 * rotor_e3;
+        let t96 = k(2.0) * (t95 - t94);
+        let t97 = T::fused(t70, t96, T::fused(t66, t90, t69 * t93));
+        let t98 = T::fused(t74, t96, -T::fused(t73, t90, t72 * t93));
+        let t99 = T::fused(t61, t96, -T::fused(-t56, t90, t59 * t93));
+        let t100 = k(2.0) * (t92 - t91);
+        let t101 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t89));
+        let t102 = rotor_e0 * rotor_e1;
+        let t103 = rotor_e2 * rotor_e3;
+        let t104 = k(2.0) * (t103 + t102);
+        let t105 = k(2.0) * (t95 + t94);
+        let t106 = k(2.0) * (t103 - t102);
+        let t107 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t89));
+        let t108 = T::fused(
+            rotor_wz,
+            T::fused(t70, t104, -T::fused(t66, t100, t69 * t101)),
+            rotor_wy * T::fused(t70, t107, -T::fused(-t66, t105, t69 * t106)),
+        );
+        let t109 = T::fused(t61, t104, -T::fused(-t59, t101, t56 * t100));
+        let t110 = T::fused(t61, t107, T::fused(t59, t106, t56 * t105));
+        let t111 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t112 = T::fused(t74, t104, T::fused(t72, t101, t73 * t100));
+        let t113 = rotor_wx * rotor_wy;
+        let t114 = T::fused(t74, t107, -T::fused(-t72, t106, t73 * t105));
+        let t115 = rotor_wx * rotor_wz;
+        let t116 = T::fused(
+            k(2.0),
+            T::fused(
+                inner_ring_wz,
+                t108,
+                inner_ring_wx * T::fused(rotor_wz, t109, rotor_wy * t110),
+            ),
+            T::fused(t115, t114, -T::fused(-t111, t98, t113 * t112)),
+        );
+        let t117 = t116 + T::fused(t80, t99, T::fused(-t88, t97, (t86 + t81) * t98));
+        let t118 = T::fused(
+            -k(2.0),
+            T::fused(
+                -inner_ring_wy,
+                t108,
+                inner_ring_wx * T::fused(rotor_wz, t112, rotor_wy * t114),
+            ),
+            T::fused(t115, t110, -T::fused(-t111, t99, t113 * t109)),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -(k(0.5) * (base_wz * t2 + (base_wy * t1 - base_wx * t0))),
-            k(0.5) * (base_wz * t3 + (base_wy * t0 + base_wx * t1)),
-            k(0.5) * (base_wz * t0 - (base_wy * t3 - base_wx * t2)),
+            -(k(0.5) * T::fused(base_wz, t2, T::fused(-base_wx, t0, base_wy * t1))),
+            k(0.5) * T::fused(base_wz, t3, T::fused(base_wx, t1, base_wy * t0)),
+            k(0.5) * T::fused(base_wz, t0, -T::fused(-base_wx, t2, base_wy * t3)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -t52,
-            t55,
+            -(t51 + t33),
+            t53 + t52,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t87,
-            -t89,
-            k(0.000125) * (t58 * t81 + (t75 * t92 + t68 * t91)),
-            k(0.000125) * (t61 * t81 - (t74 * t92 + t71 * t91)),
-            -(k(0.000125) * (t63 * t81 - (t76 * t92 - t72 * t91))),
-            t121,
-            -t123,
+            -(t84 + t65),
+            -(t85 + T::fused(t50, t64, T::fused(-t46, t62, t48 * t63))),
+            k(0.000125) * T::fused(t56, t78, T::fused(t66, t87, t73 * t88)),
+            k(0.000125) * T::fused(t59, t78, -T::fused(t69, t87, t72 * t88)),
+            -(k(0.000125) * T::fused(t61, t78, -T::fused(-t70, t87, t74 * t88))),
+            t117,
+            -(t118 + T::fused(t83, t99, T::fused(t78, t97, t80 * t98))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
@@ -2168,7 +2672,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t0 = k(0.5) * base_e3;
         let t1 = k(0.5) * base_e0;
         let t2 = t1 * t1;
-        let t3 = t2 + t0 * t0;
+        let t3 = T::fused(t0, t0, t2);
         let t4 = k(0.5) * base_e1;
         let t5 = t4 * t1;
         let t6 = k(0.5) * base_e2;
@@ -2177,63 +2681,133 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t9 = t1 * t6;
         let t10 = t4 * t0;
         let t11 = t10 - t9;
-        let t12 = k(1.0) / (t6 * t11 - t4 * t8 - t1 * t3);
+        let t12 = k(1.0) / T::fused(-t1, t3, T::fused(-t4, t8, t6 * t11));
         let t13 = t1 * t0;
         let t14 = t4 * t6;
-        let t15 = k(0.5) * (base_e2 * base_wx - base_e1 * base_wy - base_e0 * base_wz);
-        let t16 = k(0.5) * (base_e1 * base_wx + base_e2 * base_wy + base_e3 * base_wz);
-        let t17 = k(0.5) * (base_e0 * base_wx - base_e3 * base_wy + base_e2 * base_wz);
-        let t18 = k(0.5) * (base_wz * t17 + (base_wy * t16 + base_wx * t15));
-        let t19 = k(0.5) * (base_e3 * base_wx + base_e0 * base_wy - base_e1 * base_wz);
-        let t20 = k(0.5) * (base_wz * t19 + (base_wy * t15 - base_wx * t16));
-        let t21 = t20 * ((t2 + t4 * t4) * t12) - t18 * ((t14 + t13) * t12);
-        let t22 = k(0.5) * (base_wz * t16 - (base_wy * t17 - base_wx * t19));
-        let t23 = t22 * (t11 * t12) - t21;
-        let t24 = t20 * ((t14 - t13) * t12) - t18 * ((t2 + t6 * t6) * t12);
-        let t25 = t22 * (t8 * t12) - t24;
-        let t26 = t20 * ((t10 + t9) * t12) - t18 * ((t7 - t5) * t12);
-        let t27 = t22 * (t3 * t12) - t26;
-        let t28 = base_e3 * outer_ring_e0 - base_e2 * outer_ring_e1
-            + base_e1 * outer_ring_e2 - base_e0 * outer_ring_e3;
-        let t29 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
-            + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
+        let t15 = k(0.5)
+            * T::fused(
+                -base_e0,
+                base_wz,
+                T::fused(-base_e1, base_wy, base_e2 * base_wx),
+            );
+        let t16 = k(0.5)
+            * T::fused(base_e3, base_wz, T::fused(base_e2, base_wy, base_e1 * base_wx));
+        let t17 = k(0.5)
+            * T::fused(base_e2, base_wz, T::fused(-base_e3, base_wy, base_e0 * base_wx));
+        let t18 = k(0.5) * T::fused(base_wz, t17, T::fused(base_wx, t15, base_wy * t16));
+        let t19 = k(0.5)
+            * T::fused(-base_e1, base_wz, T::fused(base_e0, base_wy, base_e3 * base_wx));
+        let t20 = k(0.5)
+            * T::fused(base_wz, t19, T::fused(-base_wx, t16, base_wy * t15));
+        let t21 = T::fused(-t18, (t14 + t13) * t12, t20 * (T::fused(t4, t4, t2) * t12));
+        let t22 = k(0.5)
+            * T::fused(base_wz, t16, -T::fused(-base_wx, t19, base_wy * t17));
+        let t23 = T::fused(t22, t11 * t12, -t21);
+        let t24 = T::fused(-t18, T::fused(t6, t6, t2) * t12, t20 * ((t14 - t13) * t12));
+        let t25 = T::fused(t22, t8 * t12, -t24);
+        let t26 = T::fused(-t18, (t7 - t5) * t12, t20 * ((t10 + t9) * t12));
+        let t27 = T::fused(t22, t3 * t12, -t26);
+        let t28 = T::fused(
+            -base_e0,
+            outer_ring_e3,
+            T::fused(
+                base_e1,
+                outer_ring_e2,
+                T::fused(-base_e2, outer_ring_e1, base_e3 * outer_ring_e0),
+            ),
+        );
+        let t29 = T::fused(
+            base_e3,
+            outer_ring_e3,
+            T::fused(
+                base_e2,
+                outer_ring_e2,
+                T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
+            ),
+        );
         let t30 = t29 * t28;
-        let t31 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
-            - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
-        let t32 = base_e1 * outer_ring_e0 - base_e0 * outer_ring_e1
-            - base_e3 * outer_ring_e2 + base_e2 * outer_ring_e3;
+        let t31 = T::fused(
+            -base_e1,
+            outer_ring_e3,
+            T::fused(
+                -base_e0,
+                outer_ring_e2,
+                T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
+            ),
+        );
+        let t32 = T::fused(
+            base_e2,
+            outer_ring_e3,
+            T::fused(
+                -base_e3,
+                outer_ring_e2,
+                T::fused(-base_e0, outer_ring_e1, base_e1 * outer_ring_e0),
+            ),
+        );
         let t33 = t32 * t31;
         let t34 = t29 * t29;
-        let t35 = k(0.5) - (t34 + t31 * t31);
+        let t35 = k(0.5) - T::fused(t31, t31, t34);
         let t36 = t29 * t32;
         let t37 = t31 * t28;
-        let t38 = base_wz * (k(2.0) * (t37 - t36))
-            - (base_wy * (k(2.0) * t35) - base_wx * (k(2.0) * (t33 + t30)));
+        let t38 = T::fused(
+            base_wz,
+            k(2.0) * (t37 - t36),
+            -T::fused(-base_wx, k(2.0) * (t33 + t30), base_wy * (k(2.0) * t35)),
+        );
         let t39 = outer_ring_wy - t38;
         let t40 = t29 * t31;
         let t41 = t32 * t28;
         let t42 = k(2.0) * (t41 - t40);
         let t43 = k(2.0) * (t37 + t36);
-        let t44 = k(2.0) * (k(0.5) - (t34 + t28 * t28));
-        let t45 = base_wz * t44 - (base_wy * t43 + base_wx * t42);
+        let t44 = k(2.0) * (k(0.5) - T::fused(t28, t28, t34));
+        let t45 = T::fused(base_wz, t44, -T::fused(base_wx, t42, base_wy * t43));
         let t46 = outer_ring_wz + t45;
-        let t47 = k(2.0) * (k(0.5) - (t34 + t32 * t32));
+        let t47 = k(2.0) * (k(0.5) - T::fused(t32, t32, t34));
         let t48 = k(2.0) * (t33 - t30);
         let t49 = k(2.0) * (t41 + t40);
-        let t50 = base_wz * t49 + (base_wy * t48 - base_wx * t47);
+        let t50 = T::fused(base_wz, t49, T::fused(-base_wx, t47, base_wy * t48));
         let t51 = outer_ring_wx - t50;
-        let t52 = k(0.5) / t35 * (t51 * t51 + t46 * t46);
-        let t53 = outer_ring_wy * t45 + outer_ring_wz * t38 + (t43 * t52 - t46 * t39);
-        let t54 = t27 * t49 + (t25 * t48 - t23 * t47) - t53;
-        let t55 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
-            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
-        let t56 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t52 = k(0.5) / t35 * T::fused(t46, t46, t51 * t51);
+        let t53 = T::fused(outer_ring_wz, t38, outer_ring_wy * t45)
+            + T::fused(-t46, t39, t43 * t52);
+        let t54 = T::fused(t27, t49, T::fused(-t23, t47, t25 * t48)) - t53;
+        let t55 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t56 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t57 = t56 * t55;
-        let t58 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
-            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
-        let t59 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t58 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t59 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t60 = t59 * t58;
         let t61 = t60 + t57;
         let t62 = k(1e-5) * t61;
@@ -2248,122 +2822,208 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t71 = t70 - t69;
         let t72 = k(2.0) * t71;
         let t73 = t56 * t56;
-        let t74 = k(0.5) - (t73 + t55 * t55);
+        let t74 = k(0.5) - T::fused(t55, t55, t73);
         let t75 = k(2.0) * t74;
-        let t76 = t75 * t67 - t72 * t62;
+        let t76 = T::fused(-t72, t62, t75 * t67);
         let t77 = k(1e-6)
-            + (k(1.25e-9) + (t75 * (k(1e-5) * t74) + t72 * (k(1e-5) * t71)));
+            + (k(1.25e-9) + T::fused(t72, k(1e-5) * t71, t75 * (k(1e-5) * t74)));
         let t78 = k(1.0) / t77;
         let t79 = t78 * t76;
-        let t80 = t76 * t79 - (k(1e-6) + (t68 * t67 + t63 * t62));
-        let t81 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t82 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t80 = T::fused(t76, t79, -(k(1e-6) + T::fused(t63, t62, t68 * t67)));
+        let t81 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t82 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t83 = t82 * t81;
-        let t84 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
-            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
-        let t85 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
-            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t84 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t85 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
         let t86 = t85 * t84;
         let t87 = k(2.0) * (t86 - t83);
-        let t88 = k(0.5) - (t73 + t58 * t58);
+        let t88 = k(0.5) - T::fused(t58, t58, t73);
         let t89 = k(2.0) * t88;
         let t90 = t70 + t69;
         let t91 = k(2.0) * t90;
         let t92 = k(1e-5) * t88;
         let t93 = k(1e-5) * t90;
-        let t94 = t75 * t93 + t72 * t92;
-        let t95 = t94 * t79 - (t91 * t67 - t89 * t62);
+        let t94 = T::fused(t72, t92, t75 * t93);
+        let t95 = T::fused(t94, t79, -T::fused(-t89, t62, t91 * t67));
         let t96 = t82 * t82;
-        let t97 = k(2.0) * (k(0.5) - (t96 + t84 * t84));
-        let t98 = t97 * t95 - t87 * t80;
-        let t99 = t94 * (t78 * t94) - (k(2e-6) + (k(1.25e-9) + (t91 * t93 + t89 * t92)));
-        let t100 = t97 * t99 - t87 * t95;
-        let t101 = k(0.5) - (t73 + t59 * t59);
-        let t102 = inner_ring_wz * (k(2.0) * (t65 + t64))
-            + (inner_ring_wy * (k(2.0) * (t60 - t57)) - inner_ring_wx * (k(2.0) * t101));
+        let t97 = k(2.0) * (k(0.5) - T::fused(t84, t84, t96));
+        let t98 = T::fused(-t87, t80, t97 * t95);
+        let t99 = T::fused(
+            t94,
+            t78 * t94,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t89, t92, t91 * t93))),
+        );
+        let t100 = T::fused(-t87, t95, t97 * t99);
+        let t101 = k(0.5) - T::fused(t59, t59, t73);
+        let t102 = T::fused(
+            inner_ring_wz,
+            k(2.0) * (t65 + t64),
+            T::fused(
+                -inner_ring_wx,
+                k(2.0) * t101,
+                inner_ring_wy * (k(2.0) * (t60 - t57)),
+            ),
+        );
         let t103 = rotor_wx - t102;
-        let t104 = inner_ring_wz * t75 - (inner_ring_wy * t91 + inner_ring_wx * t68);
+        let t104 = T::fused(
+            inner_ring_wz,
+            t75,
+            -T::fused(inner_ring_wx, t68, inner_ring_wy * t91),
+        );
         let t105 = rotor_wz + t104;
-        let t106 = inner_ring_wz * t72 - (inner_ring_wy * t89 - inner_ring_wx * t63);
+        let t106 = T::fused(
+            inner_ring_wz,
+            t72,
+            -T::fused(-inner_ring_wx, t63, inner_ring_wy * t89),
+        );
         let t107 = rotor_wy - t106;
-        let t108 = k(0.5) / t101 * (t107 * t107 + t105 * t105);
-        let t109 = rotor_wz * t102 + rotor_wx * t104 + (t68 * t108 - t105 * t103);
-        let t110 = k(5e-6) * (rotor_wx * rotor_wz - t109);
-        let t111 = rotor_wx * t106 - rotor_wy * t102 - (t63 * t108 - t107 * t103);
-        let t112 = k(5e-6) * (rotor_wx * rotor_wy + t111);
-        let t113 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t108 = k(0.5) / t101 * T::fused(t105, t105, t107 * t107);
+        let t109 = T::fused(rotor_wx, t104, rotor_wz * t102)
+            + T::fused(-t105, t103, t68 * t108);
+        let t110 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t109);
+        let t111 = T::fused(-rotor_wy, t102, rotor_wx * t106)
+            - T::fused(-t107, t103, t63 * t108);
+        let t112 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t111);
+        let t113 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
         let t114 = inner_ring_e0 * inner_ring_e0;
         let t115 = inner_ring_wx * inner_ring_wy;
         let t116 = inner_ring_e0 * inner_ring_e3;
         let t117 = inner_ring_e1 * inner_ring_e2;
         let t118 = t117 - t116;
-        let t119 = k(2.0) * t118 * t115
-            + k(2.0) * (k(0.5) - (t114 + inner_ring_e1 * inner_ring_e1)) * t113;
+        let t119 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t114)),
+            t113,
+            k(2.0) * t118 * t115,
+        );
         let t120 = inner_ring_wx * inner_ring_wz;
         let t121 = inner_ring_e0 * inner_ring_e2;
         let t122 = inner_ring_e1 * inner_ring_e3;
         let t123 = t122 + t121;
-        let t124 = k(2.0) * t123 * t120 + t119;
+        let t124 = T::fused(k(2.0) * t123, t120, t119);
         let t125 = k(1e-5) * t124;
         let t126 = k(0.00025) * t118;
-        let t127 = k(0.5) - (t114 + inner_ring_e2 * inner_ring_e2);
+        let t127 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t114);
         let t128 = inner_ring_e0 * inner_ring_e1;
         let t129 = inner_ring_e2 * inner_ring_e3;
         let t130 = t129 - t128;
-        let t131 = k(2.0) * t130 * t120
-            - (k(2.0) * t127 * t115 + k(2.0) * (t117 + t116) * t113);
-        let t132 = k(0.8) + k(1e-5) * t131;
+        let t131 = T::fused(
+            k(2.0) * t130,
+            t120,
+            -T::fused(k(2.0) * (t117 + t116), t113, k(2.0) * t127 * t115),
+        );
+        let t132 = T::fused(k(1e-5), t131, k(0.8));
         let t133 = k(0.00025) * t127;
         let t134 = t129 + t128;
-        let t135 = k(0.5) - (t114 + inner_ring_e3 * inner_ring_e3);
-        let t136 = k(2.0) * t135 * t120
-            - (k(2.0) * t134 * t115 - k(2.0) * (t122 - t121) * t113);
+        let t135 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t114);
+        let t136 = T::fused(
+            k(2.0) * t135,
+            t120,
+            -T::fused(-(k(2.0) * (t122 - t121)), t113, k(2.0) * t134 * t115),
+        );
         let t137 = k(1e-5) * t136;
         let t138 = k(0.00025) * t134;
-        let t139 = t138 * t137 + (t133 * t132 - t126 * t125) - (t75 * t112 + t72 * t110);
-        let t140 = k(1e-6) * t115 - t139;
+        let t139 = T::fused(t138, t137, T::fused(-t126, t125, t133 * t132))
+            - T::fused(t72, t110, t75 * t112);
+        let t140 = T::fused(k(1e-6), t115, -t139);
         let t141 = t78 * t140;
-        let t142 = t76 * t141
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t68 * t112 - t63 * t110));
+        let t142 = T::fused(
+            t76,
+            t141,
+            -T::fused(
+                k(1e-6),
+                inner_ring_wy * inner_ring_wz,
+                T::fused(-t63, t110, t68 * t112),
+            ),
+        );
         let t143 = t82 * t84;
         let t144 = t85 * t81;
         let t145 = t82 * t85;
         let t146 = t84 * t81;
-        let t147 = outer_ring_wy * (k(2.0) * (t146 + t145))
-            + outer_ring_wx * (k(2.0) * (t144 - t143));
-        let t148 = k(0.5) - (t96 + t81 * t81);
-        let t149 = outer_ring_wz * (k(2.0) * t148) - t147;
+        let t147 = T::fused(
+            outer_ring_wx,
+            k(2.0) * (t144 - t143),
+            outer_ring_wy * (k(2.0) * (t146 + t145)),
+        );
+        let t148 = k(0.5) - T::fused(t81, t81, t96);
+        let t149 = T::fused(outer_ring_wz, k(2.0) * t148, -t147);
         let t150 = inner_ring_wz + t149;
         let t151 = k(2.0) * (t86 + t83);
         let t152 = k(2.0) * (t146 - t145);
-        let t153 = outer_ring_wz * t152 - (outer_ring_wy * t97 - outer_ring_wx * t151);
+        let t153 = T::fused(
+            outer_ring_wz,
+            t152,
+            -T::fused(-outer_ring_wx, t151, outer_ring_wy * t97),
+        );
         let t154 = inner_ring_wy - t153;
-        let t155 = k(2.0) * (k(0.5) - (t96 + t85 * t85));
+        let t155 = k(2.0) * (k(0.5) - T::fused(t85, t85, t96));
         let t156 = k(2.0) * (t144 + t143);
-        let t157 = outer_ring_wz * t156 + (outer_ring_wy * t87 - outer_ring_wx * t155);
+        let t157 = T::fused(
+            outer_ring_wz,
+            t156,
+            T::fused(-outer_ring_wx, t155, outer_ring_wy * t87),
+        );
         let t158 = inner_ring_wx - t157;
-        let t159 = k(0.5) / t148 * (t158 * t158 + t154 * t154);
-        let t160 = inner_ring_wy * t149 + inner_ring_wz * t153
-            - (t152 * t159 - t154 * t150);
-        let t161 = inner_ring_wz * t157 + inner_ring_wx * t149
-            - (t156 * t159 - t158 * t150);
+        let t159 = k(0.5) / t148 * T::fused(t154, t154, t158 * t158);
+        let t160 = T::fused(inner_ring_wz, t153, inner_ring_wy * t149)
+            - T::fused(-t154, t150, t152 * t159);
+        let t161 = T::fused(inner_ring_wx, t149, inner_ring_wz * t157)
+            - T::fused(-t158, t150, t156 * t159);
         let t162 = k(0.00025) * t123;
         let t163 = k(0.00025) * t130;
         let t164 = k(0.00025) * t135;
-        let t165 = t164 * t137 + (t163 * t132 + t162 * t125) + (t91 * t112 + t89 * t110);
-        let t166 = t97 * (t99 * t161 - t95 * t160 + (t94 * t141 - t165));
-        let t167 = k(1e-6) * (outer_ring_wx * outer_ring_wz)
-            - (t166 - t87 * (t95 * t161 - t80 * t160 + t142));
-        let t168 = t97 * (t151 * t99 - t155 * t95) - t87 * (t151 * t95 - t155 * t80);
-        let t169 = outer_ring_wx * t38 - outer_ring_wy * t50 + (t48 * t52 - t51 * t39);
-        let t170 = t27 * t44 - (t25 * t43 + t23 * t42) - t169;
-        let t171 = t170 * (t152 * t100 + t156 * t98) - t54 * t168 + t167;
-        let t172 = t171 / (k(1e-6) - (t97 * t100 - t87 * t98));
-        let t173 = t160 + (t156 * t170 - (t87 * t172 - t155 * t54));
-        let t174 = t161 - (t152 * t170 + (t97 * t172 - t151 * t54));
-        let t175 = t78 * (t140 + (t94 * t174 - t76 * t173));
+        let t165 = T::fused(t164, t137, T::fused(t162, t125, t163 * t132))
+            + T::fused(t89, t110, t91 * t112);
+        let t166 = T::fused(
+            -t87,
+            T::fused(-t80, t160, t95 * t161) + t142,
+            t97 * (T::fused(-t95, t160, t99 * t161) + T::fused(t94, t141, -t165)),
+        );
+        let t167 = T::fused(
+            -t87,
+            T::fused(-t155, t80, t151 * t95),
+            t97 * T::fused(-t155, t95, t151 * t99),
+        );
+        let t168 = T::fused(-outer_ring_wy, t50, outer_ring_wx * t38)
+            + T::fused(-t51, t39, t48 * t52);
+        let t169 = T::fused(t27, t44, -T::fused(t23, t42, t25 * t43)) - t168;
+        let t170 = T::fused(-t54, t167, t169 * T::fused(t156, t98, t152 * t100))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t166);
+        let t171 = t170 / (k(1e-6) - T::fused(-t87, t98, t97 * t100));
+        let t172 = t160 + T::fused(t156, t169, -T::fused(-t155, t54, t87 * t171));
+        let t173 = t161 - T::fused(t152, t169, T::fused(-t151, t54, t97 * t171));
+        let t174 = t78 * (t140 + T::fused(-t76, t172, t94 * t173));
         *out = [
             k(0.0),
             k(0.0),
@@ -2375,20 +3035,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             -t54,
-            -t172,
-            t170,
+            -t171,
+            t169,
             k(0.0),
             k(0.0),
             k(0.0),
-            t173,
+            t172,
+            -t173,
             -t174,
-            -t175,
-            k(0.000125) * t124 - (t126 * t175 - t162 * t174),
-            k(0.000125) * t131 + (t133 * t175 + t163 * t174),
-            -(k(0.000125) * t136 + (t138 * t175 + t164 * t174)),
+            T::fused(k(0.000125), t124, -T::fused(-t162, t173, t126 * t174)),
+            T::fused(k(0.000125), t131, T::fused(t163, t173, t133 * t174)),
+            -T::fused(k(0.000125), t136, T::fused(t164, t173, t138 * t174)),
             k(0.0),
-            -(t109 + (t72 * t175 - (t89 * t174 + t63 * t173))),
-            t75 * t175 - (t91 * t174 - t68 * t173) - t111,
+            -(t109 + T::fused(t72, t174, -T::fused(t63, t172, t89 * t173))),
+            T::fused(t75, t174, -T::fused(-t68, t172, t91 * t173)) - t111,
         ];
     }
     /// Writes λ: 475 operations (180 ±, 291 ×, 4 ÷).
@@ -2450,18 +3110,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let rotor_dwy = accelerations[22];
         let rotor_dwz = accelerations[23];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.01) * outer_ring_dsx + t1;
-        let t3 = k(0.8) + k(0.08) * rotor_dsy;
-        let t4 = k(0.1) + k(0.01) * inner_ring_dsy + t3;
-        let t5 = k(0.1) + k(0.01) * outer_ring_dsy + t4;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.01), outer_ring_dsx, t1);
+        let t3 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t4 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t3;
+        let t5 = T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t4;
         let t6 = k(0.08) * rotor_dsz;
-        let t7 = k(0.01) * inner_ring_dsz + t6;
-        let t8 = k(0.01) * outer_ring_dsz + t7;
+        let t7 = T::fused(k(0.01), inner_ring_dsz, t6);
+        let t8 = T::fused(k(0.01), outer_ring_dsz, t7);
         let t9 = rotor_e0 * rotor_e0;
-        let t10 = k(2.0) * (k(0.5) - (t9 + rotor_e1 * rotor_e1));
+        let t10 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t9));
         let t11 = inner_ring_e0 * inner_ring_e0;
-        let t12 = k(2.0) * (k(0.5) - (t11 + inner_ring_e1 * inner_ring_e1));
+        let t12 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t11));
         let t13 = rotor_e0 * rotor_e3;
         let t14 = rotor_e1 * rotor_e2;
         let t15 = k(2.0) * (t14 + t13);
@@ -2476,90 +3136,141 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t24 = k(2.0) * (t23 - t22);
         let t25 = k(1e-5) * rotor_dwx;
         let t26 = k(2.0) * (t14 - t13);
-        let t27 = k(2.0) * (k(0.5) - (t9 + rotor_e2 * rotor_e2));
+        let t27 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t9));
         let t28 = rotor_e0 * rotor_e1;
         let t29 = rotor_e2 * rotor_e3;
         let t30 = k(2.0) * (t29 + t28);
-        let t31 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t32 = t31 * (t24 * t30 - (t18 * t27 + t12 * t26))
-            + t25 * (t24 * t21 + (t18 * t15 + t12 * t10));
+        let t31 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t32 = T::fused(
+            t25,
+            T::fused(t24, t21, T::fused(t12, t10, t18 * t15)),
+            t31 * T::fused(t24, t30, -T::fused(t12, t26, t18 * t27)),
+        );
         let t33 = k(2.0) * (t20 + t19);
         let t34 = k(2.0) * (t29 - t28);
-        let t35 = k(2.0) * (k(0.5) - (t9 + rotor_e3 * rotor_e3));
-        let t36 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t37 = t36 * (t24 * t35 - (t18 * t34 - t12 * t33)) + t32;
-        let t38 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t37;
+        let t35 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t9));
+        let t36 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t37 = T::fused(
+            t36,
+            T::fused(t24, t35, -T::fused(-t12, t33, t18 * t34)),
+            t32,
+        );
+        let t38 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+            -t37,
+        );
         let t39 = outer_ring_e0 * outer_ring_e0;
-        let t40 = k(2.0) * (k(0.5) - (t39 + outer_ring_e1 * outer_ring_e1));
+        let t40 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t39));
         let t41 = outer_ring_e0 * outer_ring_e3;
         let t42 = outer_ring_e1 * outer_ring_e2;
         let t43 = k(2.0) * (t42 + t41);
         let t44 = outer_ring_e0 * outer_ring_e2;
         let t45 = outer_ring_e1 * outer_ring_e3;
         let t46 = k(2.0) * (t45 - t44);
-        let t47 = t46 * t24 + (t43 * t18 + t40 * t12);
+        let t47 = T::fused(t46, t24, T::fused(t40, t12, t43 * t18));
         let t48 = t17 - t16;
         let t49 = k(2.0) * t48;
-        let t50 = k(0.5) - (t11 + inner_ring_e2 * inner_ring_e2);
+        let t50 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t11);
         let t51 = k(2.0) * t50;
         let t52 = inner_ring_e0 * inner_ring_e1;
         let t53 = inner_ring_e2 * inner_ring_e3;
         let t54 = t53 + t52;
         let t55 = k(2.0) * t54;
-        let t56 = t55 * t30 + (t49 * t26 + t51 * t27);
-        let t57 = t31 * t56 + t25 * (t55 * t21 - (t51 * t15 + t49 * t10));
-        let t58 = t55 * t35 - (t49 * t33 - t51 * t34);
+        let t56 = T::fused(t55, t30, T::fused(t51, t27, t49 * t26));
+        let t57 = T::fused(
+            t25,
+            T::fused(t55, t21, -T::fused(t49, t10, t51 * t15)),
+            t31 * t56,
+        );
+        let t58 = T::fused(t55, t35, -T::fused(-t51, t34, t49 * t33));
         let t59 = t23 + t22;
         let t60 = t53 - t52;
-        let t61 = k(0.5) - (t11 + inner_ring_e3 * inner_ring_e3);
-        let t62 = t6 * (k(0.00025) * t61)
-            - (t3 * (k(0.00025) * t60) + t0 * (k(0.00025) * t59));
-        let t63 = k(2e-6) * inner_ring_dwy + (t62 + (t36 * t58 + t57));
-        let t64 = t46 * t55 - (t43 * t51 + t40 * t49);
+        let t61 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t11);
+        let t62 = T::fused(
+            t6,
+            k(0.00025) * t61,
+            -T::fused(t0, k(0.00025) * t59, t3 * (k(0.00025) * t60)),
+        );
+        let t63 = T::fused(k(2e-6), inner_ring_dwy, t62 + T::fused(t36, t58, t57));
+        let t64 = T::fused(t46, t55, -T::fused(t40, t49, t43 * t51));
         let t65 = k(2.0) * t59;
         let t66 = k(2.0) * t60;
         let t67 = k(2.0) * t61;
-        let t68 = t67 * t30 - (t65 * t26 - t66 * t27);
-        let t69 = t31 * t68 + t25 * (t67 * t21 - (t66 * t15 - t65 * t10));
-        let t70 = t65 * t33 + t66 * t34 + t67 * t35;
-        let t71 = t6 * (k(0.00025) * t54)
-            - (t3 * (k(0.00025) * t50) - t0 * (k(0.00025) * t48));
-        let t72 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            + (t71 - (t36 * t70 + t69));
-        let t73 = (t46 * t67 - (t43 * t66 - t40 * t65)) * t72 - (t64 * t63 - t47 * t38);
-        let t74 = k(2e-6) * outer_ring_dwx - t73;
+        let t68 = T::fused(t67, t30, -T::fused(-t66, t27, t65 * t26));
+        let t69 = T::fused(
+            t25,
+            T::fused(t67, t21, -T::fused(-t65, t10, t66 * t15)),
+            t31 * t68,
+        );
+        let t70 = T::fused(t67, t35, T::fused(t66, t34, t65 * t33));
+        let t71 = T::fused(
+            t6,
+            k(0.00025) * t54,
+            -T::fused(-t0, k(0.00025) * t48, t3 * (k(0.00025) * t50)),
+        );
+        let t72 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            t71 - T::fused(t36, t70, t69),
+        );
+        let t73 = T::fused(
+            T::fused(t46, t67, -T::fused(-t40, t65, t43 * t66)),
+            t72,
+            -T::fused(-t47, t38, t64 * t63),
+        );
+        let t74 = T::fused(k(2e-6), outer_ring_dwx, -t73);
         let t75 = base_e0 * base_e0;
-        let t76 = k(2.0) * (k(0.5) - (t75 + base_e1 * base_e1));
+        let t76 = k(2.0) * (k(0.5) - T::fused(base_e1, base_e1, t75));
         let t77 = base_e0 * base_e3;
         let t78 = base_e1 * base_e2;
         let t79 = k(2.0) * (t78 + t77);
         let t80 = base_e0 * base_e2;
         let t81 = base_e1 * base_e3;
         let t82 = k(2.0) * (t81 - t80);
-        let t83 = t82 * t46 + (t79 * t43 + t76 * t40);
+        let t83 = T::fused(t82, t46, T::fused(t76, t40, t79 * t43));
         let t84 = k(2.0) * (t42 - t41);
-        let t85 = k(2.0) * (k(0.5) - (t39 + outer_ring_e2 * outer_ring_e2));
+        let t85 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t39));
         let t86 = outer_ring_e0 * outer_ring_e1;
         let t87 = outer_ring_e2 * outer_ring_e3;
         let t88 = k(2.0) * (t87 + t86);
-        let t89 = t88 * t24 - (t85 * t18 + t84 * t12);
-        let t90 = t88 * t55 + (t84 * t49 + t85 * t51);
-        let t91 = (t88 * t67 - (t84 * t65 - t85 * t66)) * t72 - (t90 * t63 - t89 * t38);
-        let t92 = k(1e-6) * (outer_ring_wx * outer_ring_wz + outer_ring_dwy) - t91;
-        let t93 = (t82 * t88 - (t79 * t85 + t76 * t84)) * t92 + t83 * t74;
+        let t89 = T::fused(t88, t24, -T::fused(t84, t12, t85 * t18));
+        let t90 = T::fused(t88, t55, T::fused(t85, t51, t84 * t49));
+        let t91 = T::fused(
+            T::fused(t88, t67, -T::fused(-t85, t66, t84 * t65)),
+            t72,
+            -T::fused(-t89, t38, t90 * t63),
+        );
+        let t92 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wz, outer_ring_dwy),
+            -t91,
+        );
+        let t93 = T::fused(
+            t83,
+            t74,
+            T::fused(t82, t88, -T::fused(t76, t84, t79 * t85)) * t92,
+        );
         let t94 = k(2.0) * (t45 + t44);
         let t95 = k(2.0) * (t87 - t86);
-        let t96 = k(2.0) * (k(0.5) - (t39 + outer_ring_e3 * outer_ring_e3));
-        let t97 = (t96 * t55 - (t94 * t49 - t95 * t51)) * t63
-            - (t96 * t24 - (t95 * t18 - t94 * t12)) * t38;
-        let t98 = (t94 * t65 + t95 * t66 + t96 * t67) * t72 - t97;
-        let t99 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t98;
-        let t100 = t82 * t96 - (t79 * t95 - t76 * t94);
-        let t101 = k(1e-7) * base_dwx + (t100 * t99 + t93);
+        let t96 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t39));
+        let t97 = T::fused(
+            -T::fused(t96, t24, -T::fused(-t94, t12, t95 * t18)),
+            t38,
+            T::fused(t96, t55, -T::fused(-t95, t51, t94 * t49)) * t63,
+        );
+        let t98 = T::fused(T::fused(t96, t67, T::fused(t95, t66, t94 * t65)), t72, -t97);
+        let t99 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t98,
+        );
+        let t100 = T::fused(t82, t96, -T::fused(-t76, t94, t79 * t95));
+        let t101 = T::fused(k(1e-7), base_dwx, T::fused(t100, t99, t93));
         let t102 = k(0.5) * base_e3;
         let t103 = k(0.5) * base_e0;
         let t104 = t103 * t103;
-        let t105 = t104 + t102 * t102;
+        let t105 = T::fused(t102, t102, t104);
         let t106 = k(0.5) * base_e1;
         let t107 = t106 * t103;
         let t108 = k(0.5) * base_e2;
@@ -2568,53 +3279,76 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         let t111 = t103 * t108;
         let t112 = t106 * t102;
         let t113 = t112 - t111;
-        let t114 = k(1.0) / (t108 * t113 - t106 * t110 - t103 * t105);
+        let t114 = k(1.0) / T::fused(-t103, t105, T::fused(-t106, t110, t108 * t113));
         let t115 = k(2.0) * (t78 - t77);
-        let t116 = k(2.0) * (k(0.5) - (t75 + base_e2 * base_e2));
+        let t116 = k(2.0) * (k(0.5) - T::fused(base_e2, base_e2, t75));
         let t117 = base_e0 * base_e1;
         let t118 = base_e2 * base_e3;
         let t119 = k(2.0) * (t118 + t117);
-        let t120 = (t119 * t88 + (t115 * t84 + t116 * t85)) * t92
-            + (t119 * t46 - (t116 * t43 + t115 * t40)) * t74;
-        let t121 = (t119 * t96 - (t115 * t94 - t116 * t95)) * t99 + t120;
-        let t122 = k(1e-7) * base_dwy + t121;
+        let t120 = T::fused(
+            T::fused(t119, t46, -T::fused(t115, t40, t116 * t43)),
+            t74,
+            T::fused(t119, t88, T::fused(t116, t85, t115 * t84)) * t92,
+        );
+        let t121 = T::fused(
+            T::fused(t119, t96, -T::fused(-t116, t95, t115 * t94)),
+            t99,
+            t120,
+        );
+        let t122 = T::fused(k(1e-7), base_dwy, t121);
         let t123 = t103 * t102;
         let t124 = t106 * t108;
-        let t125 = (t124 - t123) * t114 * t122 + (t104 + t106 * t106) * t114 * t101;
+        let t125 = T::fused(
+            T::fused(t106, t106, t104) * t114,
+            t101,
+            (t124 - t123) * t114 * t122,
+        );
         let t126 = k(2.0) * (t81 + t80);
         let t127 = k(2.0) * (t118 - t117);
-        let t128 = k(2.0) * (k(0.5) - (t75 + base_e3 * base_e3));
-        let t129 = t128 * t46 - (t127 * t43 - t126 * t40);
-        let t130 = (t128 * t88 - (t126 * t84 - t127 * t85)) * t92 + t129 * t74;
-        let t131 = t126 * t94 + t127 * t95 + t128 * t96;
-        let t132 = k(1e-7) * base_dwz - (t131 * t99 + t130);
-        let t133 = (t104 + t108 * t108) * t114 * t122 + (t124 + t123) * t114 * t101;
-        let t134 = t105 * t114 * t132 + (t110 * t114 * t122 + t113 * t114 * t101);
-        let t135 = k(1.0) / (t129 * t100 - t131 * t83);
-        let t136 = k(1.0) / (t47 * t90 - t64 * t89);
-        let t137 = k(1.0) / (t56 * t70 - t58 * t68);
+        let t128 = k(2.0) * (k(0.5) - T::fused(base_e3, base_e3, t75));
+        let t129 = T::fused(t128, t46, -T::fused(-t126, t40, t127 * t43));
+        let t130 = T::fused(
+            t129,
+            t74,
+            T::fused(t128, t88, -T::fused(-t127, t85, t126 * t84)) * t92,
+        );
+        let t131 = T::fused(t128, t96, T::fused(t127, t95, t126 * t94));
+        let t132 = T::fused(k(1e-7), base_dwz, -T::fused(t131, t99, t130));
+        let t133 = T::fused(
+            (t124 + t123) * t114,
+            t101,
+            T::fused(t108, t108, t104) * t114 * t122,
+        );
+        let t134 = T::fused(
+            t105 * t114,
+            t132,
+            T::fused(t113 * t114, t101, t110 * t114 * t122),
+        );
+        let t135 = k(1.0) / T::fused(-t131, t83, t129 * t100);
+        let t136 = k(1.0) / T::fused(-t64, t89, t47 * t90);
+        let t137 = k(1.0) / T::fused(-t58, t68, t56 * t70);
         *lambda = [
-            -(k(0.001) * base_dsx + t2),
-            -(k(0.01) + k(0.001) * base_dsy + t5),
-            -(k(0.001) * base_dsz + t8),
-            (t112 + t111) * t114 * t132 + t125,
-            (t109 - t107) * t114 * t132 + t133,
+            -T::fused(k(0.001), base_dsx, t2),
+            -(T::fused(k(0.001), base_dsy, k(0.01)) + t5),
+            -T::fused(k(0.001), base_dsz, t8),
+            T::fused((t112 + t111) * t114, t132, t125),
+            T::fused((t109 - t107) * t114, t132, t133),
             t134,
             -t2,
             -t5,
             -t8,
-            t100 * t135 * t99 + t83 * t135 * t74,
-            t131 * t135 * t99 + t129 * t135 * t74,
+            T::fused(t83 * t135, t74, t100 * t135 * t99),
+            T::fused(t129 * t135, t74, t131 * t135 * t99),
             -t1,
             -t4,
             -t7,
-            t89 * t136 * t38 - t90 * t136 * t63,
-            t64 * t136 * t63 - t47 * t136 * t38,
+            T::fused(-(t90 * t136), t63, t89 * t136 * t38),
+            T::fused(-(t47 * t136), t38, t64 * t136 * t63),
             -t0,
             -t3,
             -t6,
-            t36 * (t70 * t137) + t31 * (t68 * t137),
-            t36 * (t58 * t137) + t31 * (t56 * t137),
+            T::fused(t31, t68 * t137, t36 * (t70 * t137)),
+            T::fused(t31, t56 * t137, t36 * (t58 * t137)),
         ];
     }
 }
@@ -2632,7 +3366,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 45]
     }
-    /// Writes u̇: 18 operations (5 ±, 12 ×, 1 ÷) and 2 functions.
+    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2640,15 +3374,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u1 * t0;
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = k(1.6663195167673401)
-            * ((u2 - k(0.20025) * t3) / (k(1.3332639033534681) - t2 * t2));
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = x1.sin();
+        let t4 = u0 * t3;
+        let t5 = T::fused(-k(0.20025), t4, u2) * t2
+            / T::fused(k(6.00125e-6), t0 * t0, k(2e-6));
         *out = [
-            -(t4 * t1),
-            -(k(1.6663195167673401) * (t0 * (k(10.0) - u0 * (u2 + k(0.399875) * t3)))),
-            -(t1 * (u0 - t2 * t4)),
+            -t5,
+            -(k(166631.95167673402)
+                * (t1 * T::fused(-u0, T::fused(k(0.399875), t4, u2), k(10.0)))),
+            T::fused(-k(100000.0), u0 * t2, t3 * t5),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2689,16 +3425,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t17 = t15.cos();
         let t18 = k(2.0) * t6;
         let t19 = u0 * (t4 * t18);
-        let t20 = u0 * (k(1.0) - t6 * t18);
+        let t20 = u0 * T::fused(-t6, t18, k(1.0));
         let t21 = k(0.000125) * t20;
         let t22 = k(0.000125) * u1;
-        let t23 = k(2.0) * (t12 - t11) * t22 - k(2.0) * (t14 + t13) * t21;
+        let t23 = T::fused(-(k(2.0) * (t14 + t13)), t21, k(2.0) * (t12 - t11) * t22);
         let t24 = t5 * t7;
         let t25 = t8 * t9;
-        let t26 = k(2.0) * (k(0.5) - (t10 + t8 * t8)) * t22 + k(2.0) * (t25 - t24) * t21;
-        let t27 = k(2.0) * (t25 + t24) * t22 + k(2.0) * (k(0.5) - (t10 + t9 * t9)) * t21;
+        let t26 = T::fused(
+            k(2.0) * (t25 - t24),
+            t21,
+            k(2.0) * (k(0.5) - T::fused(t8, t8, t10)) * t22,
+        );
+        let t27 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(t9, t9, t10)),
+            t21,
+            k(2.0) * (t25 + t24) * t22,
+        );
         let t28 = k(2.0) * t16;
-        let t29 = k(1.0) - t16 * t28;
+        let t29 = T::fused(-t16, t28, k(1.0));
         let t30 = t17 * t28;
         *y = [
             k(0.0),
@@ -2722,13 +3466,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             t7,
             t8,
             t9,
-            -(k(0.00025) * (k(0.5) - (t10 + t7 * t7))),
+            -(k(0.00025) * (k(0.5) - T::fused(t7, t7, t10))),
             k(0.00025) * (t12 + t11),
             k(0.00025) * (t14 - t13),
-            t5 * t17 - t7 * t16,
-            t7 * t17 + t5 * t16,
-            t8 * t17 + t9 * t16,
-            t9 * t17 - t8 * t16,
+            T::fused(-t7, t16, t5 * t17),
+            T::fused(t5, t16, t7 * t17),
+            T::fused(t9, t16, t8 * t17),
+            T::fused(-t8, t16, t9 * t17),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -2751,8 +3495,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -t26,
             t27,
             u2 + t19,
-            u1 * t30 + t29 * t20,
-            u1 * t29 - t30 * t20,
+            T::fused(t29, t20, u1 * t30),
+            T::fused(-t30, t20, u1 * t29),
         ];
     }
     /// Writes the joint state of a maximal state: 177 operations (82 ±, 95 ×, 0 ÷) and 9 functions.
@@ -2786,30 +3530,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t0 = x0.sin();
         let t1 = outer_ring_e2 * outer_ring_e2;
         let t2 = outer_ring_e0 * outer_ring_e0;
-        let t3 = t2 + outer_ring_e1 * outer_ring_e1;
+        let t3 = T::fused(outer_ring_e1, outer_ring_e1, t2);
         let t4 = outer_ring_e3 * outer_ring_e3;
         let t5 = k(1.0) - (t4 + (t3 + t1));
-        let t6 = k(2.0) * (k(0.5) - (t2 + t4)) - t5;
+        let t6 = T::fused(k(2.0), k(0.5) - (t2 + t4), -t5);
         let t7 = base_e0 * base_e2;
         let t8 = base_e1 * base_e3;
         let t9 = outer_ring_e0 * outer_ring_e1;
         let t10 = outer_ring_e2 * outer_ring_e3;
         let t11 = k(2.0) * (t10 - t9);
         let t12 = base_e0 * base_e0;
-        let t13 = t12 + base_e1 * base_e1;
+        let t13 = T::fused(base_e1, base_e1, t12);
         let t14 = base_e3 * base_e3;
-        let t15 = k(1.0) - (t14 + (t13 + base_e2 * base_e2));
+        let t15 = k(1.0) - (t14 + T::fused(base_e2, base_e2, t13));
         let t16 = outer_ring_e0 * outer_ring_e2;
         let t17 = outer_ring_e1 * outer_ring_e3;
         let t18 = k(2.0) * (t17 + t16);
-        let t19 = t18 * (k(2.0) * (k(0.5) - t13) - t15)
-            - k(2.0) * (base_e1 * base_e2 + base_e0 * base_e3) * t11;
-        let t20 = t19 + k(2.0) * (t8 - t7) * t6;
+        let t19 = T::fused(
+            -(k(2.0) * T::fused(base_e0, base_e3, base_e1 * base_e2)),
+            t11,
+            t18 * T::fused(k(2.0), k(0.5) - t13, -t15),
+        );
+        let t20 = T::fused(k(2.0) * (t8 - t7), t6, t19);
         let t21 = x0.cos();
-        let t22 = k(2.0) * (t8 + t7) * t18
-            + k(2.0) * (base_e2 * base_e3 - base_e0 * base_e1) * t11;
-        let t23 = t22 + (k(2.0) * (k(0.5) - (t12 + t14)) - t15) * t6;
-        let t24 = -(t23 * t0 + t20 * t21).atan2(t23 * t21 - t20 * t0);
+        let t22 = T::fused(
+            k(2.0) * T::fused(-base_e0, base_e1, base_e2 * base_e3),
+            t11,
+            k(2.0) * (t8 + t7) * t18,
+        );
+        let t23 = T::fused(T::fused(k(2.0), k(0.5) - (t12 + t14), -t15), t6, t22);
+        let t24 = -T::fused(t20, t21, t23 * t0).atan2(T::fused(-t20, t0, t23 * t21));
         let t25 = x1.sin();
         let t26 = inner_ring_e0 * inner_ring_e2;
         let t27 = inner_ring_e1 * inner_ring_e3;
@@ -2819,35 +3569,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let t31 = k(2.0) * (t30 + t29);
         let t32 = inner_ring_e2 * inner_ring_e2;
         let t33 = inner_ring_e0 * inner_ring_e0;
-        let t34 = t33 + inner_ring_e1 * inner_ring_e1;
+        let t34 = T::fused(inner_ring_e1, inner_ring_e1, t33);
         let t35 = inner_ring_e3 * inner_ring_e3;
         let t36 = k(1.0) - (t35 + (t34 + t32));
-        let t37 = k(2.0) * (k(0.5) - t34) - t36;
+        let t37 = T::fused(k(2.0), k(0.5) - t34, -t36);
         let t38 = outer_ring_e0 * outer_ring_e3;
         let t39 = outer_ring_e1 * outer_ring_e2;
-        let t40 = k(2.0) * (t39 - t38) * t37
-            + t31 * (k(2.0) * (k(0.5) - (t2 + t1)) - t5);
-        let t41 = t40 - k(2.0) * (t10 + t9) * t28;
+        let t40 = T::fused(
+            t31,
+            T::fused(k(2.0), k(0.5) - (t2 + t1), -t5),
+            k(2.0) * (t39 - t38) * t37,
+        );
+        let t41 = T::fused(-(k(2.0) * (t10 + t9)), t28, t40);
         let t42 = x1.cos();
-        let t43 = (k(2.0) * (k(0.5) - t3) - t5) * t37 + k(2.0) * (t39 + t38) * t31;
-        let t44 = t43 + k(2.0) * (t17 - t16) * t28;
-        let t45 = -(t44 * t25 + t41 * t42).atan2(t44 * t42 - t41 * t25);
+        let t43 = T::fused(
+            k(2.0) * (t39 + t38),
+            t31,
+            T::fused(k(2.0), k(0.5) - t3, -t5) * t37,
+        );
+        let t44 = T::fused(k(2.0) * (t17 - t16), t28, t43);
+        let t45 = -T::fused(t41, t42, t44 * t25).atan2(T::fused(-t41, t25, t44 * t42));
         let t46 = x2.sin();
-        let t47 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t47 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t48 = rotor_e2 * rotor_e2;
         let t49 = rotor_e0 * rotor_e0;
-        let t50 = k(2.0) * (k(0.5) - (t49 + t48))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t49 + rotor_e1 * rotor_e1 + t48)));
+        let t50 = T::fused(
+            k(2.0),
+            k(0.5) - (t49 + t48),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t49) + t48)),
+        );
         let t51 = inner_ring_e0 * inner_ring_e1;
         let t52 = inner_ring_e2 * inner_ring_e3;
-        let t53 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t54 = k(2.0) * (t27 + t26) * t53 - k(2.0) * (t52 - t51) * t50;
-        let t55 = t54 - t47 * (k(2.0) * (k(0.5) - (t33 + t35)) - t36);
+        let t53 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t54 = T::fused(-(k(2.0) * (t52 - t51)), t50, k(2.0) * (t27 + t26) * t53);
+        let t55 = T::fused(-t47, T::fused(k(2.0), k(0.5) - (t33 + t35), -t36), t54);
         let t56 = x2.cos();
-        let t57 = k(2.0) * (t30 - t29) * t53
-            + (k(2.0) * (k(0.5) - (t33 + t32)) - t36) * t50;
-        let t58 = t57 + k(2.0) * (t52 + t51) * t47;
-        let t59 = (t55 * t56 - t58 * t46).atan2(t58 * t56 + t55 * t46);
+        let t57 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t33 + t32), -t36),
+            t50,
+            k(2.0) * (t30 - t29) * t53,
+        );
+        let t58 = T::fused(k(2.0) * (t52 + t51), t47, t57);
+        let t59 = T::fused(-t58, t46, t55 * t56).atan2(T::fused(t55, t46, t58 * t56));
         x[0] = x0 + t24;
         x[1] = x1 + t45;
         x[2] = x2 + t59;
@@ -2855,7 +3619,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 39 operations (15 ±, 23 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 41 operations (15 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[10];
@@ -2872,26 +3636,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let inner_ring_wx = y[43];
         let inner_ring_wz = y[45];
         let rotor_wx = y[49];
-        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t0 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t1 = k(2.0) * t0;
-        let t2 = k(1.0) - t0 * t1;
-        let t3 = (outer_ring_wz - inner_ring_wz) * t2;
-        let t4 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t5 = t4 * t1;
-        let t6 = base_wy - outer_ring_wy;
-        let t7 = t6 * t5;
-        let t8 = inner_ring_wx - rotor_wx;
-        let t9 = k(1.6663195167673401)
-            * ((t8 + k(0.20025) * t7) / (k(1.3332639033534681) - t5 * t5));
+        let t2 = T::fused(-t0, t1, k(1.0));
+        let t3 = k(1e-5) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t6 = t5 * t1;
+        let t7 = base_wy - outer_ring_wy;
+        let t8 = t7 * t6;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = T::fused(k(0.20025), t8, t9) * t4
+            / T::fused(k(6.00125e-6), t2 * t2, k(2e-6));
         *out = [
-            -(t9 * t3),
-            -(k(1.6663195167673401) * (t2 * (k(10.0) - t6 * (t8 - k(0.399875) * t7)))),
-            -(t3 * (t6 + t5 * t9)),
+            -t10,
+            -(k(166631.95167673402)
+                * (t3 * T::fused(-t7, T::fused(-k(0.399875), t8, t9), k(10.0)))),
+            -T::fused(k(100000.0), t7 * t4, t6 * t10),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (57 ±, 92 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 151 operations (57 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2923,53 +3703,91 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let rotor_wz = y[51];
         let t0 = base_wy - outer_ring_wy;
         let t1 = outer_ring_wz * t0;
-        let t2 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t3 = k(2.0) * t2;
-        let t4 = k(1.0) - t2 * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t8 = t7 * t3;
-        let t9 = t0 * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = k(1.6663195167673401)
-            * ((t10 + k(0.20025) * t9) / (k(1.3332639033534681) - t8 * t8));
-        let t12 = t11 * t6;
+        let t4 = T::fused(-t2, t3, k(1.0));
+        let t5 = k(1e-5) * t4;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = t6 * t5;
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = t8 * t3;
+        let t10 = t0 * t9;
+        let t11 = inner_ring_wx - rotor_wx;
+        let t12 = T::fused(k(0.20025), t10, t11) * t7
+            / T::fused(k(6.00125e-6), t4 * t4, k(2e-6));
         let t13 = outer_ring_wx * t0;
-        let t14 = inner_ring_wy * t5 - (t4 * t1 + t8 * t12);
-        let t15 = inner_ring_wx * t5 + (t8 * t1 - t4 * t12);
-        let t16 = k(1.6663195167673401)
-            * (t4 * (k(10.0) - t0 * (t10 - k(0.399875) * t9))) + t13;
-        let t17 = k(0.000125) * t16;
-        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t19 = k(2.0) * t18;
-        let t20 = k(1.0) - t18 * t19;
-        let t21 = k(0.000125) * t15;
-        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
-            - k(2.0) * (t30 - t29) * t28;
-        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = k(2.0) * (t30 + t29) * t31
-            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
-        let t38 = rotor_e0 * rotor_e1;
-        let t39 = rotor_e2 * rotor_e3;
-        let t40 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t39 + t38) * t28;
+        let t14 = t9 * t12;
+        let t15 = T::fused(inner_ring_wy, t6, -T::fused(t4, t1, t14));
+        let t16 = T::fused(inner_ring_wx, t6, T::fused(-t4, t12, t9 * t1));
+        let t17 = T::fused(
+            k(166631.95167673402),
+            t5 * T::fused(-t0, T::fused(-k(0.399875), t10, t11), k(10.0)),
+            t13,
+        );
+        let t18 = k(0.000125) * t17;
+        let t19 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t20 = k(2.0) * t19;
+        let t21 = T::fused(-t19, t20, k(1.0));
+        let t22 = k(0.000125) * t16;
+        let t23 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t24 = t23 * t20;
+        let t25 = k(0.000125) * inner_ring_wy;
+        let t26 = inner_ring_wx * t25;
+        let t27 = k(0.000125) * inner_ring_wz;
+        let t28 = inner_ring_wx * t27;
+        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(-t21, t18, t24 * t22);
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            -(k(2.0) * (t31 - t30)),
+            t29,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
+        );
+        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(t24, t18, t21 * t22);
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
+            t29,
+            k(2.0) * (t31 + t30) * t32,
+        );
+        let t39 = rotor_e0 * rotor_e1;
+        let t40 = rotor_e2 * rotor_e3;
+        let t41 = T::fused(k(2.0) * (t40 + t39), t29, k(2.0) * (t37 - t36) * t32);
         *out = [
             k(0.0),
             k(0.0),
@@ -2986,15 +3804,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
-            t15,
-            -t16,
-            k(2.0) * (t36 + t35) * t34 + t33,
-            k(2.0) * (t39 - t38) * t34 - t37,
-            -(k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t40),
-            -(t6 * (t0 + t8 * t11) + t14),
-            t23 * t16 + t20 * t15 - rotor_wz * t10,
-            rotor_wy * t10 - (t20 * t16 - t23 * t15),
+            -t15,
+            t16,
+            -t17,
+            T::fused(k(2.0) * (t37 + t36), t35, t34),
+            T::fused(k(2.0) * (t40 - t39), t35, -t38),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)), t35, t41),
+            -(T::fused(k(100000.0), t0 * t7, t14) + t15),
+            T::fused(-rotor_wz, t11, T::fused(t21, t16, t24 * t17)),
+            T::fused(rotor_wy, t11, -T::fused(-t24, t16, t21 * t17)),
         ];
     }
     /// Writes λ: 212 operations (86 ±, 125 ×, 1 ÷).
@@ -3056,89 +3874,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let rotor_dwy = accelerations[22];
         let rotor_dwz = accelerations[23];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.01) * outer_ring_dsx + t1;
-        let t3 = k(0.8) + k(0.08) * rotor_dsy;
-        let t4 = k(0.1) + k(0.01) * inner_ring_dsy + t3;
-        let t5 = k(0.1) + k(0.01) * outer_ring_dsy + t4;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.01), outer_ring_dsx, t1);
+        let t3 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t4 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t3;
+        let t5 = T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t4;
         let t6 = k(0.08) * rotor_dsz;
-        let t7 = k(0.01) * inner_ring_dsz + t6;
-        let t8 = k(0.01) * outer_ring_dsz + t7;
-        let t9 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx)
-            - k(1e-5) * rotor_dwx;
-        let t10 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t7 = T::fused(k(0.01), inner_ring_dsz, t6);
+        let t8 = T::fused(k(0.01), outer_ring_dsz, t7);
+        let t9 = T::fused(
+            -k(1e-5),
+            rotor_dwx,
+            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+        );
+        let t10 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t11 = k(2.0) * t10;
-        let t12 = k(1.0) - t10 * t11;
+        let t12 = T::fused(-t10, t11, k(1.0));
         let t13 = inner_ring_e0 * inner_ring_e1;
         let t14 = inner_ring_e2 * inner_ring_e3;
-        let t15 = t3 * (k(0.00025) * (t14 - t13))
-            + t0
-                * (k(0.00025)
-                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2));
+        let t15 = T::fused(
+            t0,
+            k(0.00025)
+                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3),
+            t3 * (k(0.00025) * (t14 - t13)),
+        );
         let t16 = inner_ring_e0 * inner_ring_e0;
-        let t17 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t17 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t18 = k(2.0) * t17;
-        let t19 = k(1.0) - t17 * t18;
-        let t20 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t19 = T::fused(-t17, t18, k(1.0));
+        let t20 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t21 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t22 = t21 * t18;
-        let t23 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t24 = t23 * t22 - t20 * t19;
+        let t23 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t24 = T::fused(-t20, t19, t23 * t22);
         let t25 = t24
-            - (t6 * (k(0.00025) * (k(0.5) - (t16 + inner_ring_e3 * inner_ring_e3)))
-                - t15);
-        let t26 = k(2e-6) * inner_ring_dwy - t25;
-        let t27 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+            - T::fused(
+                t6,
+                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t16)),
+                -t15,
+            );
+        let t26 = T::fused(k(2e-6), inner_ring_dwy, -t25);
+        let t27 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t28 = t27 * t11;
-        let t29 = t28 * t26 - t12 * t9;
-        let t30 = k(2e-6) * outer_ring_dwx + t29;
-        let t31 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
-            - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
+        let t29 = T::fused(-t12, t9, t28 * t26);
+        let t30 = T::fused(k(2e-6), outer_ring_dwx, t29);
+        let t31 = T::fused(
+            -base_e1,
+            outer_ring_e3,
+            T::fused(
+                -base_e0,
+                outer_ring_e2,
+                T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
+            ),
+        );
         let t32 = k(2.0) * t31;
-        let t33 = k(1.0) - t31 * t32;
-        let t34 = t3 * (k(0.00025) * (k(0.5) - (t16 + inner_ring_e2 * inner_ring_e2)))
-            - t0
-                * (k(0.00025)
-                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
-        let t35 = t23 * t19 + t20 * t22;
-        let t36 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            - (t35 - (t6 * (k(0.00025) * (t14 + t13)) - t34));
-        let t37 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t36;
-        let t38 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
-            + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
+        let t33 = T::fused(-t31, t32, k(1.0));
+        let t34 = T::fused(
+            -t0,
+            k(0.00025)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
+            t3 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t16))),
+        );
+        let t35 = T::fused(t20, t22, t23 * t19);
+        let t36 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            -(t35 - T::fused(t6, k(0.00025) * (t14 + t13), -t34)),
+        );
+        let t37 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t36,
+        );
+        let t38 = T::fused(
+            base_e3,
+            outer_ring_e3,
+            T::fused(
+                base_e2,
+                outer_ring_e2,
+                T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
+            ),
+        );
         let t39 = t38 * t32;
-        let t40 = t39 * t37 + t33 * t30;
-        let t41 = k(1e-7) * base_dwx + t40;
+        let t40 = T::fused(t33, t30, t39 * t37);
+        let t41 = T::fused(k(1e-7), base_dwx, t40);
         let t42 = base_e3 * base_e3;
         let t43 = base_e2 * base_e2;
         let t44 = base_e0 * base_e0;
-        let t45 = t44 + base_e1 * base_e1;
+        let t45 = T::fused(base_e1, base_e1, t44);
         let t46 = k(2.0) / (base_e0 * (t45 + (t43 + t42)));
-        let t47 = t12 * t26 + t28 * t9;
-        let t48 = k(1e-7) * base_dwy
-            + (k(1e-6) * (outer_ring_wx * outer_ring_wz + outer_ring_dwy) + t47);
+        let t47 = T::fused(t28, t9, t12 * t26);
+        let t48 = T::fused(
+            k(1e-7),
+            base_dwy,
+            T::fused(
+                k(1e-6),
+                T::fused(outer_ring_wx, outer_ring_wz, outer_ring_dwy),
+                t47,
+            ),
+        );
         let t49 = base_e0 * base_e3;
         let t50 = base_e1 * base_e2;
-        let t51 = t33 * t37 - t39 * t30;
-        let t52 = k(1e-7) * base_dwz - t51;
+        let t51 = T::fused(-t39, t30, t33 * t37);
+        let t52 = T::fused(k(1e-7), base_dwz, -t51);
         let t53 = base_e0 * base_e2;
         let t54 = base_e1 * base_e3;
-        let t55 = (t54 + t53) * t46 * t52 + ((t50 - t49) * t46 * t48 + t45 * t46 * t41);
-        let t56 = (t44 + t43) * t46 * t48 + (t50 + t49) * t46 * t41;
+        let t55 = T::fused(
+            (t54 + t53) * t46,
+            t52,
+            T::fused(t45 * t46, t41, (t50 - t49) * t46 * t48),
+        );
+        let t56 = T::fused((t50 + t49) * t46, t41, (t44 + t43) * t46 * t48);
         let t57 = base_e0 * base_e1;
         let t58 = base_e2 * base_e3;
-        let t59 = (t58 + t57) * t46 * t48 + (t54 - t53) * t46 * t41;
+        let t59 = T::fused((t54 - t53) * t46, t41, (t58 + t57) * t46 * t48);
         *lambda = [
-            -(k(0.001) * base_dsx + t2),
-            -(k(0.01) + k(0.001) * base_dsy + t5),
-            -(k(0.001) * base_dsz + t8),
+            -T::fused(k(0.001), base_dsx, t2),
+            -(T::fused(k(0.001), base_dsy, k(0.01)) + t5),
+            -T::fused(k(0.001), base_dsz, t8),
             -t55,
-            -((t58 - t57) * t46 * t52 + t56),
-            -((t44 + t42) * t46 * t52 + t59),
+            -T::fused((t58 - t57) * t46, t52, t56),
+            -T::fused((t44 + t42) * t46, t52, t59),
             -t2,
             -t5,
             -t8,
@@ -3156,7 +4044,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             -t24,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 302 operations (117 ±, 183 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 303 operations (117 ±, 184 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let base_e0 = y[3];
@@ -3187,111 +4075,189 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
         let rotor_wz = y[51];
         let t0 = base_wy - outer_ring_wy;
         let t1 = outer_ring_wz * t0;
-        let t2 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t2 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t3 = k(2.0) * t2;
-        let t4 = k(1.0) - t2 * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
-        let t8 = t7 * t3;
-        let t9 = t0 * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = k(1.6663195167673401)
-            * ((t10 + k(0.20025) * t9) / (k(1.3332639033534681) - t8 * t8));
-        let t12 = t11 * t6;
+        let t4 = T::fused(-t2, t3, k(1.0));
+        let t5 = k(1e-5) * t4;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = t6 * t5;
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = t8 * t3;
+        let t10 = t0 * t9;
+        let t11 = inner_ring_wx - rotor_wx;
+        let t12 = T::fused(k(0.20025), t10, t11) * t7
+            / T::fused(k(6.00125e-6), t4 * t4, k(2e-6));
         let t13 = outer_ring_wx * t0;
-        let t14 = inner_ring_wy * t5 - (t4 * t1 + t8 * t12);
-        let t15 = inner_ring_wx * t5 + (t8 * t1 - t4 * t12);
-        let t16 = k(1.6663195167673401)
-            * (t4 * (k(10.0) - t0 * (t10 - k(0.399875) * t9))) + t13;
-        let t17 = k(0.000125) * t16;
-        let t18 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t19 = k(2.0) * t18;
-        let t20 = k(1.0) - t18 * t19;
-        let t21 = k(0.000125) * t15;
-        let t22 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
-        let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = t27 * t23 - t25 * t20 - (t23 * t21 - t20 * t17);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = inner_ring_wy * t24 + inner_ring_wz * t26;
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = k(2.0) * (k(0.5) - (t32 + rotor_e1 * rotor_e1)) * t31
-            - k(2.0) * (t30 - t29) * t28;
-        let t34 = t27 * t20 + t25 * t23 - (t20 * t21 + t23 * t17);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = k(2.0) * (t36 + t35) * t34 + t33;
-        let t38 = k(2.0) * (t30 + t29) * t31
-            - k(2.0) * (k(0.5) - (t32 + rotor_e2 * rotor_e2)) * t28;
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = k(2.0) * (t40 - t39) * t34 - t38;
-        let t42 = k(2.0) * (t36 - t35) * t31 + k(2.0) * (t40 + t39) * t28;
-        let t43 = k(2.0) * (k(0.5) - (t32 + rotor_e3 * rotor_e3)) * t34 + t42;
-        let t44 = t6 * (t0 + t8 * t11) + t14;
-        let t45 = rotor_wz * t10 - (t23 * t16 + t20 * t15);
-        let t46 = rotor_wy * t10 - (t20 * t16 - t23 * t15);
-        let t47 = k(0.08) * t37;
-        let t48 = k(0.8) + k(0.08) * t41;
-        let t49 = k(0.1) + t48;
+        let t14 = t9 * t12;
+        let t15 = T::fused(inner_ring_wy, t6, -T::fused(t4, t1, t14));
+        let t16 = T::fused(inner_ring_wx, t6, T::fused(-t4, t12, t9 * t1));
+        let t17 = T::fused(
+            k(166631.95167673402),
+            t5 * T::fused(-t0, T::fused(-k(0.399875), t10, t11), k(10.0)),
+            t13,
+        );
+        let t18 = k(0.000125) * t17;
+        let t19 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t20 = k(2.0) * t19;
+        let t21 = T::fused(-t19, t20, k(1.0));
+        let t22 = k(0.000125) * t16;
+        let t23 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t24 = t23 * t20;
+        let t25 = k(0.000125) * inner_ring_wy;
+        let t26 = inner_ring_wx * t25;
+        let t27 = k(0.000125) * inner_ring_wz;
+        let t28 = inner_ring_wx * t27;
+        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(-t21, t18, t24 * t22);
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            -(k(2.0) * (t31 - t30)),
+            t29,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
+        );
+        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(t24, t18, t21 * t22);
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = T::fused(k(2.0) * (t37 + t36), t35, t34);
+        let t39 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
+            t29,
+            k(2.0) * (t31 + t30) * t32,
+        );
+        let t40 = rotor_e0 * rotor_e1;
+        let t41 = rotor_e2 * rotor_e3;
+        let t42 = T::fused(k(2.0) * (t41 - t40), t35, -t39);
+        let t43 = T::fused(k(2.0) * (t41 + t40), t29, k(2.0) * (t37 - t36) * t32);
+        let t44 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)),
+            t35,
+            t43,
+        );
+        let t45 = T::fused(k(100000.0), t0 * t7, t14) + t15;
+        let t46 = T::fused(rotor_wz, t11, -T::fused(t21, t16, t24 * t17));
+        let t47 = T::fused(rotor_wy, t11, -T::fused(-t24, t16, t21 * t17));
+        let t48 = k(0.08) * t38;
+        let t49 = T::fused(k(0.08), t42, k(0.8));
         let t50 = k(0.1) + t49;
-        let t51 = k(0.08) * t43;
-        let t52 = k(5e-6) * (rotor_wx * rotor_wy - t46);
-        let t53 = k(5e-6) * (rotor_wx * rotor_wz - t45);
-        let t54 = t23 * t53 + t20 * t52;
-        let t55 = inner_ring_e0 * inner_ring_e1;
-        let t56 = inner_ring_e2 * inner_ring_e3;
-        let t57 = inner_ring_e0 * inner_ring_e0;
-        let t58 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t47
-            - k(0.00025) * (k(0.5) - (t57 + inner_ring_e2 * inner_ring_e2)) * t48;
-        let t59 = t58 - k(0.00025) * (t56 + t55) * t51 - t54
-            + k(1e-6) * (inner_ring_wx * inner_ring_wy - t16);
-        let t60 = t59 - k(1e-6) * (outer_ring_wx * outer_ring_wy + t13);
-        let t61 = base_e2 * outer_ring_e0 + base_e3 * outer_ring_e1
-            - base_e0 * outer_ring_e2 - base_e1 * outer_ring_e3;
-        let t62 = k(2.0) * t61;
-        let t63 = k(1.0) - t61 * t62;
-        let t64 = t20 * t53 - t23 * t52;
-        let t65 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t47
-            + k(0.00025) * (t56 - t55) * t48;
-        let t66 = t65
-            + k(0.00025) * (k(0.5) - (t57 + inner_ring_e3 * inner_ring_e3)) * t51 - t64;
-        let t67 = t66 - k(2e-6) * t15;
-        let t68 = k(1e-5) * t44 + k(1e-6) * (inner_ring_wy * inner_ring_wz + t14);
-        let t69 = t4 * t68 + t8 * t67;
-        let t70 = t69 - k(2e-6) * t1;
-        let t71 = base_e0 * outer_ring_e0 + base_e1 * outer_ring_e1
-            + base_e2 * outer_ring_e2 + base_e3 * outer_ring_e3;
-        let t72 = t71 * t62;
-        let t73 = t72 * t70 - t63 * t60;
-        let t74 = base_e3 * base_e3;
-        let t75 = base_e2 * base_e2;
-        let t76 = base_e0 * base_e0;
-        let t77 = t76 + base_e1 * base_e1;
-        let t78 = k(2.0) / (base_e0 * (t77 + (t75 + t74)));
-        let t79 = base_e0 * base_e2;
-        let t80 = base_e1 * base_e3;
-        let t81 = t8 * t68 - t4 * t67;
-        let t82 = t81 + k(1e-6) * (outer_ring_wx * outer_ring_wz - t12);
-        let t83 = base_e0 * base_e3;
-        let t84 = base_e1 * base_e2;
-        let t85 = t63 * t70 + t72 * t60;
-        let t86 = t77 * t78 * t85 - (t84 - t83) * t78 * t82 + (t80 + t79) * t78 * t73;
-        let t87 = base_e0 * base_e1;
-        let t88 = base_e2 * base_e3;
-        let t89 = (t84 + t83) * t78 * t85 - (t76 + t75) * t78 * t82;
-        let t90 = (t80 - t79) * t78 * t85 - (t88 + t87) * t78 * t82;
+        let t51 = k(0.1) + t50;
+        let t52 = k(0.08) * t44;
+        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t47);
+        let t54 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t46);
+        let t55 = T::fused(t21, t53, t24 * t54);
+        let t56 = inner_ring_e0 * inner_ring_e1;
+        let t57 = inner_ring_e2 * inner_ring_e3;
+        let t58 = inner_ring_e0 * inner_ring_e0;
+        let t59 = T::fused(
+            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t58))),
+            t49,
+            k(0.00025)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
+                * t48,
+        );
+        let t60 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, -t17),
+            T::fused(-(k(0.00025) * (t57 + t56)), t52, t59) - t55,
+        );
+        let t61 = T::fused(-k(1e-6), T::fused(outer_ring_wx, outer_ring_wy, t13), t60);
+        let t62 = T::fused(
+            -base_e1,
+            outer_ring_e3,
+            T::fused(
+                -base_e0,
+                outer_ring_e2,
+                T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
+            ),
+        );
+        let t63 = k(2.0) * t62;
+        let t64 = T::fused(-t62, t63, k(1.0));
+        let t65 = T::fused(-t24, t53, t21 * t54);
+        let t66 = T::fused(
+            k(0.00025) * (t57 - t56),
+            t49,
+            k(0.00025)
+                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
+                * t48,
+        );
+        let t67 = T::fused(
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t58)),
+            t52,
+            t66,
+        ) - t65;
+        let t68 = T::fused(-k(2e-6), t16, t67);
+        let t69 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, t15),
+            k(1e-5) * t45,
+        );
+        let t70 = T::fused(t9, t68, t4 * t69);
+        let t71 = T::fused(-k(2e-6), t1, t70);
+        let t72 = T::fused(
+            base_e3,
+            outer_ring_e3,
+            T::fused(
+                base_e2,
+                outer_ring_e2,
+                T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
+            ),
+        );
+        let t73 = t72 * t63;
+        let t74 = T::fused(-t64, t61, t73 * t71);
+        let t75 = base_e3 * base_e3;
+        let t76 = base_e2 * base_e2;
+        let t77 = base_e0 * base_e0;
+        let t78 = T::fused(base_e1, base_e1, t77);
+        let t79 = k(2.0) / (base_e0 * (t78 + (t76 + t75)));
+        let t80 = base_e0 * base_e2;
+        let t81 = base_e1 * base_e3;
+        let t82 = T::fused(-t4, t68, t9 * t69);
+        let t83 = T::fused(k(1e-6), T::fused(outer_ring_wx, outer_ring_wz, -t12), t82);
+        let t84 = base_e0 * base_e3;
+        let t85 = base_e1 * base_e2;
+        let t86 = T::fused(t73, t61, t64 * t71);
+        let t87 = T::fused(
+            (t81 + t80) * t79,
+            t74,
+            T::fused(-((t85 - t84) * t79), t83, t78 * t79 * t86),
+        );
+        let t88 = base_e0 * base_e1;
+        let t89 = base_e2 * base_e3;
+        let t90 = T::fused(-((t77 + t76) * t79), t83, (t85 + t84) * t79 * t86);
+        let t91 = T::fused(-((t89 + t88) * t79), t83, (t81 - t80) * t79 * t86);
         *out = [
             k(0.0),
             k(0.0),
@@ -3308,36 +4274,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
-            t15,
-            -t16,
-            t37,
-            t41,
-            -t43,
+            -t15,
+            t16,
+            -t17,
+            t38,
+            t42,
             -t44,
             -t45,
-            t46,
-            -t47,
-            -(k(0.01) + t50),
-            t51,
-            t86,
-            t89 + (t88 - t87) * t78 * t73,
-            t90 + (t76 + t74) * t78 * t73,
-            -t47,
-            -t50,
-            t51,
-            t85,
-            -t73,
-            -t47,
-            -t49,
-            t51,
-            -t81,
-            -t69,
-            -t47,
+            -t46,
+            t47,
             -t48,
-            t51,
-            t54,
-            t64,
+            -(k(0.01) + t51),
+            t52,
+            t87,
+            T::fused((t89 - t88) * t79, t74, t90),
+            T::fused((t77 + t75) * t79, t74, t91),
+            -t48,
+            -t51,
+            t52,
+            t86,
+            -t74,
+            -t48,
+            -t50,
+            t52,
+            -t82,
+            -t70,
+            -t48,
+            -t49,
+            t52,
+            t55,
+            t65,
         ];
     }
 }

@@ -12,9 +12,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: by relative Euler parameters, 413 operations, not rotations of the bodies 433
-//! * joint_accelerations: by normal form, 63 operations, not recursion 91
-//! * joint_accelerations_at: by normal form, 101 operations, not recursion 129, recursion on the bodies' spins 142
-//! * corrected_accelerations: by normal form in the bodies' frames, 181 operations, not recursion in the bodies' frames 208, recursion in the global frame 222, normal form in the global frame 195, recursion on the bodies' spins in the bodies' frames 205, recursion on the bodies' spins in the global frame 219, elimination in maximal coordinates 433
+//! * joint_accelerations: by normal form, 61 operations, not recursion 91
+//! * joint_accelerations_at: by normal form, 99 operations, not recursion 129, recursion on the bodies' spins 142
+//! * corrected_accelerations: by normal form in the bodies' frames, 179 operations, not recursion in the bodies' frames 208, recursion in the global frame 222, normal form in the global frame 193, recursion on the bodies' spins in the bodies' frames 205, recursion on the bodies' spins in the global frame 219, elimination in maximal coordinates 433
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -35,14 +35,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 193 | 323 | 3 | 519 | 6 of 21 | 4.2e9 | 519 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 17329 | 257 |
-//! | joint_accelerations | u̇ in joint coordinates | 19 | 42 | 2 | 63 | 0 of 3 | 271 | 64 |
+//! | joint_accelerations | u̇ in joint coordinates | 18 | 41 | 2 | 61 | 0 of 3 | 290 | 62 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 633 | 78 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 35 | 64 | 2 | 101 | 0 of 3 | 2320 | 102 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 66 | 113 | 2 | 181 | 6 of 18 | 16812 | 182 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 63 | 2 | 99 | 0 of 3 | 2548 | 100 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 65 | 112 | 2 | 179 | 6 of 18 | 18438 | 180 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 853 | 134 |
-//! | corrected_solution | both | 90 | 154 | 2 | 246 | 6 of 33 | 195578 | 247 |
+//! | corrected_solution | both | 89 | 153 | 2 | 244 | 6 of 33 | 214232 | 245 |
 //!
 //! # Proof
 //!
@@ -173,41 +173,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeRadialImbalance<T> {
             outer_ring_sy,
             outer_ring_sz,
             -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
             k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
             -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
             inner_ring_sx,
             inner_ring_sy,
             inner_ring_sz,
             -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
             k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
             -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
             rotor_sx,
             rotor_sy,
             rotor_sz,
             -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
             -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -242,6 +300,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+        ];
+    }
     /// Writes Φ: 111 operations (51 ±, 60 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -267,35 +478,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
         let t3 = k(2.0) * (t2 - t1);
         let t4 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2);
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
         let t5 = outer_ring_e0 * outer_ring_e0;
-        let t6 = t5 + outer_ring_e1 * outer_ring_e1;
+        let t6 = T::fused(outer_ring_e1, outer_ring_e1, t5);
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (t2 + t1) * t9 - k(2.0) * (k(0.5) - t6) * t4;
+        let t10 = T::fused(-(k(2.0) * (k(0.5) - t6)), t4, k(2.0) * (t2 + t1) * t9);
         let t11 = inner_ring_e3 * inner_ring_e3;
         let t12 = inner_ring_e0 * inner_ring_e0;
         let t13 = k(2.0) * (k(0.5) - (t12 + t11));
         let t14 = outer_ring_e2 * outer_ring_e2;
-        let t15 = t0 * t13 - (t3 * t4 - k(2.0) * (k(0.5) - (t5 + t14)) * t9);
+        let t15 = T::fused(
+            t0,
+            t13,
+            -T::fused(-(k(2.0) * (k(0.5) - (t5 + t14))), t9, t3 * t4),
+        );
         let t16 = rotor_e0 * rotor_e3;
         let t17 = rotor_e1 * rotor_e2;
         let t18 = rotor_e2 * rotor_e2;
         let t19 = rotor_e0 * rotor_e0;
-        let t20 = t19 + rotor_e1 * rotor_e1;
+        let t20 = T::fused(rotor_e1, rotor_e1, t19);
         let t21 = k(2.0) * (k(0.5) - t20);
         let t22 = k(2.0) * (t17 + t16);
         let t23 = inner_ring_e2 * inner_ring_e2;
-        let t24 = k(2.0) * (k(0.5) - (t12 + t23)) * t22
-            + k(2.0) * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3)
-                * t21;
-        let t25 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
+        let t24 = T::fused(
+            k(2.0)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
+            t21,
+            k(2.0) * (k(0.5) - (t12 + t23)) * t22,
+        );
+        let t25 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
@@ -305,20 +523,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            t10
-                - k(2.0)
-                    * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2)
-                    * t13,
+            T::fused(
+                -(k(2.0)
+                    * T::fused(
+                        -outer_ring_e0,
+                        outer_ring_e2,
+                        outer_ring_e1 * outer_ring_e3,
+                    )),
+                t13,
+                t10,
+            ),
             -t15,
-            rotor_rx + k(0.0004) * (t17 - t16) - inner_ring_rx,
-            rotor_ry - k(0.0004) * (k(0.5) - (t19 + t18)) - inner_ring_ry,
-            rotor_rz + k(0.0004) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1)
-                - inner_ring_rz,
-            k(2.0) * (t8 + t7) * t25 - t24,
-            t9 * t22 - t4 * t21 - t13 * t25,
-            outer_ring_e3 * outer_ring_e3 + (t6 + t14) - k(1.0),
-            t11 + (t12 + inner_ring_e1 * inner_ring_e1 + t23) - k(1.0),
-            rotor_e3 * rotor_e3 + (t20 + t18) - k(1.0),
+            T::fused(k(0.0004), t17 - t16, rotor_rx) - inner_ring_rx,
+            T::fused(-k(0.0004), k(0.5) - (t19 + t18), rotor_ry) - inner_ring_ry,
+            T::fused(
+                k(0.0004),
+                T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3),
+                rotor_rz,
+            ) - inner_ring_rz,
+            T::fused(k(2.0) * (t8 + t7), t25, -t24),
+            T::fused(-t13, t25, T::fused(-t4, t21, t9 * t22)),
+            T::fused(outer_ring_e3, outer_ring_e3, t6 + t14) - k(1.0),
+            t11 + (T::fused(inner_ring_e1, inner_ring_e1, t12) + t23) - k(1.0),
+            T::fused(rotor_e3, rotor_e3, t20 + t18) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 218 operations (90 ±, 128 ×, 0 ÷).
@@ -358,13 +585,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
-        let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
         let t6 = k(2.0) * (t1 + t0);
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
         let t11 = inner_ring_e0 * inner_ring_e2;
         let t12 = inner_ring_e1 * inner_ring_e3;
         let t13 = k(2.0) * (t12 + t11);
@@ -372,30 +599,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
+        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
-        let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
-        let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
+        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
+        let t23 = T::fused(
+            outer_ring_wz,
+            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
+            outer_ring_wy * t22,
+        );
+        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
         let t28 = k(2.0) * (t15 + t14);
         let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
+        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
         let t32 = k(2.0) * (t8 + t7);
-        let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
-            - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
-        let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
-            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
+        let t33 = T::fused(
+            -inner_ring_wy,
+            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
+            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+        );
+        let t34 = T::fused(
+            outer_ring_wz,
+            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
+            outer_ring_wx * t22,
+        );
+        let t35 = T::fused(
+            -inner_ring_wy,
+            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
+            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+        );
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
+        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
         let t38 = rotor_e0 * rotor_e2;
         let t39 = rotor_e1 * rotor_e3;
         let t40 = k(2.0) * (t39 + t38);
@@ -406,33 +645,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let t45 = rotor_e2 * rotor_e3;
         let t46 = k(2.0) * (t45 - t44);
         let t47 = k(2.0) * (t39 - t38);
-        let t48 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
-        let t49 = t29 * t47 + (t27 * t43 + t24 * t37);
-        let t50 = inner_ring_wz * t49
-            + inner_ring_wx * (t18 * t47 - (t9 * t43 - t13 * t37));
-        let t51 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t48 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
+        let t49 = T::fused(t29, t47, T::fused(t24, t37, t27 * t43));
+        let t50 = T::fused(
+            inner_ring_wx,
+            T::fused(t18, t47, -T::fused(-t13, t37, t9 * t43)),
+            inner_ring_wz * t49,
+        );
+        let t51 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
         let t52 = k(2.0) * (t42 - t41);
         let t53 = k(2.0) * (t45 + t44);
-        let t54 = rotor_wy * (t32 * t48 - (t30 * t40 - t31 * t46))
-            + rotor_wz * (t32 * t53 + (t30 * t52 + t31 * t51));
-        let t55 = inner_ring_wx * (t32 * t47 - (t31 * t43 + t30 * t37))
-            - inner_ring_wy * t49;
-        let t56 = rotor_wy * (t13 * t40 + t9 * t46 + t18 * t48)
-            + rotor_wz * (t18 * t53 - (t13 * t52 - t9 * t51));
+        let t54 = T::fused(
+            rotor_wz,
+            T::fused(t32, t53, T::fused(t31, t51, t30 * t52)),
+            rotor_wy * T::fused(t32, t48, -T::fused(-t31, t46, t30 * t40)),
+        );
+        let t55 = T::fused(
+            -inner_ring_wy,
+            t49,
+            inner_ring_wx * T::fused(t32, t47, -T::fused(t30, t37, t31 * t43)),
+        );
+        let t56 = T::fused(
+            rotor_wz,
+            T::fused(t18, t53, -T::fused(-t9, t51, t13 * t52)),
+            rotor_wy * T::fused(t18, t48, T::fused(t9, t46, t13 * t40)),
+        );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -(t4 * outer_ring_wx + t2 * outer_ring_wz),
-            t6 * outer_ring_wx + t5 * outer_ring_wz,
+            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
+            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
             -(t33 + t23),
             t34 - t35,
-            rotor_sx + k(0.0002) * (t40 * rotor_wx + t37 * rotor_wz) - inner_ring_sx,
-            rotor_sy + k(0.0002) * (t46 * rotor_wx - t43 * rotor_wz) - inner_ring_sy,
-            rotor_sz - k(0.0002) * (t48 * rotor_wx + t47 * rotor_wz) - inner_ring_sz,
+            T::fused(k(0.0002), T::fused(t37, rotor_wz, t40 * rotor_wx), rotor_sx)
+                - inner_ring_sx,
+            T::fused(k(0.0002), T::fused(-t43, rotor_wz, t46 * rotor_wx), rotor_sy)
+                - inner_ring_sy,
+            T::fused(-k(0.0002), T::fused(t47, rotor_wz, t48 * rotor_wx), rotor_sz)
+                - inner_ring_sz,
             t54 - t50,
             -(t56 + t55),
         ];
@@ -461,28 +715,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_wx * (k(1e-5) * rotor_wx) + rotor_wy * (k(5e-6) * rotor_wy)
-            + rotor_wz * (k(5e-6) * rotor_wz);
-        let t1 = t0
-            + k(0.08)
-                * (rotor_sx * rotor_sx + rotor_sy * rotor_sy + rotor_sz * rotor_sz);
-        let t2 = inner_ring_wx * (k(1e-6) * inner_ring_wx)
-            + inner_ring_wy * (k(2e-6) * inner_ring_wy)
-            + inner_ring_wz * (k(1e-6) * inner_ring_wz);
-        let t3 = t2
-            + k(0.01)
-                * (inner_ring_sx * inner_ring_sx + inner_ring_sy * inner_ring_sy
-                    + inner_ring_sz * inner_ring_sz);
-        let t4 = outer_ring_wx * (k(2e-6) * outer_ring_wx)
-            + outer_ring_wy * (k(1e-6) * outer_ring_wy)
-            + outer_ring_wz * (k(1e-6) * outer_ring_wz);
-        let t5 = t4
-            + k(0.01)
-                * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
-                    + outer_ring_sz * outer_ring_sz);
+        let t0 = T::fused(
+            rotor_wz,
+            k(5e-6) * rotor_wz,
+            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+        );
+        let t1 = T::fused(
+            k(0.08),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            inner_ring_wz,
+            k(1e-6) * inner_ring_wz,
+            T::fused(
+                inner_ring_wy,
+                k(2e-6) * inner_ring_wy,
+                inner_ring_wx * (k(1e-6) * inner_ring_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.01),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            outer_ring_wz,
+            k(1e-6) * outer_ring_wz,
+            T::fused(
+                outer_ring_wy,
+                k(1e-6) * outer_ring_wy,
+                outer_ring_wx * (k(2e-6) * outer_ring_wx),
+            ),
+        );
+        let t5 = T::fused(
+            k(0.01),
+            T::fused(
+                outer_ring_sz,
+                outer_ring_sz,
+                T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
+            ),
+            t4,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: k(0.1) * (outer_ring_ry + inner_ring_ry) + k(0.8) * rotor_ry,
+            potential: T::fused(
+                k(0.8),
+                rotor_ry,
+                k(0.1) * (outer_ring_ry + inner_ring_ry),
+            ),
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
@@ -509,7 +798,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = outer_ring_e2 * outer_ring_e2;
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
         let t5 = outer_ring_e3 * outer_ring_e3;
         let t6 = k(1.0) - (t5 + (t4 + t2));
         let t7 = inner_ring_e0 * inner_ring_e2;
@@ -520,36 +809,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let t12 = k(2.0) * (t11 + t10);
         let t13 = inner_ring_e2 * inner_ring_e2;
         let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t16 = inner_ring_e3 * inner_ring_e3;
         let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
         let t19 = outer_ring_e0 * outer_ring_e3;
         let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = k(2.0) * (t20 - t19) * t18
-            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
-        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
-        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t21 = T::fused(
+            t12,
+            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
+            k(2.0) * (t20 - t19) * t18,
+        );
+        let t22 = T::fused(
+            k(2.0) * (t20 + t19),
+            t12,
+            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+        );
+        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t24 = rotor_e2 * rotor_e2;
         let t25 = rotor_e0 * rotor_e0;
-        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t26 = T::fused(
+            k(2.0),
+            k(0.5) - (t25 + t24),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        );
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
-        let t31 = k(2.0) * (t11 - t10) * t29
-            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
+        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t31 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
+            t26,
+            k(2.0) * (t11 - t10) * t29,
+        );
         *out = [
             k(2.0) * (t1 + t0),
-            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
+            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
-                - t21,
-            t22 + k(2.0) * (t1 - t0) * t9,
+            T::fused(
+                k(2.0)
+                    * T::fused(
+                        outer_ring_e0,
+                        outer_ring_e1,
+                        outer_ring_e2 * outer_ring_e3,
+                    ),
+                t9,
+                -t21,
+            ),
+            T::fused(k(2.0) * (t1 - t0), t9, t22),
             inner_ring_wz - outer_ring_wz,
-            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
-            t31 + k(2.0) * (t28 + t27) * t23,
+            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
+            T::fused(k(2.0) * (t28 + t27), t23, t31),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -671,9 +982,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> GyroscopeRadialImbalance<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeRadialImbalance<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 39]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -692,23 +1004,8 @@ impl<T: gyro_sim::Scalar> GyroscopeRadialImbalance<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 519 operations (193 ±, 323 ×, 3 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -734,47 +1031,82 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e3 * outer_ring_e3
-            + (outer_ring_e0 * outer_ring_e0 + outer_ring_e1 * outer_ring_e1
-                + outer_ring_e2 * outer_ring_e2);
+        let t0 = T::fused(
+            outer_ring_e3,
+            outer_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                outer_ring_e2,
+                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+            ),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
         let t4 = outer_ring_e3 * t1;
         let t5 = outer_ring_e2 * t1;
-        let t6 = chart0_0 * t5 + chart0_1 * t4 - chart0_2 * t3 - chart0_3 * t2;
+        let t6 = T::fused(
+            -chart0_3,
+            t2,
+            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+        );
         let t7 = k(0.5) * t6;
         let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - (t4 * t4 + t8));
-        let t10 = k(2.0) * (t3 * t4 - t2 * t5);
+        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
+        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
         let t11 = t2 * t4;
         let t12 = t3 * t5;
         let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * (t3 * t2 + t5 * t4);
-        let t15 = k(2.0) * (k(0.5) - (t8 + t2 * t2));
+        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
+        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
         let t16 = k(2.0) * (t12 - t11);
-        let t17 = t16 * t13 + t9 * t15;
+        let t17 = T::fused(t9, t15, t16 * t13);
         let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * (t14 * (t13 * t7) - t10 * (t9 * t7));
-        let t20 = chart0_0 * (outer_ring_e0 + t3) + chart0_1 * (outer_ring_e1 + t2)
-            + chart0_2 * (outer_ring_e2 + t5);
-        let t21 = chart0_0 * t2 - chart0_1 * t3 - chart0_2 * t4 + chart0_3 * t5;
+        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t20 = T::fused(
+            chart0_2,
+            outer_ring_e2 + t5,
+            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+        );
+        let t21 = T::fused(
+            chart0_3,
+            t5,
+            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+        );
         let t22 = k(0.5) * t21;
-        let t23 = chart0_0 * t4 - chart0_1 * t5 + chart0_2 * t2 - chart0_3 * t3;
+        let t23 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+        );
         let t24 = k(0.5) * t23;
-        let t25 = t14 * (t15 * t22 - t13 * t24) + t10 * (t9 * t24 + t16 * t22);
-        let t26 = t18 * (t25 - (t20 + chart0_3 * (outer_ring_e3 + t4)) * t17);
-        let t27 = t18 * (t14 * (t15 * t7) + t10 * (t16 * t7));
-        let t28 = t3 - k(0.5) * (t2 * t27 - t5 * t26 - t4 * t19);
-        let t29 = t2 + k(0.5) * (t3 * t27 + t4 * t26 - t5 * t19);
-        let t30 = t5 + k(0.5) * (t4 * t27 - t3 * t26 + t2 * t19);
-        let t31 = t4 - k(0.5) * (t5 * t27 + t2 * t26 + t3 * t19);
+        let t25 = T::fused(
+            t10,
+            T::fused(t16, t22, t9 * t24),
+            t14 * T::fused(-t13, t24, t15 * t22),
+        );
+        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
+        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
+        let t28 = T::fused(
+            -k(0.5),
+            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
+            t3,
+        );
+        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
+        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
+        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
         let t32 = t29 * t30;
         let t33 = t28 * t31;
         let t34 = k(2.0) * (t33 - t32);
-        let t35 = inner_ring_e3 * inner_ring_e3
-            + (inner_ring_e0 * inner_ring_e0 + inner_ring_e1 * inner_ring_e1
-                + inner_ring_e2 * inner_ring_e2);
+        let t35 = T::fused(
+            inner_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                inner_ring_e2,
+                inner_ring_e2,
+                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t36 = k(0.5) * (t35 - k(3.0));
         let t37 = inner_ring_e2 * t36;
         let t38 = inner_ring_e1 * t36;
@@ -784,63 +1116,110 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         let t42 = t41 * t40;
         let t43 = k(2.0) * (t42 - t39);
         let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - (t44 + t30 * t30));
+        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
         let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - (t37 * t37 + t46));
-        let t48 = k(2.0) * (t28 * t29 + t30 * t31);
+        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
+        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
         let t49 = t37 * t40;
         let t50 = t41 * t38;
         let t51 = k(2.0) * (t50 + t49);
-        let t52 = t51 * t48 + (t47 * t45 + t43 * t34);
-        let t53 = k(2.0) * (k(0.5) - (t46 + t38 * t38));
-        let t54 = k(2.0) * (k(0.5) - (t29 * t29 + t44));
+        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
+        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
+        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
         let t55 = k(2.0) * (t42 + t39);
         let t56 = k(2.0) * (t33 + t32);
         let t57 = t38 * t40;
         let t58 = t41 * t37;
         let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * (t28 * t30 - t29 * t31);
-        let t61 = t60 * t59 + (t56 * t55 + t54 * t53);
-        let t62 = t59 * t48 + (t55 * t45 - t53 * t34);
-        let t63 = t51 * t60 + (t47 * t56 - t43 * t54);
-        let t64 = t63 * t62 - t61 * t52;
-        let t65 = chart1_0 * (inner_ring_e0 + t41) + chart1_1 * (inner_ring_e1 + t38)
-            + chart1_2 * (inner_ring_e2 + t37);
-        let t66 = chart1_0 * t37 + chart1_1 * t40 - chart1_2 * t41 - chart1_3 * t38;
+        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
+        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
+        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
+        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
+        let t64 = T::fused(-t61, t52, t63 * t62);
+        let t65 = T::fused(
+            chart1_2,
+            inner_ring_e2 + t37,
+            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
+        );
+        let t66 = T::fused(
+            -chart1_3,
+            t38,
+            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
+        );
         let t67 = k(0.5) * t66;
-        let t68 = chart1_0 * t38 - chart1_1 * t41 - chart1_2 * t40 + chart1_3 * t37;
+        let t68 = T::fused(
+            chart1_3,
+            t37,
+            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+        );
         let t69 = k(0.5) * t68;
         let t70 = k(2.0) * (t58 + t57);
         let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - (t46 + t40 * t40));
-        let t73 = t72 * t48 - (t71 * t45 - t70 * t34);
-        let t74 = t60 * t72 - (t56 * t71 + t54 * t70);
-        let t75 = t74 * (t52 * t67 - t62 * t69) + t73 * (t61 * t69 - t63 * t67);
-        let t76 = chart1_0 * t40 - chart1_1 * t37 + chart1_2 * t38 - chart1_3 * t41;
+        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
+        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
+        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t75 = T::fused(
+            t73,
+            T::fused(-t63, t67, t61 * t69),
+            t74 * T::fused(-t62, t69, t52 * t67),
+        );
+        let t76 = T::fused(
+            -chart1_3,
+            t41,
+            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+        );
         let t77 = k(0.5) * t76;
         let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78 * (t75 - (t65 + chart1_3 * (inner_ring_e3 + t40)) * t64);
-        let t80 = t78 * (t74 * (t52 * t77) - t73 * (t63 * t77));
-        let t81 = t78 * (t74 * (t62 * t77) - t73 * (t61 * t77));
-        let t82 = t41 + k(0.5) * (t38 * t81 - t37 * t80 + t40 * t79);
-        let t83 = t38 - k(0.5) * (t41 * t81 + t40 * t80 + t37 * t79);
-        let t84 = t37 - k(0.5) * (t40 * t81 - t41 * t80 - t38 * t79);
-        let t85 = t40 + k(0.5) * (t37 * t81 + t38 * t80 - t41 * t79);
-        let t86 = rotor_e3 * rotor_e3
-            + (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1 + rotor_e2 * rotor_e2);
+        let t79 = t78
+            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
+        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
+        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t82 = T::fused(
+            k(0.5),
+            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
+            t41,
+        );
+        let t83 = T::fused(
+            -k(0.5),
+            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
+            t38,
+        );
+        let t84 = T::fused(
+            -k(0.5),
+            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
+            t37,
+        );
+        let t85 = T::fused(
+            k(0.5),
+            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
+            t40,
+        );
+        let t86 = T::fused(
+            rotor_e3,
+            rotor_e3,
+            T::fused(
+                rotor_e2,
+                rotor_e2,
+                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+            ),
+        );
         let t87 = k(0.5) * (t86 - k(3.0));
         let t88 = rotor_e2 * t87;
         let t89 = rotor_e3 * t87;
         let t90 = rotor_e0 * t87;
         let t91 = rotor_e1 * t87;
-        let t92 = chart2_0 * t91 - chart2_1 * t90 - chart2_2 * t89 + chart2_3 * t88;
+        let t92 = T::fused(
+            chart2_3,
+            t88,
+            T::fused(-chart2_2, t89, T::fused(-chart2_1, t90, chart2_0 * t91)),
+        );
         let t93 = k(0.5) * t92;
-        let t94 = k(2.0) * (t82 * t85 - t83 * t84);
+        let t94 = k(2.0) * T::fused(-t83, t84, t82 * t85);
         let t95 = t91 * t89;
         let t96 = t90 * t88;
         let t97 = k(2.0) * (t96 + t95);
         let t98 = t82 * t82;
-        let t99 = k(2.0) * (k(0.5) - (t84 * t84 + t98));
+        let t99 = k(2.0) * (k(0.5) - T::fused(t84, t84, t98));
         let t100 = t88 * t89;
         let t101 = t90 * t91;
         let t102 = k(2.0) * (t101 - t100);
@@ -848,41 +1227,71 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         let t104 = t82 * t83;
         let t105 = k(2.0) * (t104 + t103);
         let t106 = t90 * t90;
-        let t107 = k(2.0) * (k(0.5) - (t89 * t89 + t106));
-        let t108 = t107 * t105 - (t102 * t99 - t97 * t94);
-        let t109 = k(2.0) * (t82 * t84 + t83 * t85);
-        let t110 = k(2.0) * (k(0.5) - (t106 + t91 * t91));
+        let t107 = k(2.0) * (k(0.5) - T::fused(t89, t89, t106));
+        let t108 = T::fused(t107, t105, -T::fused(-t97, t94, t102 * t99));
+        let t109 = k(2.0) * T::fused(t83, t85, t82 * t84);
+        let t110 = k(2.0) * (k(0.5) - T::fused(t91, t91, t106));
         let t111 = k(2.0) * (t104 - t103);
         let t112 = t91 * t88;
         let t113 = t90 * t89;
         let t114 = k(2.0) * (t113 + t112);
-        let t115 = k(2.0) * (k(0.5) - (t98 + t85 * t85));
+        let t115 = k(2.0) * (k(0.5) - T::fused(t85, t85, t98));
         let t116 = k(2.0) * (t96 - t95);
-        let t117 = t116 * t115 - (t114 * t111 + t110 * t109);
-        let t118 = t107 * t115 + (t102 * t111 + t97 * t109);
-        let t119 = t105 * t116 + (t99 * t114 - t94 * t110);
+        let t117 = T::fused(t116, t115, -T::fused(t110, t109, t114 * t111));
+        let t118 = T::fused(t107, t115, T::fused(t97, t109, t102 * t111));
+        let t119 = T::fused(t105, t116, T::fused(-t94, t110, t99 * t114));
         let t120 = k(2.0) * (t113 - t112);
-        let t121 = k(2.0) * (k(0.5) - (t106 + t88 * t88));
+        let t121 = k(2.0) * (k(0.5) - T::fused(t88, t88, t106));
         let t122 = k(2.0) * (t101 + t100);
-        let t123 = t105 * t122 + (t99 * t121 + t94 * t120);
-        let t124 = t122 * t115 - (t121 * t111 - t120 * t109);
-        let t125 = t108 * t124 - t123 * t118;
+        let t123 = T::fused(t105, t122, T::fused(t94, t120, t99 * t121));
+        let t124 = T::fused(t122, t115, -T::fused(-t120, t109, t121 * t111));
+        let t125 = T::fused(-t123, t118, t108 * t124);
         let t126 = k(1.0) / (t93 * t125);
-        let t127 = t126 * (t119 * (t118 * t93) - t117 * (t108 * t93));
-        let t128 = t126 * (t119 * (t124 * t93) - t117 * (t123 * t93));
-        let t129 = chart2_0 * (rotor_e0 + t90) + chart2_1 * (rotor_e1 + t91)
-            + chart2_2 * (rotor_e2 + t88);
-        let t130 = chart2_0 * t89 - chart2_1 * t88 + chart2_2 * t91 - chart2_3 * t90;
+        let t127 = t126 * T::fused(-t117, t108 * t93, t119 * (t118 * t93));
+        let t128 = t126 * T::fused(-t117, t123 * t93, t119 * (t124 * t93));
+        let t129 = T::fused(
+            chart2_2,
+            rotor_e2 + t88,
+            T::fused(chart2_1, rotor_e1 + t91, chart2_0 * (rotor_e0 + t90)),
+        );
+        let t130 = T::fused(
+            -chart2_3,
+            t90,
+            T::fused(chart2_2, t91, T::fused(-chart2_1, t88, chart2_0 * t89)),
+        );
         let t131 = k(0.5) * t130;
-        let t132 = chart2_0 * t88 + chart2_1 * t89 - chart2_2 * t90 - chart2_3 * t91;
+        let t132 = T::fused(
+            -chart2_3,
+            t91,
+            T::fused(-chart2_2, t90, T::fused(chart2_1, t89, chart2_0 * t88)),
+        );
         let t133 = k(0.5) * t132;
-        let t134 = t119 * (t118 * t131 - t124 * t133)
-            + t117 * (t123 * t133 - t108 * t131);
-        let t135 = t126 * (t134 + (t129 + chart2_3 * (rotor_e3 + t89)) * t125);
-        let t136 = t88 + k(0.5) * (t89 * t135 + t90 * t128 + t91 * t127);
-        let t137 = t91 + k(0.5) * (t90 * t135 - t89 * t128 - t88 * t127);
-        let t138 = t89 - k(0.5) * (t88 * t135 - t91 * t128 + t90 * t127);
-        let t139 = t90 - k(0.5) * (t91 * t135 + t88 * t128 - t89 * t127);
+        let t134 = T::fused(
+            t117,
+            T::fused(-t108, t131, t123 * t133),
+            t119 * T::fused(-t124, t133, t118 * t131),
+        );
+        let t135 = t126 * T::fused(T::fused(chart2_3, rotor_e3 + t89, t129), t125, t134);
+        let t136 = T::fused(
+            k(0.5),
+            T::fused(t91, t127, T::fused(t90, t128, t89 * t135)),
+            t88,
+        );
+        let t137 = T::fused(
+            k(0.5),
+            T::fused(-t88, t127, T::fused(-t89, t128, t90 * t135)),
+            t91,
+        );
+        let t138 = T::fused(
+            -k(0.5),
+            T::fused(t90, t127, T::fused(-t91, t128, t88 * t135)),
+            t89,
+        );
+        let t139 = T::fused(
+            -k(0.5),
+            T::fused(-t89, t127, T::fused(t88, t128, t91 * t135)),
+            t90,
+        );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
@@ -897,22 +1306,16 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         y[11] = -t83;
         y[12] = -t84;
         y[13] = -t85;
-        y[14] = k(0.0004) * (t139 * t138 - t137 * t136);
-        y[15] = k(0.0004) * (k(0.5) - (t136 * t136 + t139 * t139));
-        y[16] = -(k(0.0004) * (t139 * t137 + t136 * t138));
+        y[14] = k(0.0004) * T::fused(-t137, t136, t139 * t138);
+        y[15] = k(0.0004) * (k(0.5) - T::fused(t139, t139, t136 * t136));
+        y[16] = -(k(0.0004) * T::fused(t136, t138, t139 * t137));
         y[17] = -t139;
         y[18] = -t137;
         y[19] = -t136;
         y[20] = -t138;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -936,80 +1339,96 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t3 = outer_ring_e0 * outer_ring_e2;
         let t4 = outer_ring_e1 * outer_ring_e3;
         let t5 = k(2.0) * (t4 - t3);
         let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
-        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
-        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
-        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
-        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
+        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
+        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
+        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
         let t14 = outer_ring_e0 * outer_ring_e3;
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e3;
         let t18 = inner_ring_e1 * inner_ring_e2;
         let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t21 = inner_ring_e0 * inner_ring_e2;
         let t22 = inner_ring_e1 * inner_ring_e3;
         let t23 = k(2.0) * (t22 - t21);
         let t24 = outer_ring_e0 * outer_ring_e1;
         let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
         let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
         let t30 = k(2.0) * (t15 + t14);
         let t31 = inner_ring_e0 * inner_ring_e1;
         let t32 = inner_ring_e2 * inner_ring_e3;
         let t33 = k(2.0) * (t32 + t31);
-        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
-        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
-        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
-        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
+        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
+        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
+        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
         let t38 = k(2.0) * (t22 + t21);
         let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
-        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
-        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
-        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
-        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
-        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
-        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
-        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
+        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
+        let t42 = T::fused(
+            t11,
+            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
+            t10 * t41,
+        );
+        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t44 = T::fused(
+            t11,
+            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
+            outer_ring_wy * t41,
+        );
+        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
+        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
+        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
         let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
         let t50 = rotor_e0 * rotor_e3;
         let t51 = rotor_e1 * rotor_e2;
         let t52 = k(2.0) * (t51 - t50);
         let t53 = rotor_e0 * rotor_e1;
         let t54 = rotor_e2 * rotor_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
         let t57 = k(2.0) * (t54 - t53);
         let t58 = rotor_e0 * rotor_e2;
         let t59 = rotor_e1 * rotor_e3;
         let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
-        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
-        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
-        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
-        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
-        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
+        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
+        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
+        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
+        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
+        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
         let t67 = k(2.0) * (t51 + t50);
         let t68 = k(2.0) * (t59 - t58);
-        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
-        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
-        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
-        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
-        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
-        let t74 = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
+        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
+        let t70 = T::fused(
+            -t47,
+            t69,
+            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        );
+        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t72 = T::fused(
+            inner_ring_wz,
+            t69,
+            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+        );
+        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
+        let t74 = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
@@ -1020,107 +1439,48 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
         y[29] = k(0.0);
         y[30] = t46;
         y[31] = t47;
-        y[33] = -(k(0.0002) * (t60 * rotor_wx + t66 * t74));
-        y[34] = -(k(0.0002) * (t57 * rotor_wx - t67 * t74));
-        y[35] = k(0.0002) * (t61 * rotor_wx + t68 * t74);
-        y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
+        y[33] = -(k(0.0002) * T::fused(t66, t74, t60 * rotor_wx));
+        y[34] = -(k(0.0002) * T::fused(-t67, t74, t57 * rotor_wx));
+        y[35] = k(0.0002) * T::fused(t68, t74, t61 * rotor_wx);
+        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
         y[38] = t74;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeRadialImbalance<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 72 operations (24 ±, 48 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
@@ -1287,41 +1647,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
         let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + inner_ring_e3 * inner_ring_e3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
         let t6 = t5 * t3;
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
         let t10 = k(4.0) * outer_ring_e0;
         let t11 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2);
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
         let t12 = t5 * t2;
         let t13 = t5 * t1;
         let t14 = t5 * t0;
         let t15 = k(4.0) * inner_ring_e0;
         let t16 = k(2.0)
-            * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2);
+            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
         let t17 = k(2.0) * inner_ring_e1;
         let t18 = outer_ring_e0 * outer_ring_e3;
         let t19 = outer_ring_e1 * outer_ring_e2;
         let t20 = k(2.0) * (t19 + t18);
         let t21 = k(2.0) * inner_ring_e2;
         let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + outer_ring_e1 * outer_ring_e1));
+        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
         let t24 = k(2.0) * inner_ring_e0;
         let t25 = k(2.0) * inner_ring_e3;
         let t26 = k(4.0) * inner_ring_e3;
         let t27 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
-        let t28 = k(2.0) * (k(0.5) - (t22 + outer_ring_e2 * outer_ring_e2));
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
         let t29 = k(2.0) * (t19 - t18);
         let t30 = k(0.0004) * rotor_e3;
         let t31 = k(0.0004) * rotor_e2;
         let t32 = k(0.0004) * rotor_e1;
         let t33 = k(0.0004) * rotor_e0;
-        let t34 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
-        let t35 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
-        let t36 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1));
+        let t34 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t35 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t36 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
         let t37 = t36 * t25;
         let t38 = t36 * t21;
         let t39 = t36 * t17;
@@ -1329,10 +1689,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t41 = k(2.0) * rotor_e2;
         let t42 = k(2.0) * (t8 + t7);
         let t43 = k(2.0) * rotor_e3;
-        let t44 = k(2.0) * (k(0.5) - (t4 + inner_ring_e2 * inner_ring_e2));
+        let t44 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
         let t45 = k(4.0) * rotor_e0;
         let t46 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3);
+            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
         let t47 = k(4.0) * rotor_e1;
         let t48 = k(2.0) * rotor_e0;
         let t49 = k(2.0) * rotor_e1;
@@ -1354,22 +1714,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            t11 * t10 + t9 * t2 + t6,
-            t11 * (k(4.0) * outer_ring_e1) + t9 * t3 - t12,
-            t9 * t0 + t13,
-            t9 * t1 - t14,
-            t16 * t15 - (t23 * t21 + t20 * t17),
-            -(t23 * t25 + t20 * t24),
-            t20 * t25 - t23 * t24,
-            t16 * t26 - (t23 * t17 - t20 * t21),
-            -(t14 + (t11 * t2 - t9 * t10)),
-            t11 * t3 - t13,
-            t11 * t0 + t9 * (k(4.0) * outer_ring_e2) - t12,
-            -(t6 + t11 * t1),
-            t29 * t21 + t28 * t17 + t27 * t15,
-            t29 * t25 + t28 * t24,
-            t29 * t24 - t28 * t25,
-            t29 * t17 - t28 * t21 + t27 * t26,
+            T::fused(t9, t2, t11 * t10) + t6,
+            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
+            T::fused(t9, t0, t13),
+            T::fused(t9, t1, -t14),
+            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
+            -T::fused(t20, t24, t23 * t25),
+            T::fused(-t23, t24, t20 * t25),
+            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
+            -(t14 + T::fused(-t9, t10, t11 * t2)),
+            T::fused(t11, t3, -t13),
+            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
+            -T::fused(t11, t1, t6),
+            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
+            T::fused(t28, t24, t29 * t25),
+            T::fused(-t28, t25, t29 * t24),
+            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
             k(-1.0),
             k(1.0),
             -t30,
@@ -1386,22 +1746,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             t33,
             t30,
             t31,
-            t37 + t35 * t15 + t34 * t17,
-            t34 * t24 - t38,
-            t34 * t25 - (t39 - t35 * (k(4.0) * inner_ring_e2)),
-            t34 * t21 + t40,
-            t46 * t45 - t44 * t43 - t42 * t41,
-            t46 * t47 - t44 * t41 + t42 * t43,
-            -(t44 * t49 + t42 * t48),
-            t42 * t49 - t44 * t48,
-            t34 * t15 - (t38 + t35 * t17),
-            -(t37 + t35 * t24),
-            t35 * t25 - t40,
-            t34 * t26 - (t39 - t35 * t21),
-            t11 * t45 + t9 * t43 + t5 * t41,
-            t11 * t47 + t9 * t41 - t5 * t43,
-            t9 * t49 + t5 * t48,
-            t9 * t48 - t5 * t49,
+            T::fused(t34, t17, T::fused(t35, t15, t37)),
+            T::fused(t34, t24, -t38),
+            T::fused(t34, t25, -T::fused(-t35, k(4.0) * inner_ring_e2, t39)),
+            T::fused(t34, t21, t40),
+            T::fused(-t42, t41, T::fused(-t44, t43, t46 * t45)),
+            T::fused(t42, t43, T::fused(-t44, t41, t46 * t47)),
+            -T::fused(t42, t48, t44 * t49),
+            T::fused(-t44, t48, t42 * t49),
+            T::fused(t34, t15, -T::fused(t35, t17, t38)),
+            -T::fused(t35, t24, t37),
+            T::fused(t35, t25, -t40),
+            T::fused(t34, t26, -T::fused(-t35, t21, t39)),
+            T::fused(t5, t41, T::fused(t9, t43, t11 * t45)),
+            T::fused(-t5, t43, T::fused(t9, t41, t11 * t47)),
+            T::fused(t5, t48, t9 * t49),
+            T::fused(-t5, t49, t9 * t48),
             t1,
             t0,
             t3,
@@ -1432,14 +1792,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
         let t2 = outer_ring_e0 * outer_ring_e2;
         let t3 = outer_ring_e1 * outer_ring_e3;
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3));
+        let t8 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7));
         let t9 = inner_ring_e0 * inner_ring_e1;
         let t10 = inner_ring_e2 * inner_ring_e3;
         let t11 = k(2.0) * (t10 - t9);
@@ -1448,8 +1808,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t14 = inner_ring_e0 * inner_ring_e2;
         let t15 = inner_ring_e1 * inner_ring_e3;
         let t16 = k(2.0) * (t15 + t14);
-        let t17 = t5 * t16 + k(2.0) * (t13 - t12) * t11 + t1 * t8;
-        let t18 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t17 = T::fused(t1, t8, T::fused(k(2.0) * (t13 - t12), t11, t5 * t16));
+        let t18 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t19 = outer_ring_e0 * outer_ring_e3;
         let t20 = outer_ring_e1 * outer_ring_e2;
         let t21 = k(2.0) * (t20 - t19);
@@ -1457,33 +1817,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t23 = inner_ring_e0 * inner_ring_e3;
         let t24 = inner_ring_e1 * inner_ring_e2;
         let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2));
+        let t26 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7));
         let t27 = k(2.0) * (t20 + t19);
         let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1));
+        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7));
         let t30 = k(2.0) * (t24 + t23);
         let t31 = k(2.0) * (t15 - t14);
         let t32 = rotor_e0 * rotor_e2;
         let t33 = rotor_e1 * rotor_e3;
         let t34 = t33 + t32;
         let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.5) - (t35 + rotor_e1 * rotor_e1);
+        let t36 = k(0.5) - T::fused(rotor_e1, rotor_e1, t35);
         let t37 = rotor_e0 * rotor_e1;
         let t38 = rotor_e2 * rotor_e3;
         let t39 = t38 - t37;
         let t40 = rotor_e0 * rotor_e3;
         let t41 = rotor_e1 * rotor_e2;
         let t42 = t41 + t40;
-        let t43 = k(0.5) - (t35 + rotor_e3 * rotor_e3);
+        let t43 = k(0.5) - T::fused(rotor_e3, rotor_e3, t35);
         let t44 = t33 - t32;
         let t45 = k(2.0) * t36;
         let t46 = k(2.0) * t42;
         let t47 = k(2.0) * t44;
-        let t48 = t31 * t47 + (t30 * t46 + t29 * t45);
+        let t48 = T::fused(t31, t47, T::fused(t29, t45, t30 * t46));
         let t49 = k(2.0) * t39;
         let t50 = k(2.0) * t34;
         let t51 = k(2.0) * t43;
-        let t52 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2));
+        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35));
         let t53 = k(2.0) * (t41 - t40);
         let t54 = k(2.0) * (t38 + t37);
         *out = [
@@ -1501,13 +1861,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(-1.0),
             k(1.0),
             -t17,
-            t21 * t16 - t18 * t11 - t22 * t8,
-            t27 * t26 + t6 * t25 - t4 * t28,
-            t4 * t31 + (t27 * t30 + t6 * t29),
+            T::fused(-t22, t8, T::fused(-t18, t11, t21 * t16)),
+            T::fused(-t4, t28, T::fused(t6, t25, t27 * t26)),
+            T::fused(t4, t31, T::fused(t6, t29, t27 * t30)),
             t17,
-            t4 * t8 - (t27 * t11 - t6 * t16),
-            -(t22 * t28 + (t21 * t25 + t18 * t26)),
-            t22 * t31 - (t18 * t30 + t21 * t29),
+            T::fused(t4, t8, -T::fused(-t6, t16, t27 * t11)),
+            -T::fused(t22, t28, T::fused(t18, t26, t21 * t25)),
+            T::fused(t22, t31, -T::fused(t21, t29, t18 * t30)),
             k(-1.0),
             k(1.0),
             k(0.0004) * t34,
@@ -1520,14 +1880,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(1.0),
             -(k(0.0004) * t43),
             -(k(0.0004) * t44),
-            t11 * t46 - t16 * t45 - t8 * t47,
+            T::fused(-t8, t47, T::fused(-t16, t45, t11 * t46)),
             -t48,
-            t28 * t51 - (t25 * t50 - t26 * t49),
-            t28 * t54 + (t25 * t53 + t26 * t52),
-            t26 * t46 + t25 * t45 - t28 * t47,
+            T::fused(t28, t51, -T::fused(-t26, t49, t25 * t50)),
+            T::fused(t28, t54, T::fused(t26, t52, t25 * t53)),
+            T::fused(-t28, t47, T::fused(t25, t45, t26 * t46)),
             t48,
-            -(t16 * t50 + t11 * t49 + t8 * t51),
-            t16 * t53 - t11 * t52 - t8 * t54,
+            -T::fused(t8, t51, T::fused(t11, t49, t16 * t50)),
+            T::fused(-t8, t54, T::fused(-t11, t52, t16 * t53)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1580,14 +1940,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t2 = outer_ring_e1 * outer_ring_e3;
         let t3 = k(2.0) * (t2 - t1);
         let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
         let t6 = outer_ring_e0 * outer_ring_e1;
         let t7 = outer_ring_e2 * outer_ring_e3;
         let t8 = k(2.0) * (t7 + t6);
         let t9 = outer_ring_wy * outer_ring_wz;
         let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
         let t13 = outer_ring_e0 * outer_ring_e3;
         let t14 = outer_ring_e1 * outer_ring_e2;
         let t15 = k(2.0) * (t14 - t13);
@@ -1600,98 +1960,133 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t22 = k(2.0) * (t21 - t20);
         let t23 = k(2.0) * (t14 + t13);
         let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
-        let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
+        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
+        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
+        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
+        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
-        let t31 = outer_ring_wx * outer_ring_wz * t30
-            - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
-        let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
+        let t31 = T::fused(
+            outer_ring_wx * outer_ring_wz,
+            t30,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+        );
+        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
         let t33 = inner_ring_e0 * inner_ring_e3;
         let t34 = inner_ring_e1 * inner_ring_e2;
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
-        let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
+        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
         let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
-            - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
-        let t43 = k(2.0)
-            * (outer_ring_wy * t42
-                + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
-        let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
-        let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
-        let t47 = inner_ring_wy * inner_ring_wz;
-        let t48 = inner_ring_wx * inner_ring_wx;
-        let t49 = inner_ring_wy * inner_ring_wy + t48;
-        let t50 = t49 * t26 + (t47 * t46 + t45 * t44) - t43 + t31;
-        let t51 = k(2.0)
-            * (outer_ring_wx * t42
-                + outer_ring_wz * (inner_ring_wx * t46 - inner_ring_wy * t44));
-        let t52 = t49 * t28 + (t47 * t41 + t45 * t37) + t51
-            + (t9 * t30 + (t5 * t28 - t0 * t26));
-        let t53 = rotor_wx * rotor_wy;
-        let t54 = rotor_e0 * rotor_e0;
-        let t55 = k(2.0) * (k(0.5) - (t54 + rotor_e1 * rotor_e1));
-        let t56 = rotor_wz * rotor_wz;
-        let t57 = t56 + rotor_wx * rotor_wx;
-        let t58 = rotor_e0 * rotor_e3;
-        let t59 = rotor_e1 * rotor_e2;
-        let t60 = k(2.0) * (t59 - t58);
-        let t61 = rotor_wy * rotor_wz;
-        let t62 = rotor_e0 * rotor_e2;
-        let t63 = rotor_e1 * rotor_e3;
-        let t64 = k(2.0) * (t63 + t62);
-        let t65 = k(2.0) * (t59 + t58);
-        let t66 = k(2.0) * (k(0.5) - (t54 + rotor_e2 * rotor_e2));
-        let t67 = rotor_e0 * rotor_e1;
-        let t68 = rotor_e2 * rotor_e3;
-        let t69 = k(2.0) * (t68 - t67);
-        let t70 = k(2.0) * (t63 - t62);
-        let t71 = k(2.0) * (t68 + t67);
-        let t72 = k(2.0) * (k(0.5) - (t54 + rotor_e3 * rotor_e3));
-        let t73 = t36 * t70 + (t35 * t65 + t32 * t55);
-        let t74 = t40 * t70 - (t38 * t65 + t39 * t55);
-        let t75 = t25 * t70 - (t22 * t65 - t19 * t55);
-        let t76 = t47 * t75
-            + ((inner_ring_wz * inner_ring_wz + t48) * t74
-                - inner_ring_wx * inner_ring_wy * t73);
-        let t77 = rotor_wy * (t36 * t72 - (t35 * t69 - t32 * t64))
-            + rotor_wz * (t36 * t71 - (t35 * t66 + t32 * t60));
-        let t78 = t25 * t71 - (t19 * t60 - t22 * t66);
-        let t79 = t19 * t64 + t22 * t69 + t25 * t72;
-        let t80 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t79 + rotor_wz * t78) + inner_ring_wz * t77);
-        let t81 = t56 + rotor_wy * rotor_wy;
-        let t82 = t40 * t71 + (t39 * t60 + t38 * t66);
-        let t83 = t40 * t72 - (t39 * t64 - t38 * t69);
-        let t84 = rotor_wx * rotor_wz;
-        let t85 = t84 * t83 - (t53 * t82 - t81 * t74) + t80 + t76;
-        let t86 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t83 + rotor_wz * t82) - inner_ring_wy * t77);
-        let t87 = t84 * t79 - (t53 * t78 - t81 * t75) - t86
-            + (t49 * t75 + (t47 * t74 + t45 * t73));
+        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
+        let t42 = T::fused(
+            -inner_ring_wy,
+            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
+            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+        );
+        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
+        let t44 = inner_ring_wx * inner_ring_wz;
+        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
+        let t46 = inner_ring_wy * inner_ring_wz;
+        let t47 = inner_ring_wx * inner_ring_wx;
+        let t48 = T::fused(inner_ring_wy, inner_ring_wy, t47);
+        let t49 = T::fused(
+            -k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
+                outer_ring_wy * t42,
+            ),
+            T::fused(t48, t26, T::fused(t44, t43, t46 * t45)),
+        );
+        let t50 = T::fused(
+            k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
+                outer_ring_wx * t42,
+            ),
+            T::fused(t48, t28, T::fused(t44, t37, t46 * t41)),
+        );
+        let t51 = rotor_wx * rotor_wy;
+        let t52 = rotor_e0 * rotor_e0;
+        let t53 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t52));
+        let t54 = rotor_wz * rotor_wz;
+        let t55 = T::fused(rotor_wx, rotor_wx, t54);
+        let t56 = rotor_e0 * rotor_e3;
+        let t57 = rotor_e1 * rotor_e2;
+        let t58 = k(2.0) * (t57 - t56);
+        let t59 = rotor_wy * rotor_wz;
+        let t60 = rotor_e0 * rotor_e2;
+        let t61 = rotor_e1 * rotor_e3;
+        let t62 = k(2.0) * (t61 + t60);
+        let t63 = k(2.0) * (t57 + t56);
+        let t64 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t52));
+        let t65 = rotor_e0 * rotor_e1;
+        let t66 = rotor_e2 * rotor_e3;
+        let t67 = k(2.0) * (t66 - t65);
+        let t68 = k(2.0) * (t61 - t60);
+        let t69 = k(2.0) * (t66 + t65);
+        let t70 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t52));
+        let t71 = T::fused(t36, t68, T::fused(t32, t53, t35 * t63));
+        let t72 = T::fused(t40, t68, -T::fused(t39, t53, t38 * t63));
+        let t73 = T::fused(t25, t68, -T::fused(-t19, t53, t22 * t63));
+        let t74 = T::fused(
+            t46,
+            t73,
+            T::fused(
+                -(inner_ring_wx * inner_ring_wy),
+                t71,
+                T::fused(inner_ring_wz, inner_ring_wz, t47) * t72,
+            ),
+        );
+        let t75 = T::fused(
+            rotor_wz,
+            T::fused(t36, t69, -T::fused(t32, t58, t35 * t64)),
+            rotor_wy * T::fused(t36, t70, -T::fused(-t32, t62, t35 * t67)),
+        );
+        let t76 = T::fused(t25, t69, -T::fused(-t22, t64, t19 * t58));
+        let t77 = T::fused(t25, t70, T::fused(t22, t67, t19 * t62));
+        let t78 = T::fused(rotor_wy, rotor_wy, t54);
+        let t79 = T::fused(t40, t69, T::fused(t38, t64, t39 * t58));
+        let t80 = T::fused(t40, t70, -T::fused(-t38, t67, t39 * t62));
+        let t81 = rotor_wx * rotor_wz;
+        let t82 = T::fused(
+            k(2.0),
+            T::fused(
+                inner_ring_wz,
+                t75,
+                inner_ring_wx * T::fused(rotor_wz, t76, rotor_wy * t77),
+            ),
+            T::fused(t81, t80, -T::fused(-t78, t72, t51 * t79)),
+        );
+        let t83 = T::fused(
+            -k(2.0),
+            T::fused(
+                -inner_ring_wy,
+                t75,
+                inner_ring_wx * T::fused(rotor_wz, t79, rotor_wy * t80),
+            ),
+            T::fused(t81, t77, -T::fused(-t78, t73, t51 * t76)),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t11 * t9 + (t8 * t5 - t3 * t0),
-            t15 * t5 + t12 * t0 - t16 * t9,
+            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
+            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -t50,
-            -t52,
-            -(k(0.0002) * (t64 * t61 - (t60 * t57 + t55 * t53))),
-            -(k(0.0002) * (t69 * t61 + (t66 * t57 + t65 * t53))),
-            k(0.0002) * (t72 * t61 + (t71 * t57 - t70 * t53)),
-            t85,
-            -t87,
+            -(t49 + t31),
+            -(t50 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
+            -(k(0.0002) * T::fused(t62, t59, -T::fused(t53, t51, t58 * t55))),
+            -(k(0.0002) * T::fused(t67, t59, T::fused(t63, t51, t64 * t55))),
+            k(0.0002) * T::fused(t70, t59, T::fused(-t68, t51, t69 * t55)),
+            t82 + t74,
+            -(t83 + T::fused(t48, t73, T::fused(t44, t71, t46 * t72))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
@@ -1751,22 +2146,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
             * (k(0.5)
                 / (k(0.5)
-                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
-        let t1 = outer_ring_wy * outer_ring_wz
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
-                * t0;
-        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
-            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
-        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+                    - T::fused(
+                        outer_ring_e2,
+                        outer_ring_e2,
+                        outer_ring_e0 * outer_ring_e0,
+                    )));
+        let t1 = T::fused(
+            -(k(2.0)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_e1,
+                    outer_ring_e2 * outer_ring_e3,
+                )),
+            t0,
+            outer_ring_wy * outer_ring_wz,
+        );
+        let t2 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t3 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t4 = t3 * t2;
-        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
-            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
-        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t5 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t6 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t7 = t6 * t5;
         let t8 = t7 + t4;
         let t9 = k(1e-5) * t8;
@@ -1781,110 +2215,193 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t18 = t17 - t16;
         let t19 = k(2.0) * t18;
         let t20 = t3 * t3;
-        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t21 = k(0.5) - T::fused(t2, t2, t20);
         let t22 = k(2.0) * t21;
-        let t23 = t22 * t14 - t19 * t9;
+        let t23 = T::fused(-t19, t9, t22 * t14);
         let t24 = k(1.0)
-            / (k(1e-6) + (t22 * (k(1.00064e-5) * t21) + t19 * (k(1e-5) * t18)));
+            / (k(1e-6) + T::fused(t19, k(1e-5) * t18, t22 * (k(1.00064e-5) * t21)));
         let t25 = t24 * t23;
-        let t26 = t23 * t25 - (k(1e-6) + (t15 * t14 + t10 * t9));
-        let t27 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t28 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t26 = T::fused(t23, t25, -(k(1e-6) + T::fused(t10, t9, t15 * t14)));
+        let t27 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t28 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t29 = t28 * t27;
-        let t30 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
-            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
-        let t31 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
-            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t30 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t31 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
         let t32 = t31 * t30;
         let t33 = k(2.0) * (t32 - t29);
-        let t34 = k(0.5) - (t20 + t5 * t5);
+        let t34 = k(0.5) - T::fused(t5, t5, t20);
         let t35 = k(2.0) * t34;
         let t36 = t17 + t16;
         let t37 = k(2.0) * t36;
         let t38 = k(1e-5) * t34;
         let t39 = k(1.00064e-5) * t36;
-        let t40 = t22 * t39 + t19 * t38;
-        let t41 = t40 * t25 - (t37 * t14 - t35 * t9);
+        let t40 = T::fused(t19, t38, t22 * t39);
+        let t41 = T::fused(t40, t25, -T::fused(-t35, t9, t37 * t14));
         let t42 = t28 * t28;
-        let t43 = k(2.0) * (k(0.5) - (t42 + t30 * t30));
-        let t44 = t43 * t41 - t33 * t26;
-        let t45 = t40 * (t24 * t40) - (k(2e-6) + (t37 * t39 + t35 * t38));
-        let t46 = t43 * t45 - t33 * t41;
-        let t47 = k(2.0) * (k(0.5) - (t42 + t31 * t31));
+        let t43 = k(2.0) * (k(0.5) - T::fused(t30, t30, t42));
+        let t44 = T::fused(-t33, t26, t43 * t41);
+        let t45 = T::fused(t40, t24 * t40, -(k(2e-6) + T::fused(t35, t38, t37 * t39)));
+        let t46 = T::fused(-t33, t41, t43 * t45);
+        let t47 = k(2.0) * (k(0.5) - T::fused(t31, t31, t42));
         let t48 = k(2.0) * (t32 + t29);
-        let t49 = t43 * (t48 * t45 - t47 * t41) - t33 * (t48 * t41 - t47 * t26);
+        let t49 = T::fused(
+            -t33,
+            T::fused(-t47, t26, t48 * t41),
+            t43 * T::fused(-t47, t41, t48 * t45),
+        );
         let t50 = t28 * t30;
         let t51 = t31 * t27;
         let t52 = k(2.0) * (t51 + t50);
         let t53 = t28 * t31;
         let t54 = t30 * t27;
         let t55 = k(2.0) * (t54 - t53);
-        let t56 = outer_ring_wx * outer_ring_wy
-            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
-                * t0;
-        let t57 = outer_ring_wy * (k(2.0) * (t54 + t53))
-            + outer_ring_wx * (k(2.0) * (t51 - t50));
-        let t58 = k(0.5) - (t42 + t27 * t27);
-        let t59 = outer_ring_wz * (k(2.0) * t58) - t57;
+        let t56 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
+            t0,
+            outer_ring_wx * outer_ring_wy,
+        );
+        let t57 = T::fused(
+            outer_ring_wx,
+            k(2.0) * (t51 - t50),
+            outer_ring_wy * (k(2.0) * (t54 + t53)),
+        );
+        let t58 = k(0.5) - T::fused(t27, t27, t42);
+        let t59 = T::fused(outer_ring_wz, k(2.0) * t58, -t57);
         let t60 = inner_ring_wz + t59;
-        let t61 = outer_ring_wz * t55 - (outer_ring_wy * t43 - outer_ring_wx * t48);
+        let t61 = T::fused(
+            outer_ring_wz,
+            t55,
+            -T::fused(-outer_ring_wx, t48, outer_ring_wy * t43),
+        );
         let t62 = inner_ring_wy - t61;
-        let t63 = outer_ring_wz * t52 + (outer_ring_wy * t33 - outer_ring_wx * t47);
+        let t63 = T::fused(
+            outer_ring_wz,
+            t52,
+            T::fused(-outer_ring_wx, t47, outer_ring_wy * t33),
+        );
         let t64 = inner_ring_wx - t63;
-        let t65 = k(0.5) / t58 * (t64 * t64 + t62 * t62);
-        let t66 = inner_ring_wy * t59 + inner_ring_wz * t61 - (t55 * t65 - t62 * t60);
-        let t67 = inner_ring_wz * t63 + inner_ring_wx * t59 - (t52 * t65 - t64 * t60);
-        let t68 = k(0.5) - (t20 + t6 * t6);
-        let t69 = inner_ring_wz * (k(2.0) * (t12 + t11))
-            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t68));
+        let t65 = k(0.5) / t58 * T::fused(t62, t62, t64 * t64);
+        let t66 = T::fused(inner_ring_wz, t61, inner_ring_wy * t59)
+            - T::fused(-t62, t60, t55 * t65);
+        let t67 = T::fused(inner_ring_wx, t59, inner_ring_wz * t63)
+            - T::fused(-t64, t60, t52 * t65);
+        let t68 = k(0.5) - T::fused(t6, t6, t20);
+        let t69 = T::fused(
+            inner_ring_wz,
+            k(2.0) * (t12 + t11),
+            T::fused(-inner_ring_wx, k(2.0) * t68, inner_ring_wy * (k(2.0) * (t7 - t4))),
+        );
         let t70 = rotor_wx - t69;
-        let t71 = inner_ring_wz * t22 - (inner_ring_wy * t37 + inner_ring_wx * t15);
+        let t71 = T::fused(
+            inner_ring_wz,
+            t22,
+            -T::fused(inner_ring_wx, t15, inner_ring_wy * t37),
+        );
         let t72 = rotor_wz + t71;
-        let t73 = inner_ring_wz * t19 - (inner_ring_wy * t35 - inner_ring_wx * t10);
+        let t73 = T::fused(
+            inner_ring_wz,
+            t19,
+            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t35),
+        );
         let t74 = rotor_wy - t73;
-        let t75 = k(0.5) / t68 * (t74 * t74 + t72 * t72);
-        let t76 = rotor_wz * t69 + rotor_wx * t71 + (t15 * t75 - t72 * t70);
-        let t77 = k(5e-6) * (rotor_wx * rotor_wz - t76);
-        let t78 = rotor_wx * t73 - rotor_wy * t69 - (t10 * t75 - t74 * t70);
+        let t75 = k(0.5) / t68 * T::fused(t72, t72, t74 * t74);
+        let t76 = T::fused(rotor_wx, t71, rotor_wz * t69)
+            + T::fused(-t72, t70, t15 * t75);
+        let t77 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t76);
+        let t78 = T::fused(-rotor_wy, t69, rotor_wx * t73)
+            - T::fused(-t74, t70, t10 * t75);
         let t79 = k(0.0002) * rotor_wx;
         let t80 = rotor_wy * t79;
         let t81 = rotor_e0 * rotor_e3;
         let t82 = rotor_e1 * rotor_e2;
         let t83 = t82 + t81;
-        let t84 = k(5e-6) * (rotor_wx * rotor_wy) - k(0.00032) * t83
-            + (k(1.6e-5) * t80 + k(5.0032e-6) * t78);
-        let t85 = k(1e-6) * (inner_ring_wx * inner_ring_wy) + (t22 * t84 + t19 * t77);
+        let t84 = T::fused(-k(0.00032), t83, k(5e-6) * (rotor_wx * rotor_wy))
+            + T::fused(k(5.0032e-6), t78, k(1.6e-5) * t80);
+        let t85 = T::fused(
+            k(1e-6),
+            inner_ring_wx * inner_ring_wy,
+            T::fused(t19, t77, t22 * t84),
+        );
         let t86 = t85 * t24;
-        let t87 = t86 * t23
-            - (k(1e-6) * (inner_ring_wy * inner_ring_wz) + (t15 * t84 - t10 * t77));
-        let t88 = t86 * t40 - (t37 * t84 + t35 * t77) + (t45 * t67 - t41 * t66);
-        let t89 = t43 * t88 - t33 * (t87 + (t67 * t41 - t66 * t26));
-        let t90 = k(1e-6) * (outer_ring_wx * outer_ring_wz) - t89
-            + (t56 * (t55 * t46 + t52 * t44) - t1 * t49);
-        let t91 = t90 / (k(1e-6) - (t43 * t46 - t33 * t44));
-        let t92 = t66 - (t33 * t91 - t1 * t47 - t56 * t52);
-        let t93 = t67 - (t43 * t91 - t1 * t48 + t56 * t55);
-        let t94 = t24 * (t85 + (t40 * t93 - t23 * t92));
-        let t95 = t78 - (t22 * t94 - (t37 * t93 - t15 * t92));
-        let t96 = t80 + k(0.0002) * t95;
+        let t87 = T::fused(
+            t86,
+            t23,
+            -T::fused(
+                k(1e-6),
+                inner_ring_wy * inner_ring_wz,
+                T::fused(-t10, t77, t15 * t84),
+            ),
+        );
+        let t88 = T::fused(t86, t40, -T::fused(t35, t77, t37 * t84))
+            + T::fused(-t41, t66, t45 * t67);
+        let t89 = T::fused(-t33, t87 + T::fused(-t66, t26, t67 * t41), t43 * t88);
+        let t90 = T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t89)
+            + T::fused(-t1, t49, t56 * T::fused(t52, t44, t55 * t46));
+        let t91 = t90 / (k(1e-6) - T::fused(-t33, t44, t43 * t46));
+        let t92 = t66 - T::fused(-t56, t52, T::fused(-t1, t47, t33 * t91));
+        let t93 = t67 - T::fused(t56, t55, T::fused(-t1, t48, t43 * t91));
+        let t94 = t24 * (t85 + T::fused(-t23, t92, t40 * t93));
+        let t95 = t78 - T::fused(t22, t94, -T::fused(-t15, t92, t37 * t93));
+        let t96 = T::fused(k(0.0002), t95, t80);
         let t97 = rotor_e0 * rotor_e0;
         let t98 = k(0.0002) * rotor_wz;
-        let t99 = rotor_wz * t98 + rotor_wx * t79;
-        let t100 = k(2.0) * (t82 - t81) * t99
-            + k(2.0) * (k(0.5) - (t97 + rotor_e1 * rotor_e1)) * t96;
+        let t99 = T::fused(rotor_wx, t79, rotor_wz * t98);
+        let t100 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t97)),
+            t96,
+            k(2.0) * (t82 - t81) * t99,
+        );
         let t101 = rotor_e0 * rotor_e1;
         let t102 = rotor_e2 * rotor_e3;
         let t103 = t102 - t101;
         let t104 = rotor_wy * t98;
-        let t105 = k(1.6e-5) * t104 - k(0.00032) * t103;
-        let t106 = t104 - k(19.99360204734485) * t105;
+        let t105 = T::fused(-k(0.00032), t103, k(1.6e-5) * t104);
+        let t106 = T::fused(-k(19.99360204734485), t105, t104);
         let t107 = rotor_e0 * rotor_e2;
         let t108 = rotor_e1 * rotor_e3;
-        let t109 = k(2.0) * (k(0.5) - (t97 + rotor_e2 * rotor_e2)) * t99
-            + k(2.0) * t83 * t96;
-        let t110 = k(2.0) * (t102 + t101) * t99 - k(2.0) * (t108 - t107) * t96;
+        let t109 = T::fused(
+            k(2.0) * t83,
+            t96,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t97)) * t99,
+        );
+        let t110 = T::fused(
+            -(k(2.0) * (t108 - t107)),
+            t96,
+            k(2.0) * (t102 + t101) * t99,
+        );
         *out = [
             k(0.0),
             k(0.0),
@@ -1898,11 +2415,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             t92,
             -t93,
             -t94,
-            t100 - k(2.0) * (t108 + t107) * t106,
-            -(k(2.0) * t103 * t106 + t109),
-            k(2.0) * (k(0.5) - (t97 + rotor_e3 * rotor_e3)) * t106 + t110,
+            T::fused(-(k(2.0) * (t108 + t107)), t106, t100),
+            -T::fused(k(2.0) * t103, t106, t109),
+            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t97)), t106, t110),
             -(k(99968.01023672425) * t105),
-            -(t76 + (t19 * t94 - (t35 * t93 + t10 * t92))),
+            -(t76 + T::fused(t19, t94, -T::fused(t10, t92, t35 * t93))),
             -t95,
         ];
     }
@@ -1953,11 +2470,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.8) + k(0.08) * rotor_dsy;
-        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e2;
         let t7 = rotor_e1 * rotor_e3;
         let t8 = t7 + t6;
@@ -1965,14 +2482,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t10 = rotor_e2 * rotor_e3;
         let t11 = t10 - t9;
         let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(0.5) - (t12 + rotor_e3 * rotor_e3);
-        let t14 = t4 * (k(0.0004) * t13)
-            - (t2 * (k(0.0004) * t11) + t0 * (k(0.0004) * t8));
-        let t15 = k(1e-5) * rotor_dwx + t14;
-        let t16 = k(0.5) - (t12 + rotor_e1 * rotor_e1);
+        let t13 = k(0.5) - T::fused(rotor_e3, rotor_e3, t12);
+        let t14 = T::fused(
+            t4,
+            k(0.0004) * t13,
+            -T::fused(t0, k(0.0004) * t8, t2 * (k(0.0004) * t11)),
+        );
+        let t15 = T::fused(k(1e-5), rotor_dwx, t14);
+        let t16 = k(0.5) - T::fused(rotor_e1, rotor_e1, t12);
         let t17 = k(2.0) * t16;
         let t18 = inner_ring_e0 * inner_ring_e0;
-        let t19 = k(2.0) * (k(0.5) - (t18 + inner_ring_e1 * inner_ring_e1));
+        let t19 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t18));
         let t20 = rotor_e0 * rotor_e3;
         let t21 = rotor_e1 * rotor_e2;
         let t22 = t21 + t20;
@@ -1986,81 +2506,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t30 = inner_ring_e1 * inner_ring_e3;
         let t31 = k(2.0) * (t30 - t29);
         let t32 = k(2.0) * (t21 - t20);
-        let t33 = k(2.0) * (k(0.5) - (t12 + rotor_e2 * rotor_e2));
+        let t33 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t12));
         let t34 = k(2.0) * (t10 + t9);
-        let t35 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t36 = t35 * (t31 * t34 - (t26 * t33 + t19 * t32))
-            + (t31 * t28 + (t26 * t23 + t19 * t17)) * t15;
-        let t37 = t4 * (k(0.0004) * t27)
-            + (t2 * (k(0.0004) * t22) - t0 * (k(0.0004) * t16));
-        let t38 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz) - t37;
+        let t35 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t36 = T::fused(
+            T::fused(t31, t28, T::fused(t19, t17, t26 * t23)),
+            t15,
+            t35 * T::fused(t31, t34, -T::fused(t19, t32, t26 * t33)),
+        );
+        let t37 = T::fused(
+            t4,
+            k(0.0004) * t27,
+            T::fused(-t0, k(0.0004) * t16, t2 * (k(0.0004) * t22)),
+        );
+        let t38 = T::fused(k(5e-6), T::fused(rotor_wx, rotor_wy, -rotor_dwz), -t37);
         let t39 = k(2.0) * t8;
         let t40 = k(2.0) * t11;
         let t41 = k(2.0) * t13;
-        let t42 = (t31 * t41 - (t26 * t40 - t19 * t39)) * t38 + t36;
-        let t43 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t42;
+        let t42 = T::fused(
+            T::fused(t31, t41, -T::fused(-t19, t39, t26 * t40)),
+            t38,
+            t36,
+        );
+        let t43 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+            -t42,
+        );
         let t44 = outer_ring_e0 * outer_ring_e0;
-        let t45 = k(2.0) * (k(0.5) - (t44 + outer_ring_e1 * outer_ring_e1));
+        let t45 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t44));
         let t46 = outer_ring_e0 * outer_ring_e3;
         let t47 = outer_ring_e1 * outer_ring_e2;
         let t48 = k(2.0) * (t47 + t46);
         let t49 = outer_ring_e0 * outer_ring_e2;
         let t50 = outer_ring_e1 * outer_ring_e3;
         let t51 = k(2.0) * (t50 - t49);
-        let t52 = t51 * t31 + (t48 * t26 + t45 * t19);
+        let t52 = T::fused(t51, t31, T::fused(t45, t19, t48 * t26));
         let t53 = k(2.0) * (t25 - t24);
-        let t54 = k(2.0) * (k(0.5) - (t18 + inner_ring_e2 * inner_ring_e2));
+        let t54 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t18));
         let t55 = inner_ring_e0 * inner_ring_e1;
         let t56 = inner_ring_e2 * inner_ring_e3;
         let t57 = k(2.0) * (t56 + t55);
-        let t58 = t57 * t34 + (t53 * t32 + t54 * t33);
-        let t59 = t35 * t58 + (t57 * t28 - (t54 * t23 + t53 * t17)) * t15;
-        let t60 = t57 * t41 - (t53 * t39 - t54 * t40);
-        let t61 = k(2e-6) * inner_ring_dwy + (t60 * t38 + t59);
-        let t62 = t51 * t57 - (t48 * t54 + t45 * t53);
+        let t58 = T::fused(t57, t34, T::fused(t54, t33, t53 * t32));
+        let t59 = T::fused(
+            T::fused(t57, t28, -T::fused(t53, t17, t54 * t23)),
+            t15,
+            t35 * t58,
+        );
+        let t60 = T::fused(t57, t41, -T::fused(-t54, t40, t53 * t39));
+        let t61 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t60, t38, t59));
+        let t62 = T::fused(t51, t57, -T::fused(t45, t53, t48 * t54));
         let t63 = k(2.0) * (t30 + t29);
         let t64 = k(2.0) * (t56 - t55);
-        let t65 = k(2.0) * (k(0.5) - (t18 + inner_ring_e3 * inner_ring_e3));
-        let t66 = t65 * t34 - (t63 * t32 - t64 * t33);
-        let t67 = t35 * t66 + (t65 * t28 - (t64 * t23 - t63 * t17)) * t15;
-        let t68 = t63 * t39 + t64 * t40 + t65 * t41;
-        let t69 = k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz)
-            - (t68 * t38 + t67);
-        let t70 = (t51 * t65 - (t48 * t64 - t45 * t63)) * t69 - (t62 * t61 - t52 * t43);
-        let t71 = k(2e-6) * outer_ring_dwx - t70;
-        let t72 = k(2.0) * (k(0.5) - (t44 + outer_ring_e3 * outer_ring_e3));
+        let t65 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t18));
+        let t66 = T::fused(t65, t34, -T::fused(-t64, t33, t63 * t32));
+        let t67 = T::fused(
+            T::fused(t65, t28, -T::fused(-t63, t17, t64 * t23)),
+            t15,
+            t35 * t66,
+        );
+        let t68 = T::fused(t65, t41, T::fused(t64, t40, t63 * t39));
+        let t69 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            -T::fused(t68, t38, t67),
+        );
+        let t70 = T::fused(
+            T::fused(t51, t65, -T::fused(-t45, t63, t48 * t64)),
+            t69,
+            -T::fused(-t52, t43, t62 * t61),
+        );
+        let t71 = T::fused(k(2e-6), outer_ring_dwx, -t70);
+        let t72 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t44));
         let t73 = k(2.0) * (t50 + t49);
-        let t74 = k(1.0) / (t73 * t51 - t45 * t72);
+        let t74 = k(1.0) / T::fused(-t45, t72, t73 * t51);
         let t75 = outer_ring_e0 * outer_ring_e1;
         let t76 = outer_ring_e2 * outer_ring_e3;
         let t77 = k(2.0) * (t76 - t75);
-        let t78 = (t72 * t57 - (t73 * t53 - t77 * t54)) * t61
-            - (t72 * t31 - (t77 * t26 - t73 * t19)) * t43;
-        let t79 = (t73 * t63 + t77 * t64 + t72 * t65) * t69 - t78;
-        let t80 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz) - t79;
+        let t78 = T::fused(
+            -T::fused(t72, t31, -T::fused(-t73, t19, t77 * t26)),
+            t43,
+            T::fused(t72, t57, -T::fused(-t77, t54, t73 * t53)) * t61,
+        );
+        let t79 = T::fused(T::fused(t72, t65, T::fused(t77, t64, t73 * t63)), t69, -t78);
+        let t80 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t79,
+        );
         let t81 = k(2.0) * (t47 - t46);
-        let t82 = k(2.0) * (k(0.5) - (t44 + outer_ring_e2 * outer_ring_e2));
+        let t82 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t44));
         let t83 = k(2.0) * (t76 + t75);
-        let t84 = t83 * t31 - (t82 * t26 + t81 * t19);
-        let t85 = t83 * t57 + (t81 * t53 + t82 * t54);
-        let t86 = k(1.0) / (t52 * t85 - t62 * t84);
-        let t87 = k(1.0) / (t58 * t68 - t60 * t66);
+        let t84 = T::fused(t83, t31, -T::fused(t81, t19, t82 * t26));
+        let t85 = T::fused(t83, t57, T::fused(t82, t54, t81 * t53));
+        let t86 = k(1.0) / T::fused(-t62, t84, t52 * t85);
+        let t87 = k(1.0) / T::fused(-t60, t66, t58 * t68);
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            -(t73 * t74 * t80 + t45 * t74 * t71),
-            -(t72 * t74 * t80 + t51 * t74 * t71),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            -T::fused(t45 * t74, t71, t73 * t74 * t80),
+            -T::fused(t51 * t74, t71, t72 * t74 * t80),
             -t1,
             -t3,
             -t5,
-            t84 * t86 * t43 - t85 * t86 * t61,
-            t62 * t86 * t61 - t52 * t86 * t43,
+            T::fused(-(t85 * t86), t61, t84 * t86 * t43),
+            T::fused(-(t52 * t86), t43, t62 * t86 * t61),
             -t0,
             -t2,
             -t4,
-            t68 * t87 * t38 + t35 * (t66 * t87),
-            t60 * t87 * t38 + t35 * (t58 * t87),
+            T::fused(t35, t66 * t87, t68 * t87 * t38),
+            T::fused(t35, t58 * t87, t60 * t87 * t38),
         ];
     }
 }
@@ -2078,7 +2634,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 63 operations (19 ±, 42 ×, 2 ÷) and 4 functions.
+    /// Writes u̇: 61 operations (18 ±, 41 ×, 2 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2088,27 +2644,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let u2 = x[5];
         let t0 = x1.sin();
         let t1 = u0 * t0;
-        let t2 = k(6.4e-9) * u2;
-        let t3 = t2 + k(3.2e-9) * t1;
-        let t4 = x2.cos();
-        let t5 = x1.cos();
-        let t6 = u0 * t5;
-        let t7 = x2.sin();
-        let t8 = t2 * (u1 * t7) - k(0.00016) * t0;
-        let t9 = t7 * (t8 + t6 * (t4 * t3)) + k(1e-5) * (u1 * (u2 - k(0.2) * t1));
-        let t10 = t7 * t7;
-        let t11 = t6 * (t10 * t3 - k(1.00064e-5) * (u2 + k(0.4000639590661976) * t1))
-            - t4 * t8;
-        let t12 = k(3.2e-9) * t5;
-        let t13 = t7 * t4;
-        let t14 = t13 * t12;
-        let t15 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t10);
-        let t16 = t15 * t14;
-        let t17 = (t16 * t11 + t5 * t9)
-            / (t14 * t16 - (k(2e-6) + t12 * (t5 * (k(1875.0) + t10))));
-        let t18 = k(0.00016) * (t5 * (t7 + k(4e-5) * (u0 * u1 * (k(1563.5) - t10))));
-        let t19 = k(99968.01023672425) * (k(3.2e-9) * (t13 * (u1 * u1 - t6 * t6)) + t18);
-        *out = [t17, t16 * t17 - t15 * t11, -(t0 * t17 + t19)];
+        let t2 = x2.cos();
+        let t3 = k(3.2e-9) * t2;
+        let t4 = x1.cos();
+        let t5 = u0 * t4;
+        let t6 = T::fused(-t5, u0 * t3, k(0.00016));
+        let t7 = T::fused(-t0, t6, k(6.4e-9) * (t5 * (u2 * t2)));
+        let t8 = x2.sin();
+        let t9 = t2 * t2;
+        let t10 = k(6.4e-9) * u1;
+        let t11 = u2 * t10;
+        let t12 = T::fused(t11, k(1563.5) - t9, T::fused(-k(2e-6), u1 * t1, t8 * t7));
+        let t13 = T::fused(
+            t2,
+            T::fused(t8, t11, t7),
+            k(1e-5) * (t5 * T::fused(k(0.4), t1, u2)),
+        );
+        let t14 = t8 * t3;
+        let t15 = t4 * t14;
+        let t16 = k(1.0) / T::fused(t2, t3, k(6e-6));
+        let t17 = t16 * t15;
+        let t18 = T::fused(
+            t15,
+            t17,
+            -T::fused(k(3.2e-9), (k(1876.0) - t9) * (t4 * t4), k(2e-6)),
+        );
+        let t19 = T::fused(-t4, t12, t17 * t13) / t18;
+        let t20 = T::fused(
+            t4,
+            T::fused(t8, t6, t10 * (u0 * (k(1562.5) + t9))),
+            u1 * u1 * t14,
+        );
+        *out = [
+            -t19,
+            T::fused(-t17, t19, t16 * t13),
+            T::fused(-k(99968.01023672425), t20, t0 * t19),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -2141,32 +2712,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let t10 = k(0.5) * x2;
         let t11 = t10.sin();
         let t12 = t10.cos();
-        let t13 = t9 * t12 - t8 * t11;
-        let t14 = t5 * t12 - t7 * t11;
+        let t13 = T::fused(-t8, t11, t9 * t12);
+        let t14 = T::fused(-t7, t11, t5 * t12);
         let t15 = t14 * t13;
-        let t16 = t8 * t12 + t9 * t11;
-        let t17 = t7 * t12 + t5 * t11;
+        let t16 = T::fused(t9, t11, t8 * t12);
+        let t17 = T::fused(t5, t11, t7 * t12);
         let t18 = t17 * t16;
         let t19 = t14 * t14;
         let t20 = t14 * t17;
         let t21 = t16 * t13;
         let t22 = k(2.0) * t6;
         let t23 = u0 * (t4 * t22);
-        let t24 = u0 * (k(1.0) - t6 * t22);
+        let t24 = u0 * T::fused(-t6, t22, k(1.0));
         let t25 = k(2.0) * t11;
         let t26 = t12 * t25;
-        let t27 = k(1.0) - t11 * t25;
-        let t28 = u1 * t27 - t26 * t24;
+        let t27 = T::fused(-t11, t25, k(1.0));
+        let t28 = T::fused(-t26, t24, u1 * t27);
         let t29 = k(0.0002) * t28;
         let t30 = u2 + t23;
         let t31 = k(0.0002) * t30;
         let t32 = t14 * t16;
         let t33 = t17 * t13;
-        let t34 = k(2.0) * (t33 + t32) * t31
-            + k(2.0) * (k(0.5) - (t19 + t17 * t17)) * t29;
-        let t35 = k(2.0) * (t21 - t20) * t31 - k(2.0) * (t18 + t15) * t29;
-        let t36 = k(2.0) * (k(0.5) - (t19 + t13 * t13)) * t31
-            + k(2.0) * (t33 - t32) * t29;
+        let t34 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(t17, t17, t19)),
+            t29,
+            k(2.0) * (t33 + t32) * t31,
+        );
+        let t35 = T::fused(-(k(2.0) * (t18 + t15)), t29, k(2.0) * (t21 - t20) * t31);
+        let t36 = T::fused(
+            k(2.0) * (t33 - t32),
+            t29,
+            k(2.0) * (k(0.5) - T::fused(t13, t13, t19)) * t31,
+        );
         *y = [
             k(0.0),
             k(0.0),
@@ -2183,7 +2760,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             t8,
             t9,
             -(k(0.0004) * (t18 - t15)),
-            k(0.0004) * (k(0.5) - (t19 + t16 * t16)),
+            k(0.0004) * (k(0.5) - T::fused(t16, t16, t19)),
             -(k(0.0004) * (t21 + t20)),
             t14,
             t17,
@@ -2205,7 +2782,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             -t35,
             t36,
             t30,
-            u1 * t26 + t27 * t24,
+            T::fused(t27, t24, u1 * t26),
             t28,
         ];
     }
@@ -2239,11 +2816,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let t4 = x0.cos();
         let t5 = outer_ring_e2 * outer_ring_e2;
         let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
         let t8 = outer_ring_e3 * outer_ring_e3;
         let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
-        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
+        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
         let t12 = x1.sin();
         let t13 = inner_ring_e0 * inner_ring_e2;
         let t14 = inner_ring_e1 * inner_ring_e3;
@@ -2253,37 +2830,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let t18 = k(2.0) * (t17 + t16);
         let t19 = inner_ring_e2 * inner_ring_e2;
         let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
         let t22 = inner_ring_e3 * inner_ring_e3;
         let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
         let t25 = outer_ring_e0 * outer_ring_e3;
         let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = k(2.0) * (t26 - t25) * t24
-            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
-        let t28 = t27
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t15;
+        let t27 = T::fused(
+            t18,
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            k(2.0) * (t26 - t25) * t24,
+        );
+        let t28 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
+            t15,
+            t27,
+        );
         let t29 = x1.cos();
-        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
-        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
-        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t30 = T::fused(
+            k(2.0) * (t26 + t25),
+            t18,
+            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        );
+        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
+        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
         let t33 = x2.sin();
-        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t35 = rotor_e2 * rotor_e2;
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t37 = T::fused(
+            k(2.0),
+            k(0.5) - (t36 + t35),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        );
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
-        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
+        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
         let t43 = x2.cos();
-        let t44 = k(2.0) * (t17 - t16) * t40
-            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
-        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
-        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        let t44 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
+            t37,
+            k(2.0) * (t17 - t16) * t40,
+        );
+        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
+        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
         x[0] = x0 + t11;
         x[1] = x1 + t32;
         x[2] = x2 + t46;
@@ -2291,7 +2885,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 101 operations (35 ±, 64 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 99 operations (34 ±, 63 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2311,45 +2905,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t0 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t1 = k(2.0) * t0;
-        let t2 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t2 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t3 = t2 * t1;
         let t4 = outer_ring_wy * t3;
-        let t5 = inner_ring_wx - rotor_wx;
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = k(6.4e-9) * t5;
-        let t8 = k(3.2e-9) * t4 + t7;
-        let t9 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t10 = k(2.0) * t9;
-        let t11 = k(1.0) - t9 * t10;
-        let t12 = k(1.0) - t0 * t1;
-        let t13 = outer_ring_wy * t12;
-        let t14 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t15 = t14 * t10;
-        let t16 = t6 * t15 * t7 - k(0.00016) * t3;
-        let t17 = t15 * (t16 + t13 * (t11 * t8)) + k(1e-5) * (t6 * (t5 - k(0.2) * t4));
-        let t18 = t15 * t15;
-        let t19 = t13 * (t18 * t8 - k(1.00064e-5) * (t5 + k(0.4000639590661976) * t4))
-            - t11 * t16;
-        let t20 = k(3.2e-9) * t12;
-        let t21 = t15 * t11;
-        let t22 = t21 * t20;
-        let t23 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t18);
-        let t24 = t23 * t22;
-        let t25 = (t24 * t19 + t12 * t17)
-            / (t22 * t24 - (k(2e-6) + t20 * (t12 * (k(1875.0) + t18))));
-        let t26 = k(0.00016)
-            * (t12 * (t15 + k(4e-5) * ((k(1563.5) - t18) * (outer_ring_wy * t6))));
-        let t27 = k(99968.01023672425)
-            * (k(3.2e-9) * (t21 * (t6 * t6 - t13 * t13)) + t26);
-        *out = [t25, t23 * t19 - t24 * t25, t3 * t25 + t27];
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t7 = k(2.0) * t6;
+        let t8 = T::fused(-t6, t7, k(1.0));
+        let t9 = k(3.2e-9) * t8;
+        let t10 = T::fused(-t0, t1, k(1.0));
+        let t11 = outer_ring_wy * t10;
+        let t12 = T::fused(-t11, outer_ring_wy * t9, k(0.00016));
+        let t13 = inner_ring_wx - rotor_wx;
+        let t14 = T::fused(-t3, t12, k(6.4e-9) * (t11 * (t13 * t8)));
+        let t15 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t16 = t15 * t7;
+        let t17 = t8 * t8;
+        let t18 = k(6.4e-9) * t5;
+        let t19 = t13 * t18;
+        let t20 = T::fused(t19, k(1563.5) - t17, T::fused(-k(2e-6), t5 * t4, t16 * t14));
+        let t21 = T::fused(
+            t8,
+            T::fused(t16, t19, t14),
+            k(1e-5) * (t11 * T::fused(k(0.4), t4, t13)),
+        );
+        let t22 = t16 * t9;
+        let t23 = t10 * t22;
+        let t24 = k(1.0) / T::fused(t8, t9, k(6e-6));
+        let t25 = t24 * t23;
+        let t26 = T::fused(
+            t23,
+            t25,
+            -T::fused(k(3.2e-9), (k(1876.0) - t17) * (t10 * t10), k(2e-6)),
+        );
+        let t27 = T::fused(-t10, t20, t25 * t21) / t26;
+        let t28 = T::fused(
+            t10,
+            T::fused(t16, t12, t18 * (outer_ring_wy * (k(1562.5) + t17))),
+            t22 * (t5 * t5),
+        );
+        *out = [
+            -t27,
+            T::fused(-t24, t21, t25 * t27),
+            T::fused(-t3, t27, k(99968.01023672425) * t28),
+        ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 181 operations (66 ±, 113 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 179 operations (65 ±, 112 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -2379,85 +3014,128 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t3 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t4 = t3 * t2;
         let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = outer_ring_wz - inner_ring_wz;
-        let t8 = k(6.4e-9) * t6;
-        let t9 = k(3.2e-9) * t5 + t8;
-        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t11 = k(2.0) * t10;
-        let t12 = k(1.0) - t10 * t11;
-        let t13 = k(1.0) - t1 * t2;
-        let t14 = outer_ring_wy * t13;
-        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t16 = t15 * t11;
-        let t17 = t7 * t16 * t8 - k(0.00016) * t4;
-        let t18 = t16 * (t17 + t14 * (t12 * t9)) + k(1e-5) * (t7 * (t6 - k(0.2) * t5));
-        let t19 = t16 * t16;
-        let t20 = t14 * (t19 * t9 - k(1.00064e-5) * (t6 + k(0.4000639590661976) * t5))
-            - t12 * t17;
-        let t21 = k(3.2e-9) * t13;
-        let t22 = t16 * t12;
-        let t23 = t22 * t21;
-        let t24 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t19);
-        let t25 = t24 * t23;
-        let t26 = (t25 * t20 + t13 * t18)
-            / (t23 * t25 - (k(2e-6) + t21 * (t13 * (k(1875.0) + t19))));
-        let t27 = outer_ring_wx * outer_ring_wy;
-        let t28 = t4 * t26;
-        let t29 = inner_ring_wy * t7 + (t28 + t0 * t13);
-        let t30 = inner_ring_wx * t7 - (t0 * t4 - t13 * t26);
-        let t31 = t27 - (t25 * t26 - t24 * t20);
-        let t32 = rotor_wy * t6 + (t12 * t31 + t16 * t30);
-        let t33 = k(0.0002) * rotor_wx;
-        let t34 = rotor_wy * t33 - k(0.0002) * t32;
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.0002) * rotor_wz;
-        let t37 = rotor_wz * t36 + rotor_wx * t33;
-        let t38 = rotor_e0 * rotor_e3;
-        let t39 = rotor_e1 * rotor_e2;
-        let t40 = k(2.0) * (t39 - t38) * t37
-            + k(2.0) * (k(0.5) - (t35 + rotor_e1 * rotor_e1)) * t34;
-        let t41 = k(0.00016)
-            * (t13 * (t16 + k(4e-5) * ((k(1563.5) - t19) * (outer_ring_wy * t7))));
-        let t42 = k(99968.01023672425)
-            * (k(3.2e-9) * (t22 * (t7 * t7 - t14 * t14)) + t41);
-        let t43 = t28 + t42 - t29;
-        let t44 = rotor_wy * t36 + k(0.0002) * t43;
-        let t45 = rotor_e0 * rotor_e2;
-        let t46 = rotor_e1 * rotor_e3;
-        let t47 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t37
-            + k(2.0) * (t39 + t38) * t34;
-        let t48 = rotor_e0 * rotor_e1;
-        let t49 = rotor_e2 * rotor_e3;
-        let t50 = k(2.0) * (t49 + t48) * t37 - k(2.0) * (t46 - t45) * t34;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = k(3.2e-9) * t9;
+        let t11 = T::fused(-t1, t2, k(1.0));
+        let t12 = outer_ring_wy * t11;
+        let t13 = T::fused(-t12, outer_ring_wy * t10, k(0.00016));
+        let t14 = inner_ring_wx - rotor_wx;
+        let t15 = T::fused(-t4, t13, k(6.4e-9) * (t12 * (t14 * t9)));
+        let t16 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t17 = t16 * t8;
+        let t18 = t9 * t9;
+        let t19 = k(6.4e-9) * t6;
+        let t20 = t14 * t19;
+        let t21 = T::fused(t20, k(1563.5) - t18, T::fused(-k(2e-6), t6 * t5, t17 * t15));
+        let t22 = T::fused(
+            t9,
+            T::fused(t17, t20, t15),
+            k(1e-5) * (t12 * T::fused(k(0.4), t5, t14)),
+        );
+        let t23 = t17 * t10;
+        let t24 = t11 * t23;
+        let t25 = k(1.0) / T::fused(t9, t10, k(6e-6));
+        let t26 = t25 * t24;
+        let t27 = T::fused(
+            t24,
+            t26,
+            -T::fused(k(3.2e-9), (k(1876.0) - t18) * (t11 * t11), k(2e-6)),
+        );
+        let t28 = T::fused(-t11, t21, t26 * t22) / t27;
+        let t29 = outer_ring_wx * outer_ring_wy;
+        let t30 = t4 * t28;
+        let t31 = T::fused(inner_ring_wy, t6, -T::fused(-t0, t11, t30));
+        let t32 = T::fused(inner_ring_wx, t6, -T::fused(t11, t28, t0 * t4));
+        let t33 = t29 + T::fused(-t25, t22, t26 * t28);
+        let t34 = T::fused(rotor_wy, t14, T::fused(t17, t32, t9 * t33));
+        let t35 = k(0.0002) * rotor_wx;
+        let t36 = T::fused(-k(0.0002), t34, rotor_wy * t35);
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(0.0002) * rotor_wz;
+        let t39 = T::fused(rotor_wx, t35, rotor_wz * t38);
+        let t40 = rotor_e0 * rotor_e3;
+        let t41 = rotor_e1 * rotor_e2;
+        let t42 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t37)),
+            t36,
+            k(2.0) * (t41 - t40) * t39,
+        );
+        let t43 = T::fused(
+            t11,
+            T::fused(t17, t13, t19 * (outer_ring_wy * (k(1562.5) + t18))),
+            t23 * (t6 * t6),
+        );
+        let t44 = T::fused(-k(99968.01023672425), t43, t30) + t31;
+        let t45 = T::fused(-k(0.0002), t44, rotor_wy * t38);
+        let t46 = rotor_e0 * rotor_e2;
+        let t47 = rotor_e1 * rotor_e3;
+        let t48 = T::fused(
+            k(2.0) * (t41 + t40),
+            t36,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37)) * t39,
+        );
+        let t49 = rotor_e0 * rotor_e1;
+        let t50 = rotor_e2 * rotor_e3;
+        let t51 = T::fused(-(k(2.0) * (t47 - t46)), t36, k(2.0) * (t50 + t49) * t39);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            t26,
-            t27,
+            -t28,
+            t29,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t29,
-            t30,
-            t31,
-            t40 - k(2.0) * (t46 + t45) * t44,
-            -(k(2.0) * (t49 - t48) * t44 + t47),
-            k(2.0) * (k(0.5) - (t35 + rotor_e3 * rotor_e3)) * t44 + t50,
-            t43,
-            -(rotor_wz * t6 + (t16 * t31 - t12 * t30)),
+            -t31,
             t32,
+            t33,
+            T::fused(-(k(2.0) * (t47 + t46)), t45, t42),
+            -T::fused(k(2.0) * (t50 - t49), t45, t48),
+            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t37)), t45, t51),
+            -t44,
+            -T::fused(rotor_wz, t14, T::fused(-t9, t32, t17 * t33)),
+            t34,
         ];
     }
     /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
@@ -2507,58 +3185,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.8) + k(0.08) * rotor_dsy;
-        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e2;
         let t7 = rotor_e1 * rotor_e3;
-        let t8 = t2 * (k(0.0004) * (rotor_e2 * rotor_e3 - rotor_e0 * rotor_e1))
-            + t0 * (k(0.0004) * (t7 + t6));
+        let t8 = T::fused(
+            t0,
+            k(0.0004) * (t7 + t6),
+            t2 * (k(0.0004) * T::fused(-rotor_e0, rotor_e1, rotor_e2 * rotor_e3)),
+        );
         let t9 = rotor_e0 * rotor_e0;
-        let t10 = k(1e-5) * rotor_dwx
-            + (t4 * (k(0.0004) * (k(0.5) - (t9 + rotor_e3 * rotor_e3))) - t8);
-        let t11 = k(1e-6) * (inner_ring_wy * inner_ring_wz - inner_ring_dwx) - t10;
-        let t12 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t10 = T::fused(
+            k(1e-5),
+            rotor_dwx,
+            T::fused(t4, k(0.0004) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t9)), -t8),
+        );
+        let t11 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
+            -t10,
+        );
+        let t12 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t13 = k(2.0) * t12;
-        let t14 = k(1.0) - t12 * t13;
-        let t15 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t14 = T::fused(-t12, t13, k(1.0));
+        let t15 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t16 = k(2.0) * t15;
-        let t17 = k(1.0) - t15 * t16;
-        let t18 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t19 = t2 * (k(0.0004) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3))
-            - t0 * (k(0.0004) * (k(0.5) - (t9 + rotor_e1 * rotor_e1)));
-        let t20 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz)
-            - (t4 * (k(0.0004) * (t7 - t6)) + t19);
-        let t21 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t17 = T::fused(-t15, t16, k(1.0));
+        let t18 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t19 = T::fused(
+            -t0,
+            k(0.0004) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t9)),
+            t2 * (k(0.0004) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2)),
+        );
+        let t20 = T::fused(
+            k(5e-6),
+            T::fused(rotor_wx, rotor_wy, -rotor_dwz),
+            -T::fused(t4, k(0.0004) * (t7 - t6), t19),
+        );
+        let t21 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t22 = t21 * t16;
-        let t23 = t22 * t20 - t18 * t17;
-        let t24 = k(2e-6) * inner_ring_dwy - t23;
-        let t25 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t23 = T::fused(-t18, t17, t22 * t20);
+        let t24 = T::fused(k(2e-6), inner_ring_dwy, -t23);
+        let t25 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t26 = t25 * t13;
-        let t27 = t26 * t24 - t14 * t11;
-        let t28 = k(2e-6) * outer_ring_dwx + t27;
+        let t27 = T::fused(-t14, t11, t26 * t24);
+        let t28 = T::fused(k(2e-6), outer_ring_dwx, t27);
         let t29 = k(2.0) * outer_ring_e2;
-        let t30 = k(1.0) - outer_ring_e2 * t29;
-        let t31 = t17 * t20 + t18 * t22;
-        let t32 = k(1e-6) * (outer_ring_wx * outer_ring_wy - outer_ring_dwz)
-            - (k(1e-6) * (inner_ring_wx * inner_ring_wy + inner_ring_dwz) - t31);
+        let t30 = T::fused(-outer_ring_e2, t29, k(1.0));
+        let t31 = T::fused(t18, t22, t17 * t20);
+        let t32 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -T::fused(
+                k(1e-6),
+                T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+                -t31,
+            ),
+        );
         let t33 = outer_ring_e0 * t29;
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            t33 * t32 - t30 * t28,
-            -(t30 * t32 + t33 * t28),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            T::fused(-t30, t28, t33 * t32),
+            -T::fused(t33, t28, t30 * t32),
             -t1,
             -t3,
             -t5,
-            -(t14 * t24 + t26 * t11),
+            -T::fused(t26, t11, t14 * t24),
             t27,
             -t0,
             -t2,
@@ -2567,7 +3296,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             -t23,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 246 operations (90 ±, 154 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 244 operations (89 ±, 153 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2592,125 +3321,185 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t3 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t4 = t3 * t2;
         let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = outer_ring_wz - inner_ring_wz;
-        let t8 = k(6.4e-9) * t6;
-        let t9 = k(3.2e-9) * t5 + t8;
-        let t10 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
-        let t11 = k(2.0) * t10;
-        let t12 = k(1.0) - t10 * t11;
-        let t13 = k(1.0) - t1 * t2;
-        let t14 = outer_ring_wy * t13;
-        let t15 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
-        let t16 = t15 * t11;
-        let t17 = t7 * t16 * t8 - k(0.00016) * t4;
-        let t18 = t16 * (t17 + t14 * (t12 * t9)) + k(1e-5) * (t7 * (t6 - k(0.2) * t5));
-        let t19 = t16 * t16;
-        let t20 = t14 * (t19 * t9 - k(1.00064e-5) * (t6 + k(0.4000639590661976) * t5))
-            - t12 * t17;
-        let t21 = k(3.2e-9) * t13;
-        let t22 = t16 * t12;
-        let t23 = t22 * t21;
-        let t24 = k(1.0) / (k(6.0032e-6) - k(3.2e-9) * t19);
-        let t25 = t24 * t23;
-        let t26 = (t25 * t20 + t13 * t18)
-            / (t23 * t25 - (k(2e-6) + t21 * (t13 * (k(1875.0) + t19))));
-        let t27 = outer_ring_wx * outer_ring_wy;
-        let t28 = t4 * t26;
-        let t29 = inner_ring_wy * t7 + (t28 + t0 * t13);
-        let t30 = inner_ring_wx * t7 - (t0 * t4 - t13 * t26);
-        let t31 = t27 - (t25 * t26 - t24 * t20);
-        let t32 = rotor_wy * t6 + (t12 * t31 + t16 * t30);
-        let t33 = k(0.0002) * rotor_wx;
-        let t34 = rotor_wy * t33 - k(0.0002) * t32;
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.5) - (t35 + rotor_e1 * rotor_e1);
-        let t37 = k(0.0002) * rotor_wz;
-        let t38 = rotor_wz * t37 + rotor_wx * t33;
-        let t39 = rotor_e0 * rotor_e3;
-        let t40 = rotor_e1 * rotor_e2;
-        let t41 = k(0.00016)
-            * (t13 * (t16 + k(4e-5) * ((k(1563.5) - t19) * (outer_ring_wy * t7))));
-        let t42 = k(99968.01023672425)
-            * (k(3.2e-9) * (t22 * (t7 * t7 - t14 * t14)) + t41);
-        let t43 = t28 + t42 - t29;
-        let t44 = rotor_wy * t37 + k(0.0002) * t43;
-        let t45 = rotor_e0 * rotor_e2;
-        let t46 = rotor_e1 * rotor_e3;
-        let t47 = t46 + t45;
-        let t48 = k(2.0) * t47 * t44 - (k(2.0) * (t40 - t39) * t38 + k(2.0) * t36 * t34);
-        let t49 = t40 + t39;
-        let t50 = k(2.0) * (k(0.5) - (t35 + rotor_e2 * rotor_e2)) * t38
-            + k(2.0) * t49 * t34;
-        let t51 = rotor_e0 * rotor_e1;
-        let t52 = rotor_e2 * rotor_e3;
-        let t53 = t52 - t51;
-        let t54 = k(2.0) * t53 * t44 + t50;
-        let t55 = t46 - t45;
-        let t56 = k(0.5) - (t35 + rotor_e3 * rotor_e3);
-        let t57 = k(2.0) * t56 * t44 + (k(2.0) * (t52 + t51) * t38 - k(2.0) * t55 * t34);
-        let t58 = rotor_wz * t6 + (t16 * t31 - t12 * t30);
-        let t59 = k(0.08) * t48;
-        let t60 = k(0.8) - k(0.08) * t54;
-        let t61 = k(0.1) + t60;
-        let t62 = k(0.08) * t57;
-        let t63 = k(0.0004) * t36 * t59 + k(0.0004) * t49 * t60 + k(0.0004) * t55 * t62;
-        let t64 = t63 - k(5e-6) * (rotor_wx * rotor_wy - t32);
-        let t65 = k(5e-6) * (rotor_wx * rotor_wz - t58);
-        let t66 = t16 * t65 - t12 * t64;
-        let t67 = t66 - k(1e-6) * (inner_ring_wx * inner_ring_wy + t31);
-        let t68 = k(2.0) * outer_ring_e2;
-        let t69 = outer_ring_e0 * t68;
-        let t70 = t12 * t65 + t16 * t64;
-        let t71 = t70 + k(2e-6) * t30;
-        let t72 = k(0.0004) * t47 * t59 - k(0.0004) * t53 * t60 + k(0.0004) * t56 * t62;
-        let t73 = t72 + k(1e-5) * t43 - k(1e-6) * (inner_ring_wy * inner_ring_wz + t29);
-        let t74 = t13 * t73 + t4 * t71;
-        let t75 = t74 - k(2e-6) * t0;
-        let t76 = k(1.0) - outer_ring_e2 * t68;
+        let t6 = outer_ring_wz - inner_ring_wz;
+        let t7 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = k(3.2e-9) * t9;
+        let t11 = T::fused(-t1, t2, k(1.0));
+        let t12 = outer_ring_wy * t11;
+        let t13 = T::fused(-t12, outer_ring_wy * t10, k(0.00016));
+        let t14 = inner_ring_wx - rotor_wx;
+        let t15 = T::fused(-t4, t13, k(6.4e-9) * (t12 * (t14 * t9)));
+        let t16 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t17 = t16 * t8;
+        let t18 = t9 * t9;
+        let t19 = k(6.4e-9) * t6;
+        let t20 = t14 * t19;
+        let t21 = T::fused(t20, k(1563.5) - t18, T::fused(-k(2e-6), t6 * t5, t17 * t15));
+        let t22 = T::fused(
+            t9,
+            T::fused(t17, t20, t15),
+            k(1e-5) * (t12 * T::fused(k(0.4), t5, t14)),
+        );
+        let t23 = t17 * t10;
+        let t24 = t11 * t23;
+        let t25 = k(1.0) / T::fused(t9, t10, k(6e-6));
+        let t26 = t25 * t24;
+        let t27 = T::fused(
+            t24,
+            t26,
+            -T::fused(k(3.2e-9), (k(1876.0) - t18) * (t11 * t11), k(2e-6)),
+        );
+        let t28 = T::fused(-t11, t21, t26 * t22) / t27;
+        let t29 = outer_ring_wx * outer_ring_wy;
+        let t30 = t4 * t28;
+        let t31 = T::fused(inner_ring_wy, t6, -T::fused(-t0, t11, t30));
+        let t32 = T::fused(inner_ring_wx, t6, -T::fused(t11, t28, t0 * t4));
+        let t33 = t29 + T::fused(-t25, t22, t26 * t28);
+        let t34 = T::fused(rotor_wy, t14, T::fused(t17, t32, t9 * t33));
+        let t35 = k(0.0002) * rotor_wx;
+        let t36 = T::fused(-k(0.0002), t34, rotor_wy * t35);
+        let t37 = rotor_e0 * rotor_e0;
+        let t38 = k(0.5) - T::fused(rotor_e1, rotor_e1, t37);
+        let t39 = k(0.0002) * rotor_wz;
+        let t40 = T::fused(rotor_wx, t35, rotor_wz * t39);
+        let t41 = rotor_e0 * rotor_e3;
+        let t42 = rotor_e1 * rotor_e2;
+        let t43 = T::fused(
+            t11,
+            T::fused(t17, t13, t19 * (outer_ring_wy * (k(1562.5) + t18))),
+            t23 * (t6 * t6),
+        );
+        let t44 = T::fused(-k(99968.01023672425), t43, t30) + t31;
+        let t45 = T::fused(-k(0.0002), t44, rotor_wy * t39);
+        let t46 = rotor_e0 * rotor_e2;
+        let t47 = rotor_e1 * rotor_e3;
+        let t48 = t47 + t46;
+        let t49 = T::fused(
+            k(2.0) * t48,
+            t45,
+            -T::fused(k(2.0) * t38, t36, k(2.0) * (t42 - t41) * t40),
+        );
+        let t50 = t42 + t41;
+        let t51 = T::fused(
+            k(2.0) * t50,
+            t36,
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t37)) * t40,
+        );
+        let t52 = rotor_e0 * rotor_e1;
+        let t53 = rotor_e2 * rotor_e3;
+        let t54 = t53 - t52;
+        let t55 = T::fused(k(2.0) * t54, t45, t51);
+        let t56 = t47 - t46;
+        let t57 = k(0.5) - T::fused(rotor_e3, rotor_e3, t37);
+        let t58 = T::fused(
+            k(2.0) * t57,
+            t45,
+            T::fused(-(k(2.0) * t56), t36, k(2.0) * (t53 + t52) * t40),
+        );
+        let t59 = T::fused(rotor_wz, t14, T::fused(-t9, t32, t17 * t33));
+        let t60 = k(0.08) * t49;
+        let t61 = T::fused(-k(0.08), t55, k(0.8));
+        let t62 = k(0.1) + t61;
+        let t63 = k(0.08) * t58;
+        let t64 = T::fused(
+            k(0.0004) * t56,
+            t63,
+            T::fused(k(0.0004) * t50, t61, k(0.0004) * t38 * t60),
+        );
+        let t65 = T::fused(-k(5e-6), T::fused(rotor_wx, rotor_wy, -t34), t64);
+        let t66 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t59);
+        let t67 = T::fused(-t9, t65, t17 * t66);
+        let t68 = T::fused(-k(1e-6), T::fused(inner_ring_wx, inner_ring_wy, t33), t67);
+        let t69 = k(2.0) * outer_ring_e2;
+        let t70 = outer_ring_e0 * t69;
+        let t71 = T::fused(t17, t65, t9 * t66);
+        let t72 = T::fused(k(2e-6), t32, t71);
+        let t73 = T::fused(
+            k(0.0004) * t57,
+            t63,
+            T::fused(-(k(0.0004) * t54), t61, k(0.0004) * t48 * t60),
+        );
+        let t74 = T::fused(
+            -k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, t31),
+            T::fused(-k(1e-5), t44, t73),
+        );
+        let t75 = T::fused(t4, t72, t11 * t74);
+        let t76 = T::fused(-k(2e-6), t0, t75);
+        let t77 = T::fused(-outer_ring_e2, t69, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            t26,
-            t27,
+            -t28,
+            t29,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t29,
-            t30,
-            t31,
-            -t48,
-            -t54,
-            t57,
-            t43,
-            -t58,
+            -t31,
             t32,
-            t59,
-            -(k(0.1) + t61),
+            t33,
+            -t49,
+            -t55,
+            t58,
+            -t44,
+            -t59,
+            t34,
+            t60,
+            -(k(0.1) + t62),
+            -t63,
+            T::fused(-t77, t76, t70 * t68),
+            -T::fused(t77, t68, t70 * t76),
+            t60,
             -t62,
-            t69 * t67 - t76 * t75,
-            -(t69 * t75 + t76 * t67),
-            t59,
+            -t63,
+            T::fused(-t11, t72, t4 * t74),
+            t75,
+            t60,
             -t61,
-            -t62,
-            t4 * t73 - t13 * t71,
-            t74,
-            t59,
-            -t60,
-            -t62,
-            t66,
-            t70,
+            -t63,
+            t67,
+            t71,
         ];
     }
 }

@@ -39,10 +39,10 @@
 //! | joint_derivative | ẋ but for u̇ | 4 | 10 | 0 | 14 | 0 of 4 | 32 | 14 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 291 | 78 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 18 | 29 | 1 | 48 | 0 of 3 | 286 | 49 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 60 | 97 | 1 | 158 | 6 of 18 | 2817 | 159 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 18 | 29 | 1 | 48 | 0 of 3 | 290 | 49 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 60 | 97 | 1 | 158 | 6 of 18 | 2843 | 159 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 81 | 0 | 141 | 0 of 15 | 743 | 141 |
-//! | corrected_solution | both | 98 | 148 | 1 | 247 | 6 of 33 | 24411 | 248 |
+//! | corrected_solution | both | 98 | 148 | 1 | 247 | 6 of 33 | 24609 | 248 |
 //!
 //! # Proof
 //!
@@ -171,48 +171,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeViscous<T> {
         let rotor_wz = y[38];
         let t0 = inner_ring_wx - rotor_wx;
         let t1 = outer_ring_wz - inner_ring_wz;
-        let t2 = outer_ring_wy * (k(1e-6) * outer_ring_wy) + t1 * (k(1e-6) * t1)
-            + t0 * (k(1e-6) * t0);
+        let t2 = T::fused(
+            t0,
+            k(1e-6) * t0,
+            T::fused(t1, k(1e-6) * t1, outer_ring_wy * (k(1e-6) * outer_ring_wy)),
+        );
         *dy = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
             -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
             k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
             -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
             inner_ring_sx,
             inner_ring_sy,
             inner_ring_sz,
             -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
             k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
             k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
             -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
             rotor_sx,
             rotor_sy,
             rotor_sz,
             -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
             -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -248,6 +309,167 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 82 operations (28 ±, 54 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let outer_ring_sx = y[21];
+        let outer_ring_sy = y[22];
+        let outer_ring_sz = y[23];
+        let inner_ring_sx = y[27];
+        let inner_ring_sy = y[28];
+        let inner_ring_sz = y[29];
+        let rotor_sx = y[33];
+        let rotor_sy = y[34];
+        let rotor_sz = y[35];
+        let outer_ring_wx = y[24];
+        let outer_ring_wy = y[25];
+        let outer_ring_wz = y[26];
+        let inner_ring_wx = y[30];
+        let inner_ring_wy = y[31];
+        let inner_ring_wz = y[32];
+        let rotor_wx = y[36];
+        let rotor_wy = y[37];
+        let rotor_wz = y[38];
+        let t0 = inner_ring_wx - rotor_wx;
+        let t1 = outer_ring_wz - inner_ring_wz;
+        let t2 = T::fused(
+            t0,
+            k(1e-6) * t0,
+            T::fused(t1, k(1e-6) * t1, outer_ring_wy * (k(1e-6) * outer_ring_wy)),
+        );
+        *dy = [
+            outer_ring_sx,
+            outer_ring_sy,
+            outer_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_ring_e3,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e2, outer_ring_wy, outer_ring_e1 * outer_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_ring_e2,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e3,
+                        outer_ring_wy,
+                        outer_ring_e0 * outer_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_ring_e1,
+                    outer_ring_wz,
+                    T::fused(outer_ring_e0, outer_ring_wy, outer_ring_e3 * outer_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_wz,
+                    T::fused(
+                        -outer_ring_e1,
+                        outer_ring_wy,
+                        outer_ring_e2 * outer_ring_wx,
+                    ),
+                )),
+            inner_ring_sx,
+            inner_ring_sy,
+            inner_ring_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_ring_e3,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e2, inner_ring_wy, inner_ring_e1 * inner_ring_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_ring_e2,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e3,
+                        inner_ring_wy,
+                        inner_ring_e0 * inner_ring_wx,
+                    ),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_ring_e1,
+                    inner_ring_wz,
+                    T::fused(inner_ring_e0, inner_ring_wy, inner_ring_e3 * inner_ring_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_wz,
+                    T::fused(
+                        -inner_ring_e1,
+                        inner_ring_wy,
+                        inner_ring_e2 * inner_ring_wx,
+                    ),
+                )),
+            rotor_sx,
+            rotor_sy,
+            rotor_sz,
+            -(k(0.5)
+                * T::fused(
+                    rotor_e3,
+                    rotor_wz,
+                    T::fused(rotor_e2, rotor_wy, rotor_e1 * rotor_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    rotor_e2,
+                    rotor_wz,
+                    T::fused(-rotor_e3, rotor_wy, rotor_e0 * rotor_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -rotor_e1,
+                    rotor_wz,
+                    T::fused(rotor_e0, rotor_wy, rotor_e3 * rotor_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -rotor_e0,
+                    rotor_wz,
+                    T::fused(-rotor_e1, rotor_wy, rotor_e2 * rotor_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            -t2,
+        ];
+    }
     /// Writes Φ: 108 operations (50 ±, 58 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -273,7 +495,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t1 = outer_ring_e0 * outer_ring_e3;
         let t2 = outer_ring_e1 * outer_ring_e2;
         let t3 = k(2.0) * (t2 - t1);
@@ -281,25 +503,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let t5 = inner_ring_e1 * inner_ring_e3;
         let t6 = k(2.0) * (t5 + t4);
         let t7 = outer_ring_e0 * outer_ring_e0;
-        let t8 = t7 + outer_ring_e1 * outer_ring_e1;
+        let t8 = T::fused(outer_ring_e1, outer_ring_e1, t7);
         let t9 = inner_ring_e0 * inner_ring_e1;
         let t10 = inner_ring_e2 * inner_ring_e3;
         let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(2.0) * (t2 + t1) * t11 - k(2.0) * (k(0.5) - t8) * t6;
+        let t12 = T::fused(-(k(2.0) * (k(0.5) - t8)), t6, k(2.0) * (t2 + t1) * t11);
         let t13 = inner_ring_e3 * inner_ring_e3;
         let t14 = inner_ring_e0 * inner_ring_e0;
         let t15 = k(2.0) * (k(0.5) - (t14 + t13));
         let t16 = outer_ring_e2 * outer_ring_e2;
-        let t17 = t0 * t15 - (t3 * t6 - k(2.0) * (k(0.5) - (t7 + t16)) * t11);
-        let t18 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t17 = T::fused(
+            t0,
+            t15,
+            -T::fused(-(k(2.0) * (k(0.5) - (t7 + t16))), t11, t3 * t6),
+        );
+        let t18 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t19 = inner_ring_e0 * inner_ring_e3;
         let t20 = inner_ring_e1 * inner_ring_e2;
-        let t21 = rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1;
+        let t21 = T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0);
         let t22 = k(2.0) * (k(0.5) - t21);
-        let t23 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
+        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
         let t24 = inner_ring_e2 * inner_ring_e2;
-        let t25 = k(2.0) * (k(0.5) - (t14 + t24)) * t23 + k(2.0) * (t20 - t19) * t22;
-        let t26 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
+        let t25 = T::fused(
+            k(2.0) * (t20 - t19),
+            t22,
+            k(2.0) * (k(0.5) - (t14 + t24)) * t23,
+        );
+        let t26 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
@@ -309,19 +539,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            t12
-                - k(2.0)
-                    * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2)
-                    * t15,
+            T::fused(
+                -(k(2.0)
+                    * T::fused(
+                        -outer_ring_e0,
+                        outer_ring_e2,
+                        outer_ring_e1 * outer_ring_e3,
+                    )),
+                t15,
+                t12,
+            ),
             -t17,
-            rotor_rx - (inner_ring_rx - k(0.00025) * (k(0.5) - t18)),
-            rotor_ry - (inner_ring_ry + k(0.00025) * (t20 + t19)),
-            rotor_rz - (inner_ring_rz + k(0.00025) * (t5 - t4)),
-            k(2.0) * (t10 + t9) * t26 - t25,
-            t11 * t23 - t6 * t22 - t15 * t26,
-            outer_ring_e3 * outer_ring_e3 + (t8 + t16) - k(1.0),
+            rotor_rx - T::fused(-k(0.00025), k(0.5) - t18, inner_ring_rx),
+            rotor_ry - T::fused(k(0.00025), t20 + t19, inner_ring_ry),
+            rotor_rz - T::fused(k(0.00025), t5 - t4, inner_ring_rz),
+            T::fused(k(2.0) * (t10 + t9), t26, -t25),
+            T::fused(-t15, t26, T::fused(-t6, t22, t11 * t23)),
+            T::fused(outer_ring_e3, outer_ring_e3, t8 + t16) - k(1.0),
             t13 + (t18 + t24) - k(1.0),
-            rotor_e3 * rotor_e3 + (t21 + rotor_e2 * rotor_e2) - k(1.0),
+            T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t21)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 218 operations (90 ±, 128 ×, 0 ÷).
@@ -360,13 +596,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + outer_ring_e3 * outer_ring_e3));
-        let t5 = k(2.0) * (k(0.5) - (t3 + outer_ring_e1 * outer_ring_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
         let t6 = k(2.0) * (t1 + t0);
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - (t3 + outer_ring_e2 * outer_ring_e2));
+        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
         let t11 = inner_ring_e0 * inner_ring_e2;
         let t12 = inner_ring_e1 * inner_ring_e3;
         let t13 = k(2.0) * (t12 + t11);
@@ -374,73 +610,106 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - (t17 + inner_ring_e3 * inner_ring_e3));
+        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
         let t19 = outer_ring_e0 * outer_ring_e1;
         let t20 = outer_ring_e2 * outer_ring_e3;
         let t21 = k(2.0) * (t20 + t19);
-        let t22 = t6 * t13 + k(2.0) * (t20 - t19) * t9 + t4 * t18;
-        let t23 = outer_ring_wy * t22
-            + outer_ring_wz * (t21 * t18 - (t16 * t13 - t10 * t9));
-        let t24 = k(2.0) * (k(0.5) - (t17 + inner_ring_e1 * inner_ring_e1));
+        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
+        let t23 = T::fused(
+            outer_ring_wz,
+            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
+            outer_ring_wy * t22,
+        );
+        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
         let t25 = inner_ring_e0 * inner_ring_e3;
         let t26 = inner_ring_e1 * inner_ring_e2;
         let t27 = k(2.0) * (t26 + t25);
         let t28 = k(2.0) * (t15 + t14);
         let t29 = k(2.0) * (t12 - t11);
         let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - (t17 + inner_ring_e2 * inner_ring_e2));
+        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
         let t32 = k(2.0) * (t8 + t7);
-        let t33 = inner_ring_wx * (t2 * t32 - (t28 * t31 + t5 * t30))
-            - inner_ring_wy * (t2 * t29 + (t28 * t27 + t5 * t24));
-        let t34 = outer_ring_wx * t22
-            + outer_ring_wz * (t2 * t18 - (t28 * t9 - t5 * t13));
-        let t35 = inner_ring_wx * (t21 * t32 + (t16 * t30 + t10 * t31))
-            - inner_ring_wy * (t21 * t29 - (t10 * t27 + t16 * t24));
+        let t33 = T::fused(
+            -inner_ring_wy,
+            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
+            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+        );
+        let t34 = T::fused(
+            outer_ring_wz,
+            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
+            outer_ring_wx * t22,
+        );
+        let t35 = T::fused(
+            -inner_ring_wy,
+            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
+            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+        );
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + rotor_e1 * rotor_e1));
+        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
         let t38 = rotor_e0 * rotor_e3;
         let t39 = rotor_e1 * rotor_e2;
         let t40 = k(2.0) * (t39 + t38);
         let t41 = rotor_e0 * rotor_e2;
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 - t41);
-        let t44 = t29 * t43 + (t27 * t40 + t24 * t37);
-        let t45 = inner_ring_wz * t44
-            + inner_ring_wx * (t18 * t43 - (t9 * t40 - t13 * t37));
-        let t46 = k(2.0) * (k(0.5) - (t36 + rotor_e2 * rotor_e2));
+        let t44 = T::fused(t29, t43, T::fused(t24, t37, t27 * t40));
+        let t45 = T::fused(
+            inner_ring_wx,
+            T::fused(t18, t43, -T::fused(-t13, t37, t9 * t40)),
+            inner_ring_wz * t44,
+        );
+        let t46 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
         let t47 = k(2.0) * (t39 - t38);
         let t48 = rotor_e0 * rotor_e1;
         let t49 = rotor_e2 * rotor_e3;
         let t50 = k(2.0) * (t49 + t48);
         let t51 = k(2.0) * (t49 - t48);
         let t52 = k(2.0) * (t42 + t41);
-        let t53 = k(2.0) * (k(0.5) - (t36 + rotor_e3 * rotor_e3));
-        let t54 = rotor_wy * (t32 * t53 - (t30 * t52 - t31 * t51))
-            + rotor_wz * (t32 * t50 + (t30 * t47 + t31 * t46));
-        let t55 = inner_ring_wx * (t32 * t43 - (t31 * t40 + t30 * t37))
-            - inner_ring_wy * t44;
-        let t56 = rotor_wy * (t13 * t52 + t9 * t51 + t18 * t53)
-            + rotor_wz * (t18 * t50 - (t13 * t47 - t9 * t46));
+        let t53 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
+        let t54 = T::fused(
+            rotor_wz,
+            T::fused(t32, t50, T::fused(t31, t46, t30 * t47)),
+            rotor_wy * T::fused(t32, t53, -T::fused(-t31, t51, t30 * t52)),
+        );
+        let t55 = T::fused(
+            -inner_ring_wy,
+            t44,
+            inner_ring_wx * T::fused(t32, t43, -T::fused(t30, t37, t31 * t40)),
+        );
+        let t56 = T::fused(
+            rotor_wz,
+            T::fused(t18, t50, -T::fused(-t9, t46, t13 * t47)),
+            rotor_wy * T::fused(t18, t53, T::fused(t9, t51, t13 * t52)),
+        );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -(t4 * outer_ring_wx + t2 * outer_ring_wz),
-            t6 * outer_ring_wx + t5 * outer_ring_wz,
+            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
+            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
             -(t33 + t23),
             t34 - t35,
             rotor_sx
-                - (inner_ring_sx
-                    + k(0.000125) * (t30 * inner_ring_wz - t13 * inner_ring_wy)),
+                - T::fused(
+                    k(0.000125),
+                    T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
+                    inner_ring_sx,
+                ),
             rotor_sy
-                - (inner_ring_sy
-                    - k(0.000125) * (t31 * inner_ring_wz + t9 * inner_ring_wy)),
+                - T::fused(
+                    -k(0.000125),
+                    T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
+                    inner_ring_sy,
+                ),
             rotor_sz
-                - (inner_ring_sz
-                    + k(0.000125) * (t32 * inner_ring_wz + t18 * inner_ring_wy)),
+                - T::fused(
+                    k(0.000125),
+                    T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
+                    inner_ring_sz,
+                ),
             t54 - t45,
             -(t56 + t55),
         ];
@@ -469,28 +738,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_wx * (k(1e-5) * rotor_wx) + rotor_wy * (k(5e-6) * rotor_wy)
-            + rotor_wz * (k(5e-6) * rotor_wz);
-        let t1 = t0
-            + k(0.08)
-                * (rotor_sx * rotor_sx + rotor_sy * rotor_sy + rotor_sz * rotor_sz);
-        let t2 = inner_ring_wx * (k(1e-6) * inner_ring_wx)
-            + inner_ring_wy * (k(2e-6) * inner_ring_wy)
-            + inner_ring_wz * (k(1e-6) * inner_ring_wz);
-        let t3 = t2
-            + k(0.01)
-                * (inner_ring_sx * inner_ring_sx + inner_ring_sy * inner_ring_sy
-                    + inner_ring_sz * inner_ring_sz);
-        let t4 = outer_ring_wy * (k(1e-6) * outer_ring_wy)
-            + outer_ring_wx * (k(2e-6) * outer_ring_wx)
-            + outer_ring_wz * (k(1e-6) * outer_ring_wz);
-        let t5 = t4
-            + k(0.01)
-                * (outer_ring_sx * outer_ring_sx + outer_ring_sy * outer_ring_sy
-                    + outer_ring_sz * outer_ring_sz);
+        let t0 = T::fused(
+            rotor_wz,
+            k(5e-6) * rotor_wz,
+            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+        );
+        let t1 = T::fused(
+            k(0.08),
+            T::fused(
+                rotor_sz,
+                rotor_sz,
+                T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            inner_ring_wz,
+            k(1e-6) * inner_ring_wz,
+            T::fused(
+                inner_ring_wy,
+                k(2e-6) * inner_ring_wy,
+                inner_ring_wx * (k(1e-6) * inner_ring_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.01),
+            T::fused(
+                inner_ring_sz,
+                inner_ring_sz,
+                T::fused(inner_ring_sy, inner_ring_sy, inner_ring_sx * inner_ring_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            outer_ring_wz,
+            k(1e-6) * outer_ring_wz,
+            T::fused(
+                outer_ring_wx,
+                k(2e-6) * outer_ring_wx,
+                outer_ring_wy * (k(1e-6) * outer_ring_wy),
+            ),
+        );
+        let t5 = T::fused(
+            k(0.01),
+            T::fused(
+                outer_ring_sz,
+                outer_ring_sz,
+                T::fused(outer_ring_sy, outer_ring_sy, outer_ring_sx * outer_ring_sx),
+            ),
+            t4,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: k(0.1) * (outer_ring_ry + inner_ring_ry) + k(0.8) * rotor_ry,
+            potential: T::fused(
+                k(0.8),
+                rotor_ry,
+                k(0.1) * (outer_ring_ry + inner_ring_ry),
+            ),
         }
     }
     /// Writes the joint readings: 114 operations (54 ±, 60 ×, 0 ÷).
@@ -517,7 +821,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let t1 = outer_ring_e1 * outer_ring_e3;
         let t2 = outer_ring_e2 * outer_ring_e2;
         let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = t3 + outer_ring_e1 * outer_ring_e1;
+        let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
         let t5 = outer_ring_e3 * outer_ring_e3;
         let t6 = k(1.0) - (t5 + (t4 + t2));
         let t7 = inner_ring_e0 * inner_ring_e2;
@@ -528,36 +832,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         let t12 = k(2.0) * (t11 + t10);
         let t13 = inner_ring_e2 * inner_ring_e2;
         let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = t14 + inner_ring_e1 * inner_ring_e1;
+        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t16 = inner_ring_e3 * inner_ring_e3;
         let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = k(2.0) * (k(0.5) - t15) - t17;
+        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
         let t19 = outer_ring_e0 * outer_ring_e3;
         let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = k(2.0) * (t20 - t19) * t18
-            + t12 * (k(2.0) * (k(0.5) - (t3 + t2)) - t6);
-        let t22 = (k(2.0) * (k(0.5) - t4) - t6) * t18 + k(2.0) * (t20 + t19) * t12;
-        let t23 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t21 = T::fused(
+            t12,
+            T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
+            k(2.0) * (t20 - t19) * t18,
+        );
+        let t22 = T::fused(
+            k(2.0) * (t20 + t19),
+            t12,
+            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+        );
+        let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t24 = rotor_e2 * rotor_e2;
         let t25 = rotor_e0 * rotor_e0;
-        let t26 = k(2.0) * (k(0.5) - (t25 + t24))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t25 + rotor_e1 * rotor_e1 + t24)));
+        let t26 = T::fused(
+            k(2.0),
+            k(0.5) - (t25 + t24),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t25) + t24)),
+        );
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
-        let t29 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t30 = k(2.0) * (t8 + t7) * t29 - k(2.0) * (t28 - t27) * t26;
-        let t31 = k(2.0) * (t11 - t10) * t29
-            + (k(2.0) * (k(0.5) - (t14 + t13)) - t17) * t26;
+        let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t31 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
+            t26,
+            k(2.0) * (t11 - t10) * t29,
+        );
         *out = [
             k(2.0) * (t1 + t0),
-            t6 - k(2.0) * (k(0.5) - (t3 + t5)),
+            T::fused(-k(2.0), k(0.5) - (t3 + t5), t6),
             outer_ring_wy,
-            k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1) * t9
-                - t21,
-            t22 + k(2.0) * (t1 - t0) * t9,
+            T::fused(
+                k(2.0)
+                    * T::fused(
+                        outer_ring_e0,
+                        outer_ring_e1,
+                        outer_ring_e2 * outer_ring_e3,
+                    ),
+                t9,
+                -t21,
+            ),
+            T::fused(k(2.0) * (t1 - t0), t9, t22),
             inner_ring_wz - outer_ring_wz,
-            t30 - t23 * (k(2.0) * (k(0.5) - (t14 + t16)) - t17),
-            t31 + k(2.0) * (t28 + t27) * t23,
+            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
+            T::fused(k(2.0) * (t28 + t27), t23, t31),
             rotor_wx - inner_ring_wx,
         ];
     }
@@ -679,9 +1005,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeViscous<T> {
         y[39]
     }
 }
-impl<T: gyro_sim::Scalar> GyroscopeViscous<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeViscous<T> {
+    type Vectors = [[T; 4]; 3];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 40]) -> [[T; 4]; 3] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
         let outer_ring_e2 = y[5];
@@ -700,23 +1027,8 @@ impl<T: gyro_sim::Scalar> GyroscopeViscous<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
-    type Independent = gyro_sim::charts::Charts<3>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -742,47 +1054,82 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         let chart2_1 = charts[2][1];
         let chart2_2 = charts[2][2];
         let chart2_3 = charts[2][3];
-        let t0 = outer_ring_e3 * outer_ring_e3
-            + (outer_ring_e0 * outer_ring_e0 + outer_ring_e1 * outer_ring_e1
-                + outer_ring_e2 * outer_ring_e2);
+        let t0 = T::fused(
+            outer_ring_e3,
+            outer_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                outer_ring_e2,
+                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+            ),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = outer_ring_e1 * t1;
         let t3 = outer_ring_e0 * t1;
         let t4 = outer_ring_e3 * t1;
         let t5 = outer_ring_e2 * t1;
-        let t6 = chart0_0 * t5 + chart0_1 * t4 - chart0_2 * t3 - chart0_3 * t2;
+        let t6 = T::fused(
+            -chart0_3,
+            t2,
+            T::fused(-chart0_2, t3, T::fused(chart0_1, t4, chart0_0 * t5)),
+        );
         let t7 = k(0.5) * t6;
         let t8 = t3 * t3;
-        let t9 = k(2.0) * (k(0.5) - (t4 * t4 + t8));
-        let t10 = k(2.0) * (t3 * t4 - t2 * t5);
+        let t9 = k(2.0) * (k(0.5) - T::fused(t4, t4, t8));
+        let t10 = k(2.0) * T::fused(-t2, t5, t3 * t4);
         let t11 = t2 * t4;
         let t12 = t3 * t5;
         let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * (t3 * t2 + t5 * t4);
-        let t15 = k(2.0) * (k(0.5) - (t8 + t2 * t2));
+        let t14 = k(2.0) * T::fused(t5, t4, t3 * t2);
+        let t15 = k(2.0) * (k(0.5) - T::fused(t2, t2, t8));
         let t16 = k(2.0) * (t12 - t11);
-        let t17 = t16 * t13 + t9 * t15;
+        let t17 = T::fused(t9, t15, t16 * t13);
         let t18 = k(1.0) / (t7 * t17);
-        let t19 = t18 * (t14 * (t13 * t7) - t10 * (t9 * t7));
-        let t20 = chart0_0 * (outer_ring_e0 + t3) + chart0_1 * (outer_ring_e1 + t2)
-            + chart0_2 * (outer_ring_e2 + t5);
-        let t21 = chart0_0 * t2 - chart0_1 * t3 - chart0_2 * t4 + chart0_3 * t5;
+        let t19 = t18 * T::fused(-t10, t9 * t7, t14 * (t13 * t7));
+        let t20 = T::fused(
+            chart0_2,
+            outer_ring_e2 + t5,
+            T::fused(chart0_1, outer_ring_e1 + t2, chart0_0 * (outer_ring_e0 + t3)),
+        );
+        let t21 = T::fused(
+            chart0_3,
+            t5,
+            T::fused(-chart0_2, t4, T::fused(-chart0_1, t3, chart0_0 * t2)),
+        );
         let t22 = k(0.5) * t21;
-        let t23 = chart0_0 * t4 - chart0_1 * t5 + chart0_2 * t2 - chart0_3 * t3;
+        let t23 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(chart0_2, t2, T::fused(-chart0_1, t5, chart0_0 * t4)),
+        );
         let t24 = k(0.5) * t23;
-        let t25 = t14 * (t15 * t22 - t13 * t24) + t10 * (t9 * t24 + t16 * t22);
-        let t26 = t18 * (t25 - (t20 + chart0_3 * (outer_ring_e3 + t4)) * t17);
-        let t27 = t18 * (t14 * (t15 * t7) + t10 * (t16 * t7));
-        let t28 = t3 - k(0.5) * (t2 * t27 - t5 * t26 - t4 * t19);
-        let t29 = t2 + k(0.5) * (t3 * t27 + t4 * t26 - t5 * t19);
-        let t30 = t5 + k(0.5) * (t4 * t27 - t3 * t26 + t2 * t19);
-        let t31 = t4 - k(0.5) * (t5 * t27 + t2 * t26 + t3 * t19);
+        let t25 = T::fused(
+            t10,
+            T::fused(t16, t22, t9 * t24),
+            t14 * T::fused(-t13, t24, t15 * t22),
+        );
+        let t26 = t18 * T::fused(-T::fused(chart0_3, outer_ring_e3 + t4, t20), t17, t25);
+        let t27 = t18 * T::fused(t10, t16 * t7, t14 * (t15 * t7));
+        let t28 = T::fused(
+            -k(0.5),
+            T::fused(-t4, t19, T::fused(-t5, t26, t2 * t27)),
+            t3,
+        );
+        let t29 = T::fused(k(0.5), T::fused(-t5, t19, T::fused(t4, t26, t3 * t27)), t2);
+        let t30 = T::fused(k(0.5), T::fused(t2, t19, T::fused(-t3, t26, t4 * t27)), t5);
+        let t31 = T::fused(-k(0.5), T::fused(t3, t19, T::fused(t2, t26, t5 * t27)), t4);
         let t32 = t29 * t30;
         let t33 = t28 * t31;
         let t34 = k(2.0) * (t33 - t32);
-        let t35 = inner_ring_e3 * inner_ring_e3
-            + (inner_ring_e0 * inner_ring_e0 + inner_ring_e1 * inner_ring_e1
-                + inner_ring_e2 * inner_ring_e2);
+        let t35 = T::fused(
+            inner_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                inner_ring_e2,
+                inner_ring_e2,
+                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t36 = k(0.5) * (t35 - k(3.0));
         let t37 = inner_ring_e2 * t36;
         let t38 = inner_ring_e1 * t36;
@@ -792,67 +1139,114 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         let t42 = t41 * t40;
         let t43 = k(2.0) * (t42 - t39);
         let t44 = t28 * t28;
-        let t45 = k(2.0) * (k(0.5) - (t44 + t30 * t30));
+        let t45 = k(2.0) * (k(0.5) - T::fused(t30, t30, t44));
         let t46 = t41 * t41;
-        let t47 = k(2.0) * (k(0.5) - (t37 * t37 + t46));
-        let t48 = k(2.0) * (t28 * t29 + t30 * t31);
+        let t47 = k(2.0) * (k(0.5) - T::fused(t37, t37, t46));
+        let t48 = k(2.0) * T::fused(t30, t31, t28 * t29);
         let t49 = t37 * t40;
         let t50 = t41 * t38;
         let t51 = k(2.0) * (t50 + t49);
-        let t52 = t51 * t48 + (t47 * t45 + t43 * t34);
-        let t53 = k(2.0) * (k(0.5) - (t46 + t38 * t38));
-        let t54 = k(2.0) * (k(0.5) - (t29 * t29 + t44));
+        let t52 = T::fused(t51, t48, T::fused(t43, t34, t47 * t45));
+        let t53 = k(2.0) * (k(0.5) - T::fused(t38, t38, t46));
+        let t54 = k(2.0) * (k(0.5) - T::fused(t29, t29, t44));
         let t55 = k(2.0) * (t42 + t39);
         let t56 = k(2.0) * (t33 + t32);
         let t57 = t38 * t40;
         let t58 = t41 * t37;
         let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * (t28 * t30 - t29 * t31);
-        let t61 = t60 * t59 + (t56 * t55 + t54 * t53);
-        let t62 = t59 * t48 + (t55 * t45 - t53 * t34);
-        let t63 = t51 * t60 + (t47 * t56 - t43 * t54);
-        let t64 = t63 * t62 - t61 * t52;
-        let t65 = chart1_0 * (inner_ring_e0 + t41) + chart1_1 * (inner_ring_e1 + t38)
-            + chart1_2 * (inner_ring_e2 + t37);
-        let t66 = chart1_0 * t37 + chart1_1 * t40 - chart1_2 * t41 - chart1_3 * t38;
+        let t60 = k(2.0) * T::fused(-t29, t31, t28 * t30);
+        let t61 = T::fused(t60, t59, T::fused(t54, t53, t56 * t55));
+        let t62 = T::fused(t59, t48, T::fused(-t53, t34, t55 * t45));
+        let t63 = T::fused(t51, t60, T::fused(-t43, t54, t47 * t56));
+        let t64 = T::fused(-t61, t52, t63 * t62);
+        let t65 = T::fused(
+            chart1_2,
+            inner_ring_e2 + t37,
+            T::fused(chart1_1, inner_ring_e1 + t38, chart1_0 * (inner_ring_e0 + t41)),
+        );
+        let t66 = T::fused(
+            -chart1_3,
+            t38,
+            T::fused(-chart1_2, t41, T::fused(chart1_1, t40, chart1_0 * t37)),
+        );
         let t67 = k(0.5) * t66;
-        let t68 = chart1_0 * t38 - chart1_1 * t41 - chart1_2 * t40 + chart1_3 * t37;
+        let t68 = T::fused(
+            chart1_3,
+            t37,
+            T::fused(-chart1_2, t40, T::fused(-chart1_1, t41, chart1_0 * t38)),
+        );
         let t69 = k(0.5) * t68;
         let t70 = k(2.0) * (t58 + t57);
         let t71 = k(2.0) * (t50 - t49);
-        let t72 = k(2.0) * (k(0.5) - (t46 + t40 * t40));
-        let t73 = t72 * t48 - (t71 * t45 - t70 * t34);
-        let t74 = t60 * t72 - (t56 * t71 + t54 * t70);
-        let t75 = t74 * (t52 * t67 - t62 * t69) + t73 * (t61 * t69 - t63 * t67);
-        let t76 = chart1_0 * t40 - chart1_1 * t37 + chart1_2 * t38 - chart1_3 * t41;
+        let t72 = k(2.0) * (k(0.5) - T::fused(t40, t40, t46));
+        let t73 = T::fused(t72, t48, -T::fused(-t70, t34, t71 * t45));
+        let t74 = T::fused(t60, t72, -T::fused(t54, t70, t56 * t71));
+        let t75 = T::fused(
+            t73,
+            T::fused(-t63, t67, t61 * t69),
+            t74 * T::fused(-t62, t69, t52 * t67),
+        );
+        let t76 = T::fused(
+            -chart1_3,
+            t41,
+            T::fused(chart1_2, t38, T::fused(-chart1_1, t37, chart1_0 * t40)),
+        );
         let t77 = k(0.5) * t76;
         let t78 = k(1.0) / (t77 * t64);
-        let t79 = t78 * (t75 - (t65 + chart1_3 * (inner_ring_e3 + t40)) * t64);
-        let t80 = t78 * (t74 * (t52 * t77) - t73 * (t63 * t77));
-        let t81 = t78 * (t74 * (t62 * t77) - t73 * (t61 * t77));
-        let t82 = t41 + k(0.5) * (t38 * t81 - t37 * t80 + t40 * t79);
-        let t83 = t38 - k(0.5) * (t41 * t81 + t40 * t80 + t37 * t79);
-        let t84 = t37 - k(0.5) * (t40 * t81 - t41 * t80 - t38 * t79);
-        let t85 = t40 + k(0.5) * (t37 * t81 + t38 * t80 - t41 * t79);
+        let t79 = t78
+            * T::fused(-T::fused(chart1_3, inner_ring_e3 + t40, t65), t64, t75);
+        let t80 = t78 * T::fused(-t73, t63 * t77, t74 * (t52 * t77));
+        let t81 = t78 * T::fused(-t73, t61 * t77, t74 * (t62 * t77));
+        let t82 = T::fused(
+            k(0.5),
+            T::fused(t40, t79, T::fused(-t37, t80, t38 * t81)),
+            t41,
+        );
+        let t83 = T::fused(
+            -k(0.5),
+            T::fused(t37, t79, T::fused(t40, t80, t41 * t81)),
+            t38,
+        );
+        let t84 = T::fused(
+            -k(0.5),
+            T::fused(-t38, t79, T::fused(-t41, t80, t40 * t81)),
+            t37,
+        );
+        let t85 = T::fused(
+            k(0.5),
+            T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
+            t40,
+        );
         let t86 = t82 * t82;
         let t87 = t83 * t84;
         let t88 = t82 * t85;
         let t89 = t83 * t85;
         let t90 = t82 * t84;
-        let t91 = rotor_e3 * rotor_e3
-            + (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1 + rotor_e2 * rotor_e2);
+        let t91 = T::fused(
+            rotor_e3,
+            rotor_e3,
+            T::fused(
+                rotor_e2,
+                rotor_e2,
+                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+            ),
+        );
         let t92 = k(0.5) * (t91 - k(3.0));
         let t93 = rotor_e2 * t92;
         let t94 = rotor_e3 * t92;
         let t95 = rotor_e0 * t92;
         let t96 = rotor_e1 * t92;
-        let t97 = chart2_0 * t96 - chart2_1 * t95 - chart2_2 * t94 + chart2_3 * t93;
+        let t97 = T::fused(
+            chart2_3,
+            t93,
+            T::fused(-chart2_2, t94, T::fused(-chart2_1, t95, chart2_0 * t96)),
+        );
         let t98 = k(0.5) * t97;
         let t99 = k(2.0) * (t88 - t87);
         let t100 = t96 * t94;
         let t101 = t95 * t93;
         let t102 = k(2.0) * (t101 + t100);
-        let t103 = k(2.0) * (k(0.5) - (t84 * t84 + t86));
+        let t103 = k(2.0) * (k(0.5) - T::fused(t84, t84, t86));
         let t104 = t93 * t94;
         let t105 = t95 * t96;
         let t106 = k(2.0) * (t105 - t104);
@@ -860,41 +1254,71 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         let t108 = t82 * t83;
         let t109 = k(2.0) * (t108 + t107);
         let t110 = t95 * t95;
-        let t111 = k(2.0) * (k(0.5) - (t94 * t94 + t110));
-        let t112 = t111 * t109 - (t106 * t103 - t102 * t99);
+        let t111 = k(2.0) * (k(0.5) - T::fused(t94, t94, t110));
+        let t112 = T::fused(t111, t109, -T::fused(-t102, t99, t106 * t103));
         let t113 = k(2.0) * (t90 + t89);
-        let t114 = k(2.0) * (k(0.5) - (t110 + t96 * t96));
+        let t114 = k(2.0) * (k(0.5) - T::fused(t96, t96, t110));
         let t115 = k(2.0) * (t108 - t107);
         let t116 = t96 * t93;
         let t117 = t95 * t94;
         let t118 = k(2.0) * (t117 + t116);
-        let t119 = k(2.0) * (k(0.5) - (t86 + t85 * t85));
+        let t119 = k(2.0) * (k(0.5) - T::fused(t85, t85, t86));
         let t120 = k(2.0) * (t101 - t100);
-        let t121 = t120 * t119 - (t118 * t115 + t114 * t113);
-        let t122 = t111 * t119 + (t106 * t115 + t102 * t113);
-        let t123 = t109 * t120 + (t103 * t118 - t99 * t114);
+        let t121 = T::fused(t120, t119, -T::fused(t114, t113, t118 * t115));
+        let t122 = T::fused(t111, t119, T::fused(t102, t113, t106 * t115));
+        let t123 = T::fused(t109, t120, T::fused(-t99, t114, t103 * t118));
         let t124 = k(2.0) * (t117 - t116);
-        let t125 = k(2.0) * (k(0.5) - (t110 + t93 * t93));
+        let t125 = k(2.0) * (k(0.5) - T::fused(t93, t93, t110));
         let t126 = k(2.0) * (t105 + t104);
-        let t127 = t109 * t126 + (t103 * t125 + t99 * t124);
-        let t128 = t126 * t119 - (t125 * t115 - t124 * t113);
-        let t129 = t112 * t128 - t127 * t122;
+        let t127 = T::fused(t109, t126, T::fused(t99, t124, t103 * t125));
+        let t128 = T::fused(t126, t119, -T::fused(-t124, t113, t125 * t115));
+        let t129 = T::fused(-t127, t122, t112 * t128);
         let t130 = k(1.0) / (t98 * t129);
-        let t131 = t130 * (t123 * (t122 * t98) - t121 * (t112 * t98));
-        let t132 = t130 * (t123 * (t128 * t98) - t121 * (t127 * t98));
-        let t133 = chart2_0 * (rotor_e0 + t95) + chart2_1 * (rotor_e1 + t96)
-            + chart2_2 * (rotor_e2 + t93);
-        let t134 = chart2_0 * t94 - chart2_1 * t93 + chart2_2 * t96 - chart2_3 * t95;
+        let t131 = t130 * T::fused(-t121, t112 * t98, t123 * (t122 * t98));
+        let t132 = t130 * T::fused(-t121, t127 * t98, t123 * (t128 * t98));
+        let t133 = T::fused(
+            chart2_2,
+            rotor_e2 + t93,
+            T::fused(chart2_1, rotor_e1 + t96, chart2_0 * (rotor_e0 + t95)),
+        );
+        let t134 = T::fused(
+            -chart2_3,
+            t95,
+            T::fused(chart2_2, t96, T::fused(-chart2_1, t93, chart2_0 * t94)),
+        );
         let t135 = k(0.5) * t134;
-        let t136 = chart2_0 * t93 + chart2_1 * t94 - chart2_2 * t95 - chart2_3 * t96;
+        let t136 = T::fused(
+            -chart2_3,
+            t96,
+            T::fused(-chart2_2, t95, T::fused(chart2_1, t94, chart2_0 * t93)),
+        );
         let t137 = k(0.5) * t136;
-        let t138 = t123 * (t122 * t135 - t128 * t137)
-            + t121 * (t127 * t137 - t112 * t135);
-        let t139 = t130 * (t138 + (t133 + chart2_3 * (rotor_e3 + t94)) * t129);
-        let t140 = t95 - k(0.5) * (t96 * t139 + t93 * t132 - t94 * t131);
-        let t141 = t96 + k(0.5) * (t95 * t139 - t94 * t132 - t93 * t131);
-        let t142 = t93 + k(0.5) * (t94 * t139 + t95 * t132 + t96 * t131);
-        let t143 = t94 - k(0.5) * (t93 * t139 - t96 * t132 + t95 * t131);
+        let t138 = T::fused(
+            t121,
+            T::fused(-t112, t135, t127 * t137),
+            t123 * T::fused(-t128, t137, t122 * t135),
+        );
+        let t139 = t130 * T::fused(T::fused(chart2_3, rotor_e3 + t94, t133), t129, t138);
+        let t140 = T::fused(
+            -k(0.5),
+            T::fused(-t94, t131, T::fused(t93, t132, t96 * t139)),
+            t95,
+        );
+        let t141 = T::fused(
+            k(0.5),
+            T::fused(-t93, t131, T::fused(-t94, t132, t95 * t139)),
+            t96,
+        );
+        let t142 = T::fused(
+            k(0.5),
+            T::fused(t96, t131, T::fused(t95, t132, t94 * t139)),
+            t93,
+        );
+        let t143 = T::fused(
+            -k(0.5),
+            T::fused(t95, t131, T::fused(-t96, t132, t93 * t139)),
+            t94,
+        );
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
@@ -909,22 +1333,16 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         y[11] = -t83;
         y[12] = -t84;
         y[13] = -t85;
-        y[14] = -(k(0.00025) * (k(0.5) - (t86 + t83 * t83)));
+        y[14] = -(k(0.00025) * (k(0.5) - T::fused(t83, t83, t86)));
         y[15] = k(0.00025) * (t88 + t87);
         y[16] = -(k(0.00025) * (t90 - t89));
         y[17] = -t140;
         y[18] = -t141;
         y[19] = -t142;
         y[20] = -t143;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 257 operations (96 ±, 158 ×, 3 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
         let outer_ring_e1 = y[4];
@@ -947,79 +1365,95 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
-        let t2 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t3 = outer_ring_e0 * outer_ring_e2;
         let t4 = outer_ring_e1 * outer_ring_e3;
         let t5 = k(2.0) * (t4 - t3);
         let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
-        let t8 = t6 * outer_ring_wx + t2 * outer_ring_wz;
-        let t9 = t1 * outer_ring_wx + t5 * outer_ring_wz;
-        let t10 = outer_ring_wx + t9 * (t2 * t7) - t8 * (t5 * t7);
-        let t11 = outer_ring_wz - t9 * (t6 * t7) + t8 * (t1 * t7);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2, outer_ring_wz, t6 * outer_ring_wx);
+        let t9 = T::fused(t5, outer_ring_wz, t1 * outer_ring_wx);
+        let t10 = T::fused(-t8, t5 * t7, T::fused(t9, t2 * t7, outer_ring_wx));
+        let t11 = T::fused(t8, t1 * t7, T::fused(-t9, t6 * t7, outer_ring_wz));
         let t12 = inner_ring_e0 * inner_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + inner_ring_e1 * inner_ring_e1));
+        let t13 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t12));
         let t14 = outer_ring_e0 * outer_ring_e3;
         let t15 = outer_ring_e1 * outer_ring_e2;
         let t16 = k(2.0) * (t15 - t14);
         let t17 = inner_ring_e0 * inner_ring_e3;
         let t18 = inner_ring_e1 * inner_ring_e2;
         let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t21 = inner_ring_e0 * inner_ring_e2;
         let t22 = inner_ring_e1 * inner_ring_e3;
         let t23 = k(2.0) * (t22 - t21);
         let t24 = outer_ring_e0 * outer_ring_e1;
         let t25 = outer_ring_e2 * outer_ring_e3;
         let t26 = k(2.0) * (t25 + t24);
-        let t27 = t26 * t23 - (t20 * t19 + t16 * t13);
+        let t27 = T::fused(t26, t23, -T::fused(t16, t13, t20 * t19));
         let t28 = k(2.0) * (t18 - t17);
-        let t29 = k(2.0) * (k(0.5) - (t12 + inner_ring_e2 * inner_ring_e2));
+        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t12));
         let t30 = k(2.0) * (t15 + t14);
         let t31 = inner_ring_e0 * inner_ring_e1;
         let t32 = inner_ring_e2 * inner_ring_e3;
         let t33 = k(2.0) * (t32 + t31);
-        let t34 = t5 * t33 - (t30 * t29 + t2 * t28);
-        let t35 = t26 * t33 + (t16 * t28 + t20 * t29);
-        let t36 = t5 * t23 + (t30 * t19 + t2 * t13);
-        let t37 = k(1.0) / (t36 * t35 - t34 * t27);
+        let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
+        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
+        let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
+        let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
         let t38 = k(2.0) * (t22 + t21);
         let t39 = k(2.0) * (t32 - t31);
-        let t40 = k(2.0) * (k(0.5) - (t12 + inner_ring_e3 * inner_ring_e3));
-        let t41 = t6 * t38 + k(2.0) * (t25 - t24) * t39 + t1 * t40;
-        let t42 = t10 * t41 + t11 * (t5 * t40 - (t30 * t39 - t2 * t38));
-        let t43 = t42 - (inner_ring_wx * t35 - inner_ring_wy * t27);
-        let t44 = outer_ring_wy * t41 + t11 * (t26 * t40 - (t16 * t38 - t20 * t39));
-        let t45 = t44 + (inner_ring_wx * t34 - inner_ring_wy * t36);
-        let t46 = inner_ring_wx + t45 * (t27 * t37) + t43 * (t36 * t37);
-        let t47 = inner_ring_wy + t45 * (t35 * t37) + t43 * (t34 * t37);
+        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
+        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
+        let t42 = T::fused(
+            t11,
+            T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
+            t10 * t41,
+        );
+        let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
+        let t44 = T::fused(
+            t11,
+            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
+            outer_ring_wy * t41,
+        );
+        let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
+        let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
+        let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
         let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - (t48 + rotor_e2 * rotor_e2));
+        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
         let t50 = rotor_e0 * rotor_e3;
         let t51 = rotor_e1 * rotor_e2;
         let t52 = k(2.0) * (t51 - t50);
         let t53 = rotor_e0 * rotor_e1;
         let t54 = rotor_e2 * rotor_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = t40 * t55 - (t38 * t52 - t39 * t49);
+        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
         let t57 = k(2.0) * (t54 - t53);
         let t58 = rotor_e0 * rotor_e2;
         let t59 = rotor_e1 * rotor_e3;
         let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - (t48 + rotor_e3 * rotor_e3));
-        let t62 = t33 * t61 - (t28 * t60 - t29 * t57);
-        let t63 = t38 * t60 + t39 * t57 + t40 * t61;
-        let t64 = t33 * t55 + (t28 * t52 + t29 * t49);
-        let t65 = k(1.0) / (t64 * t63 - t62 * t56);
-        let t66 = k(2.0) * (k(0.5) - (t48 + rotor_e1 * rotor_e1));
+        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
+        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
+        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
+        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
+        let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
+        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
         let t67 = k(2.0) * (t51 + t50);
         let t68 = k(2.0) * (t59 - t58);
-        let t69 = t23 * t68 + (t19 * t67 + t13 * t66);
-        let t70 = t46 * (t33 * t68 - (t29 * t67 + t28 * t66)) - t47 * t69;
-        let t71 = t70 + (rotor_wy * t63 + rotor_wz * t56);
-        let t72 = t46 * (t40 * t68 - (t39 * t67 - t38 * t66)) + inner_ring_wz * t69;
-        let t73 = t72 - (rotor_wy * t62 + rotor_wz * t64);
+        let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
+        let t70 = T::fused(
+            -t47,
+            t69,
+            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+        );
+        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t72 = T::fused(
+            inner_ring_wz,
+            t69,
+            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+        );
+        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
@@ -1030,112 +1464,48 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
         y[29] = k(0.0);
         y[30] = t46;
         y[31] = t47;
-        y[33] = -(k(0.000125) * (t38 * t47 - t28 * inner_ring_wz));
-        y[34] = -(k(0.000125) * (t39 * t47 + t29 * inner_ring_wz));
-        y[35] = k(0.000125) * (t40 * t47 + t33 * inner_ring_wz);
-        y[37] = rotor_wy - t73 * (t56 * t65) - t71 * (t64 * t65);
-        y[38] = rotor_wz + t73 * (t63 * t65) + t71 * (t62 * t65);
+        y[33] = -(k(0.000125) * T::fused(-t28, inner_ring_wz, t38 * t47));
+        y[34] = -(k(0.000125) * T::fused(t29, inner_ring_wz, t39 * t47));
+        y[35] = k(0.000125) * T::fused(t33, inner_ring_wz, t40 * t47);
+        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
+        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeViscous<T> {
+    type Independent = gyro_sim::charts::Charts<3>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 82 operations (28 ±, 54 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let outer_ring_e0 = y[3];
-        let outer_ring_e1 = y[4];
-        let outer_ring_e2 = y[5];
-        let outer_ring_e3 = y[6];
-        let inner_ring_e0 = y[10];
-        let inner_ring_e1 = y[11];
-        let inner_ring_e2 = y[12];
-        let inner_ring_e3 = y[13];
-        let rotor_e0 = y[17];
-        let rotor_e1 = y[18];
-        let rotor_e2 = y[19];
-        let rotor_e3 = y[20];
-        let outer_ring_sx = y[21];
-        let outer_ring_sy = y[22];
-        let outer_ring_sz = y[23];
-        let inner_ring_sx = y[27];
-        let inner_ring_sy = y[28];
-        let inner_ring_sz = y[29];
-        let rotor_sx = y[33];
-        let rotor_sy = y[34];
-        let rotor_sz = y[35];
-        let outer_ring_wx = y[24];
-        let outer_ring_wy = y[25];
-        let outer_ring_wz = y[26];
-        let inner_ring_wx = y[30];
-        let inner_ring_wy = y[31];
-        let inner_ring_wz = y[32];
-        let rotor_wx = y[36];
-        let rotor_wy = y[37];
-        let rotor_wz = y[38];
-        let t0 = inner_ring_wx - rotor_wx;
-        let t1 = outer_ring_wz - inner_ring_wz;
-        let t2 = outer_ring_wy * (k(1e-6) * outer_ring_wy) + t1 * (k(1e-6) * t1)
-            + t0 * (k(1e-6) * t0);
-        *dy = [
-            outer_ring_sx,
-            outer_ring_sy,
-            outer_ring_sz,
-            -(k(0.5)
-                * (outer_ring_e1 * outer_ring_wx + outer_ring_e2 * outer_ring_wy
-                    + outer_ring_e3 * outer_ring_wz)),
-            k(0.5)
-                * (outer_ring_e0 * outer_ring_wx - outer_ring_e3 * outer_ring_wy
-                    + outer_ring_e2 * outer_ring_wz),
-            k(0.5)
-                * (outer_ring_e3 * outer_ring_wx + outer_ring_e0 * outer_ring_wy
-                    - outer_ring_e1 * outer_ring_wz),
-            -(k(0.5)
-                * (outer_ring_e2 * outer_ring_wx - outer_ring_e1 * outer_ring_wy
-                    - outer_ring_e0 * outer_ring_wz)),
-            inner_ring_sx,
-            inner_ring_sy,
-            inner_ring_sz,
-            -(k(0.5)
-                * (inner_ring_e1 * inner_ring_wx + inner_ring_e2 * inner_ring_wy
-                    + inner_ring_e3 * inner_ring_wz)),
-            k(0.5)
-                * (inner_ring_e0 * inner_ring_wx - inner_ring_e3 * inner_ring_wy
-                    + inner_ring_e2 * inner_ring_wz),
-            k(0.5)
-                * (inner_ring_e3 * inner_ring_wx + inner_ring_e0 * inner_ring_wy
-                    - inner_ring_e1 * inner_ring_wz),
-            -(k(0.5)
-                * (inner_ring_e2 * inner_ring_wx - inner_ring_e1 * inner_ring_wy
-                    - inner_ring_e0 * inner_ring_wz)),
-            rotor_sx,
-            rotor_sy,
-            rotor_sz,
-            -(k(0.5)
-                * (rotor_e1 * rotor_wx + rotor_e2 * rotor_wy + rotor_e3 * rotor_wz)),
-            k(0.5) * (rotor_e0 * rotor_wx - rotor_e3 * rotor_wy + rotor_e2 * rotor_wz),
-            k(0.5) * (rotor_e3 * rotor_wx + rotor_e0 * rotor_wy - rotor_e1 * rotor_wz),
-            -(k(0.5)
-                * (rotor_e2 * rotor_wx - rotor_e1 * rotor_wy - rotor_e0 * rotor_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            -t2,
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
@@ -1302,41 +1672,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
         let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + inner_ring_e3 * inner_ring_e3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
         let t6 = t5 * t3;
         let t7 = inner_ring_e0 * inner_ring_e1;
         let t8 = inner_ring_e2 * inner_ring_e3;
         let t9 = k(2.0) * (t8 - t7);
         let t10 = k(4.0) * outer_ring_e0;
         let t11 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2);
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
         let t12 = t5 * t2;
         let t13 = t5 * t1;
         let t14 = t5 * t0;
         let t15 = k(4.0) * inner_ring_e0;
         let t16 = k(2.0)
-            * (outer_ring_e1 * outer_ring_e3 - outer_ring_e0 * outer_ring_e2);
+            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
         let t17 = k(2.0) * inner_ring_e1;
         let t18 = outer_ring_e0 * outer_ring_e3;
         let t19 = outer_ring_e1 * outer_ring_e2;
         let t20 = k(2.0) * (t19 + t18);
         let t21 = k(2.0) * inner_ring_e2;
         let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - (t22 + outer_ring_e1 * outer_ring_e1));
+        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
         let t24 = k(2.0) * inner_ring_e0;
         let t25 = k(2.0) * inner_ring_e3;
         let t26 = k(4.0) * inner_ring_e3;
         let t27 = k(2.0)
-            * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1);
-        let t28 = k(2.0) * (k(0.5) - (t22 + outer_ring_e2 * outer_ring_e2));
+            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
         let t29 = k(2.0) * (t19 - t18);
         let t30 = k(0.00025) * inner_ring_e3;
         let t31 = k(0.00025) * inner_ring_e2;
         let t32 = k(0.00025) * inner_ring_e1;
         let t33 = k(0.00025) * inner_ring_e0;
-        let t34 = k(2.0) * (rotor_e1 * rotor_e3 - rotor_e0 * rotor_e2);
-        let t35 = k(2.0) * (rotor_e1 * rotor_e2 + rotor_e0 * rotor_e3);
-        let t36 = k(2.0) * (k(0.5) - (rotor_e0 * rotor_e0 + rotor_e1 * rotor_e1));
+        let t34 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
+        let t35 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t36 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
         let t37 = t36 * t25;
         let t38 = t36 * t21;
         let t39 = t36 * t17;
@@ -1344,10 +1714,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t41 = k(2.0) * rotor_e2;
         let t42 = k(2.0) * (t8 + t7);
         let t43 = k(2.0) * rotor_e3;
-        let t44 = k(2.0) * (k(0.5) - (t4 + inner_ring_e2 * inner_ring_e2));
+        let t44 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
         let t45 = k(4.0) * rotor_e0;
         let t46 = k(2.0)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3);
+            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
         let t47 = k(4.0) * rotor_e1;
         let t48 = k(2.0) * rotor_e0;
         let t49 = k(2.0) * rotor_e1;
@@ -1369,22 +1739,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            t11 * t10 + t9 * t2 + t6,
-            t11 * (k(4.0) * outer_ring_e1) + t9 * t3 - t12,
-            t9 * t0 + t13,
-            t9 * t1 - t14,
-            t16 * t15 - (t23 * t21 + t20 * t17),
-            -(t23 * t25 + t20 * t24),
-            t20 * t25 - t23 * t24,
-            t16 * t26 - (t23 * t17 - t20 * t21),
-            -(t14 + (t11 * t2 - t9 * t10)),
-            t11 * t3 - t13,
-            t11 * t0 + t9 * (k(4.0) * outer_ring_e2) - t12,
-            -(t6 + t11 * t1),
-            t29 * t21 + t28 * t17 + t27 * t15,
-            t29 * t25 + t28 * t24,
-            t29 * t24 - t28 * t25,
-            t29 * t17 - t28 * t21 + t27 * t26,
+            T::fused(t9, t2, t11 * t10) + t6,
+            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
+            T::fused(t9, t0, t13),
+            T::fused(t9, t1, -t14),
+            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
+            -T::fused(t20, t24, t23 * t25),
+            T::fused(-t23, t24, t20 * t25),
+            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
+            -(t14 + T::fused(-t9, t10, t11 * t2)),
+            T::fused(t11, t3, -t13),
+            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
+            -T::fused(t11, t1, t6),
+            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
+            T::fused(t28, t24, t29 * t25),
+            T::fused(-t28, t25, t29 * t24),
+            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
             k(-1.0),
             -(k(0.0005) * inner_ring_e0),
             -(k(0.0005) * inner_ring_e1),
@@ -1401,22 +1771,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             t33,
             -t32,
             k(1.0),
-            t37 + t35 * t15 + t34 * t17,
-            t34 * t24 - t38,
-            t34 * t25 - (t39 - t35 * (k(4.0) * inner_ring_e2)),
-            t34 * t21 + t40,
-            t46 * t45 - t44 * t43 - t42 * t41,
-            t46 * t47 - t44 * t41 + t42 * t43,
-            -(t44 * t49 + t42 * t48),
-            t42 * t49 - t44 * t48,
-            t34 * t15 - (t38 + t35 * t17),
-            -(t37 + t35 * t24),
-            t35 * t25 - t40,
-            t34 * t26 - (t39 - t35 * t21),
-            t11 * t45 + t9 * t43 + t5 * t41,
-            t11 * t47 + t9 * t41 - t5 * t43,
-            t9 * t49 + t5 * t48,
-            t9 * t48 - t5 * t49,
+            T::fused(t34, t17, T::fused(t35, t15, t37)),
+            T::fused(t34, t24, -t38),
+            T::fused(t34, t25, -T::fused(-t35, k(4.0) * inner_ring_e2, t39)),
+            T::fused(t34, t21, t40),
+            T::fused(-t42, t41, T::fused(-t44, t43, t46 * t45)),
+            T::fused(t42, t43, T::fused(-t44, t41, t46 * t47)),
+            -T::fused(t42, t48, t44 * t49),
+            T::fused(-t44, t48, t42 * t49),
+            T::fused(t34, t15, -T::fused(t35, t17, t38)),
+            -T::fused(t35, t24, t37),
+            T::fused(t35, t25, -t40),
+            T::fused(t34, t26, -T::fused(-t35, t21, t39)),
+            T::fused(t5, t41, T::fused(t9, t43, t11 * t45)),
+            T::fused(-t5, t43, T::fused(t9, t41, t11 * t47)),
+            T::fused(t5, t48, t9 * t49),
+            T::fused(-t5, t49, t9 * t48),
             t1,
             t0,
             t3,
@@ -1447,14 +1817,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
         let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + outer_ring_e3 * outer_ring_e3));
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
         let t2 = outer_ring_e0 * outer_ring_e2;
         let t3 = outer_ring_e1 * outer_ring_e3;
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - (t0 + outer_ring_e1 * outer_ring_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
         let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(0.5) - (t7 + inner_ring_e3 * inner_ring_e3);
+        let t8 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7);
         let t9 = k(2.0) * t8;
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
@@ -1466,8 +1836,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t17 = inner_ring_e1 * inner_ring_e3;
         let t18 = t17 + t16;
         let t19 = k(2.0) * t18;
-        let t20 = t5 * t19 + k(2.0) * (t15 - t14) * t13 + t1 * t9;
-        let t21 = k(2.0) * (k(0.5) - (t0 + outer_ring_e2 * outer_ring_e2));
+        let t20 = T::fused(t1, t9, T::fused(k(2.0) * (t15 - t14), t13, t5 * t19));
+        let t21 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
         let t22 = outer_ring_e0 * outer_ring_e3;
         let t23 = outer_ring_e1 * outer_ring_e2;
         let t24 = k(2.0) * (t23 - t22);
@@ -1476,29 +1846,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t27 = inner_ring_e1 * inner_ring_e2;
         let t28 = t27 - t26;
         let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - (t7 + inner_ring_e2 * inner_ring_e2);
+        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7);
         let t31 = k(2.0) * t30;
         let t32 = k(2.0) * (t23 + t22);
         let t33 = t11 + t10;
         let t34 = k(2.0) * t33;
-        let t35 = k(2.0) * (k(0.5) - (t7 + inner_ring_e1 * inner_ring_e1));
+        let t35 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7));
         let t36 = k(2.0) * (t27 + t26);
         let t37 = k(2.0) * (t17 - t16);
         let t38 = rotor_e0 * rotor_e0;
-        let t39 = k(2.0) * (k(0.5) - (t38 + rotor_e1 * rotor_e1));
+        let t39 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t38));
         let t40 = rotor_e0 * rotor_e3;
         let t41 = rotor_e1 * rotor_e2;
         let t42 = k(2.0) * (t41 + t40);
         let t43 = rotor_e0 * rotor_e2;
         let t44 = rotor_e1 * rotor_e3;
         let t45 = k(2.0) * (t44 - t43);
-        let t46 = t37 * t45 + (t36 * t42 + t35 * t39);
+        let t46 = T::fused(t37, t45, T::fused(t35, t39, t36 * t42));
         let t47 = rotor_e0 * rotor_e1;
         let t48 = rotor_e2 * rotor_e3;
         let t49 = k(2.0) * (t48 - t47);
         let t50 = k(2.0) * (t44 + t43);
-        let t51 = k(2.0) * (k(0.5) - (t38 + rotor_e3 * rotor_e3));
-        let t52 = k(2.0) * (k(0.5) - (t38 + rotor_e2 * rotor_e2));
+        let t51 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t38));
+        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t38));
         let t53 = k(2.0) * (t41 - t40);
         let t54 = k(2.0) * (t48 + t47);
         *out = [
@@ -1516,13 +1886,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(-1.0),
             k(1.0),
             -t20,
-            t24 * t19 - t21 * t13 - t25 * t9,
-            t32 * t31 + t6 * t29 - t4 * t34,
-            t4 * t37 + (t32 * t36 + t6 * t35),
+            T::fused(-t25, t9, T::fused(-t21, t13, t24 * t19)),
+            T::fused(-t4, t34, T::fused(t6, t29, t32 * t31)),
+            T::fused(t4, t37, T::fused(t6, t35, t32 * t36)),
             t20,
-            t4 * t9 - (t32 * t13 - t6 * t19),
-            -(t25 * t34 + (t24 * t29 + t21 * t31)),
-            t25 * t37 - (t21 * t36 + t24 * t35),
+            T::fused(t4, t9, -T::fused(-t6, t19, t32 * t13)),
+            -T::fused(t25, t34, T::fused(t21, t31, t24 * t29)),
+            T::fused(t25, t37, -T::fused(t24, t35, t21 * t36)),
             k(-1.0),
             k(0.00025) * t18,
             -(k(0.00025) * t28),
@@ -1535,14 +1905,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             -(k(0.00025) * t8),
             -(k(0.00025) * t33),
             k(1.0),
-            t13 * t42 - t19 * t39 - t9 * t45,
+            T::fused(-t9, t45, T::fused(-t19, t39, t13 * t42)),
             -t46,
-            t34 * t51 - (t29 * t50 - t31 * t49),
-            t34 * t54 + (t29 * t53 + t31 * t52),
-            t31 * t42 + t29 * t39 - t34 * t45,
+            T::fused(t34, t51, -T::fused(-t31, t49, t29 * t50)),
+            T::fused(t34, t54, T::fused(t31, t52, t29 * t53)),
+            T::fused(-t34, t45, T::fused(t29, t39, t31 * t42)),
             t46,
-            -(t19 * t50 + t13 * t49 + t9 * t51),
-            t19 * t53 - t13 * t52 - t9 * t54,
+            -T::fused(t9, t51, T::fused(t13, t49, t19 * t50)),
+            T::fused(-t9, t54, T::fused(-t13, t52, t19 * t53)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1595,14 +1965,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t2 = outer_ring_e1 * outer_ring_e3;
         let t3 = k(2.0) * (t2 - t1);
         let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = t4 + outer_ring_wx * outer_ring_wx;
+        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
         let t6 = outer_ring_e0 * outer_ring_e1;
         let t7 = outer_ring_e2 * outer_ring_e3;
         let t8 = k(2.0) * (t7 + t6);
         let t9 = outer_ring_wy * outer_ring_wz;
         let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + outer_ring_e3 * outer_ring_e3));
-        let t12 = k(2.0) * (k(0.5) - (t10 + outer_ring_e1 * outer_ring_e1));
+        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
         let t13 = outer_ring_e0 * outer_ring_e3;
         let t14 = outer_ring_e1 * outer_ring_e2;
         let t15 = k(2.0) * (t14 - t13);
@@ -1615,97 +1985,126 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t22 = k(2.0) * (t21 - t20);
         let t23 = k(2.0) * (t14 + t13);
         let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - (t24 + inner_ring_e3 * inner_ring_e3));
-        let t26 = t3 * t25 - (t23 * t22 - t12 * t19);
-        let t27 = k(2.0) * (k(0.5) - (t10 + outer_ring_e2 * outer_ring_e2));
-        let t28 = t8 * t25 - (t15 * t19 - t27 * t22);
+        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
+        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
+        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
+        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
         let t29 = k(2.0) * (t7 - t6);
-        let t30 = t16 * t19 + t29 * t22 + t11 * t25;
-        let t31 = outer_ring_wx * outer_ring_wz * t30
-            - (t0 * t28 - (t4 + outer_ring_wy * outer_ring_wy) * t26);
-        let t32 = k(2.0) * (k(0.5) - (t24 + inner_ring_e1 * inner_ring_e1));
+        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
+        let t31 = T::fused(
+            outer_ring_wx * outer_ring_wz,
+            t30,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+        );
+        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
         let t33 = inner_ring_e0 * inner_ring_e3;
         let t34 = inner_ring_e1 * inner_ring_e2;
         let t35 = k(2.0) * (t34 + t33);
         let t36 = k(2.0) * (t18 - t17);
-        let t37 = t8 * t36 - (t27 * t35 + t15 * t32);
-        let t38 = k(2.0) * (k(0.5) - (t24 + inner_ring_e2 * inner_ring_e2));
+        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
+        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
         let t39 = k(2.0) * (t34 - t33);
         let t40 = k(2.0) * (t21 + t20);
-        let t41 = t8 * t40 + (t15 * t39 + t27 * t38);
-        let t42 = inner_ring_wx * (t11 * t40 - (t16 * t39 - t29 * t38))
-            - inner_ring_wy * (t11 * t36 - (t29 * t35 - t16 * t32));
-        let t43 = k(2.0)
-            * (outer_ring_wy * t42
-                + outer_ring_wz * (inner_ring_wx * t41 - inner_ring_wy * t37));
-        let t44 = t3 * t36 + (t23 * t35 + t12 * t32);
-        let t45 = inner_ring_wx * inner_ring_wz;
-        let t46 = t3 * t40 - (t23 * t38 + t12 * t39);
-        let t47 = inner_ring_wy * inner_ring_wz;
-        let t48 = inner_ring_wx * inner_ring_wx;
-        let t49 = inner_ring_wy * inner_ring_wy;
-        let t50 = t49 + t48;
-        let t51 = t50 * t26 + (t47 * t46 + t45 * t44) - t43 + t31;
-        let t52 = k(2.0)
-            * (outer_ring_wx * t42
-                + outer_ring_wz * (inner_ring_wx * t46 - inner_ring_wy * t44));
-        let t53 = t50 * t28 + (t47 * t41 + t45 * t37) + t52
-            + (t9 * t30 + (t5 * t28 - t0 * t26));
-        let t54 = inner_ring_wz * inner_ring_wz;
-        let t55 = t54 + t49;
-        let t56 = inner_ring_wx * inner_ring_wy;
-        let t57 = rotor_e0 * rotor_e0;
-        let t58 = k(2.0) * (k(0.5) - (t57 + rotor_e1 * rotor_e1));
-        let t59 = rotor_e0 * rotor_e3;
-        let t60 = rotor_e1 * rotor_e2;
-        let t61 = k(2.0) * (t60 + t59);
-        let t62 = rotor_e0 * rotor_e2;
-        let t63 = rotor_e1 * rotor_e3;
-        let t64 = k(2.0) * (t63 - t62);
-        let t65 = t36 * t64 + (t35 * t61 + t32 * t58);
-        let t66 = t40 * t64 - (t38 * t61 + t39 * t58);
-        let t67 = t25 * t64 - (t22 * t61 - t19 * t58);
-        let t68 = k(2.0) * (t60 - t59);
-        let t69 = k(2.0) * (k(0.5) - (t57 + rotor_e2 * rotor_e2));
-        let t70 = rotor_e0 * rotor_e1;
-        let t71 = rotor_e2 * rotor_e3;
-        let t72 = k(2.0) * (t71 + t70);
-        let t73 = k(2.0) * (t63 + t62);
-        let t74 = k(2.0) * (t71 - t70);
-        let t75 = k(2.0) * (k(0.5) - (t57 + rotor_e3 * rotor_e3));
-        let t76 = rotor_wy * (t36 * t75 - (t35 * t74 - t32 * t73))
-            + rotor_wz * (t36 * t72 - (t35 * t69 + t32 * t68));
-        let t77 = t25 * t72 - (t19 * t68 - t22 * t69);
-        let t78 = t19 * t73 + t22 * t74 + t25 * t75;
-        let t79 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t78 + rotor_wz * t77) + inner_ring_wz * t76);
-        let t80 = rotor_wz * rotor_wz + rotor_wy * rotor_wy;
-        let t81 = t40 * t72 + (t39 * t68 + t38 * t69);
-        let t82 = rotor_wx * rotor_wy;
-        let t83 = t40 * t75 - (t39 * t73 - t38 * t74);
-        let t84 = rotor_wx * rotor_wz;
-        let t85 = t84 * t83 - (t82 * t81 - t80 * t66) + t79
-            + (t47 * t67 + ((t54 + t48) * t66 - t56 * t65));
-        let t86 = k(2.0)
-            * (inner_ring_wx * (rotor_wy * t83 + rotor_wz * t81) - inner_ring_wy * t76);
-        let t87 = t84 * t78 - (t82 * t77 - t80 * t67) - t86
-            + (t50 * t67 + (t47 * t66 + t45 * t65));
+        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
+        let t42 = T::fused(
+            -inner_ring_wy,
+            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
+            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+        );
+        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
+        let t44 = inner_ring_wx * inner_ring_wz;
+        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
+        let t46 = inner_ring_wy * inner_ring_wz;
+        let t47 = inner_ring_wx * inner_ring_wx;
+        let t48 = inner_ring_wy * inner_ring_wy;
+        let t49 = t48 + t47;
+        let t50 = T::fused(
+            -k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
+                outer_ring_wy * t42,
+            ),
+            T::fused(t49, t26, T::fused(t44, t43, t46 * t45)),
+        );
+        let t51 = T::fused(
+            k(2.0),
+            T::fused(
+                outer_ring_wz,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
+                outer_ring_wx * t42,
+            ),
+            T::fused(t49, t28, T::fused(t44, t37, t46 * t41)),
+        );
+        let t52 = inner_ring_wz * inner_ring_wz;
+        let t53 = t52 + t48;
+        let t54 = inner_ring_wx * inner_ring_wy;
+        let t55 = rotor_e0 * rotor_e0;
+        let t56 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t55));
+        let t57 = rotor_e0 * rotor_e3;
+        let t58 = rotor_e1 * rotor_e2;
+        let t59 = k(2.0) * (t58 + t57);
+        let t60 = rotor_e0 * rotor_e2;
+        let t61 = rotor_e1 * rotor_e3;
+        let t62 = k(2.0) * (t61 - t60);
+        let t63 = T::fused(t36, t62, T::fused(t32, t56, t35 * t59));
+        let t64 = T::fused(t40, t62, -T::fused(t39, t56, t38 * t59));
+        let t65 = T::fused(t25, t62, -T::fused(-t19, t56, t22 * t59));
+        let t66 = k(2.0) * (t58 - t57);
+        let t67 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t55));
+        let t68 = rotor_e0 * rotor_e1;
+        let t69 = rotor_e2 * rotor_e3;
+        let t70 = k(2.0) * (t69 + t68);
+        let t71 = k(2.0) * (t61 + t60);
+        let t72 = k(2.0) * (t69 - t68);
+        let t73 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t55));
+        let t74 = T::fused(
+            rotor_wz,
+            T::fused(t36, t70, -T::fused(t32, t66, t35 * t67)),
+            rotor_wy * T::fused(t36, t73, -T::fused(-t32, t71, t35 * t72)),
+        );
+        let t75 = T::fused(t25, t70, -T::fused(-t22, t67, t19 * t66));
+        let t76 = T::fused(t25, t73, T::fused(t22, t72, t19 * t71));
+        let t77 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t78 = T::fused(t40, t70, T::fused(t38, t67, t39 * t66));
+        let t79 = rotor_wx * rotor_wy;
+        let t80 = T::fused(t40, t73, -T::fused(-t38, t72, t39 * t71));
+        let t81 = rotor_wx * rotor_wz;
+        let t82 = T::fused(
+            k(2.0),
+            T::fused(
+                inner_ring_wz,
+                t74,
+                inner_ring_wx * T::fused(rotor_wz, t75, rotor_wy * t76),
+            ),
+            T::fused(t81, t80, -T::fused(-t77, t64, t79 * t78)),
+        );
+        let t83 = t82 + T::fused(t46, t65, T::fused(-t54, t63, (t52 + t47) * t64));
+        let t84 = T::fused(
+            -k(2.0),
+            T::fused(
+                -inner_ring_wy,
+                t74,
+                inner_ring_wx * T::fused(rotor_wz, t78, rotor_wy * t80),
+            ),
+            T::fused(t81, t76, -T::fused(-t77, t65, t79 * t75)),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t11 * t9 + (t8 * t5 - t3 * t0),
-            t15 * t5 + t12 * t0 - t16 * t9,
+            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
+            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -t51,
-            -t53,
-            k(0.000125) * (t19 * t45 + (t39 * t56 + t32 * t55)),
-            k(0.000125) * (t22 * t45 - (t38 * t56 + t35 * t55)),
-            -(k(0.000125) * (t25 * t45 - (t40 * t56 - t36 * t55))),
-            t85,
-            -t87,
+            -(t50 + t31),
+            -(t51 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
+            k(0.000125) * T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
+            k(0.000125) * T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
+            -(k(0.000125) * T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54))),
+            t83,
+            -(t84 + T::fused(t49, t65, T::fused(t44, t63, t46 * t64))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 19 operations (6 ±, 13 ×, 0 ÷).
@@ -1727,14 +2126,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
             k(-0.1),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wy + outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy - t0),
+            -(k(1e-6) * T::fused(outer_ring_wx, outer_ring_wz, outer_ring_wy)),
+            k(1e-6) * T::fused(outer_ring_wx, outer_ring_wy, -t0),
             k(0.0),
             k(-0.1),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz - t1),
+            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, -t1),
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy - t0)),
+            -(k(1e-6) * T::fused(inner_ring_wx, inner_ring_wy, -t0)),
             k(0.0),
             k(-0.8),
             k(0.0),
@@ -1767,22 +2166,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = (outer_ring_wz * outer_ring_wz + outer_ring_wx * outer_ring_wx)
+        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
             * (k(0.5)
                 / (k(0.5)
-                    - (outer_ring_e0 * outer_ring_e0 + outer_ring_e2 * outer_ring_e2)));
-        let t1 = outer_ring_wy * outer_ring_wz
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 - outer_ring_e0 * outer_ring_e1)
-                * t0;
-        let t2 = inner_ring_e3 * rotor_e0 - inner_ring_e2 * rotor_e1
-            + inner_ring_e1 * rotor_e2 - inner_ring_e0 * rotor_e3;
-        let t3 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+                    - T::fused(
+                        outer_ring_e2,
+                        outer_ring_e2,
+                        outer_ring_e0 * outer_ring_e0,
+                    )));
+        let t1 = T::fused(
+            -(k(2.0)
+                * T::fused(
+                    -outer_ring_e0,
+                    outer_ring_e1,
+                    outer_ring_e2 * outer_ring_e3,
+                )),
+            t0,
+            outer_ring_wy * outer_ring_wz,
+        );
+        let t2 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t3 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t4 = t3 * t2;
-        let t5 = inner_ring_e2 * rotor_e0 + inner_ring_e3 * rotor_e1
-            - inner_ring_e0 * rotor_e2 - inner_ring_e1 * rotor_e3;
-        let t6 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t5 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t6 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t7 = t6 * t5;
         let t8 = t7 + t4;
         let t9 = k(1e-5) * t8;
@@ -1797,142 +2235,227 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t18 = t17 - t16;
         let t19 = k(2.0) * t18;
         let t20 = t3 * t3;
-        let t21 = k(0.5) - (t20 + t2 * t2);
+        let t21 = k(0.5) - T::fused(t2, t2, t20);
         let t22 = k(2.0) * t21;
-        let t23 = t22 * t14 - t19 * t9;
+        let t23 = T::fused(-t19, t9, t22 * t14);
         let t24 = k(1e-6)
-            + (k(1.25e-9) + (t22 * (k(1e-5) * t21) + t19 * (k(1e-5) * t18)));
+            + (k(1.25e-9) + T::fused(t19, k(1e-5) * t18, t22 * (k(1e-5) * t21)));
         let t25 = k(1.0) / t24;
         let t26 = t25 * t23;
-        let t27 = t23 * t26 - (k(1e-6) + (t15 * t14 + t10 * t9));
-        let t28 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
-        let t29 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t27 = T::fused(t23, t26, -(k(1e-6) + T::fused(t10, t9, t15 * t14)));
+        let t28 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t29 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t30 = t29 * t28;
-        let t31 = outer_ring_e2 * inner_ring_e0 + outer_ring_e3 * inner_ring_e1
-            - outer_ring_e0 * inner_ring_e2 - outer_ring_e1 * inner_ring_e3;
-        let t32 = outer_ring_e1 * inner_ring_e0 - outer_ring_e0 * inner_ring_e1
-            - outer_ring_e3 * inner_ring_e2 + outer_ring_e2 * inner_ring_e3;
+        let t31 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t32 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
         let t33 = t32 * t31;
         let t34 = k(2.0) * (t33 - t30);
-        let t35 = k(0.5) - (t20 + t5 * t5);
+        let t35 = k(0.5) - T::fused(t5, t5, t20);
         let t36 = k(2.0) * t35;
         let t37 = t17 + t16;
         let t38 = k(2.0) * t37;
         let t39 = k(1e-5) * t35;
         let t40 = k(1e-5) * t37;
-        let t41 = t22 * t40 + t19 * t39;
-        let t42 = t41 * t26 - (t38 * t14 - t36 * t9);
+        let t41 = T::fused(t19, t39, t22 * t40);
+        let t42 = T::fused(t41, t26, -T::fused(-t36, t9, t38 * t14));
         let t43 = t29 * t29;
-        let t44 = k(2.0) * (k(0.5) - (t43 + t31 * t31));
-        let t45 = t44 * t42 - t34 * t27;
-        let t46 = t41 * (t25 * t41) - (k(2e-6) + (k(1.25e-9) + (t38 * t40 + t36 * t39)));
-        let t47 = t44 * t46 - t34 * t42;
-        let t48 = k(0.5) - (t20 + t6 * t6);
-        let t49 = inner_ring_wz * (k(2.0) * (t12 + t11))
-            + (inner_ring_wy * (k(2.0) * (t7 - t4)) - inner_ring_wx * (k(2.0) * t48));
+        let t44 = k(2.0) * (k(0.5) - T::fused(t31, t31, t43));
+        let t45 = T::fused(-t34, t27, t44 * t42);
+        let t46 = T::fused(
+            t41,
+            t25 * t41,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t36, t39, t38 * t40))),
+        );
+        let t47 = T::fused(-t34, t42, t44 * t46);
+        let t48 = k(0.5) - T::fused(t6, t6, t20);
+        let t49 = T::fused(
+            inner_ring_wz,
+            k(2.0) * (t12 + t11),
+            T::fused(-inner_ring_wx, k(2.0) * t48, inner_ring_wy * (k(2.0) * (t7 - t4))),
+        );
         let t50 = rotor_wx - t49;
-        let t51 = inner_ring_wz * t22 - (inner_ring_wy * t38 + inner_ring_wx * t15);
+        let t51 = T::fused(
+            inner_ring_wz,
+            t22,
+            -T::fused(inner_ring_wx, t15, inner_ring_wy * t38),
+        );
         let t52 = rotor_wz + t51;
-        let t53 = inner_ring_wz * t19 - (inner_ring_wy * t36 - inner_ring_wx * t10);
+        let t53 = T::fused(
+            inner_ring_wz,
+            t19,
+            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t36),
+        );
         let t54 = rotor_wy - t53;
-        let t55 = k(0.5) / t48 * (t54 * t54 + t52 * t52);
-        let t56 = rotor_wz * t49 + rotor_wx * t51 + (t15 * t55 - t52 * t50);
-        let t57 = k(5e-6) * (rotor_wx * rotor_wz - t56);
-        let t58 = rotor_wx * t53 - rotor_wy * t49 - (t10 * t55 - t54 * t50);
-        let t59 = k(5e-6) * (rotor_wx * rotor_wy + t58);
+        let t55 = k(0.5) / t48 * T::fused(t52, t52, t54 * t54);
+        let t56 = T::fused(rotor_wx, t51, rotor_wz * t49)
+            + T::fused(-t52, t50, t15 * t55);
+        let t57 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t56);
+        let t58 = T::fused(-rotor_wy, t49, rotor_wx * t53)
+            - T::fused(-t54, t50, t10 * t55);
+        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t58);
         let t60 = inner_ring_wx - rotor_wx;
-        let t61 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t60)
-            + (t15 * t59 - t10 * t57);
-        let t62 = inner_ring_wz * inner_ring_wz + inner_ring_wy * inner_ring_wy;
+        let t61 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -t60),
+            T::fused(-t10, t57, t15 * t59),
+        );
+        let t62 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
         let t63 = inner_ring_e0 * inner_ring_e0;
         let t64 = inner_ring_wx * inner_ring_wy;
         let t65 = inner_ring_e0 * inner_ring_e3;
         let t66 = inner_ring_e1 * inner_ring_e2;
         let t67 = t66 - t65;
-        let t68 = k(2.0) * t67 * t64
-            + k(2.0) * (k(0.5) - (t63 + inner_ring_e1 * inner_ring_e1)) * t62;
+        let t68 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t63)),
+            t62,
+            k(2.0) * t67 * t64,
+        );
         let t69 = inner_ring_wx * inner_ring_wz;
         let t70 = inner_ring_e0 * inner_ring_e2;
         let t71 = inner_ring_e1 * inner_ring_e3;
         let t72 = t71 + t70;
-        let t73 = k(2.0) * t72 * t69 + t68;
+        let t73 = T::fused(k(2.0) * t72, t69, t68);
         let t74 = k(1e-5) * t73;
         let t75 = k(0.00025) * t67;
-        let t76 = k(0.5) - (t63 + inner_ring_e2 * inner_ring_e2);
+        let t76 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t63);
         let t77 = inner_ring_e0 * inner_ring_e1;
         let t78 = inner_ring_e2 * inner_ring_e3;
         let t79 = t78 - t77;
-        let t80 = k(2.0) * t79 * t69 - (k(2.0) * t76 * t64 + k(2.0) * (t66 + t65) * t62);
-        let t81 = k(0.8) + k(1e-5) * t80;
+        let t80 = T::fused(
+            k(2.0) * t79,
+            t69,
+            -T::fused(k(2.0) * (t66 + t65), t62, k(2.0) * t76 * t64),
+        );
+        let t81 = T::fused(k(1e-5), t80, k(0.8));
         let t82 = k(0.00025) * t76;
         let t83 = t78 + t77;
-        let t84 = k(0.5) - (t63 + inner_ring_e3 * inner_ring_e3);
-        let t85 = k(2.0) * t84 * t69 - (k(2.0) * t83 * t64 - k(2.0) * (t71 - t70) * t62);
+        let t84 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t63);
+        let t85 = T::fused(
+            k(2.0) * t84,
+            t69,
+            -T::fused(-(k(2.0) * (t71 - t70)), t62, k(2.0) * t83 * t64),
+        );
         let t86 = k(1e-5) * t85;
         let t87 = k(0.00025) * t83;
-        let t88 = t87 * t86 + (t82 * t81 - t75 * t74) - (t22 * t59 + t19 * t57);
-        let t89 = k(1e-6) * (t64 - (outer_ring_wz - inner_ring_wz)) - t88;
+        let t88 = T::fused(t87, t86, T::fused(-t75, t74, t82 * t81))
+            - T::fused(t19, t57, t22 * t59);
+        let t89 = T::fused(k(1e-6), t64 - (outer_ring_wz - inner_ring_wz), -t88);
         let t90 = t25 * t89;
         let t91 = t29 * t31;
         let t92 = t32 * t28;
         let t93 = t29 * t32;
         let t94 = t31 * t28;
-        let t95 = outer_ring_wy * (k(2.0) * (t94 + t93))
-            + outer_ring_wx * (k(2.0) * (t92 - t91));
-        let t96 = k(0.5) - (t43 + t28 * t28);
-        let t97 = outer_ring_wz * (k(2.0) * t96) - t95;
+        let t95 = T::fused(
+            outer_ring_wx,
+            k(2.0) * (t92 - t91),
+            outer_ring_wy * (k(2.0) * (t94 + t93)),
+        );
+        let t96 = k(0.5) - T::fused(t28, t28, t43);
+        let t97 = T::fused(outer_ring_wz, k(2.0) * t96, -t95);
         let t98 = inner_ring_wz + t97;
         let t99 = k(2.0) * (t33 + t30);
         let t100 = k(2.0) * (t94 - t93);
-        let t101 = outer_ring_wz * t100 - (outer_ring_wy * t44 - outer_ring_wx * t99);
+        let t101 = T::fused(
+            outer_ring_wz,
+            t100,
+            -T::fused(-outer_ring_wx, t99, outer_ring_wy * t44),
+        );
         let t102 = inner_ring_wy - t101;
-        let t103 = k(2.0) * (k(0.5) - (t43 + t32 * t32));
+        let t103 = k(2.0) * (k(0.5) - T::fused(t32, t32, t43));
         let t104 = k(2.0) * (t92 + t91);
-        let t105 = outer_ring_wz * t104 + (outer_ring_wy * t34 - outer_ring_wx * t103);
+        let t105 = T::fused(
+            outer_ring_wz,
+            t104,
+            T::fused(-outer_ring_wx, t103, outer_ring_wy * t34),
+        );
         let t106 = inner_ring_wx - t105;
-        let t107 = k(0.5) / t96 * (t106 * t106 + t102 * t102);
-        let t108 = inner_ring_wy * t97 + inner_ring_wz * t101
-            - (t100 * t107 - t102 * t98);
-        let t109 = inner_ring_wz * t105 + inner_ring_wx * t97
-            - (t104 * t107 - t106 * t98);
-        let t110 = t34 * (t42 * t109 - t27 * t108 + (t23 * t90 - t61));
-        let t111 = k(0.00025) * t72;
-        let t112 = k(0.00025) * t79;
-        let t113 = k(0.00025) * t84;
-        let t114 = t113 * t86 + (t112 * t81 + t111 * t74) + (t38 * t59 + t36 * t57);
-        let t115 = t44 * (t46 * t109 - t42 * t108 + (t41 * t90 - t114));
-        let t116 = t44 * (t99 * t46 - t103 * t42) - t34 * (t99 * t42 - t103 * t27);
-        let t117 = outer_ring_wx * outer_ring_wy
-            - k(2.0) * (outer_ring_e1 * outer_ring_e2 + outer_ring_e0 * outer_ring_e3)
-                * t0;
-        let t118 = t117 * (t100 * t47 + t104 * t45) - t1 * t116
-            + (k(1e-6) * (outer_ring_wy + outer_ring_wx * outer_ring_wz)
-                - (t115 - t110));
-        let t119 = t118 / (k(1e-6) - (t44 * t47 - t34 * t45));
-        let t120 = t108 + (t117 * t104 - (t34 * t119 - t1 * t103));
-        let t121 = t109 - (t117 * t100 + (t44 * t119 - t1 * t99));
-        let t122 = t25 * (t89 + (t41 * t121 - t23 * t120));
+        let t107 = k(0.5) / t96 * T::fused(t102, t102, t106 * t106);
+        let t108 = T::fused(inner_ring_wz, t101, inner_ring_wy * t97)
+            - T::fused(-t102, t98, t100 * t107);
+        let t109 = T::fused(inner_ring_wx, t97, inner_ring_wz * t105)
+            - T::fused(-t106, t98, t104 * t107);
+        let t110 = k(0.00025) * t72;
+        let t111 = k(0.00025) * t79;
+        let t112 = k(0.00025) * t84;
+        let t113 = T::fused(t112, t86, T::fused(t110, t74, t111 * t81))
+            + T::fused(t36, t57, t38 * t59);
+        let t114 = T::fused(
+            -t34,
+            T::fused(-t27, t108, t42 * t109) + T::fused(t23, t90, -t61),
+            t44 * (T::fused(-t42, t108, t46 * t109) + T::fused(t41, t90, -t113)),
+        );
+        let t115 = T::fused(
+            -t34,
+            T::fused(-t103, t27, t99 * t42),
+            t44 * T::fused(-t103, t42, t99 * t46),
+        );
+        let t116 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
+            t0,
+            outer_ring_wx * outer_ring_wy,
+        );
+        let t117 = T::fused(-t1, t115, t116 * T::fused(t104, t45, t100 * t47))
+            + T::fused(
+                k(1e-6),
+                T::fused(outer_ring_wx, outer_ring_wz, outer_ring_wy),
+                -t114,
+            );
+        let t118 = t117 / (k(1e-6) - T::fused(-t34, t45, t44 * t47));
+        let t119 = t108 + T::fused(t116, t104, -T::fused(-t1, t103, t34 * t118));
+        let t120 = t109 - T::fused(t116, t100, T::fused(-t1, t99, t44 * t118));
+        let t121 = t25 * (t89 + T::fused(-t23, t119, t41 * t120));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t1,
-            -t119,
-            t117,
+            -t118,
+            t116,
             k(0.0),
             k(0.0),
             k(0.0),
-            t120,
+            t119,
+            -t120,
             -t121,
-            -t122,
-            k(0.000125) * t73 - (t75 * t122 - t111 * t121),
-            k(0.000125) * t80 + (t82 * t122 + t112 * t121),
-            -(k(0.000125) * t85 + (t87 * t122 + t113 * t121)),
+            T::fused(k(0.000125), t73, -T::fused(-t110, t120, t75 * t121)),
+            T::fused(k(0.000125), t80, T::fused(t111, t120, t82 * t121)),
+            -T::fused(k(0.000125), t85, T::fused(t112, t120, t87 * t121)),
             k(0.1) * t60,
-            -(t56 + (t19 * t122 - (t36 * t121 + t10 * t120))),
-            t22 * t122 - (t38 * t121 - t15 * t120) - t58,
+            -(t56 + T::fused(t19, t121, -T::fused(t10, t119, t36 * t120))),
+            T::fused(t22, t121, -T::fused(-t15, t119, t38 * t120)) - t58,
         ];
     }
     /// Writes λ: 311 operations (120 ±, 188 ×, 3 ÷).
@@ -1983,15 +2506,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.8) + k(0.08) * rotor_dsy;
-        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + rotor_e1 * rotor_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
         let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + inner_ring_e1 * inner_ring_e1));
+        let t9 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t8));
         let t10 = rotor_e0 * rotor_e3;
         let t11 = rotor_e1 * rotor_e2;
         let t12 = k(2.0) * (t11 + t10);
@@ -2005,94 +2528,129 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeViscous<T> {
         let t20 = inner_ring_e1 * inner_ring_e3;
         let t21 = k(2.0) * (t20 - t19);
         let t22 = inner_ring_wx - rotor_wx;
-        let t23 = k(1e-6) * t22 - k(1e-5) * rotor_dwx;
+        let t23 = T::fused(-k(1e-5), rotor_dwx, k(1e-6) * t22);
         let t24 = k(2.0) * (t11 - t10);
-        let t25 = k(2.0) * (k(0.5) - (t6 + rotor_e2 * rotor_e2));
+        let t25 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t6));
         let t26 = rotor_e0 * rotor_e1;
         let t27 = rotor_e2 * rotor_e3;
         let t28 = k(2.0) * (t27 + t26);
-        let t29 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t30 = t29 * (t21 * t28 - (t15 * t25 + t9 * t24))
-            - t23 * (t21 * t18 + (t15 * t12 + t9 * t7));
+        let t29 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t30 = T::fused(
+            -t23,
+            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
+            t29 * T::fused(t21, t28, -T::fused(t9, t24, t15 * t25)),
+        );
         let t31 = k(2.0) * (t17 + t16);
         let t32 = k(2.0) * (t27 - t26);
-        let t33 = k(2.0) * (k(0.5) - (t6 + rotor_e3 * rotor_e3));
-        let t34 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t35 = t34 * (t21 * t33 - (t15 * t32 - t9 * t31)) + t30;
-        let t36 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t22 - inner_ring_dwx) - t35;
+        let t33 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t6));
+        let t34 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t35 = T::fused(t34, T::fused(t21, t33, -T::fused(-t9, t31, t15 * t32)), t30);
+        let t36 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -t22) - inner_ring_dwx,
+            -t35,
+        );
         let t37 = outer_ring_e0 * outer_ring_e0;
-        let t38 = k(2.0) * (k(0.5) - (t37 + outer_ring_e1 * outer_ring_e1));
+        let t38 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t37));
         let t39 = outer_ring_e0 * outer_ring_e3;
         let t40 = outer_ring_e1 * outer_ring_e2;
         let t41 = k(2.0) * (t40 + t39);
         let t42 = outer_ring_e0 * outer_ring_e2;
         let t43 = outer_ring_e1 * outer_ring_e3;
         let t44 = k(2.0) * (t43 - t42);
-        let t45 = t44 * t21 + (t41 * t15 + t38 * t9);
+        let t45 = T::fused(t44, t21, T::fused(t38, t9, t41 * t15));
         let t46 = t14 - t13;
         let t47 = k(2.0) * t46;
-        let t48 = k(0.5) - (t8 + inner_ring_e2 * inner_ring_e2);
+        let t48 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8);
         let t49 = k(2.0) * t48;
         let t50 = inner_ring_e0 * inner_ring_e1;
         let t51 = inner_ring_e2 * inner_ring_e3;
         let t52 = t51 + t50;
         let t53 = k(2.0) * t52;
-        let t54 = t53 * t28 + (t47 * t24 + t49 * t25);
-        let t55 = t29 * t54 - t23 * (t53 * t18 - (t49 * t12 + t47 * t7));
-        let t56 = t53 * t33 - (t47 * t31 - t49 * t32);
+        let t54 = T::fused(t53, t28, T::fused(t49, t25, t47 * t24));
+        let t55 = T::fused(
+            -t23,
+            T::fused(t53, t18, -T::fused(t47, t7, t49 * t12)),
+            t29 * t54,
+        );
+        let t56 = T::fused(t53, t33, -T::fused(-t49, t32, t47 * t31));
         let t57 = t20 + t19;
         let t58 = t51 - t50;
-        let t59 = k(0.5) - (t8 + inner_ring_e3 * inner_ring_e3);
-        let t60 = t4 * (k(0.00025) * t59)
-            - (t2 * (k(0.00025) * t58) + t0 * (k(0.00025) * t57));
-        let t61 = k(2e-6) * inner_ring_dwy + (t60 + (t34 * t56 + t55));
-        let t62 = t44 * t53 - (t41 * t49 + t38 * t47);
+        let t59 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8);
+        let t60 = T::fused(
+            t4,
+            k(0.00025) * t59,
+            -T::fused(t0, k(0.00025) * t57, t2 * (k(0.00025) * t58)),
+        );
+        let t61 = T::fused(k(2e-6), inner_ring_dwy, t60 + T::fused(t34, t56, t55));
+        let t62 = T::fused(t44, t53, -T::fused(t38, t47, t41 * t49));
         let t63 = k(2.0) * t57;
         let t64 = k(2.0) * t58;
         let t65 = k(2.0) * t59;
-        let t66 = t65 * t28 - (t63 * t24 - t64 * t25);
-        let t67 = t29 * t66 - t23 * (t65 * t18 - (t64 * t12 - t63 * t7));
-        let t68 = t63 * t31 + t64 * t32 + t65 * t33;
-        let t69 = t4 * (k(0.00025) * t52)
-            - (t2 * (k(0.00025) * t48) - t0 * (k(0.00025) * t46));
+        let t66 = T::fused(t65, t28, -T::fused(-t64, t25, t63 * t24));
+        let t67 = T::fused(
+            -t23,
+            T::fused(t65, t18, -T::fused(-t63, t7, t64 * t12)),
+            t29 * t66,
+        );
+        let t68 = T::fused(t65, t33, T::fused(t64, t32, t63 * t31));
+        let t69 = T::fused(
+            t4,
+            k(0.00025) * t52,
+            -T::fused(-t0, k(0.00025) * t46, t2 * (k(0.00025) * t48)),
+        );
         let t70 = outer_ring_wz - inner_ring_wz;
-        let t71 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t70 + inner_ring_dwz)
-            + (t69 - (t34 * t68 + t67));
-        let t72 = (t44 * t65 - (t41 * t64 - t38 * t63)) * t71 - (t62 * t61 - t45 * t36);
-        let t73 = k(2e-6) * outer_ring_dwx - t72;
-        let t74 = k(2.0) * (k(0.5) - (t37 + outer_ring_e3 * outer_ring_e3));
+        let t71 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, -t70) + inner_ring_dwz,
+            t69 - T::fused(t34, t68, t67),
+        );
+        let t72 = T::fused(
+            T::fused(t44, t65, -T::fused(-t38, t63, t41 * t64)),
+            t71,
+            -T::fused(-t45, t36, t62 * t61),
+        );
+        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
+        let t74 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t37));
         let t75 = k(2.0) * (t43 + t42);
-        let t76 = k(1.0) / (t75 * t44 - t38 * t74);
+        let t76 = k(1.0) / T::fused(-t38, t74, t75 * t44);
         let t77 = outer_ring_e0 * outer_ring_e1;
         let t78 = outer_ring_e2 * outer_ring_e3;
         let t79 = k(2.0) * (t78 - t77);
-        let t80 = (t74 * t53 - (t75 * t47 - t79 * t49)) * t61
-            - (t74 * t21 - (t79 * t15 - t75 * t9)) * t36;
-        let t81 = (t75 * t63 + t79 * t64 + t74 * t65) * t71 - t80;
-        let t82 = k(1e-6) * (outer_ring_wx * outer_ring_wy - t70 - outer_ring_dwz) - t81;
+        let t80 = T::fused(
+            -T::fused(t74, t21, -T::fused(-t75, t9, t79 * t15)),
+            t36,
+            T::fused(t74, t53, -T::fused(-t79, t49, t75 * t47)) * t61,
+        );
+        let t81 = T::fused(T::fused(t74, t65, T::fused(t79, t64, t75 * t63)), t71, -t80);
+        let t82 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -t70) - outer_ring_dwz,
+            -t81,
+        );
         let t83 = k(2.0) * (t40 - t39);
-        let t84 = k(2.0) * (k(0.5) - (t37 + outer_ring_e2 * outer_ring_e2));
+        let t84 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t37));
         let t85 = k(2.0) * (t78 + t77);
-        let t86 = t85 * t21 - (t84 * t15 + t83 * t9);
-        let t87 = t85 * t53 + (t83 * t47 + t84 * t49);
-        let t88 = k(1.0) / (t45 * t87 - t62 * t86);
-        let t89 = k(1.0) / (t54 * t68 - t56 * t66);
+        let t86 = T::fused(t85, t21, -T::fused(t83, t9, t84 * t15));
+        let t87 = T::fused(t85, t53, T::fused(t84, t49, t83 * t47));
+        let t88 = k(1.0) / T::fused(-t62, t86, t45 * t87);
+        let t89 = k(1.0) / T::fused(-t56, t66, t54 * t68);
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            -(t75 * t76 * t82 + t38 * t76 * t73),
-            -(t74 * t76 * t82 + t44 * t76 * t73),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            -T::fused(t38 * t76, t73, t75 * t76 * t82),
+            -T::fused(t44 * t76, t73, t74 * t76 * t82),
             -t1,
             -t3,
             -t5,
-            t86 * t88 * t36 - t87 * t88 * t61,
-            t62 * t88 * t61 - t45 * t88 * t36,
+            T::fused(-(t87 * t88), t61, t86 * t88 * t36),
+            T::fused(-(t45 * t88), t36, t62 * t88 * t61),
             -t0,
             -t2,
             -t4,
-            t34 * (t68 * t89) + t29 * (t66 * t89),
-            t34 * (t56 * t89) + t29 * (t54 * t89),
+            T::fused(t29, t66 * t89, t34 * (t68 * t89)),
+            T::fused(t29, t54 * t89, t34 * (t56 * t89)),
         ];
     }
 }
@@ -2118,16 +2676,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.sin();
-        let t1 = k(1e-5) * x1.cos();
-        let t2 = u1 * t1;
-        let t3 = u0 * t0;
-        let t4 = (u2 - k(0.20025) * t3) * t2 + k(1e-6) * (u0 - u2 * t0);
-        let t5 = t4 / (k(8.00125e-6) - k(6.00125e-6) * (t0 * t0));
-        let t6 = k(1e-6) * u1 + t1 * (k(10.0) - u0 * (u2 + k(0.399875) * t3));
+        let t1 = x1.cos();
+        let t2 = k(1e-5) * t1;
+        let t3 = u1 * t2;
+        let t4 = u0 * t0;
+        let t5 = T::fused(
+            k(1e-6),
+            T::fused(-u2, t0, u0),
+            T::fused(-k(0.20025), t4, u2) * t3,
+        );
+        let t6 = t5 / T::fused(k(6.00125e-6), t1 * t1, k(2e-6));
+        let t7 = T::fused(
+            t2,
+            T::fused(-u0, T::fused(k(0.399875), t4, u2), k(10.0)),
+            k(1e-6) * u1,
+        );
         *out = [
-            -t5,
-            -(k(166631.95167673402) * t6),
-            t0 * t5 - k(100000.0) * (k(1e-6) * u2 + u0 * t2),
+            -t6,
+            -(k(166631.95167673402) * t7),
+            T::fused(-k(100000.0), T::fused(u0, t3, k(1e-6) * u2), t0 * t6),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 14 operations (4 ±, 10 ×, 0 ÷) and 2 functions.
@@ -2142,7 +2709,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t0 = k(0.5) * x1;
         let t1 = u0 * (t0.cos() * (k(2.0) * t0.sin()));
         let t2 = t1 - (u2 + t1);
-        let t3 = t2 * (k(1e-6) * t2) + (u1 * (k(1e-6) * u1) + u0 * (k(1e-6) * u0));
+        let t3 = T::fused(
+            t2,
+            k(1e-6) * t2,
+            T::fused(u0, k(1e-6) * u0, u1 * (k(1e-6) * u1)),
+        );
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2], -t3];
     }
     /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
@@ -2174,16 +2745,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t17 = t15.cos();
         let t18 = k(2.0) * t6;
         let t19 = u0 * (t4 * t18);
-        let t20 = u0 * (k(1.0) - t6 * t18);
+        let t20 = u0 * T::fused(-t6, t18, k(1.0));
         let t21 = k(0.000125) * t20;
         let t22 = k(0.000125) * u1;
-        let t23 = k(2.0) * (t12 - t11) * t22 - k(2.0) * (t14 + t13) * t21;
+        let t23 = T::fused(-(k(2.0) * (t14 + t13)), t21, k(2.0) * (t12 - t11) * t22);
         let t24 = t5 * t7;
         let t25 = t8 * t9;
-        let t26 = k(2.0) * (k(0.5) - (t10 + t8 * t8)) * t22 + k(2.0) * (t25 - t24) * t21;
-        let t27 = k(2.0) * (t25 + t24) * t22 + k(2.0) * (k(0.5) - (t10 + t9 * t9)) * t21;
+        let t26 = T::fused(
+            k(2.0) * (t25 - t24),
+            t21,
+            k(2.0) * (k(0.5) - T::fused(t8, t8, t10)) * t22,
+        );
+        let t27 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(t9, t9, t10)),
+            t21,
+            k(2.0) * (t25 + t24) * t22,
+        );
         let t28 = k(2.0) * t16;
-        let t29 = k(1.0) - t16 * t28;
+        let t29 = T::fused(-t16, t28, k(1.0));
         let t30 = t17 * t28;
         *y = [
             k(0.0),
@@ -2200,13 +2779,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             t7,
             t8,
             t9,
-            -(k(0.00025) * (k(0.5) - (t10 + t7 * t7))),
+            -(k(0.00025) * (k(0.5) - T::fused(t7, t7, t10))),
             k(0.00025) * (t12 + t11),
             k(0.00025) * (t14 - t13),
-            t5 * t17 - t7 * t16,
-            t7 * t17 + t5 * t16,
-            t8 * t17 + t9 * t16,
-            t9 * t17 - t8 * t16,
+            T::fused(-t7, t16, t5 * t17),
+            T::fused(t5, t16, t7 * t17),
+            T::fused(t9, t16, t8 * t17),
+            T::fused(-t8, t16, t9 * t17),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -2223,8 +2802,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             -t26,
             t27,
             u2 + t19,
-            u1 * t30 + t29 * t20,
-            u1 * t29 - t30 * t20,
+            T::fused(t29, t20, u1 * t30),
+            T::fused(-t30, t20, u1 * t29),
             x[6],
         ];
     }
@@ -2258,11 +2837,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t4 = x0.cos();
         let t5 = outer_ring_e2 * outer_ring_e2;
         let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = t6 + outer_ring_e1 * outer_ring_e1;
+        let t7 = T::fused(outer_ring_e1, outer_ring_e1, t6);
         let t8 = outer_ring_e3 * outer_ring_e3;
         let t9 = k(1.0) - (t8 + (t7 + t5));
-        let t10 = k(2.0) * (k(0.5) - (t6 + t8)) - t9;
-        let t11 = (t10 * t0 + t3 * t4).atan2(t3 * t0 - t10 * t4);
+        let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
+        let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
         let t12 = x1.sin();
         let t13 = inner_ring_e0 * inner_ring_e2;
         let t14 = inner_ring_e1 * inner_ring_e3;
@@ -2272,37 +2851,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let t18 = k(2.0) * (t17 + t16);
         let t19 = inner_ring_e2 * inner_ring_e2;
         let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = t20 + inner_ring_e1 * inner_ring_e1;
+        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
         let t22 = inner_ring_e3 * inner_ring_e3;
         let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = k(2.0) * (k(0.5) - t21) - t23;
+        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
         let t25 = outer_ring_e0 * outer_ring_e3;
         let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = k(2.0) * (t26 - t25) * t24
-            + t18 * (k(2.0) * (k(0.5) - (t6 + t5)) - t9);
-        let t28 = t27
-            - k(2.0) * (outer_ring_e2 * outer_ring_e3 + outer_ring_e0 * outer_ring_e1)
-                * t15;
+        let t27 = T::fused(
+            t18,
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            k(2.0) * (t26 - t25) * t24,
+        );
+        let t28 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
+            t15,
+            t27,
+        );
         let t29 = x1.cos();
-        let t30 = (k(2.0) * (k(0.5) - t7) - t9) * t24 + k(2.0) * (t26 + t25) * t18;
-        let t31 = t30 + k(2.0) * (t2 - t1) * t15;
-        let t32 = -(t31 * t12 + t28 * t29).atan2(t31 * t29 - t28 * t12);
+        let t30 = T::fused(
+            k(2.0) * (t26 + t25),
+            t18,
+            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+        );
+        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
+        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
         let t33 = x2.sin();
-        let t34 = k(2.0) * (rotor_e2 * rotor_e3 + rotor_e0 * rotor_e1);
+        let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t35 = rotor_e2 * rotor_e2;
         let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - (t36 + t35))
-            - (k(1.0) - (rotor_e3 * rotor_e3 + (t36 + rotor_e1 * rotor_e1 + t35)));
+        let t37 = T::fused(
+            k(2.0),
+            k(0.5) - (t36 + t35),
+            -(k(1.0)
+                - T::fused(rotor_e3, rotor_e3, T::fused(rotor_e1, rotor_e1, t36) + t35)),
+        );
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
-        let t40 = k(2.0) * (rotor_e1 * rotor_e2 - rotor_e0 * rotor_e3);
-        let t41 = k(2.0) * (t14 + t13) * t40 - k(2.0) * (t39 - t38) * t37;
-        let t42 = t41 - t34 * (k(2.0) * (k(0.5) - (t20 + t22)) - t23);
+        let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
+        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
         let t43 = x2.cos();
-        let t44 = k(2.0) * (t17 - t16) * t40
-            + (k(2.0) * (k(0.5) - (t20 + t19)) - t23) * t37;
-        let t45 = t44 + k(2.0) * (t39 + t38) * t34;
-        let t46 = (t42 * t43 - t45 * t33).atan2(t45 * t43 + t42 * t33);
+        let t44 = T::fused(
+            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
+            t37,
+            k(2.0) * (t17 - t16) * t40,
+        );
+        let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
+        let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
         x[0] = x0 + t11;
         x[1] = x1 + t32;
         x[2] = x2 + t46;
@@ -2327,25 +2923,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t0 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t1 = k(2.0) * t0;
-        let t2 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t2 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t3 = t2 * t1;
         let t4 = inner_ring_wx - rotor_wx;
-        let t5 = k(1e-5) * (k(1.0) - t0 * t1);
-        let t6 = outer_ring_wz - inner_ring_wz;
-        let t7 = t6 * t5;
-        let t8 = outer_ring_wy * t3;
-        let t9 = (t4 - k(0.20025) * t8) * t7 + k(1e-6) * (outer_ring_wy - t4 * t3);
-        let t10 = t9 / (k(8.00125e-6) - k(6.00125e-6) * (t3 * t3));
-        let t11 = k(1e-6) * t6
-            - t5 * (k(10.0) + outer_ring_wy * (t4 + k(0.399875) * t8));
+        let t5 = T::fused(-t0, t1, k(1.0));
+        let t6 = k(1e-5) * t5;
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = t7 * t6;
+        let t9 = outer_ring_wy * t3;
+        let t10 = T::fused(
+            k(1e-6),
+            T::fused(-t4, t3, outer_ring_wy),
+            T::fused(-k(0.20025), t9, t4) * t8,
+        );
+        let t11 = t10 / T::fused(k(6.00125e-6), t5 * t5, k(2e-6));
+        let t12 = T::fused(
+            -t6,
+            T::fused(outer_ring_wy, T::fused(k(0.399875), t9, t4), k(10.0)),
+            k(1e-6) * t7,
+        );
         *out = [
-            -t10,
-            k(166631.95167673402) * t11,
-            k(100000.0) * (k(1e-6) * t4 + outer_ring_wy * t7) - t3 * t10,
+            -t11,
+            k(166631.95167673402) * t12,
+            T::fused(-t3, t11, k(100000.0) * T::fused(outer_ring_wy, t8, k(1e-6) * t4)),
         ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 158 operations (60 ±, 97 ×, 1 ÷).
@@ -2378,55 +2996,96 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t3 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t4 = t3 * t2;
         let t5 = inner_ring_wx - rotor_wx;
-        let t6 = k(1.0) - t1 * t2;
+        let t6 = T::fused(-t1, t2, k(1.0));
         let t7 = k(1e-5) * t6;
         let t8 = outer_ring_wz - inner_ring_wz;
         let t9 = t8 * t7;
         let t10 = outer_ring_wy * t4;
-        let t11 = (t5 - k(0.20025) * t10) * t9 + k(1e-6) * (outer_ring_wy - t5 * t4);
-        let t12 = t11 / (k(8.00125e-6) - k(6.00125e-6) * (t4 * t4));
+        let t11 = T::fused(
+            k(1e-6),
+            T::fused(-t5, t4, outer_ring_wy),
+            T::fused(-k(0.20025), t10, t5) * t9,
+        );
+        let t12 = t11 / T::fused(k(6.00125e-6), t6 * t6, k(2e-6));
         let t13 = outer_ring_wx * outer_ring_wy;
         let t14 = t4 * t12;
-        let t15 = inner_ring_wy * t8 - (t14 - t0 * t6);
-        let t16 = inner_ring_wx * t8 - (t0 * t4 + t6 * t12);
-        let t17 = k(1e-6) * t8
-            - t7 * (k(10.0) + outer_ring_wy * (t5 + k(0.399875) * t10));
-        let t18 = t13 + k(166631.95167673402) * t17;
+        let t15 = T::fused(inner_ring_wy, t8, -T::fused(-t0, t6, t14));
+        let t16 = T::fused(inner_ring_wx, t8, -T::fused(t6, t12, t0 * t4));
+        let t17 = T::fused(
+            -t7,
+            T::fused(outer_ring_wy, T::fused(k(0.399875), t10, t5), k(10.0)),
+            k(1e-6) * t8,
+        );
+        let t18 = T::fused(k(166631.95167673402), t17, t13);
         let t19 = k(0.000125) * t18;
-        let t20 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t20 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t21 = k(2.0) * t20;
-        let t22 = k(1.0) - t20 * t21;
+        let t22 = T::fused(-t20, t21, k(1.0));
         let t23 = k(0.000125) * t16;
-        let t24 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t24 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t25 = t24 * t21;
         let t26 = k(0.000125) * inner_ring_wy;
         let t27 = inner_ring_wx * t26;
         let t28 = k(0.000125) * inner_ring_wz;
         let t29 = inner_ring_wx * t28;
-        let t30 = t29 * t25 - t27 * t22 - (t25 * t23 + t22 * t19);
+        let t30 = T::fused(-t27, t22, t29 * t25) - T::fused(t22, t19, t25 * t23);
         let t31 = rotor_e0 * rotor_e3;
         let t32 = rotor_e1 * rotor_e2;
-        let t33 = inner_ring_wy * t26 + inner_ring_wz * t28;
+        let t33 = T::fused(inner_ring_wz, t28, inner_ring_wy * t26);
         let t34 = rotor_e0 * rotor_e0;
-        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1)) * t33
-            - k(2.0) * (t32 - t31) * t30;
-        let t36 = t29 * t22 + t27 * t25 - (t22 * t23 - t25 * t19);
+        let t35 = T::fused(
+            -(k(2.0) * (t32 - t31)),
+            t30,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
+        );
+        let t36 = T::fused(t27, t25, t29 * t22) - T::fused(-t25, t19, t22 * t23);
         let t37 = rotor_e0 * rotor_e2;
         let t38 = rotor_e1 * rotor_e3;
-        let t39 = k(2.0) * (t32 + t31) * t33
-            - k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2)) * t30;
+        let t39 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
+            t30,
+            k(2.0) * (t32 + t31) * t33,
+        );
         let t40 = rotor_e0 * rotor_e1;
         let t41 = rotor_e2 * rotor_e3;
-        let t42 = k(2.0) * (t38 - t37) * t33 + k(2.0) * (t41 + t40) * t30;
+        let t42 = T::fused(k(2.0) * (t41 + t40), t30, k(2.0) * (t38 - t37) * t33);
         *out = [
             k(0.0),
             k(0.0),
@@ -2440,12 +3099,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             -t15,
             t16,
             t18,
-            k(2.0) * (t38 + t37) * t36 + t35,
-            k(2.0) * (t41 - t40) * t36 - t39,
-            -(k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3)) * t36 + t42),
-            -(t14 - k(100000.0) * (k(1e-6) * t5 + outer_ring_wy * t9) + t15),
-            -(rotor_wz * t5 + (t25 * t18 - t22 * t16)),
-            rotor_wy * t5 + (t22 * t18 + t25 * t16),
+            T::fused(k(2.0) * (t38 + t37), t36, t35),
+            T::fused(k(2.0) * (t41 - t40), t36, -t39),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)), t36, t42),
+            -(T::fused(-k(100000.0), T::fused(outer_ring_wy, t9, k(1e-6) * t5), t14)
+                + t15),
+            -T::fused(rotor_wz, t5, T::fused(-t22, t16, t25 * t18)),
+            T::fused(rotor_wy, t5, T::fused(t25, t16, t22 * t18)),
         ];
     }
     /// Writes λ: 141 operations (60 ±, 81 ×, 0 ÷).
@@ -2496,66 +3156,111 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
         let t0 = k(0.08) * rotor_dsx;
-        let t1 = k(0.01) * inner_ring_dsx + t0;
-        let t2 = k(0.8) + k(0.08) * rotor_dsy;
-        let t3 = k(0.1) + k(0.01) * inner_ring_dsy + t2;
+        let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
+        let t2 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
-        let t5 = k(0.01) * inner_ring_dsz + t4;
+        let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = inner_ring_wx - rotor_wx;
-        let t7 = k(1e-6) * (inner_ring_wy * inner_ring_wz - t6 - inner_ring_dwx)
-            + (k(1e-6) * t6 - k(1e-5) * rotor_dwx);
-        let t8 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t7 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -t6) - inner_ring_dwx,
+            T::fused(-k(1e-5), rotor_dwx, k(1e-6) * t6),
+        );
+        let t8 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t9 = k(2.0) * t8;
-        let t10 = k(1.0) - t8 * t9;
+        let t10 = T::fused(-t8, t9, k(1.0));
         let t11 = inner_ring_e0 * inner_ring_e1;
         let t12 = inner_ring_e2 * inner_ring_e3;
-        let t13 = t2 * (k(0.00025) * (t12 - t11))
-            + t0
-                * (k(0.00025)
-                    * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2));
+        let t13 = T::fused(
+            t0,
+            k(0.00025)
+                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3),
+            t2 * (k(0.00025) * (t12 - t11)),
+        );
         let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t15 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t16 = k(2.0) * t15;
-        let t17 = k(1.0) - t15 * t16;
-        let t18 = k(5e-6) * (rotor_wx * rotor_wz + rotor_dwy);
-        let t19 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t17 = T::fused(-t15, t16, k(1.0));
+        let t18 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t19 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t20 = t19 * t16;
-        let t21 = k(5e-6) * (rotor_wx * rotor_wy - rotor_dwz);
-        let t22 = t21 * t20 - t18 * t17;
+        let t21 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t22 = T::fused(-t18, t17, t21 * t20);
         let t23 = t22
-            - (t4 * (k(0.00025) * (k(0.5) - (t14 + inner_ring_e3 * inner_ring_e3)))
-                - t13);
-        let t24 = k(2e-6) * inner_ring_dwy - t23;
-        let t25 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+            - T::fused(
+                t4,
+                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t14)),
+                -t13,
+            );
+        let t24 = T::fused(k(2e-6), inner_ring_dwy, -t23);
+        let t25 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t26 = t25 * t9;
-        let t27 = t26 * t24 - t10 * t7;
-        let t28 = k(2e-6) * outer_ring_dwx + t27;
+        let t27 = T::fused(-t10, t7, t26 * t24);
+        let t28 = T::fused(k(2e-6), outer_ring_dwx, t27);
         let t29 = k(2.0) * outer_ring_e2;
-        let t30 = k(1.0) - outer_ring_e2 * t29;
-        let t31 = t2 * (k(0.00025) * (k(0.5) - (t14 + inner_ring_e2 * inner_ring_e2)))
-            - t0
-                * (k(0.00025)
-                    * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3));
-        let t32 = t21 * t17 + t18 * t20;
+        let t30 = T::fused(-outer_ring_e2, t29, k(1.0));
+        let t31 = T::fused(
+            -t0,
+            k(0.00025)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
+            t2 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t14))),
+        );
+        let t32 = T::fused(t18, t20, t21 * t17);
         let t33 = outer_ring_wz - inner_ring_wz;
-        let t34 = k(1e-6) * (inner_ring_wx * inner_ring_wy - t33 + inner_ring_dwz)
-            - (t32 - (t4 * (k(0.00025) * (t12 + t11)) - t31));
-        let t35 = k(1e-6) * (outer_ring_wx * outer_ring_wy - t33 - outer_ring_dwz) - t34;
+        let t34 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, -t33) + inner_ring_dwz,
+            -(t32 - T::fused(t4, k(0.00025) * (t12 + t11), -t31)),
+        );
+        let t35 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -t33) - outer_ring_dwz,
+            -t34,
+        );
         let t36 = outer_ring_e0 * t29;
         *lambda = [
-            -(k(0.01) * outer_ring_dsx + t1),
-            -(k(0.1) + k(0.01) * outer_ring_dsy + t3),
-            -(k(0.01) * outer_ring_dsz + t5),
-            t36 * t35 - t30 * t28,
-            -(t30 * t35 + t36 * t28),
+            -T::fused(k(0.01), outer_ring_dsx, t1),
+            -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
+            -T::fused(k(0.01), outer_ring_dsz, t5),
+            T::fused(-t30, t28, t36 * t35),
+            -T::fused(t36, t28, t30 * t35),
             -t1,
             -t3,
             -t5,
-            -(t10 * t24 + t26 * t7),
+            -T::fused(t26, t7, t10 * t24),
             t27,
             -t0,
             -t2,
@@ -2589,92 +3294,154 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = outer_ring_e3 * inner_ring_e0 - outer_ring_e2 * inner_ring_e1
-            + outer_ring_e1 * inner_ring_e2 - outer_ring_e0 * inner_ring_e3;
+        let t1 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
         let t2 = k(2.0) * t1;
-        let t3 = outer_ring_e0 * inner_ring_e0 + outer_ring_e1 * inner_ring_e1
-            + outer_ring_e2 * inner_ring_e2 + outer_ring_e3 * inner_ring_e3;
+        let t3 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
         let t4 = t3 * t2;
         let t5 = inner_ring_wx - rotor_wx;
-        let t6 = k(1.0) - t1 * t2;
+        let t6 = T::fused(-t1, t2, k(1.0));
         let t7 = k(1e-5) * t6;
         let t8 = outer_ring_wz - inner_ring_wz;
         let t9 = t8 * t7;
         let t10 = outer_ring_wy * t4;
-        let t11 = (t5 - k(0.20025) * t10) * t9 + k(1e-6) * (outer_ring_wy - t5 * t4);
-        let t12 = t11 / (k(8.00125e-6) - k(6.00125e-6) * (t4 * t4));
+        let t11 = T::fused(
+            k(1e-6),
+            T::fused(-t5, t4, outer_ring_wy),
+            T::fused(-k(0.20025), t10, t5) * t9,
+        );
+        let t12 = t11 / T::fused(k(6.00125e-6), t6 * t6, k(2e-6));
         let t13 = outer_ring_wx * outer_ring_wy;
         let t14 = t4 * t12;
-        let t15 = inner_ring_wy * t8 - (t14 - t0 * t6);
-        let t16 = inner_ring_wx * t8 - (t0 * t4 + t6 * t12);
-        let t17 = k(1e-6) * t8
-            - t7 * (k(10.0) + outer_ring_wy * (t5 + k(0.399875) * t10));
-        let t18 = t13 + k(166631.95167673402) * t17;
+        let t15 = T::fused(inner_ring_wy, t8, -T::fused(-t0, t6, t14));
+        let t16 = T::fused(inner_ring_wx, t8, -T::fused(t6, t12, t0 * t4));
+        let t17 = T::fused(
+            -t7,
+            T::fused(outer_ring_wy, T::fused(k(0.399875), t10, t5), k(10.0)),
+            k(1e-6) * t8,
+        );
+        let t18 = T::fused(k(166631.95167673402), t17, t13);
         let t19 = k(0.000125) * t18;
-        let t20 = inner_ring_e1 * rotor_e0 - inner_ring_e0 * rotor_e1
-            - inner_ring_e3 * rotor_e2 + inner_ring_e2 * rotor_e3;
+        let t20 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
         let t21 = k(2.0) * t20;
-        let t22 = k(1.0) - t20 * t21;
+        let t22 = T::fused(-t20, t21, k(1.0));
         let t23 = k(0.000125) * t16;
-        let t24 = inner_ring_e0 * rotor_e0 + inner_ring_e1 * rotor_e1
-            + inner_ring_e2 * rotor_e2 + inner_ring_e3 * rotor_e3;
+        let t24 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
         let t25 = t24 * t21;
         let t26 = k(0.000125) * inner_ring_wy;
         let t27 = inner_ring_wx * t26;
         let t28 = k(0.000125) * inner_ring_wz;
         let t29 = inner_ring_wx * t28;
-        let t30 = t29 * t25 - t27 * t22 - (t25 * t23 + t22 * t19);
+        let t30 = T::fused(-t27, t22, t29 * t25) - T::fused(t22, t19, t25 * t23);
         let t31 = rotor_e0 * rotor_e3;
         let t32 = rotor_e1 * rotor_e2;
-        let t33 = inner_ring_wy * t26 + inner_ring_wz * t28;
+        let t33 = T::fused(inner_ring_wz, t28, inner_ring_wy * t26);
         let t34 = rotor_e0 * rotor_e0;
-        let t35 = k(2.0) * (k(0.5) - (t34 + rotor_e1 * rotor_e1)) * t33
-            - k(2.0) * (t32 - t31) * t30;
-        let t36 = t29 * t22 + t27 * t25 - (t22 * t23 - t25 * t19);
+        let t35 = T::fused(
+            -(k(2.0) * (t32 - t31)),
+            t30,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
+        );
+        let t36 = T::fused(t27, t25, t29 * t22) - T::fused(-t25, t19, t22 * t23);
         let t37 = rotor_e0 * rotor_e2;
         let t38 = rotor_e1 * rotor_e3;
-        let t39 = k(2.0) * (t38 + t37) * t36 + t35;
-        let t40 = k(2.0) * (t32 + t31) * t33
-            - k(2.0) * (k(0.5) - (t34 + rotor_e2 * rotor_e2)) * t30;
+        let t39 = T::fused(k(2.0) * (t38 + t37), t36, t35);
+        let t40 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
+            t30,
+            k(2.0) * (t32 + t31) * t33,
+        );
         let t41 = rotor_e0 * rotor_e1;
         let t42 = rotor_e2 * rotor_e3;
-        let t43 = k(2.0) * (t42 - t41) * t36 - t40;
-        let t44 = k(2.0) * (t38 - t37) * t33 + k(2.0) * (t42 + t41) * t30;
-        let t45 = k(2.0) * (k(0.5) - (t34 + rotor_e3 * rotor_e3)) * t36 + t44;
+        let t43 = T::fused(k(2.0) * (t42 - t41), t36, -t40);
+        let t44 = T::fused(k(2.0) * (t42 + t41), t30, k(2.0) * (t38 - t37) * t33);
+        let t45 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)),
+            t36,
+            t44,
+        );
         let t46 = k(1e-6) * t5;
-        let t47 = t14 - k(100000.0) * (t46 + outer_ring_wy * t9) + t15;
-        let t48 = rotor_wz * t5 + (t25 * t18 - t22 * t16);
-        let t49 = rotor_wy * t5 + (t22 * t18 + t25 * t16);
+        let t47 = T::fused(-k(100000.0), T::fused(outer_ring_wy, t9, t46), t14) + t15;
+        let t48 = T::fused(rotor_wz, t5, T::fused(-t22, t16, t25 * t18));
+        let t49 = T::fused(rotor_wy, t5, T::fused(t25, t16, t22 * t18));
         let t50 = k(0.08) * t39;
-        let t51 = k(0.8) + k(0.08) * t43;
+        let t51 = T::fused(k(0.08), t43, k(0.8));
         let t52 = k(0.1) + t51;
         let t53 = k(0.08) * t45;
-        let t54 = k(5e-6) * (rotor_wx * rotor_wy - t49);
-        let t55 = k(5e-6) * (rotor_wx * rotor_wz - t48);
-        let t56 = t25 * t55 + t22 * t54;
+        let t54 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t49);
+        let t55 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t48);
+        let t56 = T::fused(t22, t54, t25 * t55);
         let t57 = inner_ring_e0 * inner_ring_e1;
         let t58 = inner_ring_e2 * inner_ring_e3;
         let t59 = inner_ring_e0 * inner_ring_e0;
-        let t60 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e2 - inner_ring_e0 * inner_ring_e3) * t50
-            - k(0.00025) * (k(0.5) - (t59 + inner_ring_e2 * inner_ring_e2)) * t51;
-        let t61 = t60 - k(0.00025) * (t58 + t57) * t53 - t56
-            + k(1e-6) * (inner_ring_wx * inner_ring_wy - t8 + t18);
-        let t62 = t61 + k(1e-6) * (t13 - (t13 - t8));
+        let t60 = T::fused(
+            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t59))),
+            t51,
+            k(0.00025)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
+                * t50,
+        );
+        let t61 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, -t8) + t18,
+            T::fused(-(k(0.00025) * (t58 + t57)), t53, t60) - t56,
+        );
+        let t62 = T::fused(k(1e-6), t13 - (t13 - t8), t61);
         let t63 = k(2.0) * outer_ring_e2;
         let t64 = outer_ring_e0 * t63;
-        let t65 = t22 * t55 - t25 * t54;
-        let t66 = k(0.00025)
-            * (inner_ring_e1 * inner_ring_e3 + inner_ring_e0 * inner_ring_e2) * t50
-            + k(0.00025) * (t58 - t57) * t51;
-        let t67 = t66
-            + k(0.00025) * (k(0.5) - (t59 + inner_ring_e3 * inner_ring_e3)) * t53 - t65;
-        let t68 = t67 - k(2e-6) * t16;
-        let t69 = t46 + k(1e-5) * t47
-            + k(1e-6) * (inner_ring_wy * inner_ring_wz - t5 + t15);
-        let t70 = t6 * t69 + t4 * t68;
-        let t71 = t70 + k(2e-6) * t0;
-        let t72 = k(1.0) - outer_ring_e2 * t63;
+        let t65 = T::fused(-t25, t54, t22 * t55);
+        let t66 = T::fused(
+            k(0.00025) * (t58 - t57),
+            t51,
+            k(0.00025)
+                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
+                * t50,
+        );
+        let t67 = T::fused(
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t59)),
+            t53,
+            t66,
+        ) - t65;
+        let t68 = T::fused(-k(2e-6), t16, t67);
+        let t69 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wy, inner_ring_wz, -t5) + t15,
+            T::fused(k(1e-5), t47, t46),
+        );
+        let t70 = T::fused(t4, t68, t6 * t69);
+        let t71 = T::fused(k(2e-6), t0, t70);
+        let t72 = T::fused(-outer_ring_e2, t63, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
@@ -2697,12 +3464,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeViscous<T> {
             -t50,
             -(k(0.1) + t52),
             t53,
-            t72 * t71 - t64 * t62,
-            t64 * t71 + t72 * t62,
+            T::fused(-t64, t62, t72 * t71),
+            T::fused(t72, t62, t64 * t71),
             -t50,
             -t52,
             t53,
-            t6 * t68 - t4 * t69,
+            T::fused(-t4, t69, t6 * t68),
             -t70,
             -t50,
             -t51,

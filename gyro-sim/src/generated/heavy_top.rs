@@ -126,10 +126,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for HeavyTop<T> {
             top_sx,
             top_sy,
             top_sz,
-            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
-            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
-            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
-            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -152,6 +156,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 7]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 22 operations (11 ±, 11 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -165,10 +204,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let t0 = top_e3 * top_e3;
         let t1 = top_e0 * top_e0;
         *out = [
-            top_rx - k(0.08) * (top_e1 * top_e3 + top_e0 * top_e2),
-            top_ry - k(0.08) * (top_e2 * top_e3 - top_e0 * top_e1),
-            top_rz + k(0.08) * (k(0.5) - (t1 + t0)),
-            t0 + (t1 + top_e1 * top_e1 + top_e2 * top_e2) - k(1.0),
+            T::fused(-k(0.08), T::fused(top_e0, top_e2, top_e1 * top_e3), top_rx),
+            T::fused(-k(0.08), T::fused(-top_e0, top_e1, top_e2 * top_e3), top_ry),
+            T::fused(k(0.08), k(0.5) - (t1 + t0), top_rz),
+            t0 + T::fused(top_e2, top_e2, T::fused(top_e1, top_e1, t1)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 38 operations (14 ±, 24 ×, 0 ÷).
@@ -186,13 +225,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let t0 = top_e0 * top_e0;
         let t1 = top_e0 * top_e3;
         let t2 = top_e1 * top_e2;
-        let t3 = k(2.0) * (t2 - t1) * top_wx
-            + k(2.0) * (k(0.5) - (t0 + top_e1 * top_e1)) * top_wy;
-        let t4 = k(2.0) * (k(0.5) - (t0 + top_e2 * top_e2)) * top_wx
-            + k(2.0) * (t2 + t1) * top_wy;
-        let t5 = k(2.0) * (top_e2 * top_e3 + top_e0 * top_e1) * top_wx
-            - k(2.0) * (top_e1 * top_e3 - top_e0 * top_e2) * top_wy;
-        *out = [top_sx + k(0.04) * t3, top_sy - k(0.04) * t4, top_sz + k(0.04) * t5];
+        let t3 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
+            top_wy,
+            k(2.0) * (t2 - t1) * top_wx,
+        );
+        let t4 = T::fused(
+            k(2.0) * (t2 + t1),
+            top_wy,
+            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0)) * top_wx,
+        );
+        let t5 = T::fused(
+            -(k(2.0) * T::fused(-top_e0, top_e2, top_e1 * top_e3)),
+            top_wy,
+            k(2.0) * T::fused(top_e0, top_e1, top_e2 * top_e3) * top_wx,
+        );
+        *out = [
+            T::fused(k(0.04), t3, top_sx),
+            T::fused(-k(0.04), t4, top_sy),
+            T::fused(k(0.04), t5, top_sz),
+        ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
@@ -204,9 +256,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wx * (k(0.0003) * top_wx) + top_wy * (k(0.0003) * top_wy)
-            + top_wz * (k(0.0005) * top_wz);
-        let t1 = t0 + k(0.5) * (top_sx * top_sx + top_sy * top_sy + top_sz * top_sz);
+        let t0 = T::fused(
+            top_wz,
+            k(0.0005) * top_wz,
+            T::fused(top_wy, k(0.0003) * top_wy, top_wx * (k(0.0003) * top_wx)),
+        );
+        let t1 = T::fused(
+            k(0.5),
+            T::fused(top_sz, top_sz, T::fused(top_sy, top_sy, top_sx * top_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(4.905) * top_rz,
@@ -285,32 +344,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> HeavyTop<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for HeavyTop<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
         let top_e3 = y[6];
         [[top_e0, top_e1, top_e2, top_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 38 operations (15 ±, 22 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -320,30 +365,31 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = top_e0 * chart0_0 + top_e1 * chart0_1 + top_e2 * chart0_2
-            + top_e3 * chart0_3;
-        let t1 = top_e3 * top_e3 + (top_e0 * top_e0 + top_e1 * top_e1 + top_e2 * top_e2);
+        let t0 = T::fused(
+            top_e3,
+            chart0_3,
+            T::fused(top_e2, chart0_2, T::fused(top_e1, chart0_1, top_e0 * chart0_0)),
+        );
+        let t1 = T::fused(
+            top_e3,
+            top_e3,
+            T::fused(top_e2, top_e2, T::fused(top_e1, top_e1, top_e0 * top_e0)),
+        );
         let t2 = (k(1.0) - t1) * (k(0.5) / t0);
-        let t3 = top_e3 + chart0_3 * t2;
-        let t4 = top_e1 + chart0_1 * t2;
-        let t5 = top_e2 + chart0_2 * t2;
-        let t6 = top_e0 + chart0_0 * t2;
-        y[0] = k(0.08) * (t6 * t5 + t4 * t3);
-        y[1] = -(k(0.08) * (t6 * t4 - t5 * t3));
-        y[2] = -(k(0.08) * (k(0.5) - (t3 * t3 + t6 * t6)));
+        let t3 = T::fused(chart0_3, t2, top_e3);
+        let t4 = T::fused(chart0_1, t2, top_e1);
+        let t5 = T::fused(chart0_2, t2, top_e2);
+        let t6 = T::fused(chart0_0, t2, top_e0);
+        y[0] = k(0.08) * T::fused(t4, t3, t6 * t5);
+        y[1] = -(k(0.08) * T::fused(-t5, t3, t6 * t4));
+        y[2] = -(k(0.08) * (k(0.5) - T::fused(t6, t6, t3 * t3)));
         y[3] = t6;
         y[4] = t4;
         y[5] = t5;
         y[6] = t3;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 35 operations (11 ±, 24 ×, 0 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -354,47 +400,61 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
         let t0 = top_e0 * top_e0;
         let t1 = top_e0 * top_e3;
         let t2 = top_e1 * top_e2;
-        let t3 = k(2.0) * (t2 - t1) * top_wx
-            + k(2.0) * (k(0.5) - (t0 + top_e1 * top_e1)) * top_wy;
-        let t4 = k(2.0) * (k(0.5) - (t0 + top_e2 * top_e2)) * top_wx
-            + k(2.0) * (t2 + t1) * top_wy;
-        let t5 = k(2.0) * (top_e2 * top_e3 + top_e0 * top_e1) * top_wx
-            - k(2.0) * (top_e1 * top_e3 - top_e0 * top_e2) * top_wy;
+        let t3 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
+            top_wy,
+            k(2.0) * (t2 - t1) * top_wx,
+        );
+        let t4 = T::fused(
+            k(2.0) * (t2 + t1),
+            top_wy,
+            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0)) * top_wx,
+        );
+        let t5 = T::fused(
+            -(k(2.0) * T::fused(-top_e0, top_e2, top_e1 * top_e3)),
+            top_wy,
+            k(2.0) * T::fused(top_e0, top_e1, top_e2 * top_e3) * top_wx,
+        );
         y[7] = -(k(0.04) * t3);
         y[8] = k(0.04) * t4;
         y[9] = -(k(0.04) * t5);
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for HeavyTop<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let top_e0 = y[3];
-        let top_e1 = y[4];
-        let top_e2 = y[5];
-        let top_e3 = y[6];
-        let top_sx = y[7];
-        let top_sy = y[8];
-        let top_sz = y[9];
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        *dy = [
-            top_sx,
-            top_sy,
-            top_sz,
-            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
-            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
-            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
-            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
@@ -483,13 +543,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         *out = [
             k(1.0),
             k(0.08) * (t1 - t0),
-            k(0.08) * (k(0.5) - (t2 + top_e1 * top_e1)),
+            k(0.08) * (k(0.5) - T::fused(top_e1, top_e1, t2)),
             k(1.0),
-            -(k(0.08) * (k(0.5) - (t2 + top_e2 * top_e2))),
+            -(k(0.08) * (k(0.5) - T::fused(top_e2, top_e2, t2))),
             -(k(0.08) * (t1 + t0)),
             k(1.0),
-            k(0.08) * (top_e2 * top_e3 + top_e0 * top_e1),
-            -(k(0.08) * (top_e1 * top_e3 - top_e0 * top_e2)),
+            k(0.08) * T::fused(top_e0, top_e1, top_e2 * top_e3),
+            -(k(0.08) * T::fused(-top_e0, top_e2, top_e1 * top_e3)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -512,20 +572,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let t2 = top_wy * top_wz;
         let t3 = top_e0 * top_e3;
         let t4 = top_e1 * top_e2;
-        let t5 = k(2.0) * (t4 - t3) * t2
-            - k(2.0) * (k(0.5) - (t1 + top_e1 * top_e1)) * t0;
-        let t6 = top_wy * top_wy + top_wx * top_wx;
+        let t5 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t1))),
+            t0,
+            k(2.0) * (t4 - t3) * t2,
+        );
+        let t6 = T::fused(top_wx, top_wx, top_wy * top_wy);
         let t7 = top_e0 * top_e2;
         let t8 = top_e1 * top_e3;
-        let t9 = k(2.0) * (k(0.5) - (t1 + top_e2 * top_e2)) * t2
-            - k(2.0) * (t4 + t3) * t0;
+        let t9 = T::fused(
+            -(k(2.0) * (t4 + t3)),
+            t0,
+            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t1)) * t2,
+        );
         let t10 = top_e0 * top_e1;
         let t11 = top_e2 * top_e3;
-        let t12 = k(2.0) * (t11 + t10) * t2 + k(2.0) * (t8 - t7) * t0;
-        let t13 = k(0.04) * (k(2.0) * (k(0.5) - (t1 + top_e3 * top_e3)) * t6 + t12);
+        let t12 = T::fused(k(2.0) * (t8 - t7), t0, k(2.0) * (t11 + t10) * t2);
+        let t13 = k(0.04)
+            * T::fused(k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t1)), t6, t12);
         *out = [
-            -(k(0.04) * (k(2.0) * (t8 + t7) * t6 - t5)),
-            -(k(0.04) * (k(2.0) * (t11 - t10) * t6 + t9)),
+            -(k(0.04) * T::fused(k(2.0) * (t8 + t7), t6, -t5)),
+            -(k(0.04) * T::fused(k(2.0) * (t11 - t10), t6, t9)),
             t13,
         ];
     }
@@ -563,28 +630,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let t6 = t5 - t4;
         let t7 = top_wx * top_wz;
         let t8 = top_e0 * top_e0;
-        let t9 = k(0.5) - (t8 + top_e1 * top_e1);
-        let t10 = top_wy * top_wy + top_wx * top_wx;
+        let t9 = k(0.5) - T::fused(top_e1, top_e1, t8);
+        let t10 = T::fused(top_wx, top_wx, top_wy * top_wy);
         let t11 = top_e0 * top_e2;
         let t12 = top_e1 * top_e3;
-        let t13 = k(2.0) * (t12 + t11) * t10 - (k(2.0) * t6 * t3 - k(2.0) * t9 * t7);
+        let t13 = T::fused(
+            k(2.0) * (t12 + t11),
+            t10,
+            -T::fused(-(k(2.0) * t9), t7, k(2.0) * t6 * t3),
+        );
         let t14 = k(0.04) * t13;
-        let t15 = k(0.5) - (t8 + top_e2 * top_e2);
+        let t15 = k(0.5) - T::fused(top_e2, top_e2, t8);
         let t16 = t5 + t4;
-        let t17 = k(2.0) * (t1 - t0) * t10 + (k(2.0) * t15 * t3 - k(2.0) * t16 * t7);
+        let t17 = T::fused(
+            k(2.0) * (t1 - t0),
+            t10,
+            T::fused(-(k(2.0) * t16), t7, k(2.0) * t15 * t3),
+        );
         let t18 = k(0.04) * t17;
         let t19 = t12 - t11;
-        let t20 = k(2.0) * (k(0.5) - (t8 + top_e3 * top_e3)) * t10
-            + (k(2.0) * t2 * t3 + k(2.0) * t19 * t7);
+        let t20 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t8)),
+            t10,
+            T::fused(k(2.0) * t19, t7, k(2.0) * t2 * t3),
+        );
         let t21 = k(0.04) * t20;
-        let t22 = t21 * (k(0.04) * t2) + (t18 * (k(0.04) * t15) - t14 * (k(0.04) * t6));
-        let t23 = k(909.0909090909091) * (t22 - (k(0.0002) * t3 - k(0.3924) * t2));
-        let t24 = k(0.04) * t19 * t21 - (k(0.04) * t16 * t18 - k(0.04) * t9 * t14);
-        let t25 = k(909.0909090909091) * (t24 - (k(0.0002) * t7 - k(0.3924) * t19));
+        let t22 = T::fused(
+            t21,
+            k(0.04) * t2,
+            T::fused(-t14, k(0.04) * t6, t18 * (k(0.04) * t15)),
+        );
+        let t23 = k(909.0909090909091)
+            * (t22 - T::fused(-k(0.3924), t2, k(0.0002) * t3));
+        let t24 = T::fused(
+            k(0.04) * t19,
+            t21,
+            -T::fused(-(k(0.04) * t9), t14, k(0.04) * t16 * t18),
+        );
+        let t25 = k(909.0909090909091)
+            * (t24 - T::fused(-k(0.3924), t19, k(0.0002) * t7));
         *out = [
-            k(0.08) * t9 * t25 - k(0.08) * t6 * t23 - t14,
-            -(t18 + (k(0.08) * t16 * t25 - k(0.08) * t15 * t23)),
-            t21 - (k(0.08) * t19 * t25 + k(0.08) * t2 * t23),
+            T::fused(-(k(0.08) * t6), t23, k(0.08) * t9 * t25) - t14,
+            -(t18 + T::fused(-(k(0.08) * t15), t23, k(0.08) * t16 * t25)),
+            t21 - T::fused(k(0.08) * t2, t23, k(0.08) * t19 * t25),
             t23,
             -t25,
             k(0.0),
@@ -605,7 +693,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         *lambda = [
             -(k(0.5) * top_dsx),
             -(k(0.5) * top_dsy),
-            -(k(4.905) + k(0.5) * top_dsz),
+            -T::fused(k(0.5), top_dsz, k(4.905)),
         ];
     }
 }
@@ -643,8 +731,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let u2 = x[6];
         let t0 = k(0.5454545454545454) * u2;
         *out = [
-            k(356.72727272727275) * (x2 * x3 + x0 * x1) + u1 * t0,
-            -(k(356.72727272727275) * (x1 * x3 - x0 * x2) + u0 * t0),
+            T::fused(u1, t0, k(356.72727272727275) * T::fused(x0, x1, x2 * x3)),
+            -T::fused(u0, t0, k(356.72727272727275) * T::fused(-x0, x2, x1 * x3)),
             k(0.0),
         ];
     }
@@ -661,10 +749,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let u1 = x[5];
         let u2 = x[6];
         *dx = [
-            -(k(0.5) * (x1 * u0 + x2 * u1 + x3 * u2)),
-            k(0.5) * (x0 * u0 - x3 * u1 + x2 * u2),
-            k(0.5) * (x3 * u0 + x0 * u1 - x1 * u2),
-            -(k(0.5) * (x2 * u0 - x1 * u1 - x0 * u2)),
+            -(k(0.5) * T::fused(x3, u2, T::fused(x2, u1, x1 * u0))),
+            k(0.5) * T::fused(x2, u2, T::fused(-x3, u1, x0 * u0)),
+            k(0.5) * T::fused(-x1, u2, T::fused(x0, u1, x3 * u0)),
+            -(k(0.5) * T::fused(-x0, u2, T::fused(-x1, u1, x2 * u0))),
             rates[0],
             rates[1],
             rates[2],
@@ -689,13 +777,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let t6 = x0 * x3;
         let t7 = x1 * x2;
         let t8 = k(0.04) * u1;
-        let t9 = k(2.0) * (k(0.5) - (t4 + x1 * x1)) * t8 + k(2.0) * (t7 - t6) * t5;
-        let t10 = k(2.0) * (t7 + t6) * t8 + k(2.0) * (k(0.5) - (t4 + x2 * x2)) * t5;
-        let t11 = k(2.0) * (t1 - t0) * t8 - k(2.0) * (t3 + t2) * t5;
+        let t9 = T::fused(
+            k(2.0) * (t7 - t6),
+            t5,
+            k(2.0) * (k(0.5) - T::fused(x1, x1, t4)) * t8,
+        );
+        let t10 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(x2, x2, t4)),
+            t5,
+            k(2.0) * (t7 + t6) * t8,
+        );
+        let t11 = T::fused(-(k(2.0) * (t3 + t2)), t5, k(2.0) * (t1 - t0) * t8);
         *y = [
             k(0.08) * (t1 + t0),
             k(0.08) * (t3 - t2),
-            -(k(0.08) * (k(0.5) - (t4 + x3 * x3))),
+            -(k(0.08) * (k(0.5) - T::fused(x3, x3, t4))),
             x0,
             x1,
             x2,
@@ -737,8 +833,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let top_wz = y[12];
         let t0 = k(0.5454545454545454) * top_wz;
         *out = [
-            top_wy * t0 + k(356.72727272727275) * (top_e2 * top_e3 + top_e0 * top_e1),
-            -(top_wx * t0 + k(356.72727272727275) * (top_e1 * top_e3 - top_e0 * top_e2)),
+            T::fused(
+                k(356.72727272727275),
+                T::fused(top_e0, top_e1, top_e2 * top_e3),
+                top_wy * t0,
+            ),
+            -T::fused(
+                k(356.72727272727275),
+                T::fused(-top_e0, top_e2, top_e1 * top_e3),
+                top_wx * t0,
+            ),
             k(0.0),
         ];
     }
@@ -761,28 +865,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let t1 = top_e1 * top_e3;
         let t2 = t1 - t0;
         let t3 = k(0.5454545454545454) * top_wz;
-        let t4 = top_wx * t3 + k(356.72727272727275) * t2;
+        let t4 = T::fused(k(356.72727272727275), t2, top_wx * t3);
         let t5 = k(0.04) * top_wx;
-        let t6 = top_wz * t5 - k(0.04) * t4;
+        let t6 = T::fused(-k(0.04), t4, top_wz * t5);
         let t7 = top_e0 * top_e0;
         let t8 = top_e0 * top_e1;
         let t9 = top_e2 * top_e3;
         let t10 = t9 + t8;
-        let t11 = top_wy * t3 + k(356.72727272727275) * t10;
+        let t11 = T::fused(k(356.72727272727275), t10, top_wy * t3);
         let t12 = k(0.04) * top_wy;
-        let t13 = top_wz * t12 - k(0.04) * t11;
+        let t13 = T::fused(-k(0.04), t11, top_wz * t12);
         let t14 = top_e0 * top_e3;
         let t15 = top_e1 * top_e2;
-        let t16 = k(2.0) * (t15 - t14) * t13
-            - k(2.0) * (k(0.5) - (t7 + top_e1 * top_e1)) * t6;
-        let t17 = top_wx * t5 + top_wy * t12;
-        let t18 = k(2.0) * (k(0.5) - (t7 + top_e2 * top_e2)) * t13
-            - k(2.0) * (t15 + t14) * t6;
-        let t19 = k(2.0) * (k(0.5) - (t7 + top_e3 * top_e3)) * t17
-            + (k(2.0) * t10 * t13 + k(2.0) * t2 * t6);
+        let t16 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t7))),
+            t6,
+            k(2.0) * (t15 - t14) * t13,
+        );
+        let t17 = T::fused(top_wy, t12, top_wx * t5);
+        let t18 = T::fused(
+            -(k(2.0) * (t15 + t14)),
+            t6,
+            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t7)) * t13,
+        );
+        let t19 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
+            t17,
+            T::fused(k(2.0) * t2, t6, k(2.0) * t10 * t13),
+        );
         *out = [
-            t16 - k(2.0) * (t1 + t0) * t17,
-            -(k(2.0) * (t9 - t8) * t17 + t18),
+            T::fused(-(k(2.0) * (t1 + t0)), t17, t16),
+            -T::fused(k(2.0) * (t9 - t8), t17, t18),
             t19,
             t11,
             -t4,
@@ -804,7 +917,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         *lambda = [
             -(k(0.5) * top_dsx),
             -(k(0.5) * top_dsy),
-            -(k(4.905) + k(0.5) * top_dsz),
+            -T::fused(k(0.5), top_dsz, k(4.905)),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 68 operations (24 ±, 44 ×, 0 ÷).
@@ -821,27 +934,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
         let t1 = top_e1 * top_e3;
         let t2 = t1 - t0;
         let t3 = k(0.5454545454545454) * top_wz;
-        let t4 = top_wx * t3 + k(356.72727272727275) * t2;
+        let t4 = T::fused(k(356.72727272727275), t2, top_wx * t3);
         let t5 = k(0.04) * top_wx;
-        let t6 = top_wz * t5 - k(0.04) * t4;
+        let t6 = T::fused(-k(0.04), t4, top_wz * t5);
         let t7 = top_e0 * top_e0;
         let t8 = top_e0 * top_e1;
         let t9 = top_e2 * top_e3;
         let t10 = t9 + t8;
-        let t11 = top_wy * t3 + k(356.72727272727275) * t10;
+        let t11 = T::fused(k(356.72727272727275), t10, top_wy * t3);
         let t12 = k(0.04) * top_wy;
-        let t13 = top_wz * t12 - k(0.04) * t11;
+        let t13 = T::fused(-k(0.04), t11, top_wz * t12);
         let t14 = top_e0 * top_e3;
         let t15 = top_e1 * top_e2;
-        let t16 = k(2.0) * (t15 - t14) * t13
-            - k(2.0) * (k(0.5) - (t7 + top_e1 * top_e1)) * t6;
-        let t17 = top_wx * t5 + top_wy * t12;
-        let t18 = k(2.0) * (t1 + t0) * t17 - t16;
-        let t19 = k(2.0) * (k(0.5) - (t7 + top_e2 * top_e2)) * t13
-            - k(2.0) * (t15 + t14) * t6;
-        let t20 = k(2.0) * (t9 - t8) * t17 + t19;
-        let t21 = k(2.0) * (k(0.5) - (t7 + top_e3 * top_e3)) * t17
-            + (k(2.0) * t10 * t13 + k(2.0) * t2 * t6);
+        let t16 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t7))),
+            t6,
+            k(2.0) * (t15 - t14) * t13,
+        );
+        let t17 = T::fused(top_wy, t12, top_wx * t5);
+        let t18 = T::fused(k(2.0) * (t1 + t0), t17, -t16);
+        let t19 = T::fused(
+            -(k(2.0) * (t15 + t14)),
+            t6,
+            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t7)) * t13,
+        );
+        let t20 = T::fused(k(2.0) * (t9 - t8), t17, t19);
+        let t21 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
+            t17,
+            T::fused(k(2.0) * t2, t6, k(2.0) * t10 * t13),
+        );
         *out = [
             -t18,
             -t20,
@@ -851,7 +973,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for HeavyTop<T> {
             k(0.0),
             k(0.5) * t18,
             k(0.5) * t20,
-            -(k(4.905) + k(0.5) * t21),
+            -T::fused(k(0.5), t21, k(4.905)),
         ];
     }
 }

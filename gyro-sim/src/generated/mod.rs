@@ -17,6 +17,8 @@ pub mod gyroscope_free_nutation;
 #[rustfmt::skip]
 pub mod gyroscope_maximal;
 #[rustfmt::skip]
+pub mod gyroscope_misalignments;
+#[rustfmt::skip]
 pub mod gyroscope_parameters;
 #[rustfmt::skip]
 pub mod gyroscope_radial_imbalance;

@@ -126,10 +126,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for SpinningTop<T> {
             top_sx,
             top_sy,
             top_sz,
-            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
-            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
-            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
-            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -152,6 +156,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 7]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 22 operations (11 ±, 11 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -165,10 +204,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         let t0 = top_e2 * top_e2;
         let t1 = top_e0 * top_e0;
         *out = [
-            top_rx - k(2.0) * (top_e1 * top_e2 - top_e0 * top_e3),
-            k(2.0) * (k(0.5) - (t1 + t0)) + top_ry,
-            top_rz - k(2.0) * (top_e2 * top_e3 + top_e0 * top_e1),
-            top_e3 * top_e3 + (t1 + top_e1 * top_e1 + t0) - k(1.0),
+            T::fused(-k(2.0), T::fused(-top_e0, top_e3, top_e1 * top_e2), top_rx),
+            T::fused(k(2.0), k(0.5) - (t1 + t0), top_ry),
+            T::fused(-k(2.0), T::fused(top_e0, top_e1, top_e2 * top_e3), top_rz),
+            T::fused(top_e3, top_e3, T::fused(top_e1, top_e1, t1) + t0) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 35 operations (14 ±, 21 ×, 0 ÷).
@@ -186,12 +225,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         let t0 = top_e0 * top_e0;
         let t1 = top_e0 * top_e2;
         let t2 = top_e1 * top_e3;
-        let t3 = k(2.0) * (t2 + t1) * top_wx
-            + k(2.0) * (k(0.5) - (t0 + top_e1 * top_e1)) * top_wz;
-        let t4 = k(2.0) * (top_e2 * top_e3 - top_e0 * top_e1) * top_wx
-            - k(2.0) * (top_e1 * top_e2 + top_e0 * top_e3) * top_wz;
-        let t5 = k(2.0) * (k(0.5) - (t0 + top_e3 * top_e3)) * top_wx
-            + k(2.0) * (t2 - t1) * top_wz;
+        let t3 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
+            top_wz,
+            k(2.0) * (t2 + t1) * top_wx,
+        );
+        let t4 = T::fused(
+            -(k(2.0) * T::fused(top_e0, top_e3, top_e1 * top_e2)),
+            top_wz,
+            k(2.0) * T::fused(-top_e0, top_e1, top_e2 * top_e3) * top_wx,
+        );
+        let t5 = T::fused(
+            k(2.0) * (t2 - t1),
+            top_wz,
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0)) * top_wx,
+        );
         *out = [top_sx - t3, top_sy - t4, top_sz + t5];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
@@ -204,9 +252,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wx * (k(0.234375) * top_wx) + top_wy * (k(0.46875) * top_wy)
-            + top_wz * (k(0.234375) * top_wz);
-        let t1 = t0 + k(15.0) * (top_sx * top_sx + top_sy * top_sy + top_sz * top_sz);
+        let t0 = T::fused(
+            top_wz,
+            k(0.234375) * top_wz,
+            T::fused(top_wy, k(0.46875) * top_wy, top_wx * (k(0.234375) * top_wx)),
+        );
+        let t1 = T::fused(
+            k(15.0),
+            T::fused(top_sz, top_sz, T::fused(top_sy, top_sy, top_sx * top_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(147.15) * top_rz,
@@ -285,32 +340,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> SpinningTop<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for SpinningTop<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
         let top_e3 = y[6];
         [[top_e0, top_e1, top_e2, top_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 38 operations (15 ±, 22 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -320,30 +361,31 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = top_e0 * chart0_0 + top_e1 * chart0_1 + top_e2 * chart0_2
-            + top_e3 * chart0_3;
-        let t1 = top_e3 * top_e3 + (top_e0 * top_e0 + top_e1 * top_e1 + top_e2 * top_e2);
+        let t0 = T::fused(
+            top_e3,
+            chart0_3,
+            T::fused(top_e2, chart0_2, T::fused(top_e1, chart0_1, top_e0 * chart0_0)),
+        );
+        let t1 = T::fused(
+            top_e3,
+            top_e3,
+            T::fused(top_e2, top_e2, T::fused(top_e1, top_e1, top_e0 * top_e0)),
+        );
         let t2 = (k(1.0) - t1) * (k(0.5) / t0);
-        let t3 = top_e2 + chart0_2 * t2;
-        let t4 = top_e1 + chart0_1 * t2;
-        let t5 = top_e3 + chart0_3 * t2;
-        let t6 = top_e0 + chart0_0 * t2;
-        y[0] = -(k(2.0) * (t6 * t5 - t4 * t3));
-        y[1] = -(k(2.0) * (k(0.5) - (t3 * t3 + t6 * t6)));
-        y[2] = k(2.0) * (t6 * t4 + t3 * t5);
+        let t3 = T::fused(chart0_2, t2, top_e2);
+        let t4 = T::fused(chart0_1, t2, top_e1);
+        let t5 = T::fused(chart0_3, t2, top_e3);
+        let t6 = T::fused(chart0_0, t2, top_e0);
+        y[0] = -(k(2.0) * T::fused(-t4, t3, t6 * t5));
+        y[1] = -(k(2.0) * (k(0.5) - T::fused(t6, t6, t3 * t3)));
+        y[2] = k(2.0) * T::fused(t3, t5, t6 * t4);
         y[3] = t6;
         y[4] = t4;
         y[5] = t3;
         y[6] = t5;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 32 operations (11 ±, 21 ×, 0 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -354,47 +396,61 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
         let t0 = top_e0 * top_e0;
         let t1 = top_e0 * top_e2;
         let t2 = top_e1 * top_e3;
-        let t3 = k(2.0) * (t2 + t1) * top_wx
-            + k(2.0) * (k(0.5) - (t0 + top_e1 * top_e1)) * top_wz;
-        let t4 = k(2.0) * (top_e2 * top_e3 - top_e0 * top_e1) * top_wx
-            - k(2.0) * (top_e1 * top_e2 + top_e0 * top_e3) * top_wz;
-        let t5 = k(2.0) * (k(0.5) - (t0 + top_e3 * top_e3)) * top_wx
-            + k(2.0) * (t2 - t1) * top_wz;
+        let t3 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
+            top_wz,
+            k(2.0) * (t2 + t1) * top_wx,
+        );
+        let t4 = T::fused(
+            -(k(2.0) * T::fused(top_e0, top_e3, top_e1 * top_e2)),
+            top_wz,
+            k(2.0) * T::fused(-top_e0, top_e1, top_e2 * top_e3) * top_wx,
+        );
+        let t5 = T::fused(
+            k(2.0) * (t2 - t1),
+            top_wz,
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0)) * top_wx,
+        );
         y[7] = t3;
         y[8] = t4;
         y[9] = -t5;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for SpinningTop<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let top_e0 = y[3];
-        let top_e1 = y[4];
-        let top_e2 = y[5];
-        let top_e3 = y[6];
-        let top_sx = y[7];
-        let top_sy = y[8];
-        let top_sz = y[9];
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        *dy = [
-            top_sx,
-            top_sy,
-            top_sz,
-            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
-            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
-            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
-            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
@@ -483,12 +539,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         *out = [
             k(1.0),
             -(k(2.0) * (t1 + t0)),
-            -(k(2.0) * (k(0.5) - (t2 + top_e1 * top_e1))),
+            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t2))),
             k(1.0),
-            -(k(2.0) * (top_e2 * top_e3 - top_e0 * top_e1)),
-            k(2.0) * (top_e1 * top_e2 + top_e0 * top_e3),
+            -(k(2.0) * T::fused(-top_e0, top_e1, top_e2 * top_e3)),
+            k(2.0) * T::fused(top_e0, top_e3, top_e1 * top_e2),
             k(1.0),
-            k(2.0) * (k(0.5) - (t2 + top_e3 * top_e3)),
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t2)),
             k(2.0) * (t1 - t0),
         ];
     }
@@ -509,23 +565,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let top_wz = y[12];
         let t0 = top_wx * top_wy;
         let t1 = top_e0 * top_e0;
-        let t2 = top_wz * top_wz + top_wx * top_wx;
+        let t2 = T::fused(top_wx, top_wx, top_wz * top_wz);
         let t3 = top_e0 * top_e3;
         let t4 = top_e1 * top_e2;
-        let t5 = k(2.0) * (t4 - t3) * t2
-            + k(2.0) * (k(0.5) - (t1 + top_e1 * top_e1)) * t0;
+        let t5 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t1)),
+            t0,
+            k(2.0) * (t4 - t3) * t2,
+        );
         let t6 = top_wy * top_wz;
         let t7 = top_e0 * top_e2;
         let t8 = top_e1 * top_e3;
-        let t9 = k(2.0) * (k(0.5) - (t1 + top_e2 * top_e2)) * t2
-            + k(2.0) * (t4 + t3) * t0;
+        let t9 = T::fused(
+            k(2.0) * (t4 + t3),
+            t0,
+            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t1)) * t2,
+        );
         let t10 = top_e0 * top_e1;
         let t11 = top_e2 * top_e3;
-        let t12 = k(2.0) * (t11 + t10) * t2 - k(2.0) * (t8 - t7) * t0;
+        let t12 = T::fused(-(k(2.0) * (t8 - t7)), t0, k(2.0) * (t11 + t10) * t2);
         *out = [
-            k(2.0) * (t8 + t7) * t6 - t5,
-            k(2.0) * (t11 - t10) * t6 + t9,
-            -(k(2.0) * (k(0.5) - (t1 + top_e3 * top_e3)) * t6 + t12),
+            T::fused(k(2.0) * (t8 + t7), t6, -t5),
+            T::fused(k(2.0) * (t11 - t10), t6, t9),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t1)), t6, t12),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 4 operations (0 ±, 4 ×, 0 ÷).
@@ -554,39 +616,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let top_wy = y[11];
         let top_wz = y[12];
         let t0 = top_e0 * top_e0;
-        let t1 = k(0.5) - (t0 + top_e3 * top_e3);
+        let t1 = k(0.5) - T::fused(top_e3, top_e3, t0);
         let t2 = top_wy * top_wz;
         let t3 = top_e0 * top_e2;
         let t4 = top_e1 * top_e3;
         let t5 = t4 + t3;
         let t6 = top_wx * top_wy;
-        let t7 = k(0.5) - (t0 + top_e1 * top_e1);
+        let t7 = k(0.5) - T::fused(top_e1, top_e1, t0);
         let t8 = k(2.0) * t7;
-        let t9 = top_wz * top_wz + top_wx * top_wx;
+        let t9 = T::fused(top_wx, top_wx, top_wz * top_wz);
         let t10 = top_e0 * top_e3;
         let t11 = top_e1 * top_e2;
         let t12 = k(2.0) * t5;
-        let t13 = t12 * t2 - (k(2.0) * (t11 - t10) * t9 + t8 * t6);
+        let t13 = T::fused(t12, t2, -T::fused(t8, t6, k(2.0) * (t11 - t10) * t9));
         let t14 = top_e0 * top_e1;
         let t15 = top_e2 * top_e3;
         let t16 = t15 - t14;
         let t17 = t11 + t10;
         let t18 = k(2.0) * t17;
-        let t19 = k(2.0) * (k(0.5) - (t0 + top_e2 * top_e2)) * t9 + t18 * t6;
+        let t19 = T::fused(
+            t18,
+            t6,
+            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0)) * t9,
+        );
         let t20 = k(2.0) * t16;
-        let t21 = t20 * t2 + t19;
+        let t21 = T::fused(t20, t2, t19);
         let t22 = t4 - t3;
         let t23 = k(2.0) * t22;
         let t24 = k(2.0) * t1;
-        let t25 = t24 * t2 + (k(2.0) * (t15 + t14) * t9 - t23 * t6);
-        let t26 = t25 * (k(30.0) * t1) + (t21 * (k(30.0) * t16) + t13 * (k(30.0) * t5));
-        let t27 = k(0.06564102564102564) * (t26 - (k(0.234375) * t2 + k(294.3) * t1));
-        let t28 = t25 * (k(30.0) * t22) - (t21 * (k(30.0) * t17) - t13 * (k(30.0) * t7));
-        let t29 = k(0.06564102564102564) * (t28 + (k(0.234375) * t6 - k(294.3) * t22));
+        let t25 = T::fused(t24, t2, T::fused(-t23, t6, k(2.0) * (t15 + t14) * t9));
+        let t26 = T::fused(
+            t25,
+            k(30.0) * t1,
+            T::fused(t13, k(30.0) * t5, t21 * (k(30.0) * t16)),
+        );
+        let t27 = k(0.06564102564102564)
+            * (t26 - T::fused(k(294.3), t1, k(0.234375) * t2));
+        let t28 = T::fused(
+            t25,
+            k(30.0) * t22,
+            -T::fused(-t13, k(30.0) * t7, t21 * (k(30.0) * t17)),
+        );
+        let t29 = k(0.06564102564102564)
+            * (t28 + T::fused(-k(294.3), t22, k(0.234375) * t6));
         *out = [
-            t13 - (t8 * t29 + t12 * t27),
-            t21 + (t18 * t29 - t20 * t27),
-            t23 * t29 + t24 * t27 - t25,
+            t13 - T::fused(t12, t27, t8 * t29),
+            t21 + T::fused(-t20, t27, t18 * t29),
+            T::fused(t24, t27, t23 * t29) - t25,
             -t27,
             k(0.0),
             -t29,
@@ -607,7 +683,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         *lambda = [
             -(k(15.0) * top_dsx),
             -(k(15.0) * top_dsy),
-            -(k(147.15) + k(15.0) * top_dsz),
+            -T::fused(k(15.0), top_dsz, k(147.15)),
         ];
     }
 }
@@ -636,9 +712,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let u1 = x[5];
         let u2 = x[6];
         let t0 = k(0.9692307692307692) * u1;
-        let t1 = u2 * t0
-            - (k(19.318153846153844) * (x1 * x1 + x2 * x2) - k(9.659076923076922));
-        *out = [-t1, k(0.0), k(19.318153846153844) * (x1 * x3 - x0 * x2) + u0 * t0];
+        let t1 = T::fused(
+            u2,
+            t0,
+            -T::fused(
+                k(19.318153846153844),
+                T::fused(x2, x2, x1 * x1),
+                -k(9.659076923076922),
+            ),
+        );
+        *out = [
+            -t1,
+            k(0.0),
+            T::fused(u0, t0, k(19.318153846153844) * T::fused(-x0, x2, x1 * x3)),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -653,10 +740,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let u1 = x[5];
         let u2 = x[6];
         *dx = [
-            -(k(0.5) * (x1 * u0 + x2 * u1 + x3 * u2)),
-            k(0.5) * (x0 * u0 - x3 * u1 + x2 * u2),
-            k(0.5) * (x3 * u0 + x0 * u1 - x1 * u2),
-            -(k(0.5) * (x2 * u0 - x1 * u1 - x0 * u2)),
+            -(k(0.5) * T::fused(x3, u2, T::fused(x2, u1, x1 * u0))),
+            k(0.5) * T::fused(x2, u2, T::fused(-x3, u1, x0 * u0)),
+            k(0.5) * T::fused(-x1, u2, T::fused(x0, u1, x3 * u0)),
+            -(k(0.5) * T::fused(-x0, u2, T::fused(-x1, u1, x2 * u0))),
             rates[0],
             rates[1],
             rates[2],
@@ -679,12 +766,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let t4 = x2 * x3;
         let t5 = x0 * x2;
         let t6 = x1 * x3;
-        let t7 = k(2.0) * (k(0.5) - (t2 + x1 * x1)) * u2 + k(2.0) * (t6 + t5) * u0;
-        let t8 = k(2.0) * (t1 + t0) * u2 - k(2.0) * (t4 - t3) * u0;
-        let t9 = k(2.0) * (t6 - t5) * u2 + k(2.0) * (k(0.5) - (t2 + x3 * x3)) * u0;
+        let t7 = T::fused(
+            k(2.0) * (t6 + t5),
+            u0,
+            k(2.0) * (k(0.5) - T::fused(x1, x1, t2)) * u2,
+        );
+        let t8 = T::fused(-(k(2.0) * (t4 - t3)), u0, k(2.0) * (t1 + t0) * u2);
+        let t9 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(x3, x3, t2)),
+            u0,
+            k(2.0) * (t6 - t5) * u2,
+        );
         *y = [
             k(2.0) * (t1 - t0),
-            -(k(2.0) * (k(0.5) - (t2 + x2 * x2))),
+            -(k(2.0) * (k(0.5) - T::fused(x2, x2, t2))),
             k(2.0) * (t4 + t3),
             x0,
             x1,
@@ -726,12 +821,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let top_wy = y[11];
         let top_wz = y[12];
         let t0 = k(0.9692307692307692) * top_wy;
-        let t1 = k(9.659076923076922)
-            - k(19.318153846153844) * (top_e1 * top_e1 + top_e2 * top_e2) + top_wz * t0;
+        let t1 = T::fused(
+            top_wz,
+            t0,
+            T::fused(
+                -k(19.318153846153844),
+                T::fused(top_e2, top_e2, top_e1 * top_e1),
+                k(9.659076923076922),
+            ),
+        );
         *out = [
             -t1,
             k(0.0),
-            top_wx * t0 + k(19.318153846153844) * (top_e1 * top_e3 - top_e0 * top_e2),
+            T::fused(
+                k(19.318153846153844),
+                T::fused(-top_e0, top_e2, top_e1 * top_e3),
+                top_wx * t0,
+            ),
         ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 62 operations (25 ±, 37 ×, 0 ÷).
@@ -753,26 +859,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let t1 = top_e1 * top_e3;
         let t2 = t1 - t0;
         let t3 = k(0.9692307692307692) * top_wy;
-        let t4 = top_wx * t3 + k(19.318153846153844) * t2;
-        let t5 = top_wx * top_wy - t4;
+        let t4 = T::fused(k(19.318153846153844), t2, top_wx * t3);
+        let t5 = T::fused(top_wx, top_wy, -t4);
         let t6 = top_e1 * top_e1;
         let t7 = top_e0 * top_e0;
-        let t8 = top_wz * top_wz + top_wx * top_wx;
+        let t8 = T::fused(top_wx, top_wx, top_wz * top_wz);
         let t9 = top_e0 * top_e3;
         let t10 = top_e1 * top_e2;
-        let t11 = k(2.0) * (t10 - t9) * t8 + k(2.0) * (k(0.5) - (t7 + t6)) * t5;
+        let t11 = T::fused(k(2.0) * (k(0.5) - (t7 + t6)), t5, k(2.0) * (t10 - t9) * t8);
         let t12 = top_e2 * top_e2;
-        let t13 = k(9.659076923076922) - k(19.318153846153844) * (t6 + t12)
-            + top_wz * t3;
-        let t14 = top_wy * top_wz - t13;
-        let t15 = k(2.0) * (k(0.5) - (t7 + t12)) * t8 + k(2.0) * (t10 + t9) * t5;
+        let t13 = T::fused(
+            top_wz,
+            t3,
+            T::fused(-k(19.318153846153844), t6 + t12, k(9.659076923076922)),
+        );
+        let t14 = T::fused(top_wy, top_wz, -t13);
+        let t15 = T::fused(k(2.0) * (t10 + t9), t5, k(2.0) * (k(0.5) - (t7 + t12)) * t8);
         let t16 = top_e0 * top_e1;
         let t17 = top_e2 * top_e3;
-        let t18 = k(2.0) * (k(0.5) - (t7 + top_e3 * top_e3)) * t14
-            + (k(2.0) * (t17 + t16) * t8 - k(2.0) * t2 * t5);
+        let t18 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
+            t14,
+            T::fused(-(k(2.0) * t2), t5, k(2.0) * (t17 + t16) * t8),
+        );
         *out = [
-            k(2.0) * (t1 + t0) * t14 - t11,
-            k(2.0) * (t17 - t16) * t14 + t15,
+            T::fused(k(2.0) * (t1 + t0), t14, -t11),
+            T::fused(k(2.0) * (t17 - t16), t14, t15),
             -t18,
             -t13,
             k(0.0),
@@ -794,7 +906,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         *lambda = [
             -(k(15.0) * top_dsx),
             -(k(15.0) * top_dsy),
-            -(k(147.15) + k(15.0) * top_dsz),
+            -T::fused(k(15.0), top_dsz, k(147.15)),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 66 operations (26 ±, 40 ×, 0 ÷).
@@ -811,25 +923,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
         let t1 = top_e1 * top_e3;
         let t2 = t1 - t0;
         let t3 = k(0.9692307692307692) * top_wy;
-        let t4 = top_wx * t3 + k(19.318153846153844) * t2;
-        let t5 = top_wx * top_wy - t4;
+        let t4 = T::fused(k(19.318153846153844), t2, top_wx * t3);
+        let t5 = T::fused(top_wx, top_wy, -t4);
         let t6 = top_e1 * top_e1;
         let t7 = top_e0 * top_e0;
-        let t8 = top_wz * top_wz + top_wx * top_wx;
+        let t8 = T::fused(top_wx, top_wx, top_wz * top_wz);
         let t9 = top_e0 * top_e3;
         let t10 = top_e1 * top_e2;
-        let t11 = k(2.0) * (t10 - t9) * t8 + k(2.0) * (k(0.5) - (t7 + t6)) * t5;
+        let t11 = T::fused(k(2.0) * (k(0.5) - (t7 + t6)), t5, k(2.0) * (t10 - t9) * t8);
         let t12 = top_e2 * top_e2;
-        let t13 = k(9.659076923076922) - k(19.318153846153844) * (t6 + t12)
-            + top_wz * t3;
-        let t14 = top_wy * top_wz - t13;
-        let t15 = k(2.0) * (t1 + t0) * t14 - t11;
-        let t16 = k(2.0) * (k(0.5) - (t7 + t12)) * t8 + k(2.0) * (t10 + t9) * t5;
+        let t13 = T::fused(
+            top_wz,
+            t3,
+            T::fused(-k(19.318153846153844), t6 + t12, k(9.659076923076922)),
+        );
+        let t14 = T::fused(top_wy, top_wz, -t13);
+        let t15 = T::fused(k(2.0) * (t1 + t0), t14, -t11);
+        let t16 = T::fused(k(2.0) * (t10 + t9), t5, k(2.0) * (k(0.5) - (t7 + t12)) * t8);
         let t17 = top_e0 * top_e1;
         let t18 = top_e2 * top_e3;
-        let t19 = k(2.0) * (t18 - t17) * t14 + t16;
-        let t20 = k(2.0) * (k(0.5) - (t7 + top_e3 * top_e3)) * t14
-            + (k(2.0) * (t18 + t17) * t8 - k(2.0) * t2 * t5);
+        let t19 = T::fused(k(2.0) * (t18 - t17), t14, t16);
+        let t20 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t7)),
+            t14,
+            T::fused(-(k(2.0) * t2), t5, k(2.0) * (t18 + t17) * t8),
+        );
         *out = [
             t15,
             t19,
@@ -839,7 +957,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
             t4,
             -(k(15.0) * t15),
             -(k(15.0) * t19),
-            k(15.0) * t20 - k(147.15),
+            T::fused(k(15.0), t20, -k(147.15)),
         ];
     }
 }

@@ -129,10 +129,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Torsion<T> {
             disc_sx,
             disc_sy,
             disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            -(k(0.5)
+                * T::fused(
+                    disc_e3,
+                    disc_wz,
+                    T::fused(disc_e2, disc_wy, disc_e1 * disc_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    disc_e2,
+                    disc_wz,
+                    T::fused(-disc_e3, disc_wy, disc_e0 * disc_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -disc_e1,
+                    disc_wz,
+                    T::fused(disc_e0, disc_wy, disc_e3 * disc_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -disc_e0,
+                    disc_wz,
+                    T::fused(-disc_e1, disc_wy, disc_e2 * disc_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -157,6 +177,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 26 operations (8 ±, 18 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let disc_sx = y[7];
+        let disc_sy = y[8];
+        let disc_sz = y[9];
+        let disc_wx = y[10];
+        let disc_wy = y[11];
+        let disc_wz = y[12];
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5)
+                * T::fused(
+                    disc_e3,
+                    disc_wz,
+                    T::fused(disc_e2, disc_wy, disc_e1 * disc_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    disc_e2,
+                    disc_wz,
+                    T::fused(-disc_e3, disc_wy, disc_e0 * disc_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -disc_e1,
+                    disc_wz,
+                    T::fused(disc_e0, disc_wy, disc_e3 * disc_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -disc_e0,
+                    disc_wz,
+                    T::fused(-disc_e1, disc_wy, disc_e2 * disc_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            -(disc_wz * (k(0.01) * disc_wz)),
+            disc_wz,
+        ];
+    }
     /// Writes Φ: 16 operations (6 ±, 10 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -167,14 +240,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
         let disc_e1 = y[4];
         let disc_e2 = y[5];
         let disc_e3 = y[6];
-        let t0 = disc_e3 * disc_e3
-            + (disc_e0 * disc_e0 + disc_e1 * disc_e1 + disc_e2 * disc_e2);
+        let t0 = T::fused(
+            disc_e3,
+            disc_e3,
+            T::fused(disc_e2, disc_e2, T::fused(disc_e1, disc_e1, disc_e0 * disc_e0)),
+        );
         *out = [
             disc_rx,
             disc_ry,
             disc_rz,
-            k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2),
-            k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1),
+            k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
+            k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3),
             t0 - k(1.0),
         ];
     }
@@ -193,10 +269,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
         let t0 = disc_e0 * disc_e0;
         let t1 = disc_e0 * disc_e3;
         let t2 = disc_e1 * disc_e2;
-        let t3 = k(2.0) * (t2 - t1) * disc_wx
-            + k(2.0) * (k(0.5) - (t0 + disc_e1 * disc_e1)) * disc_wy;
-        let t4 = k(2.0) * (k(0.5) - (t0 + disc_e2 * disc_e2)) * disc_wx
-            + k(2.0) * (t2 + t1) * disc_wy;
+        let t3 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t0)),
+            disc_wy,
+            k(2.0) * (t2 - t1) * disc_wx,
+        );
+        let t4 = T::fused(
+            k(2.0) * (t2 + t1),
+            disc_wy,
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t0)) * disc_wx,
+        );
         *out = [disc_sx, disc_sy, disc_sz, -t3, t4];
     }
     /// Kinetic and potential energy: 35 operations (11 ±, 24 ×, 0 ÷) and 3 functions.
@@ -213,15 +295,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
         let disc_wy = y[11];
         let disc_wz = y[12];
         let turn0 = y[14];
-        let t0 = disc_wx * (k(0.01) * disc_wx) + disc_wy * (k(0.01) * disc_wy)
-            + disc_wz * (k(0.02) * disc_wz);
-        let t1 = t0
-            + k(4.0) * (disc_sx * disc_sx + disc_sy * disc_sy + disc_sz * disc_sz);
+        let t0 = T::fused(
+            disc_wz,
+            k(0.02) * disc_wz,
+            T::fused(disc_wy, k(0.01) * disc_wy, disc_wx * (k(0.01) * disc_wx)),
+        );
+        let t1 = T::fused(
+            k(4.0),
+            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
+            t0,
+        );
         let t2 = turn0.cos();
-        let t3 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t4 = turn0.sin();
-        let t5 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t6 = (t5 * t2 + t3 * t4).atan2(t5 * t4 - t3 * t2);
+        let t5 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t6 = T::fused(t3, t4, t5 * t2).atan2(T::fused(-t3, t2, t5 * t4));
         let t7 = turn0 + t6;
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
@@ -236,10 +324,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
         let disc_e2 = y[5];
         let disc_e3 = y[6];
         let disc_wz = y[12];
-        let t0 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
-        let t1 = k(2.0) * (k(0.5) - t0)
-            - (k(1.0) - (disc_e3 * disc_e3 + (t0 + disc_e2 * disc_e2)));
-        *out = [k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3), -t1, disc_wz];
+        let t0 = T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t1 = T::fused(
+            k(2.0),
+            k(0.5) - t0,
+            -(k(1.0) - T::fused(disc_e3, disc_e3, T::fused(disc_e2, disc_e2, t0))),
+        );
+        *out = [k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2), -t1, disc_wz];
     }
     fn n_bodies(&self) -> usize {
         1
@@ -311,32 +402,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
         y[13]
     }
 }
-impl<T: gyro_sim::Scalar> Torsion<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Torsion<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 15]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let disc_e0 = y[3];
         let disc_e1 = y[4];
         let disc_e2 = y[5];
         let disc_e3 = y[6];
         [[-disc_e3, disc_e2, -disc_e1, disc_e0]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Torsion<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 128 operations (47 ±, 80 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let disc_e0 = y[3];
         let disc_e1 = y[4];
@@ -346,40 +423,66 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Torsion<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = disc_e3 * disc_e3
-            + (disc_e0 * disc_e0 + disc_e1 * disc_e1 + disc_e2 * disc_e2);
+        let t0 = T::fused(
+            disc_e3,
+            disc_e3,
+            T::fused(disc_e2, disc_e2, T::fused(disc_e1, disc_e1, disc_e0 * disc_e0)),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = disc_e2 * t1;
         let t3 = disc_e0 * t1;
         let t4 = t3 * t3;
-        let t5 = k(2.0) * (k(0.5) - (t4 + t2 * t2));
+        let t5 = k(2.0) * (k(0.5) - T::fused(t2, t2, t4));
         let t6 = disc_e1 * t1;
-        let t7 = k(2.0) * (k(0.5) - (t6 * t6 + t4));
+        let t7 = k(2.0) * (k(0.5) - T::fused(t6, t6, t4));
         let t8 = t6 * t2;
         let t9 = disc_e3 * t1;
         let t10 = t3 * t9;
         let t11 = k(2.0) * (t10 + t8);
         let t12 = k(2.0) * (t10 - t8);
-        let t13 = t12 * t11 + t7 * t5;
-        let t14 = chart0_0 * (disc_e0 + t3) + chart0_1 * (disc_e1 + t6)
-            + chart0_2 * (disc_e2 + t2);
-        let t15 = chart0_0 * t2 + chart0_1 * t9 - chart0_2 * t3 - chart0_3 * t6;
+        let t13 = T::fused(t7, t5, t12 * t11);
+        let t14 = T::fused(
+            chart0_2,
+            disc_e2 + t2,
+            T::fused(chart0_1, disc_e1 + t6, chart0_0 * (disc_e0 + t3)),
+        );
+        let t15 = T::fused(
+            -chart0_3,
+            t6,
+            T::fused(-chart0_2, t3, T::fused(chart0_1, t9, chart0_0 * t2)),
+        );
         let t16 = k(0.5) * t15;
-        let t17 = chart0_0 * t6 - chart0_1 * t3 - chart0_2 * t9 + chart0_3 * t2;
+        let t17 = T::fused(
+            chart0_3,
+            t2,
+            T::fused(-chart0_2, t9, T::fused(-chart0_1, t3, chart0_0 * t6)),
+        );
         let t18 = k(0.5) * t17;
-        let t19 = k(2.0) * (t3 * t6 - t2 * t9);
-        let t20 = k(2.0) * (t3 * t2 + t6 * t9);
-        let t21 = t20 * (t5 * t16 - t11 * t18) + t19 * (t7 * t18 + t12 * t16);
-        let t22 = chart0_0 * t9 - chart0_1 * t2 + chart0_2 * t6 - chart0_3 * t3;
+        let t19 = k(2.0) * T::fused(-t2, t9, t3 * t6);
+        let t20 = k(2.0) * T::fused(t6, t9, t3 * t2);
+        let t21 = T::fused(
+            t19,
+            T::fused(t12, t16, t7 * t18),
+            t20 * T::fused(-t11, t18, t5 * t16),
+        );
+        let t22 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(chart0_2, t6, T::fused(-chart0_1, t2, chart0_0 * t9)),
+        );
         let t23 = k(0.5) * t22;
         let t24 = k(1.0) / (t23 * t13);
-        let t25 = t24 * (t21 - (t14 + chart0_3 * (disc_e3 + t9)) * t13);
-        let t26 = t24 * (t20 * (t5 * t23) + t19 * (t12 * t23));
-        let t27 = t24 * (t20 * (t11 * t23) - t19 * (t7 * t23));
-        let t28 = t3 + k(0.5) * (t6 * t27 - t2 * t26 + t9 * t25);
-        let t29 = t6 - k(0.5) * (t3 * t27 + t9 * t26 + t2 * t25);
-        let t30 = t2 - k(0.5) * (t9 * t27 - t3 * t26 - t6 * t25);
-        let t31 = t9 + k(0.5) * (t2 * t27 + t6 * t26 - t3 * t25);
+        let t25 = t24 * T::fused(-T::fused(chart0_3, disc_e3 + t9, t14), t13, t21);
+        let t26 = t24 * T::fused(t19, t12 * t23, t20 * (t5 * t23));
+        let t27 = t24 * T::fused(-t19, t7 * t23, t20 * (t11 * t23));
+        let t28 = T::fused(k(0.5), T::fused(t9, t25, T::fused(-t2, t26, t6 * t27)), t3);
+        let t29 = T::fused(-k(0.5), T::fused(t2, t25, T::fused(t9, t26, t3 * t27)), t6);
+        let t30 = T::fused(
+            -k(0.5),
+            T::fused(-t6, t25, T::fused(-t3, t26, t9 * t27)),
+            t2,
+        );
+        let t31 = T::fused(k(0.5), T::fused(-t3, t25, T::fused(t6, t26, t2 * t27)), t9);
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
@@ -387,15 +490,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Torsion<T> {
         y[4] = -t29;
         y[5] = -t30;
         y[6] = -t31;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 37 operations (13 ±, 23 ×, 1 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let disc_e0 = y[3];
         let disc_e1 = y[4];
@@ -408,50 +505,53 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Torsion<T> {
         let t2 = k(2.0) * (t1 + t0);
         let t3 = k(2.0) * (t1 - t0);
         let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + disc_e2 * disc_e2));
-        let t6 = k(2.0) * (k(0.5) - (t4 + disc_e1 * disc_e1));
-        let t7 = k(1.0) / (t6 * t5 - t3 * t2);
-        let t8 = t5 * disc_wx + t2 * disc_wy;
-        let t9 = t3 * disc_wx + t6 * disc_wy;
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
+        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        let t8 = T::fused(t2, disc_wy, t5 * disc_wx);
+        let t9 = T::fused(t6, disc_wy, t3 * disc_wx);
         y[7] = k(0.0);
         y[8] = k(0.0);
         y[9] = k(0.0);
-        y[10] = disc_wx + t9 * (t2 * t7) - t8 * (t6 * t7);
-        y[11] = disc_wy - t9 * (t5 * t7) + t8 * (t3 * t7);
+        y[10] = T::fused(-t8, t6 * t7, T::fused(t9, t2 * t7, disc_wx));
+        y[11] = T::fused(t8, t3 * t7, T::fused(-t9, t5 * t7, disc_wy));
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Torsion<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 26 operations (8 ±, 18 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let disc_e0 = y[3];
-        let disc_e1 = y[4];
-        let disc_e2 = y[5];
-        let disc_e3 = y[6];
-        let disc_sx = y[7];
-        let disc_sy = y[8];
-        let disc_sz = y[9];
-        let disc_wx = y[10];
-        let disc_wy = y[11];
-        let disc_wz = y[12];
-        *dy = [
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            -(disc_wz * (k(0.01) * disc_wz)),
-            disc_wz,
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
@@ -538,8 +638,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
             k(1.0),
             k(1.0),
             -(k(2.0) * (t1 - t0)),
-            -(k(2.0) * (k(0.5) - (t2 + disc_e1 * disc_e1))),
-            k(2.0) * (k(0.5) - (t2 + disc_e2 * disc_e2)),
+            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t2))),
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t2)),
             k(2.0) * (t1 + t0),
         ];
     }
@@ -563,17 +663,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let t2 = disc_wy * disc_wz;
         let t3 = disc_e0 * disc_e3;
         let t4 = disc_e1 * disc_e2;
-        let t5 = k(2.0) * (t4 - t3) * t2
-            - k(2.0) * (k(0.5) - (t1 + disc_e1 * disc_e1)) * t0;
-        let t6 = disc_wy * disc_wy + disc_wx * disc_wx;
-        let t7 = k(2.0) * (k(0.5) - (t1 + disc_e2 * disc_e2)) * t2
-            - k(2.0) * (t4 + t3) * t0;
+        let t5 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t1))),
+            t0,
+            k(2.0) * (t4 - t3) * t2,
+        );
+        let t6 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t7 = T::fused(
+            -(k(2.0) * (t4 + t3)),
+            t0,
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t1)) * t2,
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2) * t6 - t5,
-            k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1) * t6 + t7,
+            T::fused(k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3), t6, -t5),
+            T::fused(k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3), t6, t7),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 23 operations (7 ±, 16 ×, 0 ÷) and 3 functions.
@@ -588,17 +694,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let disc_wz = y[12];
         let turn0 = y[14];
         let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -(k(0.01) * (disc_wy * disc_wz)),
             k(0.01) * (disc_wx * disc_wz),
-            -(k(0.01) * disc_wz + k(0.5) * (turn0 + t4)),
+            -T::fused(k(0.5), turn0 + t4, k(0.01) * disc_wz),
         ];
     }
     /// Solves eq. (17): 42 operations (14 ±, 27 ×, 1 ÷) and 3 functions.
@@ -613,24 +719,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let disc_wz = y[12];
         let turn0 = y[14];
         let t0 = disc_e0 * disc_e0;
-        let t1 = (disc_wy * disc_wy + disc_wx * disc_wx)
-            * (k(0.5) / (k(0.5) - (t0 + disc_e3 * disc_e3)));
-        let t2 = disc_wy * disc_wz
-            - k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1) * t1;
-        let t3 = disc_wx * disc_wz
-            - k(2.0) * (disc_e1 * disc_e3 - disc_e0 * disc_e2) * t1;
+        let t1 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
+            * (k(0.5) / (k(0.5) - T::fused(disc_e3, disc_e3, t0)));
+        let t2 = T::fused(
+            -(k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3)),
+            t1,
+            disc_wy * disc_wz,
+        );
+        let t3 = T::fused(
+            -(k(2.0) * T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3)),
+            t1,
+            disc_wx * disc_wz,
+        );
         let t4 = turn0.cos();
-        let t5 = k(2.0) * (k(0.5) - (t0 + disc_e1 * disc_e1));
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t0));
         let t6 = turn0.sin();
-        let t7 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t8 = (t7 * t4 + t5 * t6).atan2(t7 * t6 - t5 * t4);
+        let t7 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t8 = T::fused(t5, t6, t7 * t4).atan2(T::fused(-t5, t4, t7 * t6));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             t2,
             -t3,
-            -(k(50.0) * (k(0.01) * disc_wz + k(0.5) * (turn0 + t8))),
+            -(k(50.0) * T::fused(k(0.5), turn0 + t8, k(0.01) * disc_wz)),
         ];
     }
     /// Writes λ: 38 operations (11 ±, 26 ×, 1 ÷).
@@ -659,17 +771,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let t2 = k(2.0) * (t1 + t0);
         let t3 = k(2.0) * (t1 - t0);
         let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + disc_e2 * disc_e2));
-        let t6 = k(2.0) * (k(0.5) - (t4 + disc_e1 * disc_e1));
-        let t7 = k(1.0) / (t6 * t5 - t3 * t2);
-        let t8 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t9 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
+        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        let t8 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t9 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            -(t9 * (t5 * t7) + t8 * (t2 * t7)),
-            -(t9 * (t3 * t7) + t8 * (t6 * t7)),
+            -T::fused(t8, t2 * t7, t9 * (t5 * t7)),
+            -T::fused(t8, t6 * t7, t9 * (t3 * t7)),
         ];
     }
 }
@@ -692,7 +804,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
         let k = T::constant;
         let x0 = x[0];
         let u0 = x[1];
-        *out = [-(k(0.5) * u0 + k(25.0) * x0)];
+        *out = [-T::fused(k(25.0), x0, k(0.5) * u0)];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -736,12 +848,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
         let disc_wz = y[12];
         let x0 = x[0];
         let t0 = x0.sin();
-        let t1 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t1 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
         let t2 = x0.cos();
-        let t3 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
-        let t4 = k(2.0) * (k(0.5) - t3)
-            - (k(1.0) - (disc_e3 * disc_e3 + (t3 + disc_e2 * disc_e2)));
-        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        let t3 = T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t4 = T::fused(
+            k(2.0),
+            k(0.5) - t3,
+            -(k(1.0) - T::fused(disc_e3, disc_e3, T::fused(disc_e2, disc_e2, t3))),
+        );
+        let t5 = T::fused(t1, t2, t4 * t0).atan2(T::fused(-t4, t2, t1 * t0));
         x[0] = x0 + t5;
         x[1] = disc_wz;
         x[2] = y[13];
@@ -756,11 +871,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
         let disc_wz = y[12];
         let turn0 = y[14];
         let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
-        *out = [-(k(25.0) * (turn0 + t4) + k(0.5) * disc_wz)];
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
+        *out = [-T::fused(k(0.5), disc_wz, k(25.0) * (turn0 + t4))];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 21 operations (7 ±, 14 ×, 0 ÷) and 3 functions.
     fn corrected_accelerations(
@@ -779,17 +894,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
         let disc_wz = y[12];
         let turn0 = y[14];
         let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             disc_wy * disc_wz,
             -(disc_wx * disc_wz),
-            -(k(25.0) * (turn0 + t4) + k(0.5) * disc_wz),
+            -T::fused(k(0.5), disc_wz, k(25.0) * (turn0 + t4)),
         ];
     }
     /// Writes λ: 19 operations (5 ±, 14 ×, 0 ÷).
@@ -813,15 +928,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
         let disc_dwy = accelerations[4];
         let t0 = k(2.0) * disc_e3;
         let t1 = disc_e0 * t0;
-        let t2 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t3 = k(1.0) - disc_e3 * t0;
-        let t4 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
+        let t2 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t3 = T::fused(-disc_e3, t0, k(1.0));
+        let t4 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            t4 * t3 - t2 * t1,
-            t4 * t1 + t2 * t3,
+            T::fused(-t2, t1, t4 * t3),
+            T::fused(t2, t3, t4 * t1),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 33 operations (10 ±, 23 ×, 0 ÷) and 3 functions.
@@ -838,13 +953,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
         let t0 = disc_wy * disc_wz;
         let t1 = disc_wx * disc_wz;
         let t2 = turn0.cos();
-        let t3 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t4 = turn0.sin();
-        let t5 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t6 = (t5 * t2 + t3 * t4).atan2(t5 * t4 - t3 * t2);
+        let t5 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t6 = T::fused(t3, t4, t5 * t2).atan2(T::fused(-t3, t2, t5 * t4));
         let t7 = k(0.02) * t1;
         let t8 = k(2.0) * disc_e3;
-        let t9 = k(1.0) - disc_e3 * t8;
+        let t9 = T::fused(-disc_e3, t8, k(1.0));
         let t10 = k(0.02) * t0;
         let t11 = disc_e0 * t8;
         *out = [
@@ -853,12 +968,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
             k(0.0),
             t0,
             -t1,
-            -(k(25.0) * (turn0 + t6) + k(0.5) * disc_wz),
+            -T::fused(k(0.5), disc_wz, k(25.0) * (turn0 + t6)),
             k(0.0),
             k(0.0),
             k(0.0),
-            t9 * t7 - t11 * t10,
-            t9 * t10 + t11 * t7,
+            T::fused(-t11, t10, t9 * t7),
+            T::fused(t11, t7, t9 * t10),
         ];
     }
 }

@@ -136,40 +136,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Cam<T> {
         let plunger_wz = y[25];
         let closing0 = accelerations[12];
         let closing1 = accelerations[13];
-        let t0 = k(0.5) + k(3.0) * t;
-        let t1 = (k(1.0) + t0.sin()) * (k(0.2) * t)
-            + t * (k(0.1) * t) * (k(3.0) * t0.cos());
+        let t0 = T::fused(k(3.0), t, k(0.5));
+        let t1 = T::fused(
+            t * (k(0.1) * t),
+            k(3.0) * t0.cos(),
+            (k(1.0) + t0.sin()) * (k(0.2) * t),
+        );
         *dy = [
             follower_sx,
             follower_sy,
             follower_sz,
             -(k(0.5)
-                * (follower_e1 * follower_wx + follower_e2 * follower_wy
-                    + follower_e3 * follower_wz)),
+                * T::fused(
+                    follower_e3,
+                    follower_wz,
+                    T::fused(follower_e2, follower_wy, follower_e1 * follower_wx),
+                )),
             k(0.5)
-                * (follower_e0 * follower_wx - follower_e3 * follower_wy
-                    + follower_e2 * follower_wz),
+                * T::fused(
+                    follower_e2,
+                    follower_wz,
+                    T::fused(-follower_e3, follower_wy, follower_e0 * follower_wx),
+                ),
             k(0.5)
-                * (follower_e3 * follower_wx + follower_e0 * follower_wy
-                    - follower_e1 * follower_wz),
+                * T::fused(
+                    -follower_e1,
+                    follower_wz,
+                    T::fused(follower_e0, follower_wy, follower_e3 * follower_wx),
+                ),
             -(k(0.5)
-                * (follower_e2 * follower_wx - follower_e1 * follower_wy
-                    - follower_e0 * follower_wz)),
+                * T::fused(
+                    -follower_e0,
+                    follower_wz,
+                    T::fused(-follower_e1, follower_wy, follower_e2 * follower_wx),
+                )),
             plunger_sx,
             plunger_sy,
             plunger_sz,
             -(k(0.5)
-                * (plunger_e1 * plunger_wx + plunger_e2 * plunger_wy
-                    + plunger_e3 * plunger_wz)),
+                * T::fused(
+                    plunger_e3,
+                    plunger_wz,
+                    T::fused(plunger_e2, plunger_wy, plunger_e1 * plunger_wx),
+                )),
             k(0.5)
-                * (plunger_e0 * plunger_wx - plunger_e3 * plunger_wy
-                    + plunger_e2 * plunger_wz),
+                * T::fused(
+                    plunger_e2,
+                    plunger_wz,
+                    T::fused(-plunger_e3, plunger_wy, plunger_e0 * plunger_wx),
+                ),
             k(0.5)
-                * (plunger_e3 * plunger_wx + plunger_e0 * plunger_wy
-                    - plunger_e1 * plunger_wz),
+                * T::fused(
+                    -plunger_e1,
+                    plunger_wz,
+                    T::fused(plunger_e0, plunger_wy, plunger_e3 * plunger_wx),
+                ),
             -(k(0.5)
-                * (plunger_e2 * plunger_wx - plunger_e1 * plunger_wy
-                    - plunger_e0 * plunger_wz)),
+                * T::fused(
+                    -plunger_e0,
+                    plunger_wz,
+                    T::fused(-plunger_e1, plunger_wy, plunger_e2 * plunger_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -182,7 +209,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Cam<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            -(table0[1] * closing0 + t1 * closing1),
+            -T::fused(t1, closing1, table0[1] * closing0),
         ];
     }
 }
@@ -217,26 +244,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cam<T> {
         let plunger_e1 = y[11];
         let plunger_e2 = y[12];
         let plunger_e3 = y[13];
-        let t0 = t * (k(0.1) * t) * (k(1.0) + (k(0.5) + k(3.0) * t).sin());
-        let t1 = follower_e3 * follower_e3
-            + (follower_e0 * follower_e0 + follower_e1 * follower_e1
-                + follower_e2 * follower_e2);
-        let t2 = plunger_e3 * plunger_e3
-            + (plunger_e0 * plunger_e0 + plunger_e1 * plunger_e1
-                + plunger_e2 * plunger_e2);
+        let t0 = T::fused(
+            t * (k(0.1) * t),
+            k(1.0) + T::fused(k(3.0), t, k(0.5)).sin(),
+            -k(0.2),
+        );
+        let t1 = T::fused(
+            follower_e3,
+            follower_e3,
+            T::fused(
+                follower_e2,
+                follower_e2,
+                T::fused(follower_e1, follower_e1, follower_e0 * follower_e0),
+            ),
+        );
+        let t2 = T::fused(
+            plunger_e3,
+            plunger_e3,
+            T::fused(
+                plunger_e2,
+                plunger_e2,
+                T::fused(plunger_e1, plunger_e1, plunger_e0 * plunger_e0),
+            ),
+        );
         *out = [
             follower_rx,
             follower_ry,
-            k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2),
-            k(2.0) * (follower_e2 * follower_e3 - follower_e0 * follower_e1),
-            k(2.0) * (follower_e1 * follower_e2 - follower_e0 * follower_e3),
+            k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3),
+            k(2.0) * T::fused(-follower_e0, follower_e1, follower_e2 * follower_e3),
+            k(2.0) * T::fused(-follower_e0, follower_e3, follower_e1 * follower_e2),
             plunger_rx - k(1.0),
             plunger_ry,
-            k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2),
-            k(2.0) * (plunger_e2 * plunger_e3 - plunger_e0 * plunger_e1),
-            k(2.0) * (plunger_e1 * plunger_e2 - plunger_e0 * plunger_e3),
+            k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3),
+            k(2.0) * T::fused(-plunger_e0, plunger_e1, plunger_e2 * plunger_e3),
+            k(2.0) * T::fused(-plunger_e0, plunger_e3, plunger_e1 * plunger_e2),
             follower_rz - table0[0],
-            plunger_rz - (t0 - k(0.2)),
+            plunger_rz - t0,
             t1 - k(1.0),
             t2 - k(1.0),
         ];
@@ -266,33 +309,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cam<T> {
         let plunger_wy = y[24];
         let plunger_wz = y[25];
         let t0 = follower_e0 * follower_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + follower_e1 * follower_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t0));
         let t2 = follower_e0 * follower_e3;
         let t3 = follower_e1 * follower_e2;
-        let t4 = k(2.0) * (k(0.5) - (t0 + follower_e2 * follower_e2)) * follower_wx
-            + k(2.0) * (t3 + t2) * follower_wy;
-        let t5 = k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2)
-            * follower_wx + t1 * follower_wz;
+        let t4 = T::fused(
+            k(2.0) * (t3 + t2),
+            follower_wy,
+            k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t0)) * follower_wx,
+        );
+        let t5 = T::fused(
+            t1,
+            follower_wz,
+            k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3)
+                * follower_wx,
+        );
         let t6 = plunger_e0 * plunger_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + plunger_e1 * plunger_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t6));
         let t8 = plunger_e0 * plunger_e3;
         let t9 = plunger_e1 * plunger_e2;
-        let t10 = k(2.0) * (k(0.5) - (t6 + plunger_e2 * plunger_e2)) * plunger_wx
-            + k(2.0) * (t9 + t8) * plunger_wy;
-        let t11 = k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2)
-            * plunger_wx + t7 * plunger_wz;
-        let t12 = k(0.5) + k(3.0) * t;
-        let t13 = (k(1.0) + t12.sin()) * (k(0.2) * t)
-            + t * (k(0.1) * t) * (k(3.0) * t12.cos());
+        let t10 = T::fused(
+            k(2.0) * (t9 + t8),
+            plunger_wy,
+            k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t6)) * plunger_wx,
+        );
+        let t11 = T::fused(
+            t7,
+            plunger_wz,
+            k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3)
+                * plunger_wx,
+        );
+        let t12 = T::fused(k(3.0), t, k(0.5));
+        let t13 = T::fused(
+            t * (k(0.1) * t),
+            k(3.0) * t12.cos(),
+            (k(1.0) + t12.sin()) * (k(0.2) * t),
+        );
         *out = [
             follower_sx,
             follower_sy,
-            -(k(2.0) * (t3 - t2) * follower_wx + t1 * follower_wy),
+            -T::fused(t1, follower_wy, k(2.0) * (t3 - t2) * follower_wx),
             t4,
             t5,
             plunger_sx,
             plunger_sy,
-            -(k(2.0) * (t9 - t8) * plunger_wx + t7 * plunger_wy),
+            -T::fused(t7, plunger_wy, k(2.0) * (t9 - t8) * plunger_wx),
             t10,
             t11,
             follower_sz - table0[1],
@@ -316,23 +376,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cam<T> {
         let plunger_wx = y[23];
         let plunger_wy = y[24];
         let plunger_wz = y[25];
-        let t0 = plunger_wx * (k(0.001) * plunger_wx)
-            + plunger_wy * (k(0.001) * plunger_wy)
-            + plunger_wz * (k(0.001) * plunger_wz);
-        let t1 = t0
-            + k(0.25)
-                * (plunger_sx * plunger_sx + plunger_sy * plunger_sy
-                    + plunger_sz * plunger_sz);
-        let t2 = follower_wx * (k(0.001) * follower_wx)
-            + follower_wy * (k(0.001) * follower_wy)
-            + follower_wz * (k(0.001) * follower_wz);
-        let t3 = t2
-            + k(0.5)
-                * (follower_sx * follower_sx + follower_sy * follower_sy
-                    + follower_sz * follower_sz);
+        let t0 = T::fused(
+            plunger_wz,
+            k(0.001) * plunger_wz,
+            T::fused(
+                plunger_wy,
+                k(0.001) * plunger_wy,
+                plunger_wx * (k(0.001) * plunger_wx),
+            ),
+        );
+        let t1 = T::fused(
+            k(0.25),
+            T::fused(
+                plunger_sz,
+                plunger_sz,
+                T::fused(plunger_sy, plunger_sy, plunger_sx * plunger_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            follower_wz,
+            k(0.001) * follower_wz,
+            T::fused(
+                follower_wy,
+                k(0.001) * follower_wy,
+                follower_wx * (k(0.001) * follower_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.5),
+            T::fused(
+                follower_sz,
+                follower_sz,
+                T::fused(follower_sy, follower_sy, follower_sx * follower_sx),
+            ),
+            t2,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t3 + t1),
-            potential: k(4.905) * follower_rz + k(2.4525) * plunger_rz,
+            potential: T::fused(k(2.4525), plunger_rz, k(4.905) * follower_rz),
         }
     }
     /// Writes the joint readings: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -626,27 +708,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let t0 = follower_e0 * follower_e3;
         let t1 = follower_e1 * follower_e2;
         let t2 = follower_e0 * follower_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + follower_e1 * follower_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t2));
         let t4 = plunger_e0 * plunger_e3;
         let t5 = plunger_e1 * plunger_e2;
         let t6 = plunger_e0 * plunger_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + plunger_e1 * plunger_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t6));
         *out = [
             k(1.0),
             k(1.0),
             -(k(2.0) * (t1 - t0)),
             -t3,
-            k(2.0) * (k(0.5) - (t2 + follower_e2 * follower_e2)),
+            k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t2)),
             k(2.0) * (t1 + t0),
-            k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2),
+            k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3),
             t3,
             k(1.0),
             k(1.0),
             -(k(2.0) * (t5 - t4)),
             -t7,
-            k(2.0) * (k(0.5) - (t6 + plunger_e2 * plunger_e2)),
+            k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t6)),
             k(2.0) * (t5 + t4),
-            k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2),
+            k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3),
             t7,
             k(1.0),
             k(1.0),
@@ -656,9 +738,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
     fn nu(&self, t: T, _y: &Self::State, out: &mut Self::Rows) {
         let table0 = t.spline(&KNOTS_0, &PIECES_0);
         let k = T::constant;
-        let t0 = k(0.5) + k(3.0) * t;
-        let t1 = (k(1.0) + t0.sin()) * (k(0.2) * t)
-            + t * (k(0.1) * t) * (k(3.0) * t0.cos());
+        let t0 = T::fused(k(3.0), t, k(0.5));
+        let t1 = T::fused(
+            t * (k(0.1) * t),
+            k(3.0) * t0.cos(),
+            (k(1.0) + t0.sin()) * (k(0.2) * t),
+        );
         *out = [
             k(0.0),
             k(0.0),
@@ -694,47 +779,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let plunger_wz = y[25];
         let t0 = follower_wx * follower_wz;
         let t1 = follower_e0 * follower_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + follower_e1 * follower_e1));
+        let t2 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t1));
         let t3 = follower_wy * follower_wz;
         let t4 = follower_e0 * follower_e3;
         let t5 = follower_e1 * follower_e2;
         let t6 = k(2.0) * (t5 - t4);
         let t7 = follower_wx * follower_wx;
-        let t8 = follower_wy * follower_wy + t7;
-        let t9 = k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2);
-        let t10 = k(2.0) * (k(0.5) - (t1 + follower_e2 * follower_e2)) * t3
-            - k(2.0) * (t5 + t4) * t0;
-        let t11 = t9 * t3
-            - (t6 * (follower_wz * follower_wz + t7) + t2 * (follower_wx * follower_wy));
+        let t8 = T::fused(follower_wy, follower_wy, t7);
+        let t9 = k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3);
+        let t10 = T::fused(
+            -(k(2.0) * (t5 + t4)),
+            t0,
+            k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t1)) * t3,
+        );
+        let t11 = T::fused(
+            t9,
+            t3,
+            -T::fused(
+                t2,
+                follower_wx * follower_wy,
+                t6 * T::fused(follower_wz, follower_wz, t7),
+            ),
+        );
         let t12 = plunger_wx * plunger_wz;
         let t13 = plunger_e0 * plunger_e0;
-        let t14 = k(2.0) * (k(0.5) - (t13 + plunger_e1 * plunger_e1));
+        let t14 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t13));
         let t15 = plunger_wy * plunger_wz;
         let t16 = plunger_e0 * plunger_e3;
         let t17 = plunger_e1 * plunger_e2;
         let t18 = k(2.0) * (t17 - t16);
         let t19 = plunger_wx * plunger_wx;
-        let t20 = plunger_wy * plunger_wy + t19;
-        let t21 = k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2);
-        let t22 = k(2.0) * (k(0.5) - (t13 + plunger_e2 * plunger_e2)) * t15
-            - k(2.0) * (t17 + t16) * t12;
-        let t23 = t21 * t15
-            - (t18 * (plunger_wz * plunger_wz + t19) + t14 * (plunger_wx * plunger_wy));
-        let t24 = k(0.5) + k(3.0) * t;
+        let t20 = T::fused(plunger_wy, plunger_wy, t19);
+        let t21 = k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3);
+        let t22 = T::fused(
+            -(k(2.0) * (t17 + t16)),
+            t12,
+            k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t13)) * t15,
+        );
+        let t23 = T::fused(
+            t21,
+            t15,
+            -T::fused(
+                t14,
+                plunger_wx * plunger_wy,
+                t18 * T::fused(plunger_wz, plunger_wz, t19),
+            ),
+        );
+        let t24 = T::fused(k(3.0), t, k(0.5));
         let t25 = t24.sin();
         let t26 = k(3.0) * t24.cos() * (k(0.2) * t);
-        let t27 = t26 - t * (k(0.1) * t) * (k(9.0) * t25)
-            + (t26 + k(0.2) * (k(1.0) + t25));
+        let t27 = T::fused(-(t * (k(0.1) * t)), k(9.0) * t25, t26)
+            + T::fused(k(0.2), k(1.0) + t25, t26);
         *out = [
             k(0.0),
             k(0.0),
-            t9 * t8 - (t6 * t3 - t2 * t0),
-            k(2.0) * (follower_e2 * follower_e3 - follower_e0 * follower_e1) * t8 + t10,
+            T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3)),
+            T::fused(
+                k(2.0) * T::fused(-follower_e0, follower_e1, follower_e2 * follower_e3),
+                t8,
+                t10,
+            ),
             -t11,
             k(0.0),
             k(0.0),
-            t21 * t20 - (t18 * t15 - t14 * t12),
-            k(2.0) * (plunger_e2 * plunger_e3 - plunger_e0 * plunger_e1) * t20 + t22,
+            T::fused(t21, t20, -T::fused(-t14, t12, t18 * t15)),
+            T::fused(
+                k(2.0) * T::fused(-plunger_e0, plunger_e1, plunger_e2 * plunger_e3),
+                t20,
+                t22,
+            ),
             -t23,
             table0[2],
             t27,
@@ -779,67 +892,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let t0 = table0[2] + k(9.81);
         let t1 = follower_wx * follower_wz;
         let t2 = follower_e0 * follower_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + follower_e1 * follower_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t2));
         let t4 = follower_wy * follower_wz;
         let t5 = follower_e0 * follower_e3;
         let t6 = follower_e1 * follower_e2;
         let t7 = k(2.0) * (t6 - t5);
         let t8 = follower_wx * follower_wx;
-        let t9 = follower_wy * follower_wy + t8;
-        let t10 = k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2);
-        let t11 = t10 * t9 - (t7 * t4 - t3 * t1);
+        let t9 = T::fused(follower_wy, follower_wy, t8);
+        let t10 = k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3);
+        let t11 = T::fused(t10, t9, -T::fused(-t3, t1, t7 * t4));
         let t12 = k(2.0) * (t6 + t5);
-        let t13 = k(2.0) * (k(0.5) - (t2 + follower_e2 * follower_e2));
+        let t13 = k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t2));
         let t14 = t3 * t13;
-        let t15 = t7 * t12 - t14;
+        let t15 = T::fused(t7, t12, -t14);
         let t16 = k(1.0) / (t3 * t15);
-        let t17 = k(2.0) * (follower_e2 * follower_e3 - follower_e0 * follower_e1) * t9
-            + (t13 * t4 - t12 * t1);
-        let t18 = t16 * (t3 * t3) * t17 + t16 * (t3 * t12) * t11;
-        let t19 = t10 * t4
-            - (t7 * (follower_wz * follower_wz + t8) + t3 * (follower_wx * follower_wy));
-        let t20 = t17 * (t16 * (t3 * t10)) + t11 * (t16 * (t10 * t12));
-        let t21 = k(0.5) + k(3.0) * t;
+        let t17 = T::fused(
+            k(2.0) * T::fused(-follower_e0, follower_e1, follower_e2 * follower_e3),
+            t9,
+            T::fused(-t12, t1, t13 * t4),
+        );
+        let t18 = T::fused(t16 * (t3 * t12), t11, t16 * (t3 * t3) * t17);
+        let t19 = T::fused(
+            t10,
+            t4,
+            -T::fused(
+                t3,
+                follower_wx * follower_wy,
+                t7 * T::fused(follower_wz, follower_wz, t8),
+            ),
+        );
+        let t20 = T::fused(t11, t16 * (t10 * t12), t17 * (t16 * (t3 * t10)));
+        let t21 = T::fused(k(3.0), t, k(0.5));
         let t22 = t21.sin();
         let t23 = k(3.0) * t21.cos() * (k(0.2) * t);
-        let t24 = t23 - t * (k(0.1) * t) * (k(9.0) * t22)
-            + (t23 + k(0.2) * (k(1.0) + t22));
+        let t24 = T::fused(-(t * (k(0.1) * t)), k(9.0) * t22, t23)
+            + T::fused(k(0.2), k(1.0) + t22, t23);
         let t25 = t24 + k(9.81);
         let t26 = plunger_wx * plunger_wz;
         let t27 = plunger_e0 * plunger_e0;
-        let t28 = k(2.0) * (k(0.5) - (t27 + plunger_e1 * plunger_e1));
+        let t28 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t27));
         let t29 = plunger_wy * plunger_wz;
         let t30 = plunger_e0 * plunger_e3;
         let t31 = plunger_e1 * plunger_e2;
         let t32 = k(2.0) * (t31 - t30);
         let t33 = plunger_wx * plunger_wx;
-        let t34 = plunger_wy * plunger_wy + t33;
-        let t35 = k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2);
-        let t36 = t35 * t34 - (t32 * t29 - t28 * t26);
+        let t34 = T::fused(plunger_wy, plunger_wy, t33);
+        let t35 = k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3);
+        let t36 = T::fused(t35, t34, -T::fused(-t28, t26, t32 * t29));
         let t37 = k(2.0) * (t31 + t30);
-        let t38 = k(2.0) * (k(0.5) - (t27 + plunger_e2 * plunger_e2));
+        let t38 = k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t27));
         let t39 = t28 * t38;
-        let t40 = t32 * t37 - t39;
+        let t40 = T::fused(t32, t37, -t39);
         let t41 = k(1.0) / (t28 * t40);
-        let t42 = k(2.0) * (plunger_e2 * plunger_e3 - plunger_e0 * plunger_e1) * t34
-            + (t38 * t29 - t37 * t26);
-        let t43 = t41 * (t28 * t28) * t42 + t41 * (t28 * t37) * t36;
-        let t44 = t35 * t29
-            - (t32 * (plunger_wz * plunger_wz + t33) + t28 * (plunger_wx * plunger_wy));
-        let t45 = t42 * (t41 * (t28 * t35)) + t36 * (t41 * (t35 * t37));
+        let t42 = T::fused(
+            k(2.0) * T::fused(-plunger_e0, plunger_e1, plunger_e2 * plunger_e3),
+            t34,
+            T::fused(-t37, t26, t38 * t29),
+        );
+        let t43 = T::fused(t41 * (t28 * t37), t36, t41 * (t28 * t28) * t42);
+        let t44 = T::fused(
+            t35,
+            t29,
+            -T::fused(
+                t28,
+                plunger_wx * plunger_wy,
+                t32 * T::fused(plunger_wz, plunger_wz, t33),
+            ),
+        );
+        let t45 = T::fused(t36, t41 * (t35 * t37), t42 * (t41 * (t28 * t35)));
         *out = [
             k(0.0),
             k(0.0),
             t0 - k(9.81),
             -t18,
-            t17 * (t16 * (t3 * t7)) + t11 * (t14 * t16),
-            t20 - t15 * t16 * t19,
+            T::fused(t11, t14 * t16, t17 * (t16 * (t3 * t7))),
+            T::fused(-(t15 * t16), t19, t20),
             k(0.0),
             k(0.0),
             t25 - k(9.81),
             -t43,
-            t42 * (t41 * (t28 * t32)) + t36 * (t39 * t41),
-            t45 - t40 * t41 * t44,
+            T::fused(t36, t39 * t41, t42 * (t41 * (t28 * t32))),
+            T::fused(-(t40 * t41), t44, t45),
             -(k(0.5) * t0),
             -(k(0.25) * t25),
         ];
@@ -877,43 +1010,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let t1 = follower_e1 * follower_e2;
         let t2 = k(2.0) * (t1 + t0);
         let t3 = follower_e0 * follower_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + follower_e1 * follower_e1));
-        let t5 = t4 * (k(2.0) * (k(0.5) - (t3 + follower_e2 * follower_e2)));
+        let t4 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t3));
+        let t5 = t4 * (k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t3)));
         let t6 = k(2.0) * (t1 - t0);
-        let t7 = t6 * t2 - t5;
+        let t7 = T::fused(t6, t2, -t5);
         let t8 = k(1.0) / (t4 * t7);
         let t9 = k(0.001) * follower_dwx;
         let t10 = k(0.001) * follower_dwy;
-        let t11 = k(2.0) * (follower_e1 * follower_e3 + follower_e0 * follower_e2);
+        let t11 = k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3);
         let t12 = k(0.001) * follower_dwz;
-        let t13 = t12 * (t8 * (t11 * t2)) + (t10 * (t5 * t8) - t9 * (t8 * (t4 * t2)));
-        let t14 = t10 * (t8 * (t4 * t6)) - t9 * (t8 * (t4 * t4));
+        let t13 = T::fused(
+            t12,
+            t8 * (t11 * t2),
+            T::fused(-t9, t8 * (t4 * t2), t10 * (t5 * t8)),
+        );
+        let t14 = T::fused(-t9, t8 * (t4 * t4), t10 * (t8 * (t4 * t6)));
         let t15 = plunger_e0 * plunger_e3;
         let t16 = plunger_e1 * plunger_e2;
         let t17 = k(2.0) * (t16 + t15);
         let t18 = plunger_e0 * plunger_e0;
-        let t19 = k(2.0) * (k(0.5) - (t18 + plunger_e1 * plunger_e1));
-        let t20 = t19 * (k(2.0) * (k(0.5) - (t18 + plunger_e2 * plunger_e2)));
+        let t19 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t18));
+        let t20 = t19 * (k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t18)));
         let t21 = k(2.0) * (t16 - t15);
-        let t22 = t21 * t17 - t20;
+        let t22 = T::fused(t21, t17, -t20);
         let t23 = k(1.0) / (t19 * t22);
         let t24 = k(0.001) * plunger_dwx;
         let t25 = k(0.001) * plunger_dwy;
-        let t26 = k(2.0) * (plunger_e1 * plunger_e3 + plunger_e0 * plunger_e2);
+        let t26 = k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3);
         let t27 = k(0.001) * plunger_dwz;
-        let t28 = t27 * (t23 * (t26 * t17))
-            + (t25 * (t20 * t23) - t24 * (t23 * (t19 * t17)));
-        let t29 = t25 * (t23 * (t19 * t21)) - t24 * (t23 * (t19 * t19));
+        let t28 = T::fused(
+            t27,
+            t23 * (t26 * t17),
+            T::fused(-t24, t23 * (t19 * t17), t25 * (t20 * t23)),
+        );
+        let t29 = T::fused(-t24, t23 * (t19 * t19), t25 * (t23 * (t19 * t21)));
         *lambda = [
             -(k(0.5) * follower_dsx),
             -(k(0.5) * follower_dsy),
             -t13,
-            -(t12 * (t8 * (t4 * t11)) + t14),
+            -T::fused(t12, t8 * (t4 * t11), t14),
             -(t12 * (t7 * t8)),
             -(k(0.25) * plunger_dsx),
             -(k(0.25) * plunger_dsy),
             -t28,
-            -(t27 * (t23 * (t19 * t26)) + t29),
+            -T::fused(t27, t23 * (t19 * t26), t29),
             -(t27 * (t22 * t23)),
             closing0,
             closing1,
@@ -933,10 +1073,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cam<T> {
         let k = T::constant;
         let closing0 = accelerations[12];
         let closing1 = accelerations[13];
-        let t0 = k(0.5) + k(3.0) * t;
-        let t1 = (k(1.0) + t0.sin()) * (k(0.2) * t)
-            + t * (k(0.1) * t) * (k(3.0) * t0.cos());
-        *out = [-closing0, -closing1, k(0.0), -(table0[1] * closing0 + t1 * closing1)];
+        let t0 = T::fused(k(3.0), t, k(0.5));
+        let t1 = T::fused(
+            t * (k(0.1) * t),
+            k(3.0) * t0.cos(),
+            (k(1.0) + t0.sin()) * (k(0.2) * t),
+        );
+        *out = [
+            -closing0,
+            -closing1,
+            k(0.0),
+            -T::fused(t1, closing1, table0[1] * closing0),
+        ];
     }
     fn n_outputs(&self) -> usize {
         4

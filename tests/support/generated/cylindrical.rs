@@ -123,17 +123,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Cylindrical<T> {
             spindle_sy,
             spindle_sz,
             -(k(0.5)
-                * (spindle_e1 * spindle_wx + spindle_e2 * spindle_wy
-                    + spindle_e3 * spindle_wz)),
+                * T::fused(
+                    spindle_e3,
+                    spindle_wz,
+                    T::fused(spindle_e2, spindle_wy, spindle_e1 * spindle_wx),
+                )),
             k(0.5)
-                * (spindle_e0 * spindle_wx - spindle_e3 * spindle_wy
-                    + spindle_e2 * spindle_wz),
+                * T::fused(
+                    spindle_e2,
+                    spindle_wz,
+                    T::fused(-spindle_e3, spindle_wy, spindle_e0 * spindle_wx),
+                ),
             k(0.5)
-                * (spindle_e3 * spindle_wx + spindle_e0 * spindle_wy
-                    - spindle_e1 * spindle_wz),
+                * T::fused(
+                    -spindle_e1,
+                    spindle_wz,
+                    T::fused(spindle_e0, spindle_wy, spindle_e3 * spindle_wx),
+                ),
             -(k(0.5)
-                * (spindle_e2 * spindle_wx - spindle_e1 * spindle_wy
-                    - spindle_e0 * spindle_wz)),
+                * T::fused(
+                    -spindle_e0,
+                    spindle_wz,
+                    T::fused(-spindle_e1, spindle_wy, spindle_e2 * spindle_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -156,6 +168,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let spindle_e0 = y[3];
+        let spindle_e1 = y[4];
+        let spindle_e2 = y[5];
+        let spindle_e3 = y[6];
+        let spindle_sx = y[7];
+        let spindle_sy = y[8];
+        let spindle_sz = y[9];
+        let spindle_wx = y[10];
+        let spindle_wy = y[11];
+        let spindle_wz = y[12];
+        *dy = [
+            spindle_sx,
+            spindle_sy,
+            spindle_sz,
+            -(k(0.5)
+                * T::fused(
+                    spindle_e3,
+                    spindle_wz,
+                    T::fused(spindle_e2, spindle_wy, spindle_e1 * spindle_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    spindle_e2,
+                    spindle_wz,
+                    T::fused(-spindle_e3, spindle_wy, spindle_e0 * spindle_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -spindle_e1,
+                    spindle_wz,
+                    T::fused(spindle_e0, spindle_wy, spindle_e3 * spindle_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -spindle_e0,
+                    spindle_wz,
+                    T::fused(-spindle_e1, spindle_wy, spindle_e2 * spindle_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 31 operations (15 ±, 16 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -166,20 +229,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let spindle_e2 = y[5];
         let spindle_e3 = y[6];
         let t0 = spindle_e0 * spindle_e0;
-        let t1 = t0 + spindle_e1 * spindle_e1;
+        let t1 = T::fused(spindle_e1, spindle_e1, t0);
         let t2 = spindle_e0 * spindle_e3;
         let t3 = spindle_e1 * spindle_e2;
-        let t4 = k(1.6) * (spindle_e1 * spindle_e3 + spindle_e0 * spindle_e2)
-            + k(1.2) * (t3 - t2);
+        let t4 = T::fused(
+            k(1.2),
+            t3 - t2,
+            k(1.6) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
+        );
         let t5 = spindle_e2 * spindle_e2;
-        let t6 = k(1.6) * (spindle_e2 * spindle_e3 - spindle_e0 * spindle_e1)
-            - k(1.2) * (k(0.5) - (t0 + t5));
+        let t6 = T::fused(
+            -k(1.2),
+            k(0.5) - (t0 + t5),
+            k(1.6) * T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3),
+        );
         *out = [
-            spindle_rx + k(0.3) * (k(0.5) - t1),
-            spindle_ry - k(0.3) * (t3 + t2),
+            T::fused(k(0.3), k(0.5) - t1, spindle_rx),
+            T::fused(-k(0.3), t3 + t2, spindle_ry),
             t4,
             t6,
-            spindle_e3 * spindle_e3 + (t1 + t5) - k(1.0),
+            T::fused(spindle_e3, spindle_e3, t1 + t5) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 51 operations (18 ±, 33 ×, 0 ÷).
@@ -197,19 +266,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let t0 = spindle_e0 * spindle_e3;
         let t1 = spindle_e1 * spindle_e2;
         let t2 = k(2.0) * (t1 - t0);
-        let t3 = k(2.0) * (spindle_e1 * spindle_e3 + spindle_e0 * spindle_e2);
+        let t3 = k(2.0) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
         let t4 = spindle_e0 * spindle_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + spindle_e2 * spindle_e2));
-        let t6 = k(2.0) * (spindle_e2 * spindle_e3 - spindle_e0 * spindle_e1);
-        let t7 = k(2.0) * (k(0.5) - (t4 + spindle_e1 * spindle_e1));
-        let t8 = k(0.6) * (t3 * spindle_wx + t7 * spindle_wz)
-            - k(0.8) * (t2 * spindle_wx + t7 * spindle_wy);
+        let t5 = k(2.0) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t4));
+        let t6 = k(2.0) * T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
+        let t7 = k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t4));
+        let t8 = T::fused(
+            -k(0.8),
+            T::fused(t7, spindle_wy, t2 * spindle_wx),
+            k(0.6) * T::fused(t7, spindle_wz, t3 * spindle_wx),
+        );
         let t9 = k(2.0) * (t1 + t0);
-        let t10 = k(0.6) * (t6 * spindle_wx - t9 * spindle_wz)
-            + k(0.8) * (t5 * spindle_wx + t9 * spindle_wy);
+        let t10 = T::fused(
+            k(0.8),
+            T::fused(t9, spindle_wy, t5 * spindle_wx),
+            k(0.6) * T::fused(-t9, spindle_wz, t6 * spindle_wx),
+        );
         *out = [
-            spindle_sx + k(0.15) * (t3 * spindle_wy - t2 * spindle_wz),
-            spindle_sy + k(0.15) * (t6 * spindle_wy + t5 * spindle_wz),
+            T::fused(k(0.15), T::fused(-t2, spindle_wz, t3 * spindle_wy), spindle_sx),
+            T::fused(k(0.15), T::fused(t5, spindle_wz, t6 * spindle_wy), spindle_sy),
             t8,
             t10,
         ];
@@ -224,12 +299,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = spindle_wx * (k(0.01) * spindle_wx)
-            + spindle_wy * (k(0.02) * spindle_wy) + spindle_wz * (k(0.02) * spindle_wz);
-        let t1 = t0
-            + k(0.8)
-                * (spindle_sx * spindle_sx + spindle_sy * spindle_sy
-                    + spindle_sz * spindle_sz);
+        let t0 = T::fused(
+            spindle_wz,
+            k(0.02) * spindle_wz,
+            T::fused(
+                spindle_wy,
+                k(0.02) * spindle_wy,
+                spindle_wx * (k(0.01) * spindle_wx),
+            ),
+        );
+        let t1 = T::fused(
+            k(0.8),
+            T::fused(
+                spindle_sz,
+                spindle_sz,
+                T::fused(spindle_sy, spindle_sy, spindle_sx * spindle_sx),
+            ),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(7.848) * spindle_rz,
@@ -247,18 +334,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let spindle_wy = y[11];
         let spindle_wz = y[12];
         let t0 = spindle_e0 * spindle_e0;
-        let t1 = t0 + spindle_e1 * spindle_e1;
+        let t1 = T::fused(spindle_e1, spindle_e1, t0);
         let t2 = spindle_e3 * spindle_e3;
-        let t3 = k(2.0) * (k(0.5) - t1)
-            - (k(1.0) - (t2 + (t1 + spindle_e2 * spindle_e2)));
-        let t4 = k(2.0) * (k(0.5) - (t0 + t2)) * spindle_wy
-            + k(2.0) * (spindle_e2 * spindle_e3 + spindle_e0 * spindle_e1) * spindle_wz;
+        let t3 = T::fused(
+            k(2.0),
+            k(0.5) - t1,
+            -(k(1.0) - (t2 + T::fused(spindle_e2, spindle_e2, t1))),
+        );
+        let t4 = T::fused(
+            k(2.0) * T::fused(spindle_e0, spindle_e1, spindle_e2 * spindle_e3),
+            spindle_wz,
+            k(2.0) * (k(0.5) - (t0 + t2)) * spindle_wy,
+        );
         *out = [
-            k(2.0) * (spindle_e1 * spindle_e2 + spindle_e0 * spindle_e3),
+            k(2.0) * T::fused(spindle_e0, spindle_e3, spindle_e1 * spindle_e2),
             -t3,
-            k(0.6) * spindle_wy + k(0.8) * spindle_wz,
-            spindle_rz - k(0.3) * (spindle_e1 * spindle_e3 - spindle_e0 * spindle_e2),
-            spindle_sz - k(0.15) * t4,
+            T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy),
+            T::fused(
+                -k(0.3),
+                T::fused(-spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
+                spindle_rz,
+            ),
+            T::fused(-k(0.15), t4, spindle_sz),
         ];
     }
     fn n_bodies(&self) -> usize {
@@ -351,45 +448,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Cylindrical<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let spindle_e0 = y[3];
-        let spindle_e1 = y[4];
-        let spindle_e2 = y[5];
-        let spindle_e3 = y[6];
-        let spindle_sx = y[7];
-        let spindle_sy = y[8];
-        let spindle_sz = y[9];
-        let spindle_wx = y[10];
-        let spindle_wy = y[11];
-        let spindle_wz = y[12];
-        *dy = [
-            spindle_sx,
-            spindle_sy,
-            spindle_sz,
-            -(k(0.5)
-                * (spindle_e1 * spindle_wx + spindle_e2 * spindle_wy
-                    + spindle_e3 * spindle_wz)),
-            k(0.5)
-                * (spindle_e0 * spindle_wx - spindle_e3 * spindle_wy
-                    + spindle_e2 * spindle_wz),
-            k(0.5)
-                * (spindle_e3 * spindle_wx + spindle_e0 * spindle_wy
-                    - spindle_e1 * spindle_wz),
-            -(k(0.5)
-                * (spindle_e2 * spindle_wx - spindle_e1 * spindle_wy
-                    - spindle_e0 * spindle_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
-    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
     type Velocities = [T; 6];
@@ -469,13 +527,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
             -(k(0.3) * spindle_e2),
             -(k(0.3) * spindle_e1),
             -(k(0.3) * spindle_e0),
-            t0 - k(1.2) * spindle_e3,
-            t1 + k(1.2) * spindle_e2,
-            t2 + k(1.2) * spindle_e1,
-            t3 - k(1.2) * spindle_e0,
-            k(2.4) * spindle_e0 - t3,
+            T::fused(-k(1.2), spindle_e3, t0),
+            T::fused(k(1.2), spindle_e2, t1),
+            T::fused(k(1.2), spindle_e1, t2),
+            T::fused(-k(1.2), spindle_e0, t3),
+            T::fused(k(2.4), spindle_e0, -t3),
             -t2,
-            t1 + k(2.4) * spindle_e2,
+            T::fused(k(2.4), spindle_e2, t1),
             t0,
             k(2.0) * spindle_e0,
             k(2.0) * spindle_e1,
@@ -490,14 +548,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_e1 = y[4];
         let spindle_e2 = y[5];
         let spindle_e3 = y[6];
-        let t0 = spindle_e1 * spindle_e3 + spindle_e0 * spindle_e2;
+        let t0 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
         let t1 = spindle_e0 * spindle_e3;
         let t2 = spindle_e1 * spindle_e2;
         let t3 = t2 - t1;
-        let t4 = spindle_e2 * spindle_e3 - spindle_e0 * spindle_e1;
+        let t4 = T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
         let t5 = spindle_e0 * spindle_e0;
-        let t6 = k(0.5) - (t5 + spindle_e2 * spindle_e2);
-        let t7 = k(0.5) - (t5 + spindle_e1 * spindle_e1);
+        let t6 = k(0.5) - T::fused(spindle_e2, spindle_e2, t5);
+        let t7 = k(0.5) - T::fused(spindle_e1, spindle_e1, t5);
         let t8 = t2 + t1;
         *out = [
             k(1.0),
@@ -506,10 +564,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
             k(1.0),
             k(0.3) * t4,
             k(0.3) * t6,
-            k(1.2) * t0 - k(1.6) * t3,
+            T::fused(-k(1.6), t3, k(1.2) * t0),
             -(k(1.6) * t7),
             k(1.2) * t7,
-            k(1.2) * t4 + k(1.6) * t6,
+            T::fused(k(1.6), t6, k(1.2) * t4),
             k(1.6) * t8,
             -(k(1.2) * t8),
         ];
@@ -533,27 +591,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let t1 = spindle_wz * spindle_wz;
         let t2 = t1 + t0;
         let t3 = spindle_e0 * spindle_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + spindle_e1 * spindle_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3));
         let t5 = spindle_wx * spindle_wy;
         let t6 = spindle_e0 * spindle_e3;
         let t7 = spindle_e1 * spindle_e2;
         let t8 = k(2.0) * (t7 - t6);
         let t9 = spindle_wx * spindle_wz;
-        let t10 = k(2.0) * (spindle_e1 * spindle_e3 + spindle_e0 * spindle_e2);
+        let t10 = k(2.0) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
         let t11 = k(2.0) * (t7 + t6);
-        let t12 = k(2.0) * (k(0.5) - (t3 + spindle_e2 * spindle_e2));
-        let t13 = k(2.0) * (spindle_e2 * spindle_e3 - spindle_e0 * spindle_e1);
+        let t12 = k(2.0) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t3));
+        let t13 = k(2.0) * T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
         let t14 = spindle_wx * spindle_wx;
         let t15 = t1 + t14;
         let t16 = spindle_wy * spindle_wz;
         let t17 = t0 + t14;
-        let t18 = k(0.8) * (t10 * t17 - (t8 * t16 - t4 * t9))
-            - k(0.6) * (t10 * t16 - (t8 * t15 + t4 * t5));
-        let t19 = k(0.8) * (t13 * t17 + (t12 * t16 - t11 * t9))
-            - k(0.6) * (t13 * t16 + (t12 * t15 + t11 * t5));
+        let t18 = T::fused(
+            -k(0.6),
+            T::fused(t10, t16, -T::fused(t4, t5, t8 * t15)),
+            k(0.8) * T::fused(t10, t17, -T::fused(-t4, t9, t8 * t16)),
+        );
+        let t19 = T::fused(
+            -k(0.6),
+            T::fused(t13, t16, T::fused(t11, t5, t12 * t15)),
+            k(0.8) * T::fused(t13, t17, T::fused(-t11, t9, t12 * t16)),
+        );
         *out = [
-            k(0.15) * (t10 * t9 + (t8 * t5 + t4 * t2)),
-            k(0.15) * (t13 * t9 - (t12 * t5 + t11 * t2)),
+            k(0.15) * T::fused(t10, t9, T::fused(t4, t2, t8 * t5)),
+            k(0.15) * T::fused(t13, t9, -T::fused(t11, t2, t12 * t5)),
             t18,
             t19,
         ];
@@ -584,7 +648,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_wy = y[11];
         let spindle_wz = y[12];
         let t0 = spindle_e0 * spindle_e0;
-        let t1 = k(0.5) - (t0 + spindle_e3 * spindle_e3);
+        let t1 = k(0.5) - T::fused(spindle_e3, spindle_e3, t0);
         let t2 = k(0.24) * t1;
         let t3 = k(0.3) * t1;
         let t4 = spindle_e0 * spindle_e1;
@@ -592,48 +656,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let t6 = t5 + t4;
         let t7 = k(0.24) * t6;
         let t8 = t3 * t7;
-        let t9 = k(0.8) * t8 - k(0.6) * (k(0.038) - t3 * t2);
+        let t9 = T::fused(-k(0.6), T::fused(-t3, t2, k(0.038)), k(0.8) * t8);
         let t10 = k(0.3) * t6;
-        let t11 = k(0.8) * (k(0.038) - t10 * t7) - k(0.6) * t8;
+        let t11 = T::fused(-k(0.6), t8, k(0.8) * T::fused(-t10, t7, k(0.038)));
         let t12 = k(2.3544) * t1;
         let t13 = spindle_wx * spindle_wz;
         let t14 = k(2.3544) * t6;
         let t15 = spindle_wx * spindle_wy;
-        let t16 = k(0.8) * (t14 - (k(0.01) * t15 + t14))
-            + k(0.6) * (t12 + (k(0.01) * t13 - t12));
-        let t17 = spindle_wz * spindle_wz + spindle_wy * spindle_wy;
+        let t16 = T::fused(
+            k(0.6),
+            t12 + T::fused(k(0.01), t13, -t12),
+            k(0.8) * (t14 - T::fused(k(0.01), t15, t14)),
+        );
+        let t17 = T::fused(spindle_wy, spindle_wy, spindle_wz * spindle_wz);
         let t18 = spindle_e0 * spindle_e3;
         let t19 = spindle_e1 * spindle_e2;
         let t20 = t19 - t18;
-        let t21 = k(2.0) * t20 * t15
-            + k(2.0) * (k(0.5) - (t0 + spindle_e1 * spindle_e1)) * t17;
+        let t21 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t0)),
+            t17,
+            k(2.0) * t20 * t15,
+        );
         let t22 = spindle_e0 * spindle_e2;
         let t23 = spindle_e1 * spindle_e3;
         let t24 = t23 + t22;
-        let t25 = k(0.15) * (k(2.0) * t24 * t13 + t21);
-        let t26 = k(0.5) - (t0 + spindle_e2 * spindle_e2);
+        let t25 = k(0.15) * T::fused(k(2.0) * t24, t13, t21);
+        let t26 = k(0.5) - T::fused(spindle_e2, spindle_e2, t0);
         let t27 = t5 - t4;
-        let t28 = k(2.0) * t27 * t13 - (k(2.0) * t26 * t15 + k(2.0) * (t19 + t18) * t17);
+        let t28 = T::fused(
+            k(2.0) * t27,
+            t13,
+            -T::fused(k(2.0) * (t19 + t18), t17, k(2.0) * t26 * t15),
+        );
         let t29 = k(0.15) * t28;
-        let t30 = (k(0.192) * t26 + k(0.144) * t27) * t29
-            - (k(0.192) * t20 - k(0.144) * t24) * t25;
+        let t30 = T::fused(
+            -T::fused(-k(0.144), t24, k(0.192) * t20),
+            t25,
+            T::fused(k(0.144), t27, k(0.192) * t26) * t29,
+        );
         let t31 = t23 - t22;
         let t32 = k(0.6) * spindle_wx;
         let t33 = k(0.8) * spindle_wx;
-        let t34 = k(0.8) * spindle_wy - k(0.6) * spindle_wz;
-        let t35 = (t34 * t34 + t33 * t33 + t32 * t32) / (k(1.6) * t1 - k(1.2) * t6);
-        let t36 = k(0.6) * spindle_wy + k(0.8) * spindle_wz;
-        let t37 = t33 * t36 - t35 * (k(1.6) * t31);
-        let t38 = t32 * t36 - k(1.2) * t31 * t35;
-        let t39 = (t11 * t38 + t9 * t37 - t30 - t16) / (k(0.8) * t11 - k(0.6) * t9);
-        let t40 = t37 + k(0.6) * t39;
-        let t41 = t38 - k(0.8) * t39;
-        let t42 = t10 * t41 - t3 * t40 - k(1.25) * (k(7.848) + (t7 * t41 - t2 * t40));
+        let t34 = T::fused(-k(0.6), spindle_wz, k(0.8) * spindle_wy);
+        let t35 = T::fused(t32, t32, T::fused(t33, t33, t34 * t34))
+            / T::fused(-k(1.2), t6, k(1.6) * t1);
+        let t36 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
+        let t37 = T::fused(-t35, k(1.6) * t31, t33 * t36);
+        let t38 = T::fused(-(k(1.2) * t31), t35, t32 * t36);
+        let t39 = (T::fused(t9, t37, t11 * t38) - t30 - t16)
+            / T::fused(-k(0.6), t9, k(0.8) * t11);
+        let t40 = T::fused(k(0.6), t39, t37);
+        let t41 = T::fused(-k(0.8), t39, t38);
+        let t42 = T::fused(
+            -k(1.25),
+            k(7.848) + T::fused(-t2, t40, t7 * t41),
+            T::fused(-t3, t40, t10 * t41),
+        );
         *out = [
-            t25 + (k(0.3) * t20 * t41 + k(0.3) * t24 * t40),
-            t29 - (k(0.3) * t26 * t41 - k(0.3) * t27 * t40),
+            t25 + T::fused(k(0.3) * t24, t40, k(0.3) * t20 * t41),
+            t29 - T::fused(-(k(0.3) * t27), t40, k(0.3) * t26 * t41),
             t42,
-            t34 * t36 - t35 * (k(1.2) * t1 + k(1.6) * t6),
+            T::fused(-t35, T::fused(k(1.6), t6, k(1.2) * t1), t34 * t36),
             -t40,
             t41,
         ];
@@ -665,31 +748,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let t2 = spindle_e0 * spindle_e3;
         let t3 = spindle_e1 * spindle_e2;
         let t4 = t3 - t2;
-        let t5 = spindle_e1 * spindle_e3 + spindle_e0 * spindle_e2;
-        let t6 = k(1.2) * t5 - k(1.6) * t4;
+        let t5 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
+        let t6 = T::fused(-k(1.6), t4, k(1.2) * t5);
         let t7 = k(2.0) * (t3 + t2);
         let t8 = spindle_e0 * spindle_e0;
-        let t9 = k(0.5) - (t8 + spindle_e2 * spindle_e2);
+        let t9 = k(0.5) - T::fused(spindle_e2, spindle_e2, t8);
         let t10 = spindle_e0 * spindle_e1;
         let t11 = spindle_e2 * spindle_e3;
         let t12 = t11 - t10;
-        let t13 = k(1.2) * t12 + k(1.6) * t9;
+        let t13 = T::fused(k(1.6), t9, k(1.2) * t12);
         let t14 = k(0.8) * t13;
-        let t15 = k(0.5) - (t8 + spindle_e1 * spindle_e1);
+        let t15 = k(0.5) - T::fused(spindle_e1, spindle_e1, t8);
         let t16 = k(0.6) * t13;
-        let t17 = k(1.2) * t15 * t16 + (k(1.6) * t15 * t14 + t7 * t6);
+        let t17 = T::fused(k(1.2) * t15, t16, T::fused(t7, t6, k(1.6) * t15 * t14));
         let t18 = k(1.0) / t17;
         let t19 = k(0.01) * spindle_dwx;
-        let t20 = k(7.848) + k(0.8) * spindle_dsz;
-        let t21 = t20 * (k(0.3) * (k(0.5) - (t8 + spindle_e3 * spindle_e3)))
-            - (t1 * (k(0.3) * t12) + t0 * (k(0.3) * t5));
-        let t22 = k(0.01) * (spindle_wx * spindle_wz) - k(0.02) * spindle_dwy - t21;
-        let t23 = t20 * (k(0.3) * (t11 + t10))
-            - (t1 * (k(0.3) * t9) - t0 * (k(0.3) * t4));
-        let t24 = k(0.01) * (spindle_wx * spindle_wy) + k(0.02) * spindle_dwz + t23;
-        let t25 = t24 * (t16 * t18) + (t22 * (t14 * t18) + t19 * (t7 * t18));
-        let t26 = t22 * (t18 * (k(0.8) * t6)) - t19 * (k(2.0) * t15 * t18);
-        *lambda = [-t0, -t1, -t25, t24 * (t18 * (k(0.6) * t6)) + t26];
+        let t20 = T::fused(k(0.8), spindle_dsz, k(7.848));
+        let t21 = T::fused(
+            t20,
+            k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t8)),
+            -T::fused(t0, k(0.3) * t5, t1 * (k(0.3) * t12)),
+        );
+        let t22 = T::fused(-k(0.02), spindle_dwy, k(0.01) * (spindle_wx * spindle_wz))
+            - t21;
+        let t23 = T::fused(
+            t20,
+            k(0.3) * (t11 + t10),
+            -T::fused(-t0, k(0.3) * t4, t1 * (k(0.3) * t9)),
+        );
+        let t24 = T::fused(k(0.02), spindle_dwz, k(0.01) * (spindle_wx * spindle_wy))
+            + t23;
+        let t25 = T::fused(t24, t16 * t18, T::fused(t19, t7 * t18, t22 * (t14 * t18)));
+        let t26 = T::fused(-t19, k(2.0) * t15 * t18, t22 * (t18 * (k(0.8) * t6)));
+        *lambda = [-t0, -t1, -t25, T::fused(t24, t18 * (k(0.6) * t6), t26)];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
@@ -740,15 +831,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let t11 = t2 * t6;
         let t12 = k(0.09) * u0;
         let t13 = k(0.12) * u0;
-        let t14 = k(2.0) * (t9 - t7) * t13 - k(2.0) * (t11 + t10) * t12;
+        let t14 = T::fused(-(k(2.0) * (t11 + t10)), t12, k(2.0) * (t9 - t7) * t13);
         let t15 = t3 * t2;
         let t16 = t8 * t6;
-        let t17 = k(2.0) * (k(0.5) - (t4 + t8 * t8)) * t13 + k(2.0) * (t16 - t15) * t12;
-        let t18 = k(2.0) * (t16 + t15) * t13 + k(2.0) * (k(0.5) - (t4 + t6 * t6)) * t12;
+        let t17 = T::fused(
+            k(2.0) * (t16 - t15),
+            t12,
+            k(2.0) * (k(0.5) - T::fused(t8, t8, t4)) * t13,
+        );
+        let t18 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(t6, t6, t4)),
+            t12,
+            k(2.0) * (t16 + t15) * t13,
+        );
         *y = [
-            -(k(0.3) * (k(0.5) - (t4 + t2 * t2))),
+            -(k(0.3) * (k(0.5) - T::fused(t2, t2, t4))),
             k(0.3) * (t9 + t7),
-            x1 + k(0.3) * (t11 - t10),
+            T::fused(k(0.3), t11 - t10, x1),
             t3,
             t2,
             t8,
@@ -774,20 +873,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_wz = y[12];
         let x0 = x[0];
         let t0 = x0.sin();
-        let t1 = k(2.0) * (spindle_e1 * spindle_e2 + spindle_e0 * spindle_e3);
+        let t1 = k(2.0) * T::fused(spindle_e0, spindle_e3, spindle_e1 * spindle_e2);
         let t2 = x0.cos();
         let t3 = spindle_e0 * spindle_e0;
-        let t4 = t3 + spindle_e1 * spindle_e1;
+        let t4 = T::fused(spindle_e1, spindle_e1, t3);
         let t5 = spindle_e3 * spindle_e3;
-        let t6 = k(2.0) * (k(0.5) - t4)
-            - (k(1.0) - (t5 + (t4 + spindle_e2 * spindle_e2)));
-        let t7 = (t6 * t0 + t1 * t2).atan2(t1 * t0 - t6 * t2);
-        let t8 = k(2.0) * (k(0.5) - (t3 + t5)) * spindle_wy
-            + k(2.0) * (spindle_e2 * spindle_e3 + spindle_e0 * spindle_e1) * spindle_wz;
+        let t6 = T::fused(
+            k(2.0),
+            k(0.5) - t4,
+            -(k(1.0) - (t5 + T::fused(spindle_e2, spindle_e2, t4))),
+        );
+        let t7 = T::fused(t1, t2, t6 * t0).atan2(T::fused(-t6, t2, t1 * t0));
+        let t8 = T::fused(
+            k(2.0) * T::fused(spindle_e0, spindle_e1, spindle_e2 * spindle_e3),
+            spindle_wz,
+            k(2.0) * (k(0.5) - (t3 + t5)) * spindle_wy,
+        );
         x[0] = x0 + t7;
-        x[1] = spindle_rz - k(0.3) * (spindle_e1 * spindle_e3 - spindle_e0 * spindle_e2);
-        x[2] = k(0.6) * spindle_wy + k(0.8) * spindle_wz;
-        x[3] = spindle_sz - k(0.15) * t8;
+        x[1] = T::fused(
+            -k(0.3),
+            T::fused(-spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
+            spindle_rz,
+        );
+        x[2] = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
+        x[3] = T::fused(-k(0.15), t8, spindle_sz);
     }
     /// Writes u̇ at a state that satisfies the constraints: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_accelerations_at(&self, _t: T, _y: &Self::State, out: &mut Self::Rates) {
@@ -811,31 +920,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_wz = y[12];
         let t0 = k(0.15) * spindle_wz;
         let t1 = k(0.15) * spindle_wy;
-        let t2 = spindle_wy * t1 + spindle_wz * t0;
+        let t2 = T::fused(spindle_wz, t0, spindle_wy * t1);
         let t3 = spindle_e0 * spindle_e0;
-        let t4 = k(0.6) * spindle_wy + k(0.8) * spindle_wz;
+        let t4 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
         let t5 = k(0.6) * t4;
         let t6 = spindle_wx * t5;
-        let t7 = k(5.886) - spindle_wx * t1 - k(0.15) * t6;
+        let t7 = T::fused(-k(0.15), t6, T::fused(-spindle_wx, t1, k(5.886)));
         let t8 = spindle_e0 * spindle_e3;
         let t9 = spindle_e1 * spindle_e2;
-        let t10 = k(2.0) * (t9 - t8) * t7
-            - k(2.0) * (k(0.5) - (t3 + spindle_e1 * spindle_e1)) * t2;
+        let t10 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3))),
+            t2,
+            k(2.0) * (t9 - t8) * t7,
+        );
         let t11 = k(0.8) * t4;
         let t12 = spindle_wx * t11;
-        let t13 = k(7.848) - spindle_wx * t0 - k(0.15) * t12;
+        let t13 = T::fused(-k(0.15), t12, T::fused(-spindle_wx, t0, k(7.848)));
         let t14 = spindle_e0 * spindle_e2;
         let t15 = spindle_e1 * spindle_e3;
-        let t16 = k(2.0) * (k(0.5) - (t3 + spindle_e2 * spindle_e2)) * t7
-            - k(2.0) * (t9 + t8) * t2;
+        let t16 = T::fused(
+            -(k(2.0) * (t9 + t8)),
+            t2,
+            k(2.0) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t3)) * t7,
+        );
         let t17 = spindle_e0 * spindle_e1;
         let t18 = spindle_e2 * spindle_e3;
-        let t19 = k(2.0) * (t18 + t17) * t7 + k(2.0) * (t15 - t14) * t2;
+        let t19 = T::fused(k(2.0) * (t15 - t14), t2, k(2.0) * (t18 + t17) * t7);
         *out = [
-            -(k(2.0) * (t15 + t14) * t13 + t10),
-            t16 - k(2.0) * (t18 - t17) * t13,
-            k(2.0) * (k(0.5) - (t3 + spindle_e3 * spindle_e3)) * t13 - t19,
-            spindle_wy * t11 - spindle_wz * t5,
+            -T::fused(k(2.0) * (t15 + t14), t13, t10),
+            T::fused(-(k(2.0) * (t18 - t17)), t13, t16),
+            T::fused(
+                k(2.0) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t3)),
+                t13,
+                -t19,
+            ),
+            T::fused(-spindle_wz, t5, spindle_wy * t11),
             -t12,
             t6,
         ];
@@ -864,25 +983,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_dwz = accelerations[5];
         let t0 = k(0.8) * spindle_dsx;
         let t1 = k(0.8) * spindle_dsy;
-        let t2 = spindle_e3 + k(0.3333333333333333) * spindle_e2;
+        let t2 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
         let t3 = k(1.8) * t2;
-        let t4 = (spindle_e0 + k(0.3333333333333333) * spindle_e1) * t3;
+        let t4 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t3;
         let t5 = k(0.01) * spindle_dwx;
         let t6 = spindle_e0 * spindle_e1;
         let t7 = spindle_e2 * spindle_e3;
-        let t8 = t1 * (k(0.3) * (t7 - t6))
-            + t0 * (k(0.3) * (spindle_e1 * spindle_e3 + spindle_e0 * spindle_e2));
+        let t8 = T::fused(
+            t0,
+            k(0.3) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
+            t1 * (k(0.3) * (t7 - t6)),
+        );
         let t9 = spindle_e0 * spindle_e0;
-        let t10 = k(7.848) + k(0.8) * spindle_dsz;
-        let t11 = k(0.01) * (spindle_wx * spindle_wz) - k(0.02) * spindle_dwy
-            - (t10 * (k(0.3) * (k(0.5) - (t9 + spindle_e3 * spindle_e3))) - t8);
-        let t12 = k(1.0) - t2 * t3;
-        let t13 = t1 * (k(0.3) * (k(0.5) - (t9 + spindle_e2 * spindle_e2)))
-            - t0 * (k(0.3) * (spindle_e1 * spindle_e2 - spindle_e0 * spindle_e3));
-        let t14 = k(0.01) * (spindle_wx * spindle_wy) + k(0.02) * spindle_dwz
-            + (t10 * (k(0.3) * (t7 + t6)) - t13);
-        let t15 = k(0.6) * t12 * t14 + (k(0.8) * t12 * t11 - t5 * t4);
-        let t16 = t14 * (k(0.6) * t4) + (t11 * (k(0.8) * t4) + t5 * t12);
+        let t10 = T::fused(k(0.8), spindle_dsz, k(7.848));
+        let t11 = T::fused(-k(0.02), spindle_dwy, k(0.01) * (spindle_wx * spindle_wz))
+            - T::fused(
+                t10,
+                k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t9)),
+                -t8,
+            );
+        let t12 = T::fused(-t2, t3, k(1.0));
+        let t13 = T::fused(
+            -t0,
+            k(0.3) * T::fused(-spindle_e0, spindle_e3, spindle_e1 * spindle_e2),
+            t1 * (k(0.3) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t9))),
+        );
+        let t14 = T::fused(k(0.02), spindle_dwz, k(0.01) * (spindle_wx * spindle_wy))
+            + T::fused(t10, k(0.3) * (t7 + t6), -t13);
+        let t15 = T::fused(k(0.6) * t12, t14, T::fused(-t5, t4, k(0.8) * t12 * t11));
+        let t16 = T::fused(t14, k(0.6) * t4, T::fused(t5, t12, t11 * (k(0.8) * t4)));
         *lambda = [-t0, -t1, t15, t16];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 122 operations (41 ±, 81 ×, 0 ÷).
@@ -897,47 +1026,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_wz = y[12];
         let t0 = k(0.15) * spindle_wz;
         let t1 = k(0.15) * spindle_wy;
-        let t2 = spindle_wy * t1 + spindle_wz * t0;
+        let t2 = T::fused(spindle_wz, t0, spindle_wy * t1);
         let t3 = spindle_e0 * spindle_e0;
-        let t4 = k(0.6) * spindle_wy + k(0.8) * spindle_wz;
+        let t4 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
         let t5 = k(0.6) * t4;
         let t6 = spindle_wx * t5;
-        let t7 = k(5.886) - spindle_wx * t1 - k(0.15) * t6;
+        let t7 = T::fused(-k(0.15), t6, T::fused(-spindle_wx, t1, k(5.886)));
         let t8 = spindle_e0 * spindle_e3;
         let t9 = spindle_e1 * spindle_e2;
         let t10 = t9 - t8;
-        let t11 = k(2.0) * t10 * t7
-            - k(2.0) * (k(0.5) - (t3 + spindle_e1 * spindle_e1)) * t2;
+        let t11 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3))),
+            t2,
+            k(2.0) * t10 * t7,
+        );
         let t12 = k(0.8) * t4;
         let t13 = spindle_wx * t12;
-        let t14 = k(7.848) - spindle_wx * t0 - k(0.15) * t13;
+        let t14 = T::fused(-k(0.15), t13, T::fused(-spindle_wx, t0, k(7.848)));
         let t15 = spindle_e0 * spindle_e2;
         let t16 = spindle_e1 * spindle_e3;
         let t17 = t16 + t15;
-        let t18 = k(2.0) * t17 * t14 + t11;
-        let t19 = k(0.5) - (t3 + spindle_e2 * spindle_e2);
+        let t18 = T::fused(k(2.0) * t17, t14, t11);
+        let t19 = k(0.5) - T::fused(spindle_e2, spindle_e2, t3);
         let t20 = spindle_e0 * spindle_e1;
         let t21 = spindle_e2 * spindle_e3;
         let t22 = t21 - t20;
-        let t23 = k(2.0) * t22 * t14 - (k(2.0) * t19 * t7 - k(2.0) * (t9 + t8) * t2);
+        let t23 = T::fused(
+            k(2.0) * t22,
+            t14,
+            -T::fused(-(k(2.0) * (t9 + t8)), t2, k(2.0) * t19 * t7),
+        );
         let t24 = t21 + t20;
-        let t25 = k(0.5) - (t3 + spindle_e3 * spindle_e3);
-        let t26 = k(2.0) * t25 * t14 - (k(2.0) * t24 * t7 + k(2.0) * (t16 - t15) * t2);
-        let t27 = spindle_wz * t5 - spindle_wy * t12;
+        let t25 = k(0.5) - T::fused(spindle_e3, spindle_e3, t3);
+        let t26 = T::fused(
+            k(2.0) * t25,
+            t14,
+            -T::fused(k(2.0) * (t16 - t15), t2, k(2.0) * t24 * t7),
+        );
+        let t27 = T::fused(-spindle_wy, t12, spindle_wz * t5);
         let t28 = k(0.8) * t18;
         let t29 = k(0.8) * t23;
-        let t30 = k(7.848) + k(0.8) * t26;
-        let t31 = k(0.3) * t10 * t28 - k(0.3) * t19 * t29 - k(0.3) * t24 * t30;
-        let t32 = t31 - (k(0.01) * (spindle_wx * spindle_wy) + k(0.02) * t6);
-        let t33 = spindle_e3 + k(0.3333333333333333) * spindle_e2;
+        let t30 = T::fused(k(0.8), t26, k(7.848));
+        let t31 = T::fused(
+            -(k(0.3) * t24),
+            t30,
+            T::fused(-(k(0.3) * t19), t29, k(0.3) * t10 * t28),
+        );
+        let t32 = t31 - T::fused(k(0.02), t6, k(0.01) * (spindle_wx * spindle_wy));
+        let t33 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
         let t34 = k(1.8) * t33;
-        let t35 = k(1.0) - t33 * t34;
-        let t36 = k(0.3) * t17 * t28 + k(0.3) * t22 * t29 + k(0.3) * t25 * t30;
-        let t37 = t36 - (k(0.01) * (spindle_wx * spindle_wz) + k(0.02) * t13);
+        let t35 = T::fused(-t33, t34, k(1.0));
+        let t36 = T::fused(
+            k(0.3) * t25,
+            t30,
+            T::fused(k(0.3) * t22, t29, k(0.3) * t17 * t28),
+        );
+        let t37 = t36 - T::fused(k(0.02), t13, k(0.01) * (spindle_wx * spindle_wz));
         let t38 = k(0.01) * t27;
-        let t39 = (spindle_e0 + k(0.3333333333333333) * spindle_e1) * t34;
-        let t40 = t39 * t38 - k(0.8) * t35 * t37 - k(0.6) * t35 * t32;
-        let t41 = t35 * t38 + k(0.8) * t39 * t37 + k(0.6) * t39 * t32;
+        let t39 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t34;
+        let t40 = T::fused(
+            -(k(0.6) * t35),
+            t32,
+            T::fused(-(k(0.8) * t35), t37, t39 * t38),
+        );
+        let t41 = T::fused(k(0.6) * t39, t32, T::fused(k(0.8) * t39, t37, t35 * t38));
         *out = [-t18, -t23, t26, -t27, -t13, t6, t28, t29, t40, -t41];
     }
 }
@@ -975,46 +1127,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cylindrical<T> {
         let t5 = spindle_e0 * spindle_e2;
         let t6 = spindle_e1 * spindle_e3;
         let t7 = t6 + t5;
-        let t8 = k(1.2) * t7 - k(1.6) * t4;
+        let t8 = T::fused(-k(1.6), t4, k(1.2) * t7);
         let t9 = t3 + t2;
         let t10 = k(2.0) * t9;
         let t11 = spindle_e0 * spindle_e0;
-        let t12 = k(0.5) - (t11 + spindle_e2 * spindle_e2);
+        let t12 = k(0.5) - T::fused(spindle_e2, spindle_e2, t11);
         let t13 = spindle_e0 * spindle_e1;
         let t14 = spindle_e2 * spindle_e3;
         let t15 = t14 - t13;
-        let t16 = k(1.2) * t15 + k(1.6) * t12;
+        let t16 = T::fused(k(1.6), t12, k(1.2) * t15);
         let t17 = k(0.8) * t16;
-        let t18 = k(0.5) - (t11 + spindle_e1 * spindle_e1);
+        let t18 = k(0.5) - T::fused(spindle_e1, spindle_e1, t11);
         let t19 = k(1.6) * t18;
         let t20 = k(0.6) * t16;
         let t21 = k(1.2) * t18;
-        let t22 = k(1.0) / (t21 * t20 + (t19 * t17 + t10 * t8));
+        let t22 = k(1.0) / T::fused(t21, t20, T::fused(t10, t8, t19 * t17));
         let t23 = k(0.01) * spindle_dwx;
-        let t24 = t1 * (k(0.3) * t15) + t0 * (k(0.3) * t7);
-        let t25 = k(0.5) - (t11 + spindle_e3 * spindle_e3);
-        let t26 = k(7.848) + k(0.8) * spindle_dsz;
-        let t27 = k(0.01) * (spindle_wx * spindle_wz) - k(0.02) * spindle_dwy
-            - (t26 * (k(0.3) * t25) - t24);
-        let t28 = t1 * (k(0.3) * t12) - t0 * (k(0.3) * t4);
+        let t24 = T::fused(t0, k(0.3) * t7, t1 * (k(0.3) * t15));
+        let t25 = k(0.5) - T::fused(spindle_e3, spindle_e3, t11);
+        let t26 = T::fused(k(0.8), spindle_dsz, k(7.848));
+        let t27 = T::fused(-k(0.02), spindle_dwy, k(0.01) * (spindle_wx * spindle_wz))
+            - T::fused(t26, k(0.3) * t25, -t24);
+        let t28 = T::fused(-t0, k(0.3) * t4, t1 * (k(0.3) * t12));
         let t29 = t14 + t13;
-        let t30 = k(0.01) * (spindle_wx * spindle_wy) + k(0.02) * spindle_dwz
-            + (t26 * (k(0.3) * t29) - t28);
-        let t31 = t30 * (t20 * t22) + (t27 * (t17 * t22) + t23 * (t10 * t22));
+        let t30 = T::fused(k(0.02), spindle_dwz, k(0.01) * (spindle_wx * spindle_wy))
+            + T::fused(t26, k(0.3) * t29, -t28);
+        let t31 = T::fused(t30, t20 * t22, T::fused(t23, t10 * t22, t27 * (t17 * t22)));
         let t32 = k(2.0) * t18;
-        let t33 = t30 * (t22 * (k(0.6) * t8))
-            + (t27 * (t22 * (k(0.8) * t8)) - t23 * (t32 * t22));
-        let t34 = t16 * t33 - t8 * t31;
-        let t35 = k(1.6) * t9 * t33 - (t24 - t19 * t31);
-        let t36 = k(1.2) * t9 * t33 + (t28 + t21 * t31);
-        let t37 = k(2.0) * t7 * t36 - (k(2.0) * t4 * t35 - t32 * t34);
+        let t33 = T::fused(
+            t30,
+            t22 * (k(0.6) * t8),
+            T::fused(-t23, t32 * t22, t27 * (t22 * (k(0.8) * t8))),
+        );
+        let t34 = T::fused(-t8, t31, t16 * t33);
+        let t35 = T::fused(k(1.6) * t9, t33, -T::fused(-t19, t31, t24));
+        let t36 = T::fused(k(1.2) * t9, t33, T::fused(t21, t31, t28));
+        let t37 = T::fused(k(2.0) * t7, t36, -T::fused(-t32, t34, k(2.0) * t4 * t35));
         let t38 = t6 - t5;
-        let t39 = spindle_rz - (spindle_rz - k(0.3) * t38);
-        let t40 = k(2.0) * t15 * t36 + (k(2.0) * t12 * t35 - t10 * t34);
-        let t41 = k(2.0) * t25 * t36 + (k(2.0) * t29 * t35 + k(2.0) * t38 * t34);
-        let t42 = t0 * (spindle_ry - (spindle_ry - k(0.3) * t9))
-            - t1 * (spindle_rx - (spindle_rx + k(0.3) * t18));
-        *out = [t0, t1, k(0.0), t37 - t1 * t39, t0 * t39 + t40, -(t42 + t41)];
+        let t39 = spindle_rz - T::fused(-k(0.3), t38, spindle_rz);
+        let t40 = T::fused(k(2.0) * t15, t36, T::fused(-t10, t34, k(2.0) * t12 * t35));
+        let t41 = T::fused(
+            k(2.0) * t25,
+            t36,
+            T::fused(k(2.0) * t38, t34, k(2.0) * t29 * t35),
+        );
+        let t42 = T::fused(
+            -t1,
+            spindle_rx - T::fused(k(0.3), t18, spindle_rx),
+            t0 * (spindle_ry - T::fused(-k(0.3), t9, spindle_ry)),
+        );
+        *out = [
+            t0,
+            t1,
+            k(0.0),
+            T::fused(-t1, t39, t37),
+            T::fused(t0, t39, t40),
+            -(t42 + t41),
+        ];
     }
     fn n_outputs(&self) -> usize {
         6

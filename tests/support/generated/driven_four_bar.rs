@@ -155,41 +155,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenFourBar<T> {
             crank_sy,
             crank_sz,
             -(k(0.5)
-                * (crank_e1 * crank_wx + crank_e2 * crank_wy + crank_e3 * crank_wz)),
-            k(0.5) * (crank_e0 * crank_wx - crank_e3 * crank_wy + crank_e2 * crank_wz),
-            k(0.5) * (crank_e3 * crank_wx + crank_e0 * crank_wy - crank_e1 * crank_wz),
+                * T::fused(
+                    crank_e3,
+                    crank_wz,
+                    T::fused(crank_e2, crank_wy, crank_e1 * crank_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    crank_e2,
+                    crank_wz,
+                    T::fused(-crank_e3, crank_wy, crank_e0 * crank_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -crank_e1,
+                    crank_wz,
+                    T::fused(crank_e0, crank_wy, crank_e3 * crank_wx),
+                ),
             -(k(0.5)
-                * (crank_e2 * crank_wx - crank_e1 * crank_wy - crank_e0 * crank_wz)),
+                * T::fused(
+                    -crank_e0,
+                    crank_wz,
+                    T::fused(-crank_e1, crank_wy, crank_e2 * crank_wx),
+                )),
             coupler_sx,
             coupler_sy,
             coupler_sz,
             -(k(0.5)
-                * (coupler_e1 * coupler_wx + coupler_e2 * coupler_wy
-                    + coupler_e3 * coupler_wz)),
+                * T::fused(
+                    coupler_e3,
+                    coupler_wz,
+                    T::fused(coupler_e2, coupler_wy, coupler_e1 * coupler_wx),
+                )),
             k(0.5)
-                * (coupler_e0 * coupler_wx - coupler_e3 * coupler_wy
-                    + coupler_e2 * coupler_wz),
+                * T::fused(
+                    coupler_e2,
+                    coupler_wz,
+                    T::fused(-coupler_e3, coupler_wy, coupler_e0 * coupler_wx),
+                ),
             k(0.5)
-                * (coupler_e3 * coupler_wx + coupler_e0 * coupler_wy
-                    - coupler_e1 * coupler_wz),
+                * T::fused(
+                    -coupler_e1,
+                    coupler_wz,
+                    T::fused(coupler_e0, coupler_wy, coupler_e3 * coupler_wx),
+                ),
             -(k(0.5)
-                * (coupler_e2 * coupler_wx - coupler_e1 * coupler_wy
-                    - coupler_e0 * coupler_wz)),
+                * T::fused(
+                    -coupler_e0,
+                    coupler_wz,
+                    T::fused(-coupler_e1, coupler_wy, coupler_e2 * coupler_wx),
+                )),
             rocker_sx,
             rocker_sy,
             rocker_sz,
             -(k(0.5)
-                * (rocker_e1 * rocker_wx + rocker_e2 * rocker_wy
-                    + rocker_e3 * rocker_wz)),
+                * T::fused(
+                    rocker_e3,
+                    rocker_wz,
+                    T::fused(rocker_e2, rocker_wy, rocker_e1 * rocker_wx),
+                )),
             k(0.5)
-                * (rocker_e0 * rocker_wx - rocker_e3 * rocker_wy
-                    + rocker_e2 * rocker_wz),
+                * T::fused(
+                    rocker_e2,
+                    rocker_wz,
+                    T::fused(-rocker_e3, rocker_wy, rocker_e0 * rocker_wx),
+                ),
             k(0.5)
-                * (rocker_e3 * rocker_wx + rocker_e0 * rocker_wy
-                    - rocker_e1 * rocker_wz),
+                * T::fused(
+                    -rocker_e1,
+                    rocker_wz,
+                    T::fused(rocker_e0, rocker_wy, rocker_e3 * rocker_wx),
+                ),
             -(k(0.5)
-                * (rocker_e2 * rocker_wx - rocker_e1 * rocker_wy
-                    - rocker_e0 * rocker_wz)),
+                * T::fused(
+                    -rocker_e0,
+                    rocker_wz,
+                    T::fused(-rocker_e1, rocker_wy, rocker_e2 * rocker_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -208,7 +250,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenFourBar<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -((k(6.0) + k(0.6) * (k(3.0) * t).cos()) * closing3),
+            -(T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0)) * closing3),
             crank_wz,
         ];
     }
@@ -252,40 +294,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let rocker_e3 = y[20];
         let turn0 = y[40];
         let t0 = crank_e0 * crank_e0;
-        let t1 = t0 + crank_e1 * crank_e1;
+        let t1 = T::fused(crank_e1, crank_e1, t0);
         let t2 = k(0.5) - t1;
         let t3 = k(0.2) * t2;
-        let t4 = crank_e1 * crank_e2 + crank_e0 * crank_e3;
+        let t4 = T::fused(crank_e0, crank_e3, crank_e1 * crank_e2);
         let t5 = k(0.2) * t4;
         let t6 = crank_e0 * crank_e2;
         let t7 = crank_e1 * crank_e3;
         let t8 = k(0.2) * (t7 - t6);
         let t9 = k(2.0) * (t7 + t6);
-        let t10 = k(2.0) * (crank_e2 * crank_e3 - crank_e0 * crank_e1);
-        let t11 = rocker_e0 * rocker_e0 + rocker_e1 * rocker_e1;
+        let t10 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
+        let t11 = T::fused(rocker_e1, rocker_e1, rocker_e0 * rocker_e0);
         let t12 = k(0.4) * (k(0.5) - t11);
-        let t13 = k(0.4) * (rocker_e1 * rocker_e2 + rocker_e0 * rocker_e3);
+        let t13 = k(0.4) * T::fused(rocker_e0, rocker_e3, rocker_e1 * rocker_e2);
         let t14 = rocker_e0 * rocker_e2;
         let t15 = rocker_e1 * rocker_e3;
         let t16 = k(0.4) * (t15 - t14);
         let t17 = coupler_e0 * coupler_e0;
-        let t18 = t17 + coupler_e1 * coupler_e1;
+        let t18 = T::fused(coupler_e1, coupler_e1, t17);
         let t19 = k(0.5) * (k(0.5) - t18);
         let t20 = coupler_e0 * coupler_e3;
         let t21 = coupler_e1 * coupler_e2;
         let t22 = k(0.5) * (t21 + t20);
-        let t23 = k(0.5) * (coupler_e1 * coupler_e3 - coupler_e0 * coupler_e2);
+        let t23 = k(0.5) * T::fused(-coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
         let t24 = coupler_e2 * coupler_e2;
-        let t25 = t9 * (k(2.0) * (t21 - t20)) - t10 * (k(2.0) * (k(0.5) - (t17 + t24)));
+        let t25 = T::fused(
+            -t10,
+            k(2.0) * (k(0.5) - (t17 + t24)),
+            t9 * (k(2.0) * (t21 - t20)),
+        );
         let t26 = crank_e3 * crank_e3;
-        let t27 = k(2.0) * (k(0.5) - (t0 + t26))
-            * (k(2.0) * (coupler_e2 * coupler_e3 + coupler_e0 * coupler_e1));
+        let t27 = T::fused(
+            k(2.0) * (k(0.5) - (t0 + t26)),
+            k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3),
+            -t25,
+        );
         let t28 = turn0.cos();
         let t29 = k(2.0) * t2;
         let t30 = turn0.sin();
         let t31 = k(2.0) * t4;
-        let t32 = (t31 * t28 + t29 * t30).atan2(t31 * t30 - t29 * t28);
-        let t33 = k(1.0) + k(6.0) * t + k(0.2) * (k(3.0) * t).sin() - (turn0 + t32);
+        let t32 = T::fused(t29, t30, t31 * t28).atan2(T::fused(-t29, t28, t31 * t30));
+        let t33 = T::fused(k(0.2), (k(3.0) * t).sin(), T::fused(k(6.0), t, k(1.0)))
+            - (turn0 + t32);
         *out = [
             crank_rx + t3,
             crank_ry - t5,
@@ -296,18 +346,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
             rocker_ry - t13,
             rocker_rz - t16,
             k(2.0) * (t15 + t14),
-            k(2.0) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1),
+            k(2.0) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3),
             coupler_rx + t19 - (crank_rx - t3),
             coupler_ry - t22 - (crank_ry + t5),
             coupler_rz - t23 - (crank_rz + t8),
-            t25 - t27,
+            -t27,
             rocker_rx - t12 - (coupler_rx - t19),
             rocker_ry + t13 - (coupler_ry + t22),
             rocker_rz + t16 - (coupler_rz + t23),
             -t33,
-            t26 + (t1 + crank_e2 * crank_e2) - k(1.0),
-            coupler_e3 * coupler_e3 + (t18 + t24) - k(1.0),
-            rocker_e3 * rocker_e3 + (t11 + rocker_e2 * rocker_e2) - k(1.0),
+            t26 + T::fused(crank_e2, crank_e2, t1) - k(1.0),
+            T::fused(coupler_e3, coupler_e3, t18 + t24) - k(1.0),
+            T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t11)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 201 operations (87 ±, 113 ×, 1 ÷) and 1 functions.
@@ -349,70 +399,90 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let t3 = crank_e0 * crank_e2;
         let t4 = crank_e1 * crank_e3;
         let t5 = k(2.0) * (t4 + t3);
-        let t6 = t5 * crank_wy - t2 * crank_wz;
+        let t6 = T::fused(-t2, crank_wz, t5 * crank_wy);
         let t7 = k(0.1) * t6;
         let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - (t8 + crank_e2 * crank_e2));
+        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
         let t10 = crank_e0 * crank_e1;
         let t11 = crank_e2 * crank_e3;
         let t12 = k(2.0) * (t11 - t10);
-        let t13 = t12 * crank_wy + t9 * crank_wz;
+        let t13 = T::fused(t9, crank_wz, t12 * crank_wy);
         let t14 = k(0.1) * t13;
         let t15 = k(2.0) * (t11 + t10);
-        let t16 = k(2.0) * (k(0.5) - (t8 + crank_e3 * crank_e3));
-        let t17 = k(0.1) * (t16 * crank_wy + t15 * crank_wz);
-        let t18 = k(2.0) * (k(0.5) - (t8 + crank_e1 * crank_e1));
+        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t8));
+        let t17 = k(0.1) * T::fused(t15, crank_wz, t16 * crank_wy);
+        let t18 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
         let t19 = k(2.0) * (t1 + t0);
         let t20 = rocker_e0 * rocker_e3;
         let t21 = rocker_e1 * rocker_e2;
         let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2) * rocker_wy
-            - t22 * rocker_wz;
+        let t23 = T::fused(
+            -t22,
+            rocker_wz,
+            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+        );
         let t24 = k(0.2) * t23;
         let t25 = rocker_e0 * rocker_e0;
-        let t26 = k(2.0) * (k(0.5) - (t25 + rocker_e2 * rocker_e2));
+        let t26 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t25));
         let t27 = rocker_e0 * rocker_e1;
         let t28 = rocker_e2 * rocker_e3;
-        let t29 = k(0.2) * (k(2.0) * (t28 - t27) * rocker_wy + t26 * rocker_wz);
-        let t30 = k(2.0) * (k(0.5) - (t25 + rocker_e3 * rocker_e3)) * rocker_wy
-            + k(2.0) * (t28 + t27) * rocker_wz;
+        let t29 = k(0.2) * T::fused(t26, rocker_wz, k(2.0) * (t28 - t27) * rocker_wy);
+        let t30 = T::fused(
+            k(2.0) * (t28 + t27),
+            rocker_wz,
+            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t25)) * rocker_wy,
+        );
         let t31 = k(0.2) * t30;
-        let t32 = t22 * rocker_wx
-            + k(2.0) * (k(0.5) - (t25 + rocker_e1 * rocker_e1)) * rocker_wy;
+        let t32 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t25)),
+            rocker_wy,
+            t22 * rocker_wx,
+        );
         let t33 = coupler_e0 * coupler_e3;
         let t34 = coupler_e1 * coupler_e2;
         let t35 = k(2.0) * (t34 - t33);
         let t36 = coupler_e0 * coupler_e2;
         let t37 = coupler_e1 * coupler_e3;
         let t38 = k(2.0) * (t37 + t36);
-        let t39 = k(0.25) * (t38 * coupler_wy - t35 * coupler_wz);
+        let t39 = k(0.25) * T::fused(-t35, coupler_wz, t38 * coupler_wy);
         let t40 = coupler_e0 * coupler_e0;
-        let t41 = k(2.0) * (k(0.5) - (t40 + coupler_e2 * coupler_e2));
+        let t41 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t40));
         let t42 = coupler_e0 * coupler_e1;
         let t43 = coupler_e2 * coupler_e3;
         let t44 = k(2.0) * (t43 - t42);
-        let t45 = k(0.25) * (t44 * coupler_wy + t41 * coupler_wz);
+        let t45 = k(0.25) * T::fused(t41, coupler_wz, t44 * coupler_wy);
         let t46 = k(2.0) * (t43 + t42);
-        let t47 = k(2.0) * (k(0.5) - (t40 + coupler_e3 * coupler_e3));
-        let t48 = k(0.25) * (t47 * coupler_wy + t46 * coupler_wz);
-        let t49 = t12 * (k(2.0) * (t34 + t33))
-            - t5 * (k(2.0) * (k(0.5) - (t40 + coupler_e1 * coupler_e1)));
-        let t50 = coupler_wx * (t5 * t38 + t12 * t44 + t16 * t47)
-            + coupler_wz * (t16 * (k(2.0) * (t37 - t36)) - t49);
-        let t51 = k(2.0) * (t4 - t3) * t46 - (t19 * t41 + t18 * t35);
-        let t52 = crank_wx * (t15 * t46 + (t2 * t35 + t9 * t41)) - crank_wy * t51;
-        let t53 = (t19 * t6 + t18 * t13) / (t19 * t19 + t18 * t18);
+        let t47 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t40));
+        let t48 = k(0.25) * T::fused(t46, coupler_wz, t47 * coupler_wy);
+        let t49 = T::fused(
+            -t5,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t40)),
+            t12 * (k(2.0) * (t34 + t33)),
+        );
+        let t50 = T::fused(
+            coupler_wz,
+            T::fused(t16, k(2.0) * (t37 - t36), -t49),
+            coupler_wx * T::fused(t16, t47, T::fused(t12, t44, t5 * t38)),
+        );
+        let t51 = T::fused(k(2.0) * (t4 - t3), t46, -T::fused(t18, t35, t19 * t41));
+        let t52 = T::fused(
+            -crank_wy,
+            t51,
+            crank_wx * T::fused(t15, t46, T::fused(t9, t41, t2 * t35)),
+        );
+        let t53 = T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0))
+            - T::fused(t18, t13, t19 * t6) / T::fused(t18, t18, t19 * t19);
         *out = [
             crank_sx + t7,
             crank_sy + t14,
             crank_sz - t17,
-            -(t2 * crank_wx + t18 * crank_wy),
-            t9 * crank_wx + t19 * crank_wy,
+            -T::fused(t18, crank_wy, t2 * crank_wx),
+            T::fused(t19, crank_wy, t9 * crank_wx),
             rocker_sx + t24,
             rocker_sy + t29,
             rocker_sz - t31,
             -t32,
-            t26 * rocker_wx + k(2.0) * (t21 + t20) * rocker_wy,
+            T::fused(k(2.0) * (t21 + t20), rocker_wy, t26 * rocker_wx),
             coupler_sx + t39 - (crank_sx - t7),
             coupler_sy + t45 - (crank_sy - t14),
             coupler_sz - t48 - (crank_sz + t17),
@@ -420,7 +490,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
             rocker_sx - t24 - (coupler_sx - t39),
             rocker_sy - t29 - (coupler_sy - t45),
             rocker_sz + t31 - (coupler_sz + t48),
-            t53 - (k(6.0) + k(0.6) * (k(3.0) * t).cos()),
+            -t53,
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -447,25 +517,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = rocker_wx * (k(4e-5) * rocker_wx) + rocker_wy * (k(0.0108) * rocker_wy)
-            + rocker_wz * (k(0.0108) * rocker_wz);
-        let t1 = t0
-            + k(0.8)
-                * (rocker_sx * rocker_sx + rocker_sy * rocker_sy
-                    + rocker_sz * rocker_sz);
-        let t2 = coupler_wx * (k(5e-5) * coupler_wx)
-            + coupler_wy * (k(0.021) * coupler_wy)
-            + coupler_wz * (k(0.021) * coupler_wz);
-        let t3 = crank_wx * (k(2e-5) * crank_wx) + crank_wy * (k(0.00135) * crank_wy)
-            + crank_wz * (k(0.00135) * crank_wz);
-        let t4 = t3
-            + k(0.4) * (crank_sx * crank_sx + crank_sy * crank_sy + crank_sz * crank_sz);
+        let t0 = T::fused(
+            rocker_wz,
+            k(0.0108) * rocker_wz,
+            T::fused(rocker_wy, k(0.0108) * rocker_wy, rocker_wx * (k(4e-5) * rocker_wx)),
+        );
+        let t1 = T::fused(
+            k(0.8),
+            T::fused(
+                rocker_sz,
+                rocker_sz,
+                T::fused(rocker_sy, rocker_sy, rocker_sx * rocker_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            coupler_wz,
+            k(0.021) * coupler_wz,
+            T::fused(
+                coupler_wy,
+                k(0.021) * coupler_wy,
+                coupler_wx * (k(5e-5) * coupler_wx),
+            ),
+        );
+        let t3 = T::fused(
+            crank_wz,
+            k(0.00135) * crank_wz,
+            T::fused(crank_wy, k(0.00135) * crank_wy, crank_wx * (k(2e-5) * crank_wx)),
+        );
+        let t4 = T::fused(
+            k(0.4),
+            T::fused(
+                crank_sz,
+                crank_sz,
+                T::fused(crank_sy, crank_sy, crank_sx * crank_sx),
+            ),
+            t3,
+        );
         let t5 = t4
-            + (coupler_sx * coupler_sx + coupler_sy * coupler_sy
-                + coupler_sz * coupler_sz + t2);
+            + (T::fused(
+                coupler_sz,
+                coupler_sz,
+                T::fused(coupler_sy, coupler_sy, coupler_sx * coupler_sx),
+            ) + t2);
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t1),
-            potential: k(3.924) * crank_ry + k(9.81) * coupler_ry + k(7.848) * rocker_ry,
+            potential: T::fused(
+                k(7.848),
+                rocker_ry,
+                T::fused(k(9.81), coupler_ry, k(3.924) * crank_ry),
+            ),
         }
     }
     /// Writes the joint readings: 250 operations (114 ±, 136 ×, 0 ÷).
@@ -497,7 +598,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let t2 = k(2.0) * (t1 + t0);
         let t3 = crank_e2 * crank_e2;
         let t4 = crank_e0 * crank_e0;
-        let t5 = t4 + crank_e1 * crank_e1;
+        let t5 = T::fused(crank_e1, crank_e1, t4);
         let t6 = crank_e3 * crank_e3;
         let t7 = k(1.0) - (t6 + (t5 + t3));
         let t8 = k(2.0) * (k(0.5) - t5);
@@ -507,7 +608,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let t12 = k(2.0) * (t11 + t10);
         let t13 = rocker_e2 * rocker_e2;
         let t14 = rocker_e0 * rocker_e0;
-        let t15 = t14 + rocker_e1 * rocker_e1;
+        let t15 = T::fused(rocker_e1, rocker_e1, t14);
         let t16 = rocker_e3 * rocker_e3;
         let t17 = k(2.0) * (k(0.5) - t15);
         let t18 = coupler_e0 * coupler_e1;
@@ -518,7 +619,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let t23 = k(2.0) * (t22 - t21) * t20;
         let t24 = coupler_e2 * coupler_e2;
         let t25 = coupler_e0 * coupler_e0;
-        let t26 = t25 + coupler_e1 * coupler_e1;
+        let t26 = T::fused(coupler_e1, coupler_e1, t25);
         let t27 = coupler_e3 * coupler_e3;
         let t28 = k(1.0) - (t27 + (t26 + t24));
         let t29 = k(2.0) * (k(0.5) - (t25 + t24));
@@ -540,43 +641,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let t45 = coupler_e1 * coupler_e3;
         let t46 = k(2.0) * (t45 - t44);
         let t47 = k(2.0) * (k(0.5) - (t4 + t6));
-        let t48 = t47 * t20 - (t40 * t33 - t42 * t29);
-        let t49 = coupler_wy * t48 + coupler_wx * (t47 * t46 - (t43 - t40 * t39));
+        let t48 = T::fused(t47, t20, -T::fused(-t42, t29, t40 * t33));
+        let t49 = T::fused(
+            coupler_wx,
+            T::fused(t47, t46, -T::fused(-t40, t39, t43)),
+            coupler_wy * t48,
+        );
         let t50 = k(2.0) * (k(0.5) - (t25 + t27));
         let t51 = k(2.0) * (t19 - t18);
         let t52 = k(2.0) * (t45 + t44);
-        let t53 = t40 * t52 + t42 * t51;
+        let t53 = T::fused(t42, t51, t40 * t52);
         let t54 = t47 - t7;
-        let t55 = crank_wy * (t36 + (t38 + t37 * t29))
-            + crank_wx * (t23 - (t2 * t29 + t8 * t33));
-        let t56 = coupler_e0 * rocker_e0 + coupler_e1 * rocker_e1
-            + coupler_e2 * rocker_e2 + coupler_e3 * rocker_e3;
-        let t57 = coupler_e1 * rocker_e0 - coupler_e0 * rocker_e1
-            - coupler_e3 * rocker_e2 + coupler_e2 * rocker_e3;
-        let t58 = coupler_e2 * rocker_e0 + coupler_e3 * rocker_e1
-            - coupler_e0 * rocker_e2 - coupler_e1 * rocker_e3;
-        let t59 = coupler_e3 * rocker_e0 - coupler_e2 * rocker_e1
-            + coupler_e1 * rocker_e2 - coupler_e0 * rocker_e3;
+        let t55 = T::fused(
+            crank_wx,
+            t23 - T::fused(t8, t33, t2 * t29),
+            crank_wy * (t36 + T::fused(t37, t29, t38)),
+        );
+        let t56 = T::fused(
+            coupler_e3,
+            rocker_e3,
+            T::fused(
+                coupler_e2,
+                rocker_e2,
+                T::fused(coupler_e1, rocker_e1, coupler_e0 * rocker_e0),
+            ),
+        );
+        let t57 = T::fused(
+            coupler_e2,
+            rocker_e3,
+            T::fused(
+                -coupler_e3,
+                rocker_e2,
+                T::fused(-coupler_e0, rocker_e1, coupler_e1 * rocker_e0),
+            ),
+        );
+        let t58 = T::fused(
+            -coupler_e1,
+            rocker_e3,
+            T::fused(
+                -coupler_e0,
+                rocker_e2,
+                T::fused(coupler_e3, rocker_e1, coupler_e2 * rocker_e0),
+            ),
+        );
+        let t59 = T::fused(
+            -coupler_e0,
+            rocker_e3,
+            T::fused(
+                coupler_e1,
+                rocker_e2,
+                T::fused(-coupler_e2, rocker_e1, coupler_e3 * rocker_e0),
+            ),
+        );
         let t60 = rocker_e0 * rocker_e2;
         let t61 = rocker_e1 * rocker_e3;
         let t62 = k(2.0) * (t61 - t60);
-        let t63 = coupler_wy * (t20 * t62 - (t29 * t12 + t33 * t17))
-            + coupler_wx * (t46 * t62 + (t41 * t12 + t39 * t17));
-        let t64 = coupler_wz * (t50 * t62 - (t51 * t12 - t52 * t17)) - t63;
+        let t63 = T::fused(
+            coupler_wx,
+            T::fused(t46, t62, T::fused(t39, t17, t41 * t12)),
+            coupler_wy * T::fused(t20, t62, -T::fused(t33, t17, t29 * t12)),
+        );
+        let t64 = T::fused(
+            coupler_wz,
+            T::fused(t50, t62, -T::fused(-t52, t17, t51 * t12)),
+            -t63,
+        );
         let t65 = k(2.0) * (t11 - t10);
         let t66 = k(2.0) * (k(0.5) - (t14 + t13));
         let t67 = rocker_e0 * rocker_e1;
         let t68 = rocker_e2 * rocker_e3;
         let t69 = k(2.0) * (t68 + t67);
-        let t70 = coupler_wy * (t20 * t69 + (t29 * t66 + t33 * t65))
-            + coupler_wx * (t46 * t69 - (t41 * t66 + t39 * t65));
-        let t71 = coupler_wz * (t50 * t69 + (t51 * t66 - t52 * t65)) - t70;
+        let t70 = T::fused(
+            coupler_wx,
+            T::fused(t46, t69, -T::fused(t39, t65, t41 * t66)),
+            coupler_wy * T::fused(t20, t69, T::fused(t33, t65, t29 * t66)),
+        );
+        let t71 = T::fused(
+            coupler_wz,
+            T::fused(t50, t69, T::fused(-t52, t65, t51 * t66)),
+            -t70,
+        );
         let t72 = k(2.0) * (t61 + t60);
         let t73 = k(2.0) * (t68 - t67);
         let t74 = k(2.0) * (k(0.5) - (t14 + t16));
-        let t75 = coupler_wy * (t20 * t74 + (t29 * t73 - t33 * t72))
-            + coupler_wx * (t46 * t74 - (t41 * t73 - t39 * t72));
-        let t76 = coupler_wz * (t50 * t74 + (t51 * t73 + t52 * t72)) - t75;
+        let t75 = T::fused(
+            coupler_wx,
+            T::fused(t46, t74, -T::fused(-t39, t72, t41 * t73)),
+            coupler_wy * T::fused(t20, t74, T::fused(-t33, t72, t29 * t73)),
+        );
+        let t76 = T::fused(
+            coupler_wz,
+            T::fused(t50, t74, T::fused(t52, t72, t51 * t73)),
+            -t75,
+        );
         *out = [
             t2,
             -t9,
@@ -584,12 +741,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
             t12,
             k(1.0) - (t16 + (t15 + t13)) - t17,
             rocker_wz,
-            t33 * t9 + t2 * t30 - t23,
-            t38 + (t37 - t7) * t30 + t36,
-            coupler_wz * (t53 + t47 * t50) - t49 - crank_wz,
-            t40 * (t39 - t28) - t43 + t46 * t54,
-            t53 + t54 * (t50 - t28),
-            coupler_wy + (crank_wz * t48 - t55),
+            T::fused(t2, t30, t33 * t9) - t23,
+            T::fused(t37 - t7, t30, t38) + t36,
+            T::fused(coupler_wz, T::fused(t47, t50, t53), -t49) - crank_wz,
+            T::fused(t46, t54, T::fused(t40, t39 - t28, -t43)),
+            T::fused(t54, t50 - t28, t53),
+            coupler_wy + T::fused(crank_wz, t48, -t55),
             t56,
             -t57,
             -t58,
@@ -1010,21 +1167,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t22 = k(0.5) * coupler_e1;
         let t23 = k(0.5) * coupler_e0;
         let t24 = k(4.0) * crank_e0;
-        let t25 = k(2.0) * (coupler_e2 * coupler_e3 + coupler_e0 * coupler_e1);
+        let t25 = k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
         let t26 = k(2.0)
-            * (k(0.5) - (coupler_e0 * coupler_e0 + coupler_e2 * coupler_e2));
-        let t27 = k(2.0) * (coupler_e1 * coupler_e2 - coupler_e0 * coupler_e3);
+            * (k(0.5) - T::fused(coupler_e2, coupler_e2, coupler_e0 * coupler_e0));
+        let t27 = k(2.0) * T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
         let t28 = k(2.0) * coupler_e1;
         let t29 = crank_e0 * crank_e0;
-        let t30 = k(2.0) * (k(0.5) - (t29 + crank_e3 * crank_e3));
-        let t31 = k(2.0) * (crank_e2 * crank_e3 - crank_e0 * crank_e1);
+        let t30 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t29));
+        let t31 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
         let t32 = k(2.0) * coupler_e3;
-        let t33 = k(2.0) * (crank_e1 * crank_e3 + crank_e0 * crank_e2);
+        let t33 = k(2.0) * T::fused(crank_e0, crank_e2, crank_e1 * crank_e3);
         let t34 = k(2.0) * coupler_e0;
         let t35 = k(2.0) * coupler_e2;
-        let t36 = k(2.0) * (k(0.5) - (t29 + crank_e1 * crank_e1));
-        let t37 = k(2.0) * (crank_e1 * crank_e2 + crank_e0 * crank_e3);
-        let t38 = k(1.0) / (t37 * t37 + t36 * t36);
+        let t36 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t29));
+        let t37 = k(2.0) * T::fused(crank_e0, crank_e3, crank_e1 * crank_e2);
+        let t38 = k(1.0) / T::fused(t36, t36, t37 * t37);
         *out = [
             k(1.0),
             -t0,
@@ -1094,14 +1251,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             -t20,
             t23,
             -t22,
-            t27 * t6 + t26 * t9 + t25 * t24,
-            t27 * t7 + t26 * t8,
-            t27 * t8 - t26 * t7,
-            t27 * t9 - t26 * t6 + t25 * (k(4.0) * crank_e3),
-            -(t33 * t32 - t31 * (k(4.0) * coupler_e0) + t30 * t28),
-            t33 * t35 - t30 * t34,
-            t33 * t28 + t31 * (k(4.0) * coupler_e2) - t30 * t32,
-            -(t33 * t34 + t30 * t35),
+            T::fused(t25, t24, T::fused(t26, t9, t27 * t6)),
+            T::fused(t26, t8, t27 * t7),
+            T::fused(-t26, t7, t27 * t8),
+            T::fused(t25, k(4.0) * crank_e3, T::fused(-t26, t6, t27 * t9)),
+            -T::fused(t30, t28, T::fused(-t31, k(4.0) * coupler_e0, t33 * t32)),
+            T::fused(-t30, t34, t33 * t35),
+            T::fused(-t30, t32, T::fused(t31, k(4.0) * coupler_e2, t33 * t28)),
+            -T::fused(t30, t35, t33 * t34),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1128,8 +1285,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t12,
             -t15,
             t14,
-            -(t38 * (t37 * t24 + t36 * t7)),
-            -(t38 * (t37 * (k(4.0) * crank_e1) + t36 * t6)),
+            -(t38 * T::fused(t36, t7, t37 * t24)),
+            -(t38 * T::fused(t36, t6, t37 * (k(4.0) * crank_e1))),
             -(t38 * (t36 * t9)),
             -(t38 * (t36 * t8)),
             t8,
@@ -1174,17 +1331,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t10 = t9 - t8;
         let t11 = k(0.2) * t10;
         let t12 = crank_e0 * crank_e0;
-        let t13 = k(0.5) - (t12 + crank_e2 * crank_e2);
+        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
         let t14 = k(0.2) * t13;
-        let t15 = k(0.5) - (t12 + crank_e3 * crank_e3);
+        let t15 = k(0.5) - T::fused(crank_e3, crank_e3, t12);
         let t16 = k(0.2) * t15;
         let t17 = t9 + t8;
         let t18 = k(0.2) * t17;
         let t19 = k(2.0) * t6;
-        let t20 = k(2.0) * (k(0.5) - (t12 + crank_e1 * crank_e1));
+        let t20 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12));
         let t21 = k(2.0) * t13;
         let t22 = k(2.0) * (t5 + t4);
-        let t23 = k(0.4) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
+        let t23 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
         let t24 = rocker_e0 * rocker_e3;
         let t25 = rocker_e1 * rocker_e2;
         let t26 = t25 - t24;
@@ -1193,9 +1350,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t29 = rocker_e2 * rocker_e3;
         let t30 = k(0.4) * (t29 - t28);
         let t31 = rocker_e0 * rocker_e0;
-        let t32 = k(0.5) - (t31 + rocker_e2 * rocker_e2);
+        let t32 = k(0.5) - T::fused(rocker_e2, rocker_e2, t31);
         let t33 = k(0.4) * t32;
-        let t34 = k(0.4) * (k(0.5) - (t31 + rocker_e3 * rocker_e3));
+        let t34 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t31));
         let t35 = k(0.4) * (t29 + t28);
         let t36 = coupler_e0 * coupler_e2;
         let t37 = coupler_e1 * coupler_e3;
@@ -1210,23 +1367,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t46 = t45 - t44;
         let t47 = k(0.5) * t46;
         let t48 = coupler_e0 * coupler_e0;
-        let t49 = k(0.5) - (t48 + coupler_e2 * coupler_e2);
+        let t49 = k(0.5) - T::fused(coupler_e2, coupler_e2, t48);
         let t50 = k(0.5) * t49;
-        let t51 = k(0.5) - (t48 + coupler_e3 * coupler_e3);
+        let t51 = k(0.5) - T::fused(coupler_e3, coupler_e3, t48);
         let t52 = k(0.5) * t51;
         let t53 = t45 + t44;
         let t54 = k(0.5) * t53;
         let t55 = k(2.0) * t49;
         let t56 = k(2.0) * t42;
         let t57 = k(2.0) * t53;
-        let t58 = k(2.0) * (t1 - t0) * t57 - (t22 * t55 + t20 * t56);
+        let t58 = T::fused(k(2.0) * (t1 - t0), t57, -T::fused(t20, t56, t22 * t55));
         let t59 = k(2.0) * t15;
         let t60 = k(2.0) * t10;
         let t61 = k(2.0) * t2;
-        let t62 = t61 * (k(2.0) * t38) + t60 * (k(2.0) * t46) + t59 * (k(2.0) * t51);
-        let t63 = t60 * (k(2.0) * (t41 + t40))
-            - t61 * (k(2.0) * (k(0.5) - (t48 + coupler_e1 * coupler_e1)));
-        let t64 = k(1.0) / (t22 * t22 + t20 * t20);
+        let t62 = T::fused(
+            t59,
+            k(2.0) * t51,
+            T::fused(t60, k(2.0) * t46, t61 * (k(2.0) * t38)),
+        );
+        let t63 = T::fused(
+            -t61,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t48)),
+            t60 * (k(2.0) * (t41 + t40)),
+        );
+        let t64 = k(1.0) / T::fused(t20, t20, t22 * t22);
         *out = [
             k(1.0),
             t3,
@@ -1251,7 +1415,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             -t34,
             -t35,
             -(k(2.0) * t26),
-            -(k(2.0) * (k(0.5) - (t31 + rocker_e1 * rocker_e1))),
+            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t31))),
             k(2.0) * t32,
             k(2.0) * (t25 + t24),
             k(-1.0),
@@ -1272,10 +1436,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             k(1.0),
             -t52,
             -t54,
-            -(k(2.0) * t17 * t57 + (t19 * t56 + t21 * t55)),
+            -T::fused(k(2.0) * t17, t57, T::fused(t21, t55, t19 * t56)),
             t58,
             t62,
-            t59 * (k(2.0) * (t37 - t36)) - t63,
+            T::fused(t59, k(2.0) * (t37 - t36), -t63),
             k(-1.0),
             t39,
             -t43,
@@ -1294,8 +1458,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             k(1.0),
             t34,
             t35,
-            (t61 * t22 + t20 * t60) * t64,
-            -(t64 * (t19 * t22 - t20 * t21)),
+            T::fused(t20, t60, t61 * t22) * t64,
+            -(t64 * T::fused(-t20, t21, t19 * t22)),
         ];
     }
     /// Writes ν: 3 operations (1 ±, 2 ×, 0 ÷) and 1 functions.
@@ -1319,7 +1483,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            k(6.0) + k(0.6) * (k(3.0) * t).cos(),
+            T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0)),
         ];
     }
     /// Writes γ: 295 operations (111 ±, 183 ×, 1 ÷) and 1 functions.
@@ -1347,9 +1511,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let t0 = crank_wy * crank_wy;
-        let t1 = crank_wz * crank_wz + t0;
+        let t1 = T::fused(crank_wz, crank_wz, t0);
         let t2 = crank_e0 * crank_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
         let t4 = crank_wx * crank_wy;
         let t5 = crank_e0 * crank_e3;
         let t6 = crank_e1 * crank_e2;
@@ -1358,25 +1522,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t9 = crank_e0 * crank_e2;
         let t10 = crank_e1 * crank_e3;
         let t11 = k(2.0) * (t10 + t9);
-        let t12 = t11 * t8 + (t7 * t4 + t3 * t1);
+        let t12 = T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
         let t13 = k(0.1) * t12;
         let t14 = k(2.0) * (t6 + t5);
-        let t15 = k(2.0) * (k(0.5) - (t2 + crank_e2 * crank_e2));
+        let t15 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t2));
         let t16 = crank_e0 * crank_e1;
         let t17 = crank_e2 * crank_e3;
         let t18 = k(2.0) * (t17 - t16);
-        let t19 = t18 * t8 - (t15 * t4 + t14 * t1);
+        let t19 = T::fused(t18, t8, -T::fused(t14, t1, t15 * t4));
         let t20 = k(0.1) * t19;
         let t21 = k(2.0) * (t10 - t9);
         let t22 = k(2.0) * (t17 + t16);
-        let t23 = k(2.0) * (k(0.5) - (t2 + crank_e3 * crank_e3));
-        let t24 = k(0.1) * (t23 * t8 - (t22 * t4 - t21 * t1));
+        let t23 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t2));
+        let t24 = k(0.1) * T::fused(t23, t8, -T::fused(-t21, t1, t22 * t4));
         let t25 = crank_wy * crank_wz;
-        let t26 = t0 + crank_wx * crank_wx;
+        let t26 = T::fused(crank_wx, crank_wx, t0);
         let t27 = rocker_wy * rocker_wy;
-        let t28 = rocker_wz * rocker_wz + t27;
+        let t28 = T::fused(rocker_wz, rocker_wz, t27);
         let t29 = rocker_e0 * rocker_e0;
-        let t30 = k(2.0) * (k(0.5) - (t29 + rocker_e1 * rocker_e1));
+        let t30 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t29));
         let t31 = rocker_wx * rocker_wy;
         let t32 = rocker_e0 * rocker_e3;
         let t33 = rocker_e1 * rocker_e2;
@@ -1385,22 +1549,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t36 = rocker_e0 * rocker_e2;
         let t37 = rocker_e1 * rocker_e3;
         let t38 = k(2.0) * (t37 + t36);
-        let t39 = k(0.2) * (t38 * t35 + (t34 * t31 + t30 * t28));
+        let t39 = k(0.2) * T::fused(t38, t35, T::fused(t30, t28, t34 * t31));
         let t40 = k(2.0) * (t33 + t32);
-        let t41 = k(2.0) * (k(0.5) - (t29 + rocker_e2 * rocker_e2));
+        let t41 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t29));
         let t42 = rocker_e0 * rocker_e1;
         let t43 = rocker_e2 * rocker_e3;
         let t44 = k(2.0) * (t43 - t42);
-        let t45 = k(0.2) * (t44 * t35 - (t41 * t31 + t40 * t28));
-        let t46 = k(2.0) * (t43 + t42) * t31 - k(2.0) * (t37 - t36) * t28;
+        let t45 = k(0.2) * T::fused(t44, t35, -T::fused(t40, t28, t41 * t31));
+        let t46 = T::fused(-(k(2.0) * (t37 - t36)), t28, k(2.0) * (t43 + t42) * t31);
         let t47 = k(0.2)
-            * (k(2.0) * (k(0.5) - (t29 + rocker_e3 * rocker_e3)) * t35 - t46);
+            * T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t29)),
+                t35,
+                -t46,
+            );
         let t48 = rocker_wy * rocker_wz;
-        let t49 = t27 + rocker_wx * rocker_wx;
+        let t49 = T::fused(rocker_wx, rocker_wx, t27);
         let t50 = coupler_wz * coupler_wz;
-        let t51 = t50 + coupler_wy * coupler_wy;
+        let t51 = T::fused(coupler_wy, coupler_wy, t50);
         let t52 = coupler_e0 * coupler_e0;
-        let t53 = k(2.0) * (k(0.5) - (t52 + coupler_e1 * coupler_e1));
+        let t53 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t52));
         let t54 = coupler_wx * coupler_wy;
         let t55 = coupler_e0 * coupler_e3;
         let t56 = coupler_e1 * coupler_e2;
@@ -1409,46 +1577,65 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t59 = coupler_e0 * coupler_e2;
         let t60 = coupler_e1 * coupler_e3;
         let t61 = k(2.0) * (t60 + t59);
-        let t62 = k(0.25) * (t61 * t58 + (t57 * t54 + t53 * t51));
+        let t62 = k(0.25) * T::fused(t61, t58, T::fused(t53, t51, t57 * t54));
         let t63 = k(2.0) * (t56 + t55);
-        let t64 = k(2.0) * (k(0.5) - (t52 + coupler_e2 * coupler_e2));
+        let t64 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t52));
         let t65 = coupler_e0 * coupler_e1;
         let t66 = coupler_e2 * coupler_e3;
         let t67 = k(2.0) * (t66 - t65);
-        let t68 = k(0.25) * (t67 * t58 - (t64 * t54 + t63 * t51));
+        let t68 = k(0.25) * T::fused(t67, t58, -T::fused(t63, t51, t64 * t54));
         let t69 = k(2.0) * (t60 - t59);
         let t70 = k(2.0) * (t66 + t65);
-        let t71 = k(2.0) * (k(0.5) - (t52 + coupler_e3 * coupler_e3));
-        let t72 = k(0.25) * (t71 * t58 - (t70 * t54 - t69 * t51));
-        let t73 = t25 * (t22 * t70 + (t7 * t57 + t15 * t64))
-            + t8 * (t21 * t70 - (t14 * t64 + t3 * t57));
-        let t74 = t23 * t70 - (t11 * t57 - t18 * t64);
-        let t75 = coupler_wx * (t21 * t71 - (t14 * t67 - t3 * t61))
-            + coupler_wz * (t21 * t69 + (t14 * t63 + t3 * t53));
-        let t76 = coupler_wx * (t22 * t71 - (t7 * t61 - t15 * t67))
-            + coupler_wz * (t22 * t69 - (t15 * t63 + t7 * t53));
-        let t77 = (t50 + coupler_wx * coupler_wx) * t74
-            - t54 * (t23 * t69 - (t18 * t63 - t11 * t53));
-        let t78 = coupler_wy * coupler_wz * (t11 * t61 + t18 * t67 + t23 * t71);
-        let t79 = t78 + t77 + k(2.0) * (crank_wx * t76 - crank_wy * t75)
-            + (t26 * t74 + t73);
-        let t80 = t18 * crank_wy + t15 * crank_wz;
-        let t81 = t11 * crank_wy - t7 * crank_wz;
-        let t82 = k(1.0) / (t14 * t14 + t3 * t3);
-        let t83 = t82 * t82 * (k(2.0) * (t3 * t81 - t14 * t80)) * (t14 * t81 + t3 * t80);
-        let t84 = t80 * t81;
-        let t85 = t82 * (t3 * t19 - t84 + (t84 + t14 * t12)) + t83;
+        let t71 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t52));
+        let t72 = k(0.25) * T::fused(t71, t58, -T::fused(-t69, t51, t70 * t54));
+        let t73 = T::fused(
+            t8,
+            T::fused(t21, t70, -T::fused(t3, t57, t14 * t64)),
+            t25 * T::fused(t22, t70, T::fused(t15, t64, t7 * t57)),
+        );
+        let t74 = T::fused(t23, t70, -T::fused(-t18, t64, t11 * t57));
+        let t75 = T::fused(
+            coupler_wz,
+            T::fused(t21, t69, T::fused(t3, t53, t14 * t63)),
+            coupler_wx * T::fused(t21, t71, -T::fused(-t3, t61, t14 * t67)),
+        );
+        let t76 = T::fused(
+            coupler_wz,
+            T::fused(t22, t69, -T::fused(t7, t53, t15 * t63)),
+            coupler_wx * T::fused(t22, t71, -T::fused(-t15, t67, t7 * t61)),
+        );
+        let t77 = T::fused(
+            -t54,
+            T::fused(t23, t69, -T::fused(-t11, t53, t18 * t63)),
+            T::fused(coupler_wx, coupler_wx, t50) * t74,
+        );
+        let t78 = T::fused(
+            coupler_wy * coupler_wz,
+            T::fused(t23, t71, T::fused(t18, t67, t11 * t61)),
+            t77,
+        );
+        let t79 = T::fused(k(2.0), T::fused(-crank_wy, t75, crank_wx * t76), t78)
+            + T::fused(t26, t74, t73);
+        let t80 = T::fused(t15, crank_wz, t18 * crank_wy);
+        let t81 = T::fused(-t7, crank_wz, t11 * crank_wy);
+        let t82 = k(1.0) / T::fused(t3, t3, t14 * t14);
+        let t83 = t80 * t81;
+        let t84 = T::fused(
+            t82 * t82 * (k(2.0) * T::fused(-t14, t80, t3 * t81)),
+            T::fused(t3, t80, t14 * t81),
+            t82 * (T::fused(t3, t19, -t83) + T::fused(t14, t12, t83)),
+        );
         *out = [
             t13,
             t20,
             -t24,
-            t11 * t26 - (t7 * t25 - t3 * t8),
-            t18 * t26 + (t15 * t25 - t14 * t8),
+            T::fused(t11, t26, -T::fused(-t3, t8, t7 * t25)),
+            T::fused(t18, t26, T::fused(-t14, t8, t15 * t25)),
             t39,
             t45,
             -t47,
-            t38 * t49 - (t34 * t48 - t30 * t35),
-            t44 * t49 + (t41 * t48 - t40 * t35),
+            T::fused(t38, t49, -T::fused(-t30, t35, t34 * t48)),
+            T::fused(t44, t49, T::fused(-t40, t35, t41 * t48)),
             t13 + t62,
             t20 + t68,
             -(t24 + t72),
@@ -1456,7 +1643,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t62 - t39,
             t68 - t45,
             t47 - t72,
-            t85 - k(1.8) * (k(3.0) * t).sin(),
+            T::fused(-k(1.8), (k(3.0) * t).sin(), t84),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
@@ -1591,9 +1778,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t199,
         ) = {
             let t0 = coupler_wz * coupler_wz;
-            let t1 = t0 + coupler_wy * coupler_wy;
+            let t1 = T::fused(coupler_wy, coupler_wy, t0);
             let t2 = coupler_e0 * coupler_e0;
-            let t3 = k(2.0) * (k(0.5) - (t2 + coupler_e1 * coupler_e1));
+            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
             let t4 = coupler_wx * coupler_wy;
             let t5 = coupler_e0 * coupler_e3;
             let t6 = coupler_e1 * coupler_e2;
@@ -1604,38 +1791,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t11 = coupler_e1 * coupler_e3;
             let t12 = t11 + t10;
             let t13 = k(2.0) * t12;
-            let t14 = k(0.25) * (t13 * t9 + (t8 * t4 + t3 * t1));
+            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
             let t15 = rocker_wy * rocker_wy;
-            let t16 = rocker_wz * rocker_wz + t15;
+            let t16 = T::fused(rocker_wz, rocker_wz, t15);
             let t17 = rocker_e0 * rocker_e0;
             let t18 = rocker_wx * rocker_wy;
             let t19 = rocker_e0 * rocker_e3;
             let t20 = rocker_e1 * rocker_e2;
             let t21 = t20 - t19;
-            let t22 = k(2.0) * t21 * t18
-                + k(2.0) * (k(0.5) - (t17 + rocker_e1 * rocker_e1)) * t16;
+            let t22 = T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17)),
+                t16,
+                k(2.0) * t21 * t18,
+            );
             let t23 = rocker_wx * rocker_wz;
             let t24 = rocker_e0 * rocker_e2;
             let t25 = rocker_e1 * rocker_e3;
             let t26 = t25 + t24;
-            let t27 = k(0.2) * (k(2.0) * t26 * t23 + t22);
+            let t27 = k(0.2) * T::fused(k(2.0) * t26, t23, t22);
             let t28 = crank_e0 * crank_e0;
-            let t29 = k(0.5) - (t28 + crank_e3 * crank_e3);
+            let t29 = k(0.5) - T::fused(crank_e3, crank_e3, t28);
             let t30 = crank_wy * crank_wy;
-            let t31 = t30 + crank_wx * crank_wx;
+            let t31 = T::fused(crank_wx, crank_wx, t30);
             let t32 = t31 * (k(0.5) / t29);
             let t33 = crank_e0 * crank_e2;
             let t34 = crank_e1 * crank_e3;
             let t35 = k(2.0) * (t34 - t33);
             let t36 = crank_wx * crank_wz;
-            let t37 = t36 - t35 * t32;
+            let t37 = T::fused(-t35, t32, t36);
             let t38 = t34 + t33;
             let t39 = k(0.2) * t38;
             let t40 = coupler_e0 * coupler_e1;
             let t41 = coupler_e2 * coupler_e3;
             let t42 = t41 - t40;
-            let t43 = k(0.02095) * t9 + k(4.905) * t42;
-            let t44 = k(0.5) - (t2 + coupler_e2 * coupler_e2);
+            let t43 = T::fused(k(4.905), t42, k(0.02095) * t9);
+            let t44 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
             let t45 = k(2.0) * t44;
             let t46 = crank_e0 * crank_e1;
             let t47 = crank_e2 * crank_e3;
@@ -1645,168 +1835,211 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t51 = t41 + t40;
             let t52 = k(2.0) * t51;
             let t53 = k(2.0) * t29;
-            let t54 = t53 * t52 - (t50 * t8 - t49 * t45);
-            let t55 = k(0.02095) * t4 - k(4.905) * t44;
-            let t56 = k(0.5) - (t2 + coupler_e3 * coupler_e3);
+            let t54 = T::fused(t53, t52, -T::fused(-t49, t45, t50 * t8));
+            let t55 = T::fused(-k(4.905), t44, k(0.02095) * t4);
+            let t56 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
             let t57 = k(2.0) * t56;
             let t58 = k(2.0) * t42;
-            let t59 = t50 * t13 + t49 * t58 + t53 * t57;
-            let t60 = t59 * t55 + t54 * t43;
+            let t59 = T::fused(t53, t57, T::fused(t49, t58, t50 * t13));
+            let t60 = T::fused(t54, t43, t59 * t55);
             let t61 = k(2.0) * (t6 + t5);
             let t62 = k(2.0) * (t11 - t10);
-            let t63 = t53 * t62 - (t49 * t61 - t50 * t3);
+            let t63 = T::fused(t53, t62, -T::fused(-t50, t3, t49 * t61));
             let t64 = k(5e-5) * t63;
             let t65 = k(0.0835) * t54;
             let t66 = k(0.0835) * t59;
-            let t67 = k(1.0) / (t59 * t66 + (t54 * t65 + t63 * t64));
+            let t67 = k(1.0) / T::fused(t59, t66, T::fused(t63, t64, t54 * t65));
             let t68 = t67 * t60;
-            let t69 = t43 - t65 * t68;
+            let t69 = T::fused(-t65, t68, t43);
             let t70 = t65 * t67;
-            let t71 = k(1.0) / (k(0.0835) - t65 * t70);
+            let t71 = k(1.0) / T::fused(-t65, t70, k(0.0835));
             let t72 = t71 * t69;
             let t73 = t64 * t67;
             let t74 = t65 * t73;
-            let t75 = crank_wz * crank_wz + t30;
-            let t76 = k(2.0) * (k(0.5) - (t28 + crank_e1 * crank_e1));
+            let t75 = T::fused(crank_wz, crank_wz, t30);
+            let t76 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t28));
             let t77 = crank_wx * crank_wy;
             let t78 = crank_e0 * crank_e3;
             let t79 = crank_e1 * crank_e2;
             let t80 = t79 - t78;
             let t81 = k(2.0) * t80;
-            let t82 = t50 * t36 + (t81 * t77 + t76 * t75);
+            let t82 = T::fused(t50, t36, T::fused(t76, t75, t81 * t77));
             let t83 = k(0.1) * t82;
             let t84 = t83 + t14;
             let t85 = k(0.5) * t12;
             let t86 = k(0.5) * t7;
-            let t87 = t86 * t59 + t85 * t54;
+            let t87 = T::fused(t85, t54, t86 * t59);
             let t88 = t67 * t87;
-            let t89 = t85 - t65 * t88;
+            let t89 = T::fused(-t65, t88, t85);
             let t90 = t71 * t89;
-            let t91 = t74 * t90 - t64 * t88;
-            let t92 = k(0.25) * (t58 * t9 - (t45 * t4 + t61 * t1));
+            let t91 = T::fused(-t64, t88, t74 * t90);
+            let t92 = k(0.25) * T::fused(t58, t9, -T::fused(t61, t1, t45 * t4));
             let t93 = k(2.0) * (t79 + t78);
-            let t94 = k(0.5) - (t28 + crank_e2 * crank_e2);
+            let t94 = k(0.5) - T::fused(crank_e2, crank_e2, t28);
             let t95 = k(2.0) * t94;
-            let t96 = t49 * t36 - (t95 * t77 + t93 * t75);
+            let t96 = T::fused(t49, t36, -T::fused(t93, t75, t95 * t77));
             let t97 = k(0.1) * t96;
             let t98 = t97 + t92;
             let t99 = k(0.5) * t42;
             let t100 = k(0.5) * t44;
-            let t101 = t100 * t59 - t99 * t54;
+            let t101 = T::fused(-t99, t54, t100 * t59);
             let t102 = t67 * t101;
-            let t103 = t99 + t65 * t102;
+            let t103 = T::fused(t65, t102, t99);
             let t104 = t71 * t103;
-            let t105 = t74 * t104 + t64 * t102;
-            let t106 = k(0.25) * (t57 * t9 - (t52 * t4 - t62 * t1));
+            let t105 = T::fused(t64, t102, t74 * t104);
+            let t106 = k(0.25) * T::fused(t57, t9, -T::fused(-t62, t1, t52 * t4));
             let t107 = t47 + t46;
             let t108 = k(2.0) * t107;
-            let t109 = k(0.1) * (t53 * t36 - (t108 * t77 - t35 * t75));
+            let t109 = k(0.1) * T::fused(t53, t36, -T::fused(-t35, t75, t108 * t77));
             let t110 = t109 + t106;
             let t111 = k(0.5) * t56;
             let t112 = k(0.5) * t51;
-            let t113 = t112 * t59 - t111 * t54;
+            let t113 = T::fused(-t111, t54, t112 * t59);
             let t114 = t67 * t113;
-            let t115 = t111 + t65 * t114;
+            let t115 = T::fused(t65, t114, t111);
             let t116 = t71 * t115;
-            let t117 = t74 * t116 + t64 * t114;
-            let t118 = k(1.0) / (t63 * t63 + t59 * t59);
+            let t117 = T::fused(t64, t114, t74 * t116);
+            let t118 = k(1.0) / T::fused(t59, t59, t63 * t63);
             let t119 = crank_wy * crank_wz;
-            let t120 = t119 * (t108 * t52 + (t81 * t8 + t95 * t45))
-                + t36 * (t35 * t52 - (t93 * t45 + t76 * t8));
-            let t121 = t35 * t62 + (t93 * t61 + t76 * t3);
-            let t122 = t35 * t57 - (t93 * t58 - t76 * t13);
-            let t123 = t108 * t62 - (t95 * t61 + t81 * t3);
-            let t124 = t108 * t57 - (t81 * t13 - t95 * t58);
-            let t125 = crank_wx * (coupler_wx * t124 + coupler_wz * t123)
-                - crank_wy * (coupler_wx * t122 + coupler_wz * t121);
-            let t126 = coupler_wy * coupler_wz * t59
-                + ((t0 + coupler_wx * coupler_wx) * t54 - t4 * t63);
-            let t127 = t126 + k(2.0) * t125 + (t31 * t54 + t120);
+            let t120 = T::fused(
+                t36,
+                T::fused(t35, t52, -T::fused(t76, t8, t93 * t45)),
+                t119 * T::fused(t108, t52, T::fused(t95, t45, t81 * t8)),
+            );
+            let t121 = T::fused(t35, t62, T::fused(t76, t3, t93 * t61));
+            let t122 = T::fused(t35, t57, -T::fused(-t76, t13, t93 * t58));
+            let t123 = T::fused(t108, t62, -T::fused(t81, t3, t95 * t61));
+            let t124 = T::fused(t108, t57, -T::fused(-t95, t58, t81 * t13));
+            let t125 = T::fused(
+                -crank_wy,
+                T::fused(coupler_wz, t121, coupler_wx * t122),
+                crank_wx * T::fused(coupler_wz, t123, coupler_wx * t124),
+            );
+            let t126 = T::fused(
+                coupler_wy * coupler_wz,
+                t59,
+                T::fused(-t4, t63, T::fused(coupler_wx, coupler_wx, t0) * t54),
+            );
+            let t127 = T::fused(k(2.0), t125, t126) + T::fused(t31, t54, t120);
             let t128 = t127 * (t59 * t118);
             let t129 = t71 * t74;
-            let t130 = t74 * t129 - (k(5e-5) - t64 * t73);
+            let t130 = T::fused(t74, t129, -T::fused(-t64, t73, k(5e-5)));
             let t131 = t63 * t118 * t127;
             let t132 = t66 * t70;
-            let t133 = t132 * t129 + t66 * t73;
-            let t134 = t133 * t131 - t130 * t128
-                + (t117 * t110 + (t105 * t98 + t91 * t84));
-            let t135 = t132 * t90 + (t86 - t66 * t88);
-            let t136 = t132 * t104 - (t100 - t66 * t102);
-            let t137 = t132 * t116 - (t112 - t66 * t114);
-            let t138 = t132 * (t71 * t132) - (k(0.0835) - t66 * (t66 * t67));
-            let t139 = t138 * t131 - t133 * t128
-                + (t137 * t110 + (t136 * t98 + t135 * t84));
-            let t140 = t59 * (t139 + (t132 * t72 + (t55 - t66 * t68)))
-                + t63 * (t134 + (t74 * t72 - t64 * t68));
-            let t141 = t103 * t90 - t101 * t88;
-            let t142 = t103 * t104 + t101 * t102;
-            let t143 = t115 * t104 + t113 * t102;
-            let t144 = t136 * t131 - t105 * t128
-                - (t98 - (t143 * t110 + (t142 * t98 + t141 * t84)));
-            let t145 = t144 + (t103 * t72 - (k(9.81) + t101 * t68));
+            let t133 = T::fused(t66, t73, t132 * t129);
+            let t134 = T::fused(-t130, t128, t133 * t131)
+                + T::fused(t117, t110, T::fused(t91, t84, t105 * t98));
+            let t135 = T::fused(t132, t90, T::fused(-t66, t88, t86));
+            let t136 = T::fused(t132, t104, -T::fused(-t66, t102, t100));
+            let t137 = T::fused(t132, t116, -T::fused(-t66, t114, t112));
+            let t138 = T::fused(t132, t71 * t132, -T::fused(-t66, t66 * t67, k(0.0835)));
+            let t139 = T::fused(-t133, t128, t138 * t131)
+                + T::fused(t137, t110, T::fused(t135, t84, t136 * t98));
+            let t140 = T::fused(
+                t63,
+                t134 + T::fused(-t64, t68, t74 * t72),
+                t59 * (t139 + T::fused(t132, t72, T::fused(-t66, t68, t55))),
+            );
+            let t141 = T::fused(-t101, t88, t103 * t90);
+            let t142 = T::fused(t101, t102, t103 * t104);
+            let t143 = T::fused(t113, t102, t115 * t104);
+            let t144 = T::fused(-t105, t128, t136 * t131)
+                - (t98 - T::fused(t143, t110, T::fused(t141, t84, t142 * t98)));
+            let t145 = t144 + T::fused(t103, t72, -T::fused(t101, t68, k(9.81)));
             let t146 = k(0.2) * t94;
-            let t147 = t89 * t90 + t87 * t88;
-            let t148 = t115 * t90 - t113 * t88;
-            let t149 = t135 * t131 - t91 * t128
-                - (t84 - (t148 * t110 + (t141 * t98 + t147 * t84)));
+            let t147 = T::fused(t87, t88, t89 * t90);
+            let t148 = T::fused(-t113, t88, t115 * t90);
+            let t149 = T::fused(-t91, t128, t135 * t131)
+                - (t84 - T::fused(t148, t110, T::fused(t147, t84, t141 * t98)));
             let t150 = k(0.2) * t80;
-            let t151 = t150 * (t149 + (t89 * t72 + t87 * t68));
-            let t152 = t115 * t116 + t113 * t114;
-            let t153 = t137 * t131 - t117 * t128
-                - (t110 - (t152 * t110 + (t143 * t98 + t148 * t84)));
+            let t151 = t150 * (t149 + T::fused(t87, t68, t89 * t72));
+            let t152 = T::fused(t113, t114, t115 * t116);
+            let t153 = T::fused(-t117, t128, t137 * t131)
+                - (t110 - T::fused(t152, t110, T::fused(t148, t84, t143 * t98)));
             let t154 = k(0.2) * t107;
-            let t155 = t154 * (t153 + (t115 * t72 - t113 * t68));
-            let t156 = t146 * (k(3.924) - t145) + t151 - t155
-                - (k(0.00133) * t77 + (t155 - (t151 - t146 * t145) + t140));
-            let t157 = t154 * t148 + (t146 * t141 - t150 * t147);
-            let t158 = t59 * t135 + t63 * t91;
+            let t155 = t154 * (t153 + T::fused(-t113, t68, t115 * t72));
+            let t156 = T::fused(t146, k(3.924) - t145, t151) - t155
+                - T::fused(k(0.00133), t77, t155 - T::fused(-t146, t145, t151) + t140);
+            let t157 = T::fused(t154, t148, T::fused(-t150, t147, t146 * t141));
+            let t158 = T::fused(t63, t91, t59 * t135);
             let t159 = t150 + t157 + t158;
-            let t160 = t154 * t143 + (t146 * t142 - t150 * t141);
-            let t161 = t59 * t136 + t63 * t105;
+            let t160 = T::fused(t154, t143, T::fused(-t150, t141, t146 * t142));
+            let t161 = T::fused(t63, t105, t59 * t136);
             let t162 = t146 - t160 - t161;
-            let t163 = (t162 - (t160 - k(0.28) * t94)) * t97
-                - (t159 + (t157 + k(0.28) * t80)) * t83;
-            let t164 = t154 * t152 + (t146 * t143 - t150 * t148);
-            let t165 = t59 * t137 + t63 * t117;
+            let t163 = T::fused(
+                -(t159 + T::fused(k(0.28), t80, t157)),
+                t83,
+                (t162 - T::fused(-k(0.28), t94, t160)) * t97,
+            );
+            let t164 = T::fused(t154, t152, T::fused(-t150, t148, t146 * t143));
+            let t165 = T::fused(t63, t117, t59 * t137);
             let t166 = t154 - t164 - t165;
-            let t167 = t119 - t108 * t32;
-            let t168 = t59 * (t138 * t122 + t133 * t121)
-                + t63 * (t133 * t122 + t130 * t121);
-            let t169 = t146 * (t136 * t122 + t105 * t121)
-                - t150 * (t135 * t122 + t91 * t121);
-            let t170 = t154 * (t137 * t122 + t117 * t121) + t169;
-            let t171 = t59 * (t138 * t124 + t133 * t123)
-                + t63 * (t133 * t124 + t130 * t123);
+            let t167 = T::fused(-t108, t32, t119);
+            let t168 = T::fused(
+                t63,
+                T::fused(t130, t121, t133 * t122),
+                t59 * T::fused(t133, t121, t138 * t122),
+            );
+            let t169 = T::fused(
+                -t150,
+                T::fused(t91, t121, t135 * t122),
+                t146 * T::fused(t105, t121, t136 * t122),
+            );
+            let t170 = T::fused(t154, T::fused(t117, t121, t137 * t122), t169);
+            let t171 = T::fused(
+                t63,
+                T::fused(t130, t123, t133 * t124),
+                t59 * T::fused(t133, t123, t138 * t124),
+            );
             let t172 = k(0.2) * t48;
             let t173 = k(0.2) * t29;
-            let t174 = t135 * t124 + t91 * t123;
-            let t175 = t136 * t124 + t105 * t123;
-            let t176 = t137 * t124 + t117 * t123;
-            let t177 = t154 * t176 + (t146 * t175 - t150 * t174)
-                - (t173 * t165 + (t172 * t161 + t39 * t158));
-            let t178 = t173 * t164 + (t172 * t160 + t39 * t157);
-            let t179 = t39 - (t173 * t148 + (t172 * t141 + t39 * t147)) + t174;
-            let t180 = t172 - (t173 * t143 + (t172 * t142 + t39 * t141)) + t175;
-            let t181 = t173 - (t173 * t152 + (t172 * t143 + t39 * t148)) + t176;
-            let t182 = t154 * t181 + (t146 * t180 - t150 * t179)
-                + (t173 * t166 + (t172 * t162 - t39 * t159));
-            let t183 = (t182 - t178 - (t178 - t177 - t171)) * t37
-                - (t170 + (t170 + t168)) * t167;
-            let t184 = t183 + ((t166 - (t164 - k(0.28) * t107)) * t109 + t163) + t156;
-            let t185 = t59 * (t59 * t138 + t63 * t133) + t63 * (t59 * t133 + t63 * t130);
-            let t186 = t154 * t164 + (t146 * t160 - t150 * t157);
-            let t187 = t186 + k(2.0) * (t154 * t165 + (t146 * t161 - t150 * t158));
-            let t188 = k(2.0) * (t154 * t166 + (t146 * t162 + t150 * t159)) - t186;
+            let t174 = T::fused(t91, t123, t135 * t124);
+            let t175 = T::fused(t105, t123, t136 * t124);
+            let t176 = T::fused(t117, t123, t137 * t124);
+            let t177 = T::fused(t154, t176, T::fused(-t150, t174, t146 * t175))
+                - T::fused(t173, t165, T::fused(t39, t158, t172 * t161));
+            let t178 = T::fused(t173, t164, T::fused(t39, t157, t172 * t160));
+            let t179 = t39 - T::fused(t173, t148, T::fused(t39, t147, t172 * t141))
+                + t174;
+            let t180 = t172 - T::fused(t173, t143, T::fused(t39, t141, t172 * t142))
+                + t175;
+            let t181 = t173 - T::fused(t173, t152, T::fused(t39, t148, t172 * t143))
+                + t176;
+            let t182 = T::fused(t154, t181, T::fused(-t150, t179, t146 * t180))
+                + T::fused(t173, t166, T::fused(-t39, t159, t172 * t162));
+            let t183 = T::fused(
+                -(t170 + (t170 + t168)),
+                t167,
+                (t182 - t178 - (t178 - t177 - t171)) * t37,
+            );
+            let t184 = t183 + T::fused(t166 - T::fused(-k(0.28), t107, t164), t109, t163)
+                + t156;
+            let t185 = T::fused(
+                t63,
+                T::fused(t63, t130, t59 * t133),
+                t59 * T::fused(t63, t133, t59 * t138),
+            );
+            let t186 = T::fused(t154, t164, T::fused(-t150, t157, t146 * t160));
+            let t187 = T::fused(
+                k(2.0),
+                T::fused(t154, t165, T::fused(-t150, t158, t146 * t161)),
+                t186,
+            );
+            let t188 = T::fused(
+                k(2.0),
+                T::fused(t154, t166, T::fused(t150, t159, t146 * t162)),
+                -t186,
+            );
             let t189 = k(1.0)
                 / (t188 + (k(0.014) + (k(0.00135) - (t187 - (k(0.01) - t185)))));
             let t190 = t189 * t184;
-            let t191 = t150 * t190 + t39 * t37;
+            let t191 = T::fused(t39, t37, t150 * t190);
             let t192 = t83 + t191;
             let t193 = t84 + (t191 + t192);
-            let t194 = t146 * t190 - t172 * t37;
+            let t194 = T::fused(-t172, t37, t146 * t190);
             let t195 = t97 - t194;
             let t196 = t98 - (t194 - t195);
-            let t197 = t154 * t190 - t173 * t37;
+            let t197 = T::fused(-t173, t37, t154 * t190);
             let t198 = t109 - t197;
             let t199 = t110 - (t197 - t198);
             (
@@ -1896,69 +2129,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t307,
             t335,
             t336,
+            t355,
             t356,
             t357,
             t358,
-            t359,
-            t361,
-            t363,
+            t360,
+            t362,
+            t364,
             t365,
-            t366,
-            t369,
+            t368,
+            t376,
             t377,
             t378,
             t379,
             t380,
-            t381,
+            t382,
             t383,
             t384,
             t385,
             t386,
-            t387,
         ) = {
-            let t200 = t128 + (t63 * t190 + (t123 * t37 - t121 * t167));
-            let t201 = t131 - (t59 * t190 + (t124 * t37 - t122 * t167));
-            let t202 = t132 * t201 - t74 * t200
-                + (t115 * t199 + (t103 * t196 + t89 * t193));
+            let t200 = t128 + T::fused(t63, t190, T::fused(-t121, t167, t123 * t37));
+            let t201 = t131 - T::fused(t59, t190, T::fused(-t122, t167, t124 * t37));
+            let t202 = T::fused(-t74, t200, t132 * t201)
+                + T::fused(t115, t199, T::fused(t89, t193, t103 * t196));
             let t203 = t71 * (t69 + t202);
-            let t204 = t66 * t201 + (t65 * t203 - t64 * t200)
-                + (t113 * t199 + (t101 * t196 - t87 * t193));
+            let t204 = T::fused(t66, t201, T::fused(-t64, t200, t65 * t203))
+                + T::fused(t113, t199, T::fused(-t87, t193, t101 * t196));
             let t205 = t67 * (t60 - t204);
-            let t206 = t203 + t54 * t205;
-            let t207 = t201 + t59 * t205;
-            let t208 = t86 * t207 + t85 * t206;
+            let t206 = T::fused(t54, t205, t203);
+            let t207 = T::fused(t59, t205, t201);
+            let t208 = T::fused(t85, t206, t86 * t207);
             let t209 = t193 - t208;
-            let t210 = k(0.5) - (t17 + rocker_e3 * rocker_e3);
-            let t211 = (t15 + rocker_wx * rocker_wx) * (k(0.5) / t210);
+            let t210 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
+            let t211 = T::fused(rocker_wx, rocker_wx, t15) * (k(0.5) / t210);
             let t212 = k(2.0) * (t25 - t24);
-            let t213 = t23 - t212 * t211;
-            let t214 = k(0.5) - (t17 + rocker_e2 * rocker_e2);
+            let t213 = T::fused(-t212, t211, t23);
+            let t214 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
             let t215 = rocker_e0 * rocker_e1;
             let t216 = rocker_e2 * rocker_e3;
             let t217 = t216 - t215;
-            let t218 = k(2.0) * t217 * t23
-                - (k(2.0) * t214 * t18 + k(2.0) * (t20 + t19) * t16);
+            let t218 = T::fused(
+                k(2.0) * t217,
+                t23,
+                -T::fused(k(2.0) * (t20 + t19), t16, k(2.0) * t214 * t18),
+            );
             let t219 = k(0.2) * t218;
             let t220 = t216 + t215;
             let t221 = k(2.0) * t220;
-            let t222 = k(0.2) * (k(2.0) * t210 * t23 - (t221 * t18 - t212 * t16));
-            let t223 = k(0.32) * t220 * t222
-                + (k(0.32) * t214 * t219 - k(0.32) * t21 * t27);
+            let t222 = k(0.2)
+                * T::fused(k(2.0) * t210, t23, -T::fused(-t212, t16, t221 * t18));
+            let t223 = T::fused(
+                k(0.32) * t220,
+                t222,
+                T::fused(-(k(0.32) * t21), t27, k(0.32) * t214 * t219),
+            );
             let t224 = k(23.364485981308412)
-                * (t223 - (k(0.01076) * t18 - k(3.1392) * t214));
+                * (t223 - T::fused(-k(3.1392), t214, k(0.01076) * t18));
             let t225 = k(0.4) * t21;
-            let t226 = t225 * t224 + k(0.4) * t26 * t213;
+            let t226 = T::fused(k(0.4) * t26, t213, t225 * t224);
             let t227 = t27 + t226;
             let t228 = t226 + t227 + (t208 - t209) + (t27 - t14);
-            let t229 = t7 * t59 + t12 * t54;
+            let t229 = T::fused(t12, t54, t7 * t59);
             let t230 = t229 * t67;
-            let t231 = t12 - t65 * t230;
+            let t231 = T::fused(-t65, t230, t12);
             let t232 = t231 * t71;
-            let t233 = t59 * (t232 * t132 + (t7 - t66 * t230))
-                + t63 * (t232 * t74 - t64 * t230);
-            let t234 = t146 * (t232 * t103 - t230 * t101)
-                - t150 * (t232 * t89 - (k(1.0) - t230 * t87));
-            let t235 = t154 * (t232 * t115 - t230 * t113) + t234;
+            let t233 = T::fused(
+                t63,
+                T::fused(-t64, t230, t232 * t74),
+                t59 * T::fused(t232, t132, T::fused(-t66, t230, t7)),
+            );
+            let t234 = T::fused(
+                -t150,
+                T::fused(t232, t89, -T::fused(-t230, t87, k(1.0))),
+                t146 * T::fused(-t230, t101, t232 * t103),
+            );
+            let t235 = T::fused(t154, T::fused(-t230, t113, t232 * t115), t234);
             let t236 = (t235 + (t235 + t233)) * t189;
             let t237 = t150 * t236;
             let t238 = k(2.0) * t237;
@@ -1968,39 +2214,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t242 = k(2.0) * t241;
             let t243 = t63 * t236;
             let t244 = t59 * t236;
-            let t245 = t132 * t244 + t74 * t243
-                + (t115 * t242 + (t103 * t240 - t89 * t238));
+            let t245 = T::fused(t74, t243, t132 * t244)
+                + T::fused(t115, t242, T::fused(-t89, t238, t103 * t240));
             let t246 = t71 * (t231 + t245);
-            let t247 = t66 * t244 + (t65 * t246 + t64 * t243)
-                + (t113 * t242 + (t101 * t240 + t87 * t238));
+            let t247 = T::fused(t66, t244, T::fused(t64, t243, t65 * t246))
+                + T::fused(t113, t242, T::fused(t87, t238, t101 * t240));
             let t248 = t67 * (t229 - t247);
-            let t249 = t246 + t54 * t248;
-            let t250 = t244 + t59 * t248;
-            let t251 = t86 * t250 + t85 * t249;
+            let t249 = T::fused(t54, t248, t246);
+            let t250 = T::fused(t59, t248, t244);
+            let t251 = T::fused(t85, t249, t86 * t250);
             let t252 = t238 + t251;
             let t253 = k(18.69158878504673) * t21;
             let t254 = t225 * t253;
-            let t255 = k(1.0) / (k(2.0) * t254 + (t251 + t252));
-            let t256 = t100 * t207 - t99 * t206;
+            let t255 = k(1.0) / T::fused(k(2.0), t254, t251 + t252);
+            let t256 = T::fused(-t99, t206, t100 * t207);
             let t257 = t196 + t256;
             let t258 = k(0.4) * t214;
-            let t259 = t258 * t224 - k(0.4) * t217 * t213;
+            let t259 = T::fused(-(k(0.4) * t217), t213, t258 * t224);
             let t260 = t219 - t259;
-            let t261 = t100 * t250 - t99 * t249;
+            let t261 = T::fused(-t99, t249, t100 * t250);
             let t262 = t240 + t261;
             let t263 = t258 * t253;
-            let t264 = k(2.0) * t263 + (t261 + t262);
+            let t264 = T::fused(k(2.0), t263, t261 + t262);
             let t265 = t255 * t264;
-            let t266 = t265 * t228 - (t259 - t260 + (t256 + t257) - (t219 - t92));
-            let t267 = t44 * t59 - t42 * t54;
+            let t266 = T::fused(
+                t265,
+                t228,
+                -(t259 - t260 + (t256 + t257) - (t219 - t92)),
+            );
+            let t267 = T::fused(-t42, t54, t44 * t59);
             let t268 = t67 * t267;
-            let t269 = t42 + t65 * t268;
+            let t269 = T::fused(t65, t268, t42);
             let t270 = t71 * t269;
-            let t271 = t59 * (t132 * t270 - (t44 - t66 * t268))
-                + t63 * (t74 * t270 + t64 * t268);
-            let t272 = t146 * (t103 * t270 - (k(1.0) - t101 * t268))
-                - t150 * (t89 * t270 - t87 * t268);
-            let t273 = t154 * (t115 * t270 + t113 * t268) + t272;
+            let t271 = T::fused(
+                t63,
+                T::fused(t64, t268, t74 * t270),
+                t59 * T::fused(t132, t270, -T::fused(-t66, t268, t44)),
+            );
+            let t272 = T::fused(
+                -t150,
+                T::fused(-t87, t268, t89 * t270),
+                t146 * T::fused(t103, t270, -T::fused(-t101, t268, k(1.0))),
+            );
+            let t273 = T::fused(t154, T::fused(t113, t268, t115 * t270), t272);
             let t274 = t189 * (t273 + (t273 + t271));
             let t275 = t150 * t274;
             let t276 = k(2.0) * t275;
@@ -2010,45 +2266,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t280 = k(2.0) * t279;
             let t281 = t63 * t274;
             let t282 = t59 * t274;
-            let t283 = t132 * t282 + t74 * t281
-                + (t115 * t280 + (t103 * t278 - t89 * t276));
+            let t283 = T::fused(t74, t281, t132 * t282)
+                + T::fused(t115, t280, T::fused(-t89, t276, t103 * t278));
             let t284 = t71 * (t269 + t283);
-            let t285 = t66 * t282 + (t65 * t284 + t64 * t281)
-                + (t113 * t280 + (t101 * t278 + t87 * t276));
+            let t285 = T::fused(t66, t282, T::fused(t64, t281, t65 * t284))
+                + T::fused(t113, t280, T::fused(t87, t276, t101 * t278));
             let t286 = t67 * (t267 + t285);
-            let t287 = t284 - t54 * t286;
-            let t288 = t282 - t59 * t286;
-            let t289 = t100 * t288 - t99 * t287;
+            let t287 = T::fused(-t54, t286, t284);
+            let t288 = T::fused(-t59, t286, t282);
+            let t289 = T::fused(-t99, t287, t100 * t288);
             let t290 = t278 + t289;
             let t291 = k(18.69158878504673) * t214;
             let t292 = t258 * t291;
-            let t293 = k(1.0) / (t264 * t265 - (k(2.0) * t292 - (t289 + t290)));
-            let t294 = t112 * t207 - t111 * t206;
+            let t293 = k(1.0)
+                / T::fused(t264, t265, -T::fused(k(2.0), t292, -(t289 + t290)));
+            let t294 = T::fused(-t111, t206, t112 * t207);
             let t295 = t199 + t294;
             let t296 = k(0.4) * t220;
-            let t297 = t296 * t224 - k(0.4) * t210 * t213;
+            let t297 = T::fused(-(k(0.4) * t210), t213, t296 * t224);
             let t298 = t222 - t297;
-            let t299 = t112 * t250 - t111 * t249;
+            let t299 = T::fused(-t111, t249, t112 * t250);
             let t300 = t242 + t299;
             let t301 = t296 * t253;
-            let t302 = k(2.0) * t301 + (t299 + t300);
+            let t302 = T::fused(k(2.0), t301, t299 + t300);
             let t303 = t255 * t302;
-            let t304 = t303 * t228 - (t297 - t298 + (t294 + t295) - (t222 - t106));
-            let t305 = t112 * t288 - t111 * t287;
+            let t304 = T::fused(
+                t303,
+                t228,
+                -(t297 - t298 + (t294 + t295) - (t222 - t106)),
+            );
+            let t305 = T::fused(-t111, t287, t112 * t288);
             let t306 = t280 + t305;
             let t307 = t296 * t291;
-            let t308 = t264 * t303 - (k(2.0) * t307 - (t305 + t306));
+            let t308 = T::fused(t264, t303, -T::fused(k(2.0), t307, -(t305 + t306)));
             let t309 = t293 * t308;
-            let t310 = t309 * t266 - t304;
-            let t311 = t51 * t59 - t56 * t54;
+            let t310 = T::fused(t309, t266, -t304);
+            let t311 = T::fused(-t56, t54, t51 * t59);
             let t312 = t67 * t311;
-            let t313 = t56 + t65 * t312;
+            let t313 = T::fused(t65, t312, t56);
             let t314 = t71 * t313;
-            let t315 = t59 * (t132 * t314 - (t51 - t66 * t312))
-                + t63 * (t74 * t314 + t64 * t312);
-            let t316 = t146 * (t103 * t314 + t101 * t312)
-                - t150 * (t89 * t314 - t87 * t312);
-            let t317 = t154 * (t115 * t314 - (k(1.0) - t113 * t312)) + t316;
+            let t315 = T::fused(
+                t63,
+                T::fused(t64, t312, t74 * t314),
+                t59 * T::fused(t132, t314, -T::fused(-t66, t312, t51)),
+            );
+            let t316 = T::fused(
+                -t150,
+                T::fused(-t87, t312, t89 * t314),
+                t146 * T::fused(t101, t312, t103 * t314),
+            );
+            let t317 = T::fused(
+                t154,
+                T::fused(t115, t314, -T::fused(-t113, t312, k(1.0))),
+                t316,
+            );
             let t318 = t189 * (t317 + (t317 + t315));
             let t319 = t150 * t318;
             let t320 = k(2.0) * t319;
@@ -2058,83 +2329,146 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t324 = k(2.0) * t323;
             let t325 = t63 * t318;
             let t326 = t59 * t318;
-            let t327 = t132 * t326 + t74 * t325
-                + (t115 * t324 + (t103 * t322 - t89 * t320));
+            let t327 = T::fused(t74, t325, t132 * t326)
+                + T::fused(t115, t324, T::fused(-t89, t320, t103 * t322));
             let t328 = t71 * (t313 + t327);
-            let t329 = t66 * t326 + (t65 * t328 + t64 * t325)
-                + (t113 * t324 + (t101 * t322 + t87 * t320));
+            let t329 = T::fused(t66, t326, T::fused(t64, t325, t65 * t328))
+                + T::fused(t113, t324, T::fused(t87, t320, t101 * t322));
             let t330 = t67 * (t311 + t329);
-            let t331 = t328 - t54 * t330;
-            let t332 = t326 - t59 * t330;
-            let t333 = t112 * t332 - t111 * t331;
+            let t331 = T::fused(-t54, t330, t328);
+            let t332 = T::fused(-t59, t330, t326);
+            let t333 = T::fused(-t111, t331, t112 * t332);
             let t334 = t324 + t333;
             let t335 = k(18.69158878504673) * t220;
             let t336 = t296 * t335;
-            let t337 = t308 * t309 - (t302 * t303 - (k(2.0) * t336 - (t333 + t334)));
+            let t337 = T::fused(
+                t308,
+                t309,
+                -T::fused(t302, t303, -T::fused(k(2.0), t336, -(t333 + t334))),
+            );
             let t338 = k(1.0) / t337;
-            let t339 = t49 * crank_wy + t95 * crank_wz;
-            let t340 = t50 * crank_wy - t81 * crank_wz;
-            let t341 = k(1.0) / (t93 * t93 + t76 * t76);
-            let t342 = t341 * t341 * (k(2.0) * (t76 * t340 - t93 * t339))
-                * (t93 * t340 + t76 * t339);
-            let t343 = t339 * t340;
-            let t344 = t341 * (t76 * t96 - t343 + (t343 + t93 * t82)) + t342;
-            let t345 = t341 * (t81 * t93 - t76 * t95);
-            let t346 = t345 * t190 + (t50 * t93 + t76 * t49) * t341 * t37;
-            let t347 = t345 * t236;
-            let t348 = t255 * t347;
-            let t349 = t348 * t228 + (t346 - (k(1.8) * (k(3.0) * t).sin() - t344));
-            let t350 = t264 * t348 + t345 * t274;
-            let t351 = t293 * t350;
-            let t352 = t308 * t351 - (t302 * t348 + t345 * t318);
-            let t353 = t338 * t352;
-            let t354 = t345 * t189;
-            let t355 = t352 * t353 - (t350 * t351 - (t347 * t348 - t345 * t354));
-            let t356 = (t353 * t310 - (t351 * t266 - t349)) / t355;
-            let t357 = t353 * t356 - t338 * t310;
-            let t358 = t351 * t356 - (t309 * t357 + t293 * t266);
-            let t359 = t348 * t356 - (t303 * t357 + (t265 * t358 + t255 * t228));
-            let t360 = t150 * t354;
-            let t361 = t356 * t360
-                + (t319 * t357 + (t275 * t358 + (t192 - t237 * t359)));
-            let t362 = t146 * t354;
-            let t363 = t356 * t362
-                + (t321 * t357 + (t277 * t358 - (t195 + t239 * t359)));
-            let t364 = t154 * t354;
-            let t365 = t356 * t364
-                + (t323 * t357 + (t279 * t358 - (t198 + t241 * t359)));
-            let t366 = t354 * t356
-                + (t318 * t357 + (t274 * t358 + (t190 - t236 * t359)));
-            let t367 = t358 * (t276 + (t86 * t288 + t85 * t287)) + (t209 - t252 * t359);
-            let t368 = k(2.0) * t360;
-            let t369 = k(2.0) * t362;
-            let t370 = k(2.0) * t364;
-            let t371 = t63 * t354;
-            let t372 = t59 * t354;
-            let t373 = t132 * t372 + t74 * t371
-                + (t115 * t370 + (t103 * t369 - t89 * t368));
-            let t374 = t71 * t373;
-            let t375 = t66 * t372 + (t65 * t374 + t64 * t371)
-                + (t113 * t370 + (t101 * t369 + t87 * t368));
-            let t376 = t67 * t375;
-            let t377 = t374 - t54 * t376;
-            let t378 = t372 - t59 * t376;
-            let t379 = t356 * (t368 + (t86 * t378 + t85 * t377))
-                + (t357 * (t320 + (t86 * t332 + t85 * t331)) + t367);
-            let t380 = t357 * (t322 + (t100 * t332 - t99 * t331))
-                + (t290 * t358 - (t257 + t262 * t359));
-            let t381 = t356 * (t370 + (t112 * t378 - t111 * t377))
-                + (t334 * t357 + (t306 * t358 - (t295 + t300 * t359)));
-            let t382 = t358 * (t281 - t63 * t286)
-                - (t359 * (t243 + t63 * t248) - (t200 - t63 * t205));
-            let t383 = t356 * (t371 - t63 * t376) + (t357 * (t325 - t63 * t330) + t382);
-            let t384 = t356 * t377
-                + (t331 * t357 + (t287 * t358 - (t206 + t249 * t359)));
-            let t385 = t356 * t378
-                + (t332 * t357 + (t288 * t358 - (t207 + t250 * t359)));
-            let t386 = t357 * (t225 * t335)
-                + (t358 * (t225 * t291) + (t227 + t254 * t359));
-            let t387 = t357 * (t258 * t335) + (t292 * t358 - (t260 - t263 * t359));
+            let t339 = T::fused(t95, crank_wz, t49 * crank_wy);
+            let t340 = T::fused(-t81, crank_wz, t50 * crank_wy);
+            let t341 = k(1.0) / T::fused(t76, t76, t93 * t93);
+            let t342 = t339 * t340;
+            let t343 = T::fused(
+                t341 * t341 * (k(2.0) * T::fused(-t93, t339, t76 * t340)),
+                T::fused(t76, t339, t93 * t340),
+                t341 * (T::fused(t76, t96, -t342) + T::fused(t93, t82, t342)),
+            );
+            let t344 = t341 * T::fused(-t76, t95, t81 * t93);
+            let t345 = T::fused(T::fused(t76, t49, t50 * t93) * t341, t37, t344 * t190);
+            let t346 = t344 * t236;
+            let t347 = t255 * t346;
+            let t348 = T::fused(
+                t347,
+                t228,
+                t345 - T::fused(k(1.8), (k(3.0) * t).sin(), -t343),
+            );
+            let t349 = T::fused(t344, t274, t264 * t347);
+            let t350 = t293 * t349;
+            let t351 = T::fused(t308, t350, -T::fused(t344, t318, t302 * t347));
+            let t352 = t338 * t351;
+            let t353 = t344 * t189;
+            let t354 = T::fused(
+                t351,
+                t352,
+                -T::fused(t349, t350, -T::fused(-t344, t353, t346 * t347)),
+            );
+            let t355 = T::fused(t352, t310, -T::fused(t350, t266, -t348)) / t354;
+            let t356 = T::fused(-t338, t310, t352 * t355);
+            let t357 = T::fused(t350, t355, -T::fused(t293, t266, t309 * t356));
+            let t358 = T::fused(
+                t347,
+                t355,
+                -T::fused(t303, t356, T::fused(t255, t228, t265 * t357)),
+            );
+            let t359 = t150 * t353;
+            let t360 = T::fused(
+                t355,
+                t359,
+                T::fused(t319, t356, T::fused(t275, t357, T::fused(-t237, t358, t192))),
+            );
+            let t361 = t146 * t353;
+            let t362 = T::fused(
+                t355,
+                t361,
+                T::fused(t321, t356, T::fused(t277, t357, -T::fused(t239, t358, t195))),
+            );
+            let t363 = t154 * t353;
+            let t364 = T::fused(
+                t355,
+                t363,
+                T::fused(t323, t356, T::fused(t279, t357, -T::fused(t241, t358, t198))),
+            );
+            let t365 = T::fused(
+                t353,
+                t355,
+                T::fused(t318, t356, T::fused(t274, t357, T::fused(-t236, t358, t190))),
+            );
+            let t366 = T::fused(
+                t357,
+                t276 + T::fused(t85, t287, t86 * t288),
+                T::fused(-t252, t358, t209),
+            );
+            let t367 = k(2.0) * t359;
+            let t368 = k(2.0) * t361;
+            let t369 = k(2.0) * t363;
+            let t370 = t63 * t353;
+            let t371 = t59 * t353;
+            let t372 = T::fused(t74, t370, t132 * t371)
+                + T::fused(t115, t369, T::fused(-t89, t367, t103 * t368));
+            let t373 = t71 * t372;
+            let t374 = T::fused(t66, t371, T::fused(t64, t370, t65 * t373))
+                + T::fused(t113, t369, T::fused(t87, t367, t101 * t368));
+            let t375 = t67 * t374;
+            let t376 = T::fused(-t54, t375, t373);
+            let t377 = T::fused(-t59, t375, t371);
+            let t378 = T::fused(
+                t355,
+                t367 + T::fused(t85, t376, t86 * t377),
+                T::fused(t356, t320 + T::fused(t85, t331, t86 * t332), t366),
+            );
+            let t379 = T::fused(
+                t356,
+                t322 + T::fused(-t99, t331, t100 * t332),
+                T::fused(t290, t357, -T::fused(t262, t358, t257)),
+            );
+            let t380 = T::fused(
+                t355,
+                t369 + T::fused(-t111, t376, t112 * t377),
+                T::fused(t334, t356, T::fused(t306, t357, -T::fused(t300, t358, t295))),
+            );
+            let t381 = T::fused(
+                t357,
+                T::fused(-t63, t286, t281),
+                -T::fused(t358, T::fused(t63, t248, t243), -T::fused(-t63, t205, t200)),
+            );
+            let t382 = T::fused(
+                t355,
+                T::fused(-t63, t375, t370),
+                T::fused(t356, T::fused(-t63, t330, t325), t381),
+            );
+            let t383 = T::fused(
+                t355,
+                t376,
+                T::fused(t331, t356, T::fused(t287, t357, -T::fused(t249, t358, t206))),
+            );
+            let t384 = T::fused(
+                t355,
+                t377,
+                T::fused(t332, t356, T::fused(t288, t357, -T::fused(t250, t358, t207))),
+            );
+            let t385 = T::fused(
+                t356,
+                t225 * t335,
+                T::fused(t357, t225 * t291, T::fused(t254, t358, t227)),
+            );
+            let t386 = T::fused(
+                t356,
+                t258 * t335,
+                T::fused(t292, t357, -T::fused(-t263, t358, t260)),
+            );
             (
                 t211,
                 t213,
@@ -2147,50 +2481,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
                 t307,
                 t335,
                 t336,
+                t355,
                 t356,
                 t357,
                 t358,
-                t359,
-                t361,
-                t363,
+                t360,
+                t362,
+                t364,
                 t365,
-                t366,
-                t369,
+                t368,
+                t376,
                 t377,
                 t378,
                 t379,
                 t380,
-                t381,
+                t382,
                 t383,
                 t384,
                 t385,
                 t386,
-                t387,
             )
         };
         *out = [
-            t361,
-            -t363,
-            t365,
+            t360,
+            -t362,
+            t364,
             t167,
             -t37,
-            t366,
-            t379,
-            -(t356 * (t369 + (t100 * t378 - t99 * t377)) + t380),
-            t381,
+            t365,
+            t378,
+            -T::fused(t355, t368 + T::fused(-t99, t376, t100 * t377), t379),
+            t380,
+            -t382,
             -t383,
-            -t384,
+            t384,
             t385,
-            t386,
-            -t387,
-            t336 * t357 + (t307 * t358 - (t298 - t301 * t359)),
-            rocker_wy * rocker_wz - t221 * t211,
+            -t386,
+            T::fused(t336, t356, T::fused(t307, t357, -T::fused(-t301, t358, t298))),
+            T::fused(-t221, t211, rocker_wy * rocker_wz),
             -t213,
-            t335 * t357 + (t291 * t358 + (t224 + t253 * t359)),
-            -t359,
-            t358,
-            -t357,
-            t356,
+            T::fused(t335, t356, T::fused(t291, t357, T::fused(t253, t358, t224))),
+            -t358,
+            t357,
+            -t356,
+            t355,
         ];
     }
     /// Writes λ: 281 operations (107 ±, 170 ×, 4 ÷).
@@ -2242,21 +2576,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let closing2 = accelerations[20];
         let closing3 = accelerations[21];
         let t0 = coupler_dsx - closing0;
-        let t1 = k(0.4) * crank_dsx + t0;
+        let t1 = T::fused(k(0.4), crank_dsx, t0);
         let t2 = k(9.81) + coupler_dsy - closing1;
-        let t3 = k(3.924) + k(0.4) * crank_dsy + t2;
+        let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = coupler_dsz - closing2;
-        let t5 = k(0.4) * crank_dsz + t4;
+        let t5 = T::fused(k(0.4), crank_dsz, t4);
         let t6 = crank_e0 * crank_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + crank_e2 * crank_e2));
-        let t8 = k(2.0) * (k(0.5) - (t6 + crank_e1 * crank_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t6));
+        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t6));
         let t9 = crank_e0 * crank_e3;
         let t10 = crank_e1 * crank_e2;
         let t11 = k(2.0) * (t10 + t9);
         let t12 = k(2.0) * (t10 - t9);
-        let t13 = k(1.0) / (t12 * t11 - t8 * t7);
+        let t13 = k(1.0) / T::fused(-t8, t7, t12 * t11);
         let t14 = coupler_e0 * coupler_e0;
-        let t15 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+        let t15 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t14));
         let t16 = coupler_e0 * coupler_e3;
         let t17 = coupler_e1 * coupler_e2;
         let t18 = k(2.0) * (t17 + t16);
@@ -2273,89 +2607,127 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t29 = coupler_e2 * coupler_e3;
         let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = closing1 * t31
-            - (k(0.02095) * (coupler_wx * coupler_wz) - k(0.021) * coupler_dwy
-                - closing0 * t27);
-        let t33 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+        let t32 = T::fused(
+            closing1,
+            t31,
+            -T::fused(
+                -closing0,
+                t27,
+                T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
+            ),
+        );
+        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t14);
         let t34 = k(0.5) * t33;
-        let t35 = t4 * t34 - (t2 * t31 + t0 * t27) - (closing2 * t34 - t32);
+        let t35 = T::fused(t4, t34, -T::fused(t0, t27, t2 * t31))
+            - T::fused(closing2, t34, -t32);
         let t36 = t17 - t16;
         let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+        let t38 = k(0.5) - T::fused(coupler_e2, coupler_e2, t14);
         let t39 = k(2.0) * t38;
         let t40 = t29 + t28;
         let t41 = k(2.0) * t40;
-        let t42 = (t24 * t41 - (t11 * t39 + t8 * t37)) * t35
-            + t25 * (t24 * t21 + (t11 * t18 + t8 * t15));
+        let t42 = T::fused(
+            t25,
+            T::fused(t24, t21, T::fused(t8, t15, t11 * t18)),
+            T::fused(t24, t41, -T::fused(t8, t37, t11 * t39)) * t35,
+        );
         let t43 = k(0.5) * t36;
         let t44 = k(0.5) * t38;
-        let t45 = closing1 * t44
-            + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t43);
+        let t45 = T::fused(
+            closing1,
+            t44,
+            T::fused(
+                -closing0,
+                t43,
+                T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
+            ),
+        );
         let t46 = k(0.5) * t40;
-        let t47 = t4 * t46 - (t2 * t44 - t0 * t43) - (closing2 * t46 - t45);
+        let t47 = T::fused(t4, t46, -T::fused(-t0, t43, t2 * t44))
+            - T::fused(closing2, t46, -t45);
         let t48 = k(2.0) * t26;
         let t49 = k(2.0) * t30;
         let t50 = k(2.0) * t33;
-        let t51 = (t24 * t50 - (t11 * t49 - t8 * t48)) * t47 - t42;
-        let t52 = k(2e-5) * crank_dwx - t51;
+        let t51 = T::fused(
+            T::fused(t24, t50, -T::fused(-t8, t48, t11 * t49)),
+            t47,
+            -t42,
+        );
+        let t52 = T::fused(k(2e-5), crank_dwx, -t51);
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = t54 - t53;
         let t56 = k(2.0) * t55;
         let t57 = t23 + t22;
         let t58 = k(2.0) * t57;
-        let t59 = (t58 * t11 + t8 * t56) / (t11 * t11 + t8 * t8);
+        let t59 = T::fused(t8, t56, t58 * t11) / T::fused(t8, t8, t11 * t11);
         let t60 = k(2.0) * (t54 + t53);
-        let t61 = (t60 * t41 + (t12 * t37 + t7 * t39)) * t35
-            + t25 * (t60 * t21 - (t7 * t18 + t12 * t15));
-        let t62 = (t60 * t50 - (t12 * t48 - t7 * t49)) * t47 - t61;
+        let t61 = T::fused(
+            t25,
+            T::fused(t60, t21, -T::fused(t12, t15, t7 * t18)),
+            T::fused(t60, t41, T::fused(t7, t39, t12 * t37)) * t35,
+        );
+        let t62 = T::fused(
+            T::fused(t60, t50, -T::fused(-t7, t49, t12 * t48)),
+            t47,
+            -t61,
+        );
         let t63 = k(0.2) * t57;
         let t64 = k(0.2) * t55;
-        let t65 = k(0.5) - (t6 + crank_e3 * crank_e3);
+        let t65 = k(0.5) - T::fused(crank_e3, crank_e3, t6);
         let t66 = k(0.2) * t65;
-        let t67 = t4 * t66 - (t2 * t64 + t0 * t63) - t62
-            - (k(0.00133) * (crank_wx * crank_wz) - k(0.00135) * crank_dwy
-                - closing3 * t59);
-        let t68 = t5 * t66 - (t3 * t64 + t1 * t63) + t67;
-        let t69 = k(0.8) * rocker_dsx + closing0;
-        let t70 = k(7.848) + k(0.8) * rocker_dsy + closing1;
-        let t71 = k(0.8) * rocker_dsz + closing2;
+        let t67 = T::fused(t4, t66, -T::fused(t0, t63, t2 * t64)) - t62
+            - T::fused(
+                -closing3,
+                t59,
+                T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz)),
+            );
+        let t68 = T::fused(t5, t66, -T::fused(t1, t63, t3 * t64)) + t67;
+        let t69 = T::fused(k(0.8), rocker_dsx, closing0);
+        let t70 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
+        let t71 = T::fused(k(0.8), rocker_dsz, closing2);
         let t72 = rocker_e0 * rocker_e3;
         let t73 = rocker_e1 * rocker_e2;
         let t74 = k(2.0) * (t73 + t72);
         let t75 = k(2.0) * (t73 - t72);
         let t76 = rocker_e0 * rocker_e0;
-        let t77 = k(2.0) * (k(0.5) - (t76 + rocker_e2 * rocker_e2));
-        let t78 = k(2.0) * (k(0.5) - (t76 + rocker_e1 * rocker_e1));
-        let t79 = k(1.0) / (t78 * t77 - t75 * t74);
+        let t77 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t76));
+        let t78 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t76));
+        let t79 = k(1.0) / T::fused(-t75, t74, t78 * t77);
         let t80 = k(4e-5) * rocker_dwx;
-        let t81 = k(0.4) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
-        let t82 = k(0.4) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1);
-        let t83 = closing1 * t82
-            + (k(0.01076) * (rocker_wx * rocker_wz) - k(0.0108) * rocker_dwy
-                + closing0 * t81);
-        let t84 = k(0.4) * (k(0.5) - (t76 + rocker_e3 * rocker_e3));
-        let t85 = t71 * t84 - (t70 * t82 + t69 * t81) + (closing2 * t84 - t83);
+        let t81 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
+        let t82 = k(0.4) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
+        let t83 = T::fused(
+            closing1,
+            t82,
+            T::fused(
+                closing0,
+                t81,
+                T::fused(-k(0.0108), rocker_dwy, k(0.01076) * (rocker_wx * rocker_wz)),
+            ),
+        );
+        let t84 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t76));
+        let t85 = T::fused(t71, t84, -T::fused(t69, t81, t70 * t82))
+            + T::fused(closing2, t84, -t83);
         let t86 = k(2.0) * t65;
-        let t87 = t58 * t48 + t56 * t49 + t86 * t50;
-        let t88 = t86 * t21 - (t56 * t18 - t58 * t15);
-        let t89 = k(1.0) / (t88 * t88 + t87 * t87);
+        let t87 = T::fused(t86, t50, T::fused(t56, t49, t58 * t48));
+        let t88 = T::fused(t86, t21, -T::fused(-t58, t15, t56 * t18));
+        let t89 = k(1.0) / T::fused(t87, t87, t88 * t88);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            t52 * (t11 * t13) - t68 * (t7 * t13),
-            t52 * (t8 * t13) - t68 * (t12 * t13),
+            T::fused(-t68, t7 * t13, t52 * (t11 * t13)),
+            T::fused(-t68, t12 * t13, t52 * (t8 * t13)),
             -t69,
             -t70,
             -t71,
-            t85 * (t77 * t79) - t80 * (t74 * t79),
-            t85 * (t75 * t79) - t80 * (t78 * t79),
+            T::fused(-t80, t74 * t79, t85 * (t77 * t79)),
+            T::fused(-t80, t78 * t79, t85 * (t75 * t79)),
             -t0,
             -t2,
             -t4,
-            -(t88 * t89 * t47 + t25 * (t87 * t89)),
+            -T::fused(t25, t87 * t89, t88 * t89 * t47),
             closing0,
             closing1,
             closing2,
@@ -2408,21 +2780,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenFourBar<T> {
         let t3 = k(2.0) * (t2 - t1);
         let t4 = k(9.81) + coupler_dsy - closing1;
         let t5 = crank_e0 * crank_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + crank_e2 * crank_e2));
+        let t6 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t5));
         let t7 = coupler_dsz - closing2;
         let t8 = crank_e0 * crank_e1;
         let t9 = crank_e2 * crank_e3;
         let t10 = k(2.0) * (t9 + t8);
-        let t11 = k(2.0) * (k(0.5) - (t5 + crank_e1 * crank_e1));
+        let t11 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t5));
         let t12 = k(2.0) * (t2 + t1);
         let t13 = crank_e0 * crank_e2;
         let t14 = crank_e1 * crank_e3;
         let t15 = k(2.0) * (t14 - t13);
         let t16 = k(2.0) * (t14 + t13);
         let t17 = k(2.0) * (t9 - t8);
-        let t18 = k(2.0) * (k(0.5) - (t5 + crank_e3 * crank_e3));
+        let t18 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t5));
         let t19 = coupler_e0 * coupler_e0;
-        let t20 = k(0.5) - (t19 + coupler_e3 * coupler_e3);
+        let t20 = k(0.5) - T::fused(coupler_e3, coupler_e3, t19);
         let t21 = k(2.0) * t20;
         let t22 = coupler_e0 * coupler_e1;
         let t23 = coupler_e2 * coupler_e3;
@@ -2432,8 +2804,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenFourBar<T> {
         let t27 = coupler_e1 * coupler_e3;
         let t28 = t27 + t26;
         let t29 = k(2.0) * t28;
-        let t30 = t16 * t29 + t17 * t25 + t18 * t21;
-        let t31 = k(0.5) - (t19 + coupler_e1 * coupler_e1);
+        let t30 = T::fused(t18, t21, T::fused(t17, t25, t16 * t29));
+        let t31 = k(0.5) - T::fused(coupler_e1, coupler_e1, t19);
         let t32 = k(2.0) * t31;
         let t33 = coupler_e0 * coupler_e3;
         let t34 = coupler_e1 * coupler_e2;
@@ -2441,32 +2813,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenFourBar<T> {
         let t36 = k(2.0) * t35;
         let t37 = t27 - t26;
         let t38 = k(2.0) * t37;
-        let t39 = t18 * t38 - (t17 * t36 - t16 * t32);
-        let t40 = k(1.0) / (t39 * t39 + t30 * t30);
+        let t39 = T::fused(t18, t38, -T::fused(-t16, t32, t17 * t36));
+        let t40 = k(1.0) / T::fused(t30, t30, t39 * t39);
         let t41 = t34 - t33;
         let t42 = k(0.5) * t41;
-        let t43 = k(0.5) - (t19 + coupler_e2 * coupler_e2);
+        let t43 = k(0.5) - T::fused(coupler_e2, coupler_e2, t19);
         let t44 = k(0.5) * t43;
-        let t45 = closing1 * t44
-            + (k(0.02095) * (coupler_wx * coupler_wy) + k(0.021) * coupler_dwz
-                - closing0 * t42);
+        let t45 = T::fused(
+            closing1,
+            t44,
+            T::fused(
+                -closing0,
+                t42,
+                T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
+            ),
+        );
         let t46 = t23 + t22;
         let t47 = k(0.5) * t46;
-        let t48 = t7 * t47 - (t4 * t44 - t0 * t42);
-        let t49 = t39 * t40 * (t48 - (closing2 * t47 - t45))
-            + k(5e-5) * coupler_dwx * (t30 * t40);
+        let t48 = T::fused(t7, t47, -T::fused(-t0, t42, t4 * t44));
+        let t49 = T::fused(
+            k(5e-5) * coupler_dwx,
+            t30 * t40,
+            t39 * t40 * (t48 - T::fused(closing2, t47, -t45)),
+        );
         let t50 = t30 * t49;
-        let t51 = t7 * (k(0.5) * t20) - (t4 * (k(0.5) * t24) + t0 * (k(0.5) * t28));
+        let t51 = T::fused(
+            t7,
+            k(0.5) * t20,
+            -T::fused(t0, k(0.5) * t28, t4 * (k(0.5) * t24)),
+        );
         let t52 = k(2.0) * t41;
-        let t53 = t48 - t39 * t49;
-        let t54 = coupler_ry - (coupler_ry - k(0.5) * t35);
-        let t55 = coupler_rz - (coupler_rz - k(0.5) * t37);
-        let t56 = t4 * t55 - t7 * t54 + (t29 * t53 + (t52 * t51 + t32 * t50));
+        let t53 = T::fused(-t39, t49, t48);
+        let t54 = coupler_ry - T::fused(-k(0.5), t35, coupler_ry);
+        let t55 = coupler_rz - T::fused(-k(0.5), t37, coupler_rz);
+        let t56 = T::fused(-t7, t54, t4 * t55)
+            + T::fused(t29, t53, T::fused(t32, t50, t52 * t51));
         let t57 = k(2.0) * t43;
-        let t58 = coupler_rx - (coupler_rx + k(0.5) * t31);
-        let t59 = t7 * t58 - t0 * t55 + (t25 * t53 - (t57 * t51 + t36 * t50));
+        let t58 = coupler_rx - T::fused(k(0.5), t31, coupler_rx);
+        let t59 = T::fused(-t0, t55, t7 * t58)
+            + T::fused(t25, t53, -T::fused(t36, t50, t57 * t51));
         let t60 = k(2.0) * t46;
-        let t61 = t0 * t54 - t4 * t58 - (t21 * t53 - (t60 * t51 - t38 * t50));
+        let t61 = T::fused(-t4, t58, t0 * t54)
+            - T::fused(t21, t53, -T::fused(-t38, t50, t60 * t51));
         let t62 = rocker_e0 * rocker_e2;
         let t63 = rocker_e1 * rocker_e3;
         let t64 = t63 + t62;
@@ -2474,42 +2862,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenFourBar<T> {
         let t66 = rocker_e2 * rocker_e3;
         let t67 = t66 - t65;
         let t68 = rocker_e0 * rocker_e0;
-        let t69 = k(0.5) - (t68 + rocker_e3 * rocker_e3);
-        let t70 = closing2 * (k(0.4) * t69)
-            - (closing1 * (k(0.4) * t67) + closing0 * (k(0.4) * t64));
+        let t69 = k(0.5) - T::fused(rocker_e3, rocker_e3, t68);
+        let t70 = T::fused(
+            closing2,
+            k(0.4) * t69,
+            -T::fused(closing0, k(0.4) * t64, closing1 * (k(0.4) * t67)),
+        );
         let t71 = rocker_e0 * rocker_e3;
         let t72 = rocker_e1 * rocker_e2;
         let t73 = t72 - t71;
         let t74 = t66 + t65;
-        let t75 = k(0.5) - (t68 + rocker_e2 * rocker_e2);
-        let t76 = closing1 * (k(0.4) * t75) - closing0 * (k(0.4) * t73)
-            - closing2 * (k(0.4) * t74);
-        let t77 = rocker_ry - (rocker_ry + k(0.4) * (t72 + t71));
-        let t78 = rocker_rz - (rocker_rz + k(0.4) * (t63 - t62));
-        let t79 = closing1 * t78 - closing2 * t77
-            + (k(2.0) * t64 * t76 - k(2.0) * t73 * t70);
+        let t75 = k(0.5) - T::fused(rocker_e2, rocker_e2, t68);
+        let t76 = T::fused(
+            -closing2,
+            k(0.4) * t74,
+            T::fused(-closing0, k(0.4) * t73, closing1 * (k(0.4) * t75)),
+        );
+        let t77 = rocker_ry - T::fused(k(0.4), t72 + t71, rocker_ry);
+        let t78 = rocker_rz - T::fused(k(0.4), t63 - t62, rocker_rz);
+        let t79 = T::fused(-closing2, t77, closing1 * t78)
+            + T::fused(-(k(2.0) * t73), t70, k(2.0) * t64 * t76);
         let t80 = rocker_rx
-            - (rocker_rx - k(0.4) * (k(0.5) - (t68 + rocker_e1 * rocker_e1)));
-        let t81 = closing2 * t80 - closing0 * t78
-            + (k(2.0) * t67 * t76 + k(2.0) * t75 * t70);
-        let t82 = closing0 * t77 - closing1 * t80
-            - (k(2.0) * t69 * t76 + k(2.0) * t74 * t70);
+            - T::fused(-k(0.4), k(0.5) - T::fused(rocker_e1, rocker_e1, t68), rocker_rx);
+        let t81 = T::fused(-closing0, t78, closing2 * t80)
+            + T::fused(k(2.0) * t75, t70, k(2.0) * t67 * t76);
+        let t82 = T::fused(-closing1, t80, closing0 * t77)
+            - T::fused(k(2.0) * t74, t70, k(2.0) * t69 * t76);
         *out = [
             -closing3,
             k(0.0),
-            -((k(6.0) + k(0.6) * (k(3.0) * t).cos()) * closing3),
-            t10 * t7 - (t6 * t4 - t3 * t0),
-            -(t15 * t7 + (t12 * t4 - t11 * t0)),
-            t17 * t4 + t16 * t0 - t18 * t7,
-            t6 * t59 - t3 * t56 - t10 * t61,
-            t15 * t61 + (t12 * t59 - t11 * t56),
-            t18 * t61 - (t17 * t59 + t16 * t56),
-            -(t38 * closing2 + (t36 * closing1 - t32 * closing0)),
-            t57 * closing1 - t52 * closing0 - t60 * closing2,
-            t21 * closing2 - (t25 * closing1 + t29 * closing0),
-            t38 * t82 + (t36 * t81 - t32 * t79),
-            t60 * t82 - (t57 * t81 - t52 * t79),
-            t25 * t81 + t29 * t79 - t21 * t82,
+            -(T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0)) * closing3),
+            T::fused(t10, t7, -T::fused(-t3, t0, t6 * t4)),
+            -T::fused(t15, t7, T::fused(-t11, t0, t12 * t4)),
+            T::fused(-t18, t7, T::fused(t16, t0, t17 * t4)),
+            T::fused(-t10, t61, T::fused(-t3, t56, t6 * t59)),
+            T::fused(t15, t61, T::fused(-t11, t56, t12 * t59)),
+            T::fused(t18, t61, -T::fused(t16, t56, t17 * t59)),
+            -T::fused(t38, closing2, T::fused(-t32, closing0, t36 * closing1)),
+            T::fused(-t60, closing2, T::fused(-t52, closing0, t57 * closing1)),
+            T::fused(t21, closing2, -T::fused(t29, closing0, t25 * closing1)),
+            T::fused(t38, t82, T::fused(-t32, t79, t36 * t81)),
+            T::fused(t60, t82, -T::fused(-t52, t79, t57 * t81)),
+            T::fused(-t21, t82, T::fused(t29, t79, t25 * t81)),
         ];
     }
     fn n_outputs(&self) -> usize {

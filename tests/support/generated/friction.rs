@@ -167,40 +167,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Friction<T> {
         let carriage_wx = y[36];
         let carriage_wy = y[37];
         let carriage_wz = y[38];
-        let t0 = ball_wx * (k(0.04) * ball_wx) + ball_wy * (k(0.04) * ball_wy)
-            + ball_wz * (k(0.04) * ball_wz);
-        let t1 = t0 + carriage_sy * (k(0.5) * carriage_sy)
-            + disc_wz * (k(0.05) * (k(10.0) * disc_wz).tanh());
+        let t0 = T::fused(
+            ball_wz,
+            k(0.04) * ball_wz,
+            T::fused(ball_wy, k(0.04) * ball_wy, ball_wx * (k(0.04) * ball_wx)),
+        );
+        let t1 = T::fused(
+            disc_wz,
+            k(0.05) * (k(10.0) * disc_wz).tanh(),
+            T::fused(carriage_sy, k(0.5) * carriage_sy, t0),
+        );
         *dy = [
             disc_sx,
             disc_sy,
             disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            -(k(0.5)
+                * T::fused(
+                    disc_e3,
+                    disc_wz,
+                    T::fused(disc_e2, disc_wy, disc_e1 * disc_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    disc_e2,
+                    disc_wz,
+                    T::fused(-disc_e3, disc_wy, disc_e0 * disc_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -disc_e1,
+                    disc_wz,
+                    T::fused(disc_e0, disc_wy, disc_e3 * disc_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -disc_e0,
+                    disc_wz,
+                    T::fused(-disc_e1, disc_wy, disc_e2 * disc_wx),
+                )),
             ball_sx,
             ball_sy,
             ball_sz,
-            -(k(0.5) * (ball_e1 * ball_wx + ball_e2 * ball_wy + ball_e3 * ball_wz)),
-            k(0.5) * (ball_e0 * ball_wx - ball_e3 * ball_wy + ball_e2 * ball_wz),
-            k(0.5) * (ball_e3 * ball_wx + ball_e0 * ball_wy - ball_e1 * ball_wz),
-            -(k(0.5) * (ball_e2 * ball_wx - ball_e1 * ball_wy - ball_e0 * ball_wz)),
+            -(k(0.5)
+                * T::fused(
+                    ball_e3,
+                    ball_wz,
+                    T::fused(ball_e2, ball_wy, ball_e1 * ball_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    ball_e2,
+                    ball_wz,
+                    T::fused(-ball_e3, ball_wy, ball_e0 * ball_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -ball_e1,
+                    ball_wz,
+                    T::fused(ball_e0, ball_wy, ball_e3 * ball_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -ball_e0,
+                    ball_wz,
+                    T::fused(-ball_e1, ball_wy, ball_e2 * ball_wx),
+                )),
             carriage_sx,
             carriage_sy,
             carriage_sz,
             -(k(0.5)
-                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
-                    + carriage_e3 * carriage_wz)),
+                * T::fused(
+                    carriage_e3,
+                    carriage_wz,
+                    T::fused(carriage_e2, carriage_wy, carriage_e1 * carriage_wx),
+                )),
             k(0.5)
-                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
-                    + carriage_e2 * carriage_wz),
+                * T::fused(
+                    carriage_e2,
+                    carriage_wz,
+                    T::fused(-carriage_e3, carriage_wy, carriage_e0 * carriage_wx),
+                ),
             k(0.5)
-                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
-                    - carriage_e1 * carriage_wz),
+                * T::fused(
+                    -carriage_e1,
+                    carriage_wz,
+                    T::fused(carriage_e0, carriage_wy, carriage_e3 * carriage_wx),
+                ),
             -(k(0.5)
-                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
-                    - carriage_e0 * carriage_wz)),
+                * T::fused(
+                    -carriage_e0,
+                    carriage_wz,
+                    T::fused(-carriage_e1, carriage_wy, carriage_e2 * carriage_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -237,6 +295,155 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 12]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 87 operations (28 ±, 59 ×, 0 ÷) and 1 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let ball_e0 = y[10];
+        let ball_e1 = y[11];
+        let ball_e2 = y[12];
+        let ball_e3 = y[13];
+        let carriage_e0 = y[17];
+        let carriage_e1 = y[18];
+        let carriage_e2 = y[19];
+        let carriage_e3 = y[20];
+        let disc_sx = y[21];
+        let disc_sy = y[22];
+        let disc_sz = y[23];
+        let ball_sx = y[27];
+        let ball_sy = y[28];
+        let ball_sz = y[29];
+        let carriage_sx = y[33];
+        let carriage_sy = y[34];
+        let carriage_sz = y[35];
+        let disc_wx = y[24];
+        let disc_wy = y[25];
+        let disc_wz = y[26];
+        let ball_wx = y[30];
+        let ball_wy = y[31];
+        let ball_wz = y[32];
+        let carriage_wx = y[36];
+        let carriage_wy = y[37];
+        let carriage_wz = y[38];
+        let t0 = T::fused(
+            ball_wz,
+            k(0.04) * ball_wz,
+            T::fused(ball_wy, k(0.04) * ball_wy, ball_wx * (k(0.04) * ball_wx)),
+        );
+        let t1 = T::fused(
+            disc_wz,
+            k(0.05) * (k(10.0) * disc_wz).tanh(),
+            T::fused(carriage_sy, k(0.5) * carriage_sy, t0),
+        );
+        *dy = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5)
+                * T::fused(
+                    disc_e3,
+                    disc_wz,
+                    T::fused(disc_e2, disc_wy, disc_e1 * disc_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    disc_e2,
+                    disc_wz,
+                    T::fused(-disc_e3, disc_wy, disc_e0 * disc_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -disc_e1,
+                    disc_wz,
+                    T::fused(disc_e0, disc_wy, disc_e3 * disc_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -disc_e0,
+                    disc_wz,
+                    T::fused(-disc_e1, disc_wy, disc_e2 * disc_wx),
+                )),
+            ball_sx,
+            ball_sy,
+            ball_sz,
+            -(k(0.5)
+                * T::fused(
+                    ball_e3,
+                    ball_wz,
+                    T::fused(ball_e2, ball_wy, ball_e1 * ball_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    ball_e2,
+                    ball_wz,
+                    T::fused(-ball_e3, ball_wy, ball_e0 * ball_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -ball_e1,
+                    ball_wz,
+                    T::fused(ball_e0, ball_wy, ball_e3 * ball_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -ball_e0,
+                    ball_wz,
+                    T::fused(-ball_e1, ball_wy, ball_e2 * ball_wx),
+                )),
+            carriage_sx,
+            carriage_sy,
+            carriage_sz,
+            -(k(0.5)
+                * T::fused(
+                    carriage_e3,
+                    carriage_wz,
+                    T::fused(carriage_e2, carriage_wy, carriage_e1 * carriage_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    carriage_e2,
+                    carriage_wz,
+                    T::fused(-carriage_e3, carriage_wy, carriage_e0 * carriage_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -carriage_e1,
+                    carriage_wz,
+                    T::fused(carriage_e0, carriage_wy, carriage_e3 * carriage_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -carriage_e0,
+                    carriage_wz,
+                    T::fused(-carriage_e1, carriage_wy, carriage_e2 * carriage_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            accelerations[12],
+            accelerations[13],
+            accelerations[14],
+            accelerations[15],
+            accelerations[16],
+            accelerations[17],
+            -t1,
+            disc_wz,
+        ];
+    }
     /// Writes Φ: 46 operations (19 ±, 27 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -260,27 +467,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
         let carriage_e1 = y[18];
         let carriage_e2 = y[19];
         let carriage_e3 = y[20];
-        let t0 = disc_e3 * disc_e3
-            + (disc_e0 * disc_e0 + disc_e1 * disc_e1 + disc_e2 * disc_e2);
-        let t1 = ball_e3 * ball_e3
-            + (ball_e0 * ball_e0 + ball_e1 * ball_e1 + ball_e2 * ball_e2);
-        let t2 = carriage_e3 * carriage_e3
-            + (carriage_e0 * carriage_e0 + carriage_e1 * carriage_e1
-                + carriage_e2 * carriage_e2);
+        let t0 = T::fused(
+            disc_e3,
+            disc_e3,
+            T::fused(disc_e2, disc_e2, T::fused(disc_e1, disc_e1, disc_e0 * disc_e0)),
+        );
+        let t1 = T::fused(
+            ball_e3,
+            ball_e3,
+            T::fused(ball_e2, ball_e2, T::fused(ball_e1, ball_e1, ball_e0 * ball_e0)),
+        );
+        let t2 = T::fused(
+            carriage_e3,
+            carriage_e3,
+            T::fused(
+                carriage_e2,
+                carriage_e2,
+                T::fused(carriage_e1, carriage_e1, carriage_e0 * carriage_e0),
+            ),
+        );
         *out = [
             disc_rx,
             disc_ry,
             disc_rz,
-            k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2),
-            k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1),
+            k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
+            k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3),
             ball_rx - k(1.0),
             ball_ry,
             ball_rz,
             carriage_rx - k(2.0),
             -carriage_rz,
-            k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3),
-            -(k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1)),
-            -(k(2.0) * (carriage_e1 * carriage_e3 + carriage_e0 * carriage_e2)),
+            k(2.0) * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2),
+            -(k(2.0) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3)),
+            -(k(2.0) * T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3)),
             t0 - k(1.0),
             t1 - k(1.0),
             t2 - k(1.0),
@@ -313,18 +532,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
         let t0 = disc_e0 * disc_e0;
         let t1 = disc_e0 * disc_e3;
         let t2 = disc_e1 * disc_e2;
-        let t3 = k(2.0) * (t2 - t1) * disc_wx
-            + k(2.0) * (k(0.5) - (t0 + disc_e1 * disc_e1)) * disc_wy;
-        let t4 = k(2.0) * (k(0.5) - (t0 + disc_e2 * disc_e2)) * disc_wx
-            + k(2.0) * (t2 + t1) * disc_wy;
+        let t3 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t0)),
+            disc_wy,
+            k(2.0) * (t2 - t1) * disc_wx,
+        );
+        let t4 = T::fused(
+            k(2.0) * (t2 + t1),
+            disc_wy,
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t0)) * disc_wx,
+        );
         let t5 = carriage_e0 * carriage_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + carriage_e1 * carriage_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t5));
         let t7 = carriage_e0 * carriage_e2;
         let t8 = carriage_e1 * carriage_e3;
-        let t9 = k(2.0) * (k(0.5) - (t5 + carriage_e3 * carriage_e3)) * carriage_wx
-            + k(2.0) * (t8 - t7) * carriage_wz;
-        let t10 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3)
-            * carriage_wx + t6 * carriage_wy;
+        let t9 = T::fused(
+            k(2.0) * (t8 - t7),
+            carriage_wz,
+            k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t5)) * carriage_wx,
+        );
+        let t10 = T::fused(
+            t6,
+            carriage_wy,
+            k(2.0) * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2)
+                * carriage_wx,
+        );
         *out = [
             disc_sx,
             disc_sy,
@@ -336,7 +568,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
             ball_sz,
             carriage_sx,
             -carriage_sz,
-            k(2.0) * (t8 + t7) * carriage_wx + t6 * carriage_wz,
+            T::fused(t6, carriage_wz, k(2.0) * (t8 + t7) * carriage_wx),
             t9,
             t10,
         ];
@@ -367,25 +599,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
         let carriage_wy = y[37];
         let carriage_wz = y[38];
         let turn0 = y[40];
-        let t0 = carriage_wx * (k(0.1) * carriage_wx)
-            + carriage_wy * (k(0.2) * carriage_wy)
-            + carriage_wz * (k(0.2) * carriage_wz);
-        let t1 = t0
-            + k(2.0)
-                * (carriage_sx * carriage_sx + carriage_sy * carriage_sy
-                    + carriage_sz * carriage_sz);
-        let t2 = ball_wx * (k(0.05) * ball_wx) + ball_wy * (k(0.05) * ball_wy)
-            + ball_wz * (k(0.05) * ball_wz);
-        let t3 = disc_wx * (k(0.01) * disc_wx) + disc_wy * (k(0.01) * disc_wy)
-            + disc_wz * (k(0.02) * disc_wz);
-        let t4 = t3
-            + k(4.0) * (disc_sx * disc_sx + disc_sy * disc_sy + disc_sz * disc_sz);
-        let t5 = t4 + (ball_sx * ball_sx + ball_sy * ball_sy + ball_sz * ball_sz + t2);
+        let t0 = T::fused(
+            carriage_wz,
+            k(0.2) * carriage_wz,
+            T::fused(
+                carriage_wy,
+                k(0.2) * carriage_wy,
+                carriage_wx * (k(0.1) * carriage_wx),
+            ),
+        );
+        let t1 = T::fused(
+            k(2.0),
+            T::fused(
+                carriage_sz,
+                carriage_sz,
+                T::fused(carriage_sy, carriage_sy, carriage_sx * carriage_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            ball_wz,
+            k(0.05) * ball_wz,
+            T::fused(ball_wy, k(0.05) * ball_wy, ball_wx * (k(0.05) * ball_wx)),
+        );
+        let t3 = T::fused(
+            disc_wz,
+            k(0.02) * disc_wz,
+            T::fused(disc_wy, k(0.01) * disc_wy, disc_wx * (k(0.01) * disc_wx)),
+        );
+        let t4 = T::fused(
+            k(4.0),
+            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
+            t3,
+        );
+        let t5 = t4
+            + (T::fused(ball_sz, ball_sz, T::fused(ball_sy, ball_sy, ball_sx * ball_sx))
+                + t2);
         let t6 = turn0.cos();
-        let t7 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t8 = turn0.sin();
-        let t9 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t10 = (t9 * t6 + t7 * t8).atan2(t9 * t8 - t7 * t6);
+        let t9 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t10 = T::fused(t7, t8, t9 * t6).atan2(T::fused(-t7, t6, t9 * t8));
         let t11 = turn0 + t10;
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t1),
@@ -409,11 +663,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Friction<T> {
         let ball_wx = y[30];
         let ball_wy = y[31];
         let ball_wz = y[32];
-        let t0 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
-        let t1 = k(2.0) * (k(0.5) - t0)
-            - (k(1.0) - (disc_e3 * disc_e3 + (t0 + disc_e2 * disc_e2)));
+        let t0 = T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t1 = T::fused(
+            k(2.0),
+            k(0.5) - t0,
+            -(k(1.0) - T::fused(disc_e3, disc_e3, T::fused(disc_e2, disc_e2, t0))),
+        );
         *out = [
-            k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3),
+            k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2),
             -t1,
             disc_wz,
             ball_e0,
@@ -560,97 +817,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Friction<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-    }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 87 operations (28 ±, 59 ×, 0 ÷) and 1 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let disc_e0 = y[3];
-        let disc_e1 = y[4];
-        let disc_e2 = y[5];
-        let disc_e3 = y[6];
-        let ball_e0 = y[10];
-        let ball_e1 = y[11];
-        let ball_e2 = y[12];
-        let ball_e3 = y[13];
-        let carriage_e0 = y[17];
-        let carriage_e1 = y[18];
-        let carriage_e2 = y[19];
-        let carriage_e3 = y[20];
-        let disc_sx = y[21];
-        let disc_sy = y[22];
-        let disc_sz = y[23];
-        let ball_sx = y[27];
-        let ball_sy = y[28];
-        let ball_sz = y[29];
-        let carriage_sx = y[33];
-        let carriage_sy = y[34];
-        let carriage_sz = y[35];
-        let disc_wx = y[24];
-        let disc_wy = y[25];
-        let disc_wz = y[26];
-        let ball_wx = y[30];
-        let ball_wy = y[31];
-        let ball_wz = y[32];
-        let carriage_wx = y[36];
-        let carriage_wy = y[37];
-        let carriage_wz = y[38];
-        let t0 = ball_wx * (k(0.04) * ball_wx) + ball_wy * (k(0.04) * ball_wy)
-            + ball_wz * (k(0.04) * ball_wz);
-        let t1 = t0 + carriage_sy * (k(0.5) * carriage_sy)
-            + disc_wz * (k(0.05) * (k(10.0) * disc_wz).tanh());
-        *dy = [
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
-            ball_sx,
-            ball_sy,
-            ball_sz,
-            -(k(0.5) * (ball_e1 * ball_wx + ball_e2 * ball_wy + ball_e3 * ball_wz)),
-            k(0.5) * (ball_e0 * ball_wx - ball_e3 * ball_wy + ball_e2 * ball_wz),
-            k(0.5) * (ball_e3 * ball_wx + ball_e0 * ball_wy - ball_e1 * ball_wz),
-            -(k(0.5) * (ball_e2 * ball_wx - ball_e1 * ball_wy - ball_e0 * ball_wz)),
-            carriage_sx,
-            carriage_sy,
-            carriage_sz,
-            -(k(0.5)
-                * (carriage_e1 * carriage_wx + carriage_e2 * carriage_wy
-                    + carriage_e3 * carriage_wz)),
-            k(0.5)
-                * (carriage_e0 * carriage_wx - carriage_e3 * carriage_wy
-                    + carriage_e2 * carriage_wz),
-            k(0.5)
-                * (carriage_e3 * carriage_wx + carriage_e0 * carriage_wy
-                    - carriage_e1 * carriage_wz),
-            -(k(0.5)
-                * (carriage_e2 * carriage_wx - carriage_e1 * carriage_wy
-                    - carriage_e0 * carriage_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            accelerations[12],
-            accelerations[13],
-            accelerations[14],
-            accelerations[15],
-            accelerations[16],
-            accelerations[17],
-            -t1,
-            disc_wz,
-        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
@@ -820,14 +986,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let t3 = carriage_e0 * carriage_e2;
         let t4 = carriage_e1 * carriage_e3;
         let t5 = carriage_e0 * carriage_e0;
-        let t6 = k(2.0) * (k(0.5) - (t5 + carriage_e1 * carriage_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t5));
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
             -(k(2.0) * (t1 - t0)),
-            -(k(2.0) * (k(0.5) - (t2 + disc_e1 * disc_e1))),
-            k(2.0) * (k(0.5) - (t2 + disc_e2 * disc_e2)),
+            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t2))),
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t2)),
             k(2.0) * (t1 + t0),
             k(1.0),
             k(1.0),
@@ -836,9 +1002,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             k(-1.0),
             k(2.0) * (t4 + t3),
             t6,
-            k(2.0) * (k(0.5) - (t5 + carriage_e3 * carriage_e3)),
+            k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t5)),
             k(2.0) * (t4 - t3),
-            k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3),
+            k(2.0) * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2),
             t6,
         ];
     }
@@ -883,38 +1049,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let t2 = disc_wy * disc_wz;
         let t3 = disc_e0 * disc_e3;
         let t4 = disc_e1 * disc_e2;
-        let t5 = k(2.0) * (t4 - t3) * t2
-            - k(2.0) * (k(0.5) - (t1 + disc_e1 * disc_e1)) * t0;
-        let t6 = disc_wy * disc_wy + disc_wx * disc_wx;
-        let t7 = k(2.0) * (k(0.5) - (t1 + disc_e2 * disc_e2)) * t2
-            - k(2.0) * (t4 + t3) * t0;
+        let t5 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t1))),
+            t0,
+            k(2.0) * (t4 - t3) * t2,
+        );
+        let t6 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t7 = T::fused(
+            -(k(2.0) * (t4 + t3)),
+            t0,
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t1)) * t2,
+        );
         let t8 = carriage_wx * carriage_wy;
         let t9 = carriage_e0 * carriage_e0;
-        let t10 = k(2.0) * (k(0.5) - (t9 + carriage_e1 * carriage_e1));
+        let t10 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t9));
         let t11 = carriage_wx * carriage_wx;
-        let t12 = carriage_wz * carriage_wz + t11;
-        let t13 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3);
+        let t12 = T::fused(carriage_wz, carriage_wz, t11);
+        let t13 = k(2.0)
+            * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
         let t14 = carriage_wy * carriage_wz;
         let t15 = carriage_e0 * carriage_e2;
         let t16 = carriage_e1 * carriage_e3;
         let t17 = k(2.0) * (t16 + t15);
-        let t18 = k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t12
-            - k(2.0) * (t16 - t15) * t8;
-        let t19 = t17 * (carriage_wy * carriage_wy + t11)
-            - (t13 * t14 - t10 * (carriage_wx * carriage_wz));
+        let t18 = T::fused(
+            -(k(2.0) * (t16 - t15)),
+            t8,
+            k(2.0) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3) * t12,
+        );
+        let t19 = T::fused(
+            t17,
+            T::fused(carriage_wy, carriage_wy, t11),
+            -T::fused(-t10, carriage_wx * carriage_wz, t13 * t14),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2) * t6 - t5,
-            k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1) * t6 + t7,
+            T::fused(k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3), t6, -t5),
+            T::fused(k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3), t6, t7),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t13 * t12 + t10 * t8 - t17 * t14,
-            -(k(2.0) * (k(0.5) - (t9 + carriage_e3 * carriage_e3)) * t14 + t18),
+            T::fused(-t17, t14, T::fused(t10, t8, t13 * t12)),
+            -T::fused(
+                k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t9)),
+                t14,
+                t18,
+            ),
             -t19,
         ];
     }
@@ -937,17 +1120,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let carriage_wz = y[38];
         let turn0 = y[40];
         let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -(k(0.01) * (disc_wy * disc_wz)),
             k(0.01) * (disc_wx * disc_wz),
-            -(k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t4)),
+            -T::fused(k(0.5), turn0 + t4, k(0.05) * (k(10.0) * disc_wz).tanh()),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -985,42 +1168,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let carriage_wz = y[38];
         let turn0 = y[40];
         let t0 = disc_e0 * disc_e0;
-        let t1 = (disc_wy * disc_wy + disc_wx * disc_wx)
-            * (k(0.5) / (k(0.5) - (t0 + disc_e3 * disc_e3)));
-        let t2 = disc_wy * disc_wz
-            - k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1) * t1;
-        let t3 = disc_wx * disc_wz
-            - k(2.0) * (disc_e1 * disc_e3 - disc_e0 * disc_e2) * t1;
+        let t1 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
+            * (k(0.5) / (k(0.5) - T::fused(disc_e3, disc_e3, t0)));
+        let t2 = T::fused(
+            -(k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3)),
+            t1,
+            disc_wy * disc_wz,
+        );
+        let t3 = T::fused(
+            -(k(2.0) * T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3)),
+            t1,
+            disc_wx * disc_wz,
+        );
         let t4 = turn0.cos();
-        let t5 = k(2.0) * (k(0.5) - (t0 + disc_e1 * disc_e1));
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t0));
         let t6 = turn0.sin();
-        let t7 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t8 = (t7 * t4 + t5 * t6).atan2(t7 * t6 - t5 * t4);
+        let t7 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t8 = T::fused(t5, t6, t7 * t4).atan2(T::fused(-t5, t4, t7 * t6));
         let t9 = k(50.0)
-            * (k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t8));
+            * T::fused(k(0.5), turn0 + t8, k(0.05) * (k(10.0) * disc_wz).tanh());
         let t10 = carriage_wx * carriage_wy;
         let t11 = carriage_e0 * carriage_e0;
-        let t12 = k(2.0) * (k(0.5) - (t11 + carriage_e1 * carriage_e1));
+        let t12 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t11));
         let t13 = carriage_wx * carriage_wx;
-        let t14 = carriage_wz * carriage_wz + t13;
-        let t15 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3);
+        let t14 = T::fused(carriage_wz, carriage_wz, t13);
+        let t15 = k(2.0)
+            * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
         let t16 = carriage_wy * carriage_wz;
         let t17 = carriage_e0 * carriage_e2;
         let t18 = carriage_e1 * carriage_e3;
         let t19 = k(2.0) * (t18 + t17);
-        let t20 = t19 * t16 - (t15 * t14 + t12 * t10);
+        let t20 = T::fused(t19, t16, -T::fused(t12, t10, t15 * t14));
         let t21 = k(2.0) * (t18 - t17);
-        let t22 = k(2.0) * (k(0.5) - (t11 + carriage_e3 * carriage_e3));
+        let t22 = k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t11));
         let t23 = t12 * t22;
-        let t24 = t19 * t21 - t23;
+        let t24 = T::fused(t19, t21, -t23);
         let t25 = k(1.0) / (t12 * t24);
-        let t26 = k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t14
-            - t21 * t10;
-        let t27 = t22 * t16 + t26;
-        let t28 = t25 * (t12 * t12) * t27 - t25 * (t12 * t21) * t20;
-        let t29 = t19 * (carriage_wy * carriage_wy + t13)
-            - (t15 * t16 - t12 * (carriage_wx * carriage_wz));
-        let t30 = t27 * (t25 * (t12 * t15)) - t20 * (t25 * (t15 * t21));
+        let t26 = T::fused(
+            -t21,
+            t10,
+            k(2.0) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3) * t14,
+        );
+        let t27 = T::fused(t22, t16, t26);
+        let t28 = T::fused(-(t25 * (t12 * t21)), t20, t25 * (t12 * t12) * t27);
+        let t29 = T::fused(
+            t19,
+            T::fused(carriage_wy, carriage_wy, t13),
+            -T::fused(-t12, carriage_wx * carriage_wz, t15 * t16),
+        );
+        let t30 = T::fused(-t20, t25 * (t15 * t21), t27 * (t25 * (t12 * t15)));
         *out = [
             k(0.0),
             k(0.0),
@@ -1038,8 +1234,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
             -(k(0.25) * carriage_sy),
             k(0.0),
             t28,
-            -(t30 + t24 * t25 * t29),
-            t20 * (t23 * t25) - t27 * (t25 * (t12 * t19)),
+            -T::fused(t24 * t25, t29, t30),
+            T::fused(-t27, t25 * (t12 * t19), t20 * (t23 * t25)),
         ];
     }
     /// Writes λ: 96 operations (25 ±, 69 ×, 2 ÷).
@@ -1083,39 +1279,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         let t2 = k(2.0) * (t1 + t0);
         let t3 = k(2.0) * (t1 - t0);
         let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - (t4 + disc_e2 * disc_e2));
-        let t6 = k(2.0) * (k(0.5) - (t4 + disc_e1 * disc_e1));
-        let t7 = k(1.0) / (t6 * t5 - t3 * t2);
-        let t8 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t9 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
+        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        let t8 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t9 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         let t10 = carriage_e0 * carriage_e2;
         let t11 = carriage_e1 * carriage_e3;
         let t12 = k(2.0) * (t11 - t10);
         let t13 = carriage_e0 * carriage_e0;
-        let t14 = k(2.0) * (k(0.5) - (t13 + carriage_e1 * carriage_e1));
-        let t15 = t14 * (k(2.0) * (k(0.5) - (t13 + carriage_e3 * carriage_e3)));
+        let t14 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t13));
+        let t15 = t14 * (k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t13)));
         let t16 = k(2.0) * (t11 + t10);
-        let t17 = t16 * t12 - t15;
+        let t17 = T::fused(t16, t12, -t15);
         let t18 = k(1.0) / (t14 * t17);
         let t19 = k(0.1) * carriage_dwx;
-        let t20 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3);
-        let t21 = k(0.1) * (carriage_wx * carriage_wz) - k(0.2) * carriage_dwy;
-        let t22 = t21 * (t18 * (t20 * t12)) + t19 * (t18 * (t14 * t12));
-        let t23 = k(0.1) * (carriage_wx * carriage_wy) + k(0.2) * carriage_dwz;
-        let t24 = t21 * (t18 * (t14 * t20)) + t19 * (t18 * (t14 * t14));
+        let t20 = k(2.0)
+            * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
+        let t21 = T::fused(-k(0.2), carriage_dwy, k(0.1) * (carriage_wx * carriage_wz));
+        let t22 = T::fused(t19, t18 * (t14 * t12), t21 * (t18 * (t20 * t12)));
+        let t23 = T::fused(k(0.2), carriage_dwz, k(0.1) * (carriage_wx * carriage_wy));
+        let t24 = T::fused(t19, t18 * (t14 * t14), t21 * (t18 * (t14 * t20)));
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            -(t9 * (t5 * t7) + t8 * (t2 * t7)),
-            -(t9 * (t3 * t7) + t8 * (t6 * t7)),
+            -T::fused(t8, t2 * t7, t9 * (t5 * t7)),
+            -T::fused(t8, t6 * t7, t9 * (t3 * t7)),
             -ball_dsx,
             -ball_dsy,
             -ball_dsz,
             -(k(2.0) * carriage_dsx),
             k(2.0) * carriage_dsz,
-            t23 * (t15 * t18) - t22,
-            t24 - t23 * (t18 * (t14 * t16)),
+            T::fused(t23, t15 * t18, -t22),
+            T::fused(-t23, t18 * (t14 * t16), t24),
             t21 * (t17 * t18),
         ];
     }
@@ -1157,7 +1354,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let u3 = x[9];
         let u4 = x[10];
         *out = [
-            -(k(50.0) * (k(0.5) * x0 + k(0.05) * (k(10.0) * u0).tanh())),
+            -(k(50.0) * T::fused(k(0.05), (k(10.0) * u0).tanh(), k(0.5) * x0)),
             -(k(0.8) * u1),
             -(k(0.8) * u2),
             -(k(0.8) * u3),
@@ -1178,14 +1375,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let u2 = x[8];
         let u3 = x[9];
         let u4 = x[10];
-        let t0 = u3 * (k(0.04) * u3) + (u2 * (k(0.04) * u2) + u1 * (k(0.04) * u1));
-        let t1 = u0 * (k(0.05) * (k(10.0) * u0).tanh()) + (u4 * (k(0.5) * u4) + t0);
+        let t0 = T::fused(
+            u3,
+            k(0.04) * u3,
+            T::fused(u1, k(0.04) * u1, u2 * (k(0.04) * u2)),
+        );
+        let t1 = T::fused(
+            u0,
+            k(0.05) * (k(10.0) * u0).tanh(),
+            T::fused(u4, k(0.5) * u4, t0),
+        );
         *dx = [
             u0,
-            -(k(0.5) * (x2 * u1 + x3 * u2 + x4 * u3)),
-            k(0.5) * (x1 * u1 - x4 * u2 + x3 * u3),
-            k(0.5) * (x4 * u1 + x1 * u2 - x2 * u3),
-            -(k(0.5) * (x3 * u1 - x2 * u2 - x1 * u3)),
+            -(k(0.5) * T::fused(x4, u3, T::fused(x3, u2, x2 * u1))),
+            k(0.5) * T::fused(x3, u3, T::fused(-x4, u2, x1 * u1)),
+            k(0.5) * T::fused(-x2, u3, T::fused(x1, u2, x4 * u1)),
+            -(k(0.5) * T::fused(-x1, u3, T::fused(-x2, u2, x3 * u1))),
             u4,
             rates[0],
             rates[1],
@@ -1273,12 +1478,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let ball_wz = y[32];
         let x0 = x[0];
         let t0 = x0.sin();
-        let t1 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t1 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
         let t2 = x0.cos();
-        let t3 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
-        let t4 = k(2.0) * (k(0.5) - t3)
-            - (k(1.0) - (disc_e3 * disc_e3 + (t3 + disc_e2 * disc_e2)));
-        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        let t3 = T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t4 = T::fused(
+            k(2.0),
+            k(0.5) - t3,
+            -(k(1.0) - T::fused(disc_e3, disc_e3, T::fused(disc_e2, disc_e2, t3))),
+        );
+        let t5 = T::fused(t1, t2, t4 * t0).atan2(T::fused(-t4, t2, t1 * t0));
         x[0] = x0 + t5;
         x[1] = ball_e0;
         x[2] = ball_e1;
@@ -1306,12 +1514,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let ball_wz = y[32];
         let turn0 = y[40];
         let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
         let t5 = k(50.0)
-            * (k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t4));
+            * T::fused(k(0.5), turn0 + t4, k(0.05) * (k(10.0) * disc_wz).tanh());
         *out = [
             -t5,
             -(k(0.8) * ball_wx),
@@ -1345,12 +1553,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let ball_wz = y[32];
         let turn0 = y[40];
         let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
         let t5 = k(50.0)
-            * (k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t4));
+            * T::fused(k(0.5), turn0 + t4, k(0.05) * (k(10.0) * disc_wz).tanh());
         let t6 = k(0.25) * carriage_sy;
         *out = [
             k(0.0),
@@ -1365,10 +1573,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
             -(k(0.8) * ball_wx),
             -(k(0.8) * ball_wy),
             -(k(0.8) * ball_wz),
-            -(k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3) * t6),
-            k(2.0) * (k(0.5) - (carriage_e0 * carriage_e0 + carriage_e2 * carriage_e2))
+            -(k(2.0) * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2)
+                * t6),
+            k(2.0)
+                * (k(0.5)
+                    - T::fused(carriage_e2, carriage_e2, carriage_e0 * carriage_e0))
                 * t6,
-            -(k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t6),
+            -(k(2.0) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3)
+                * t6),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1406,23 +1618,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let carriage_dwz = accelerations[17];
         let t0 = k(2.0) * disc_e3;
         let t1 = disc_e0 * t0;
-        let t2 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t3 = k(1.0) - disc_e3 * t0;
-        let t4 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
+        let t2 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t3 = T::fused(-disc_e3, t0, k(1.0));
+        let t4 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            t4 * t3 - t2 * t1,
-            t4 * t1 + t2 * t3,
+            T::fused(-t2, t1, t4 * t3),
+            T::fused(t2, t3, t4 * t1),
             -ball_dsx,
             -ball_dsy,
             -ball_dsz,
             -(k(2.0) * carriage_dsx),
             k(2.0) * carriage_dsz,
-            k(0.1) * (carriage_wx * carriage_wy) + k(0.2) * carriage_dwz,
+            T::fused(k(0.2), carriage_dwz, k(0.1) * (carriage_wx * carriage_wy)),
             k(0.1) * carriage_dwx,
-            k(0.2) * carriage_dwy - k(0.1) * (carriage_wx * carriage_wz),
+            T::fused(-k(0.1), carriage_wx * carriage_wz, k(0.2) * carriage_dwy),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 61 operations (14 ±, 47 ×, 0 ÷) and 4 functions.
@@ -1450,18 +1662,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
         let t0 = disc_wy * disc_wz;
         let t1 = disc_wx * disc_wz;
         let t2 = turn0.cos();
-        let t3 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t4 = turn0.sin();
-        let t5 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t6 = (t5 * t2 + t3 * t4).atan2(t5 * t4 - t3 * t2);
+        let t5 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t6 = T::fused(t3, t4, t5 * t2).atan2(T::fused(-t3, t2, t5 * t4));
         let t7 = k(50.0)
-            * (k(0.05) * (k(10.0) * disc_wz).tanh() + k(0.5) * (turn0 + t6));
+            * T::fused(k(0.5), turn0 + t6, k(0.05) * (k(10.0) * disc_wz).tanh());
         let t8 = k(0.25) * carriage_sy;
-        let t9 = k(2.0) * (carriage_e1 * carriage_e2 - carriage_e0 * carriage_e3) * t8;
-        let t10 = k(2.0) * (carriage_e2 * carriage_e3 + carriage_e0 * carriage_e1) * t8;
+        let t9 = k(2.0) * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2)
+            * t8;
+        let t10 = k(2.0) * T::fused(carriage_e0, carriage_e1, carriage_e2 * carriage_e3)
+            * t8;
         let t11 = k(0.02) * t1;
         let t12 = k(2.0) * disc_e3;
-        let t13 = k(1.0) - disc_e3 * t12;
+        let t13 = T::fused(-disc_e3, t12, k(1.0));
         let t14 = k(0.02) * t0;
         let t15 = disc_e0 * t12;
         *out = [
@@ -1478,7 +1692,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
             -(k(0.8) * ball_wy),
             -(k(0.8) * ball_wz),
             -t9,
-            k(2.0) * (k(0.5) - (carriage_e0 * carriage_e0 + carriage_e2 * carriage_e2))
+            k(2.0)
+                * (k(0.5)
+                    - T::fused(carriage_e2, carriage_e2, carriage_e0 * carriage_e0))
                 * t8,
             -t10,
             k(0.0),
@@ -1487,8 +1703,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t13 * t11 - t15 * t14,
-            t13 * t14 + t15 * t11,
+            T::fused(-t15, t14, t13 * t11),
+            T::fused(t15, t11, t13 * t14),
             k(0.0),
             k(0.0),
             k(0.0),

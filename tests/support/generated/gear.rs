@@ -133,26 +133,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Gear<T> {
             pinion_sy,
             pinion_sz,
             -(k(0.5)
-                * (pinion_e1 * pinion_wx + pinion_e2 * pinion_wy
-                    + pinion_e3 * pinion_wz)),
+                * T::fused(
+                    pinion_e3,
+                    pinion_wz,
+                    T::fused(pinion_e2, pinion_wy, pinion_e1 * pinion_wx),
+                )),
             k(0.5)
-                * (pinion_e0 * pinion_wx - pinion_e3 * pinion_wy
-                    + pinion_e2 * pinion_wz),
+                * T::fused(
+                    pinion_e2,
+                    pinion_wz,
+                    T::fused(-pinion_e3, pinion_wy, pinion_e0 * pinion_wx),
+                ),
             k(0.5)
-                * (pinion_e3 * pinion_wx + pinion_e0 * pinion_wy
-                    - pinion_e1 * pinion_wz),
+                * T::fused(
+                    -pinion_e1,
+                    pinion_wz,
+                    T::fused(pinion_e0, pinion_wy, pinion_e3 * pinion_wx),
+                ),
             -(k(0.5)
-                * (pinion_e2 * pinion_wx - pinion_e1 * pinion_wy
-                    - pinion_e0 * pinion_wz)),
+                * T::fused(
+                    -pinion_e0,
+                    pinion_wz,
+                    T::fused(-pinion_e1, pinion_wy, pinion_e2 * pinion_wx),
+                )),
             wheel_sx,
             wheel_sy,
             wheel_sz,
             -(k(0.5)
-                * (wheel_e1 * wheel_wx + wheel_e2 * wheel_wy + wheel_e3 * wheel_wz)),
-            k(0.5) * (wheel_e0 * wheel_wx - wheel_e3 * wheel_wy + wheel_e2 * wheel_wz),
-            k(0.5) * (wheel_e3 * wheel_wx + wheel_e0 * wheel_wy - wheel_e1 * wheel_wz),
+                * T::fused(
+                    wheel_e3,
+                    wheel_wz,
+                    T::fused(wheel_e2, wheel_wy, wheel_e1 * wheel_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    wheel_e2,
+                    wheel_wz,
+                    T::fused(-wheel_e3, wheel_wy, wheel_e0 * wheel_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -wheel_e1,
+                    wheel_wz,
+                    T::fused(wheel_e0, wheel_wy, wheel_e3 * wheel_wx),
+                ),
             -(k(0.5)
-                * (wheel_e2 * wheel_wx - wheel_e1 * wheel_wy - wheel_e0 * wheel_wz)),
+                * T::fused(
+                    -wheel_e0,
+                    wheel_wz,
+                    T::fused(-wheel_e1, wheel_wy, wheel_e2 * wheel_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -204,32 +234,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
         let turn0 = y[27];
         let turn1 = y[28];
         let t0 = turn0.cos();
-        let t1 = pinion_e0 * pinion_e0 + pinion_e1 * pinion_e1;
+        let t1 = T::fused(pinion_e1, pinion_e1, pinion_e0 * pinion_e0);
         let t2 = k(2.0) * (k(0.5) - t1);
         let t3 = turn0.sin();
-        let t4 = k(2.0) * (pinion_e1 * pinion_e2 + pinion_e0 * pinion_e3);
-        let t5 = (t4 * t0 + t2 * t3).atan2(t4 * t3 - t2 * t0);
+        let t4 = k(2.0) * T::fused(pinion_e0, pinion_e3, pinion_e1 * pinion_e2);
+        let t5 = T::fused(t2, t3, t4 * t0).atan2(T::fused(-t2, t0, t4 * t3));
         let t6 = turn1.cos();
         let t7 = wheel_e2 * wheel_e2;
         let t8 = wheel_e0 * wheel_e0;
         let t9 = k(2.0) * (k(0.5) - (t8 + t7));
         let t10 = turn1.sin();
-        let t11 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
-        let t12 = (t11 * t6 + t9 * t10).atan2(t11 * t10 - t9 * t6);
+        let t11 = k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3);
+        let t12 = T::fused(t9, t10, t11 * t6).atan2(T::fused(-t9, t6, t11 * t10));
         *out = [
             pinion_rx,
             pinion_ry,
             pinion_rz,
-            k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2),
-            k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1),
+            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3),
+            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3),
             wheel_rx - k(0.5),
             wheel_ry,
             wheel_rz,
-            k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3),
-            k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2),
-            turn1 + t12 + k(2.5) * (turn0 + t5) - k(0.3),
-            pinion_e3 * pinion_e3 + (t1 + pinion_e2 * pinion_e2) - k(1.0),
-            wheel_e3 * wheel_e3 + (t8 + wheel_e1 * wheel_e1 + t7) - k(1.0),
+            k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2),
+            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
+            T::fused(k(2.5), turn0 + t5, turn1 + t12) - k(0.3),
+            T::fused(pinion_e3, pinion_e3, T::fused(pinion_e2, pinion_e2, t1)) - k(1.0),
+            T::fused(wheel_e3, wheel_e3, T::fused(wheel_e1, wheel_e1, t8) + t7) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 86 operations (29 ±, 55 ×, 2 ÷).
@@ -256,41 +286,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
         let wheel_wy = y[24];
         let wheel_wz = y[25];
         let t0 = pinion_e0 * pinion_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
         let t2 = pinion_e0 * pinion_e3;
         let t3 = pinion_e1 * pinion_e2;
         let t4 = k(2.0) * (t3 - t2);
         let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
+        let t6 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
         let t7 = wheel_e0 * wheel_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + wheel_e2 * wheel_e2));
+        let t8 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t7));
         let t9 = wheel_e0 * wheel_e1;
         let t10 = wheel_e2 * wheel_e3;
         let t11 = k(2.0) * (t10 - t9);
         let t12 = k(2.0) * (t10 + t9);
-        let t13 = k(2.0) * (k(0.5) - (t7 + wheel_e3 * wheel_e3));
-        let t14 = k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1) * pinion_wy
-            + t6 * pinion_wz;
-        let t15 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2) * pinion_wy
-            - t4 * pinion_wz;
-        let t16 = (t5 * t15 + t1 * t14) / (t5 * t5 + t1 * t1);
-        let t17 = t13 * wheel_wx
-            + k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2) * wheel_wz;
-        let t18 = t11 * wheel_wx
-            - k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3) * wheel_wz;
-        let t19 = (t12 * t18 - t8 * t17) / (t12 * t12 + t8 * t8);
+        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t7));
+        let t14 = T::fused(
+            t6,
+            pinion_wz,
+            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3) * pinion_wy,
+        );
+        let t15 = T::fused(
+            -t4,
+            pinion_wz,
+            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * pinion_wy,
+        );
+        let t16 = T::fused(t1, t14, t5 * t15) / T::fused(t1, t1, t5 * t5);
+        let t17 = T::fused(
+            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
+            wheel_wz,
+            t13 * wheel_wx,
+        );
+        let t18 = T::fused(
+            -(k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2)),
+            wheel_wz,
+            t11 * wheel_wx,
+        );
+        let t19 = T::fused(
+            -k(2.5),
+            t16,
+            T::fused(-t8, t17, t12 * t18) / T::fused(t8, t8, t12 * t12),
+        );
         *out = [
             pinion_sx,
             pinion_sy,
             pinion_sz,
-            -(t4 * pinion_wx + t1 * pinion_wy),
-            t6 * pinion_wx + t5 * pinion_wy,
+            -T::fused(t1, pinion_wy, t4 * pinion_wx),
+            T::fused(t5, pinion_wy, t6 * pinion_wx),
             wheel_sx,
             wheel_sy,
             wheel_sz,
-            -(t11 * wheel_wy + t8 * wheel_wz),
-            t13 * wheel_wy + t12 * wheel_wz,
-            k(2.5) * t16 - t19,
+            -T::fused(t8, wheel_wz, t11 * wheel_wy),
+            T::fused(t12, wheel_wz, t13 * wheel_wy),
+            -t19,
         ];
     }
     /// Kinetic and potential energy: 52 operations (18 ±, 34 ×, 0 ÷) and 3 functions.
@@ -313,21 +359,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
         let wheel_wy = y[24];
         let wheel_wz = y[25];
         let turn1 = y[28];
-        let t0 = wheel_wx * (k(0.05) * wheel_wx) + wheel_wy * (k(0.025) * wheel_wy)
-            + wheel_wz * (k(0.025) * wheel_wz);
-        let t1 = t0
-            + k(4.0) * (wheel_sx * wheel_sx + wheel_sy * wheel_sy + wheel_sz * wheel_sz);
-        let t2 = pinion_wx * (k(0.01) * pinion_wx) + pinion_wy * (k(0.01) * pinion_wy)
-            + pinion_wz * (k(0.02) * pinion_wz);
-        let t3 = t2
-            + k(2.0)
-                * (pinion_sx * pinion_sx + pinion_sy * pinion_sy
-                    + pinion_sz * pinion_sz);
+        let t0 = T::fused(
+            wheel_wz,
+            k(0.025) * wheel_wz,
+            T::fused(wheel_wy, k(0.025) * wheel_wy, wheel_wx * (k(0.05) * wheel_wx)),
+        );
+        let t1 = T::fused(
+            k(4.0),
+            T::fused(
+                wheel_sz,
+                wheel_sz,
+                T::fused(wheel_sy, wheel_sy, wheel_sx * wheel_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            pinion_wz,
+            k(0.02) * pinion_wz,
+            T::fused(pinion_wy, k(0.01) * pinion_wy, pinion_wx * (k(0.01) * pinion_wx)),
+        );
+        let t3 = T::fused(
+            k(2.0),
+            T::fused(
+                pinion_sz,
+                pinion_sz,
+                T::fused(pinion_sy, pinion_sy, pinion_sx * pinion_sx),
+            ),
+            t2,
+        );
         let t4 = turn1.cos();
-        let t5 = k(2.0) * (k(0.5) - (wheel_e0 * wheel_e0 + wheel_e2 * wheel_e2));
+        let t5 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, wheel_e0 * wheel_e0));
         let t6 = turn1.sin();
-        let t7 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
-        let t8 = (t7 * t4 + t5 * t6).atan2(t7 * t6 - t5 * t4);
+        let t7 = k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3);
+        let t8 = T::fused(t5, t6, t7 * t4).atan2(T::fused(-t5, t4, t7 * t6));
         let t9 = k(0.2) + (turn1 + t8);
         gyro_sim::Energy {
             kinetic: k(0.5) * (t3 + t1),
@@ -347,18 +411,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
         let wheel_e3 = y[13];
         let pinion_wz = y[19];
         let wheel_wx = y[23];
-        let t0 = pinion_e0 * pinion_e0 + pinion_e1 * pinion_e1;
-        let t1 = k(2.0) * (k(0.5) - t0)
-            - (k(1.0) - (pinion_e3 * pinion_e3 + (t0 + pinion_e2 * pinion_e2)));
+        let t0 = T::fused(pinion_e1, pinion_e1, pinion_e0 * pinion_e0);
+        let t1 = T::fused(
+            k(2.0),
+            k(0.5) - t0,
+            -(k(1.0)
+                - T::fused(pinion_e3, pinion_e3, T::fused(pinion_e2, pinion_e2, t0))),
+        );
         let t2 = wheel_e2 * wheel_e2;
         let t3 = wheel_e0 * wheel_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + t2))
-            - (k(1.0) - (wheel_e3 * wheel_e3 + (t3 + wheel_e1 * wheel_e1 + t2)));
+        let t4 = T::fused(
+            k(2.0),
+            k(0.5) - (t3 + t2),
+            -(k(1.0)
+                - T::fused(wheel_e3, wheel_e3, T::fused(wheel_e1, wheel_e1, t3) + t2)),
+        );
         *out = [
-            k(2.0) * (pinion_e1 * pinion_e2 + pinion_e0 * pinion_e3),
+            k(2.0) * T::fused(pinion_e0, pinion_e3, pinion_e1 * pinion_e2),
             -t1,
             pinion_wz,
-            k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1),
+            k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3),
             -t4,
             wheel_wx,
         ];
@@ -587,12 +659,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t5 = k(2.0) * wheel_e2;
         let t6 = k(2.0) * wheel_e1;
         let t7 = k(2.0) * wheel_e0;
-        let t8 = k(2.0) * (k(0.5) - (pinion_e0 * pinion_e0 + pinion_e1 * pinion_e1));
-        let t9 = k(2.0) * (pinion_e1 * pinion_e2 + pinion_e0 * pinion_e3);
-        let t10 = k(1.0) / (t9 * t9 + t8 * t8);
-        let t11 = k(2.0) * (k(0.5) - (wheel_e0 * wheel_e0 + wheel_e2 * wheel_e2));
-        let t12 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
-        let t13 = k(1.0) / (t12 * t12 + t11 * t11);
+        let t8 = k(2.0)
+            * (k(0.5) - T::fused(pinion_e1, pinion_e1, pinion_e0 * pinion_e0));
+        let t9 = k(2.0) * T::fused(pinion_e0, pinion_e3, pinion_e1 * pinion_e2);
+        let t10 = k(1.0) / T::fused(t8, t8, t9 * t9);
+        let t11 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, wheel_e0 * wheel_e0));
+        let t12 = k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3);
+        let t13 = k(1.0) / T::fused(t11, t11, t12 * t12);
         *out = [
             k(1.0),
             k(1.0),
@@ -616,13 +689,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             t4,
             -t7,
             t6,
-            -(k(2.5) * (t10 * (t9 * (k(4.0) * pinion_e0) + t8 * t1))),
-            -(k(2.5) * (t10 * (t9 * (k(4.0) * pinion_e1) + t8 * t0))),
+            -(k(2.5) * (t10 * T::fused(t8, t1, t9 * (k(4.0) * pinion_e0)))),
+            -(k(2.5) * (t10 * T::fused(t8, t0, t9 * (k(4.0) * pinion_e1)))),
             -(k(2.5) * (t10 * (t8 * t3))),
             -(k(2.5) * (t10 * (t8 * t2))),
-            -(t13 * (t12 * (k(4.0) * wheel_e0) + t11 * t6)),
+            -(t13 * T::fused(t11, t6, t12 * (k(4.0) * wheel_e0))),
             -(t13 * (t11 * t7)),
-            -(t13 * (t12 * (k(4.0) * wheel_e2) + t11 * t4)),
+            -(t13 * T::fused(t11, t4, t12 * (k(4.0) * wheel_e2))),
             -(t13 * (t11 * t5)),
             t2,
             t3,
@@ -649,22 +722,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t1 = pinion_e1 * pinion_e2;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = pinion_e0 * pinion_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + pinion_e1 * pinion_e1));
-        let t5 = k(2.0) * (k(0.5) - (t3 + pinion_e2 * pinion_e2));
+        let t4 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t3));
         let t6 = k(2.0) * (t1 + t0);
         let t7 = wheel_e0 * wheel_e1;
         let t8 = wheel_e2 * wheel_e3;
         let t9 = k(2.0) * (t8 - t7);
         let t10 = wheel_e0 * wheel_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + wheel_e2 * wheel_e2));
-        let t12 = k(2.0) * (k(0.5) - (t10 + wheel_e3 * wheel_e3));
+        let t11 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t10));
         let t13 = k(2.0) * (t8 + t7);
-        let t14 = k(1.0) / (t6 * t6 + t4 * t4);
-        let t15 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2) * t6
-            + t4 * (k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1));
-        let t16 = k(1.0) / (t13 * t13 + t11 * t11);
-        let t17 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3) * t13
-            + t11 * (k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2));
+        let t14 = k(1.0) / T::fused(t4, t4, t6 * t6);
+        let t15 = T::fused(
+            t4,
+            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3),
+            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * t6,
+        );
+        let t16 = k(1.0) / T::fused(t11, t11, t13 * t13);
+        let t17 = T::fused(
+            t11,
+            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
+            k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2) * t13,
+        );
         *out = [
             k(1.0),
             k(1.0),
@@ -681,8 +760,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             t12,
             t13,
             k(2.5) * (t15 * t14),
-            -(k(2.5) * (t14 * (t2 * t6 - t4 * t5))),
-            -((t9 * t13 - t11 * t12) * t16),
+            -(k(2.5) * (t14 * T::fused(-t4, t5, t2 * t6))),
+            -(T::fused(-t11, t12, t9 * t13) * t16),
             t16 * t17,
         ];
     }
@@ -722,62 +801,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wz = y[25];
         let t0 = pinion_wx * pinion_wz;
         let t1 = pinion_e0 * pinion_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + pinion_e1 * pinion_e1));
+        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t1));
         let t3 = pinion_wy * pinion_wz;
         let t4 = pinion_e0 * pinion_e3;
         let t5 = pinion_e1 * pinion_e2;
         let t6 = k(2.0) * (t5 - t4);
         let t7 = pinion_wy * pinion_wy;
-        let t8 = t7 + pinion_wx * pinion_wx;
-        let t9 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2);
+        let t8 = T::fused(pinion_wx, pinion_wx, t7);
+        let t9 = k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3);
         let t10 = k(2.0) * (t5 + t4);
-        let t11 = k(2.0) * (k(0.5) - (t1 + pinion_e2 * pinion_e2));
-        let t12 = k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1);
+        let t11 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t1));
+        let t12 = k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3);
         let t13 = wheel_wz * wheel_wz;
-        let t14 = t13 + wheel_wy * wheel_wy;
-        let t15 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3);
+        let t14 = T::fused(wheel_wy, wheel_wy, t13);
+        let t15 = k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2);
         let t16 = wheel_wx * wheel_wy;
         let t17 = wheel_e0 * wheel_e0;
-        let t18 = k(2.0) * (k(0.5) - (t17 + wheel_e2 * wheel_e2));
+        let t18 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t17));
         let t19 = wheel_wx * wheel_wz;
         let t20 = wheel_e0 * wheel_e1;
         let t21 = wheel_e2 * wheel_e3;
         let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2);
+        let t23 = k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3);
         let t24 = k(2.0) * (t21 + t20);
-        let t25 = k(2.0) * (k(0.5) - (t17 + wheel_e3 * wheel_e3));
-        let t26 = t25 * wheel_wx + t23 * wheel_wz;
-        let t27 = t22 * wheel_wx - t15 * wheel_wz;
-        let t28 = k(1.0) / (t24 * t24 + t18 * t18);
-        let t29 = t28 * t28 * (k(2.0) * (t18 * t27 + t24 * t26))
-            * (t24 * t27 - t18 * t26);
-        let t30 = t13 + wheel_wx * wheel_wx;
-        let t31 = wheel_wy * wheel_wz;
-        let t32 = t26 * t27;
-        let t33 = t32 - t24 * (t22 * t31 + (t18 * t30 + t15 * t16));
-        let t34 = t18 * (t25 * t31 + (t24 * t30 - t23 * t16)) - t32;
-        let t35 = t12 * pinion_wy + t11 * pinion_wz;
-        let t36 = t9 * pinion_wy - t6 * pinion_wz;
-        let t37 = k(1.0) / (t10 * t10 + t2 * t2);
-        let t38 = t37 * t37 * (k(2.0) * (t2 * t36 - t10 * t35)) * (t10 * t36 + t2 * t35);
-        let t39 = pinion_wz * pinion_wz + t7;
-        let t40 = pinion_wx * pinion_wy;
-        let t41 = t35 * t36;
-        let t42 = t41 + t10 * (t9 * t0 + (t6 * t40 + t2 * t39));
-        let t43 = t2 * (t12 * t0 - (t11 * t40 + t10 * t39)) - t41;
-        let t44 = k(2.5) * (t37 * (t43 + t42) + t38) - (t28 * (t34 + t33) - t29);
+        let t25 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t17));
+        let t26 = T::fused(t23, wheel_wz, t25 * wheel_wx);
+        let t27 = T::fused(-t15, wheel_wz, t22 * wheel_wx);
+        let t28 = k(1.0) / T::fused(t18, t18, t24 * t24);
+        let t29 = T::fused(wheel_wx, wheel_wx, t13);
+        let t30 = wheel_wy * wheel_wz;
+        let t31 = t26 * t27;
+        let t32 = T::fused(-t24, T::fused(t22, t30, T::fused(t15, t16, t18 * t29)), t31);
+        let t33 = T::fused(
+            t18,
+            T::fused(t25, t30, T::fused(-t23, t16, t24 * t29)),
+            -t31,
+        );
+        let t34 = T::fused(
+            -(t28 * t28 * (k(2.0) * T::fused(t24, t26, t18 * t27))),
+            T::fused(-t18, t26, t24 * t27),
+            t28 * (t33 + t32),
+        );
+        let t35 = T::fused(t11, pinion_wz, t12 * pinion_wy);
+        let t36 = T::fused(-t6, pinion_wz, t9 * pinion_wy);
+        let t37 = k(1.0) / T::fused(t2, t2, t10 * t10);
+        let t38 = T::fused(pinion_wz, pinion_wz, t7);
+        let t39 = pinion_wx * pinion_wy;
+        let t40 = t35 * t36;
+        let t41 = T::fused(t10, T::fused(t9, t0, T::fused(t2, t38, t6 * t39)), t40);
+        let t42 = T::fused(t2, T::fused(t12, t0, -T::fused(t10, t38, t11 * t39)), -t40);
+        let t43 = T::fused(
+            t37 * t37 * (k(2.0) * T::fused(-t10, t35, t2 * t36)),
+            T::fused(t2, t35, t10 * t36),
+            t37 * (t42 + t41),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t9 * t8 - (t6 * t3 - t2 * t0),
-            t12 * t8 + (t11 * t3 - t10 * t0),
+            T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3)),
+            T::fused(t12, t8, T::fused(-t10, t0, t11 * t3)),
             k(0.0),
             k(0.0),
             k(0.0),
-            t18 * t16 + t15 * t14 - t22 * t19,
-            t25 * t19 - (t24 * t16 - t23 * t14),
-            t44,
+            T::fused(-t22, t19, T::fused(t15, t14, t18 * t16)),
+            T::fused(t25, t19, -T::fused(-t23, t14, t24 * t16)),
+            T::fused(k(2.5), t43, -t34),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 26 operations (7 ±, 19 ×, 0 ÷) and 3 functions.
@@ -795,10 +884,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wz = y[25];
         let turn1 = y[28];
         let t0 = turn1.cos();
-        let t1 = k(2.0) * (k(0.5) - (wheel_e0 * wheel_e0 + wheel_e2 * wheel_e2));
+        let t1 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, wheel_e0 * wheel_e0));
         let t2 = turn1.sin();
-        let t3 = k(2.0) * (wheel_e2 * wheel_e3 + wheel_e0 * wheel_e1);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t3 = k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
         *out = [
             k(0.0),
             k(0.0),
@@ -834,86 +923,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let turn1 = y[28];
         let t0 = pinion_e0 * pinion_e0;
         let t1 = pinion_wy * pinion_wy;
-        let t2 = (t1 + pinion_wx * pinion_wx)
-            * (k(0.5) / (k(0.5) - (t0 + pinion_e3 * pinion_e3)));
+        let t2 = T::fused(pinion_wx, pinion_wx, t1)
+            * (k(0.5) / (k(0.5) - T::fused(pinion_e3, pinion_e3, t0)));
         let t3 = pinion_e0 * pinion_e1;
         let t4 = pinion_e2 * pinion_e3;
         let t5 = pinion_e0 * pinion_e2;
         let t6 = pinion_e1 * pinion_e3;
         let t7 = pinion_wx * pinion_wz;
-        let t8 = t7 - k(2.0) * (t6 - t5) * t2;
+        let t8 = T::fused(-(k(2.0) * (t6 - t5)), t2, t7);
         let t9 = wheel_e0 * wheel_e2;
         let t10 = wheel_e1 * wheel_e3;
         let t11 = k(2.0) * (t10 - t9);
         let t12 = wheel_e0 * wheel_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + wheel_e3 * wheel_e3));
-        let t14 = t13 * wheel_wx + t11 * wheel_wz;
-        let t15 = k(2.0) * (k(0.5) - (t12 + wheel_e2 * wheel_e2));
+        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t12));
+        let t14 = T::fused(t11, wheel_wz, t13 * wheel_wx);
+        let t15 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t12));
         let t16 = wheel_e0 * wheel_e3;
         let t17 = wheel_e1 * wheel_e2;
         let t18 = k(2.0) * (t17 + t16);
         let t19 = wheel_e0 * wheel_e1;
         let t20 = wheel_e2 * wheel_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = t21 * wheel_wx - t18 * wheel_wz;
+        let t22 = T::fused(-t18, wheel_wz, t21 * wheel_wx);
         let t23 = k(2.0) * (t20 + t19);
-        let t24 = k(1.0) / (t23 * t23 + t15 * t15);
-        let t25 = t24 * t24 * (k(2.0) * (t15 * t22 + t23 * t14))
-            * (t23 * t22 - t15 * t14);
-        let t26 = wheel_wx * wheel_wy;
-        let t27 = wheel_wz * wheel_wz;
-        let t28 = t27 + wheel_wx * wheel_wx;
-        let t29 = wheel_wy * wheel_wz;
-        let t30 = t14 * t22;
-        let t31 = t30 - t23 * (t21 * t29 + (t15 * t28 + t18 * t26));
-        let t32 = t15 * (t13 * t29 + (t23 * t28 - t11 * t26)) - t30;
-        let t33 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
+        let t24 = k(1.0) / T::fused(t15, t15, t23 * t23);
+        let t25 = wheel_wx * wheel_wy;
+        let t26 = wheel_wz * wheel_wz;
+        let t27 = T::fused(wheel_wx, wheel_wx, t26);
+        let t28 = wheel_wy * wheel_wz;
+        let t29 = t14 * t22;
+        let t30 = T::fused(-t23, T::fused(t21, t28, T::fused(t18, t25, t15 * t27)), t29);
+        let t31 = T::fused(
+            t15,
+            T::fused(t13, t28, T::fused(-t11, t25, t23 * t27)),
+            -t29,
+        );
+        let t32 = T::fused(
+            -(t24 * t24 * (k(2.0) * T::fused(t23, t14, t15 * t22))),
+            T::fused(-t15, t14, t23 * t22),
+            t24 * (t31 + t30),
+        );
+        let t33 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
         let t34 = k(2.0) * (t4 - t3);
-        let t35 = t34 * pinion_wy + t33 * pinion_wz;
-        let t36 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
+        let t35 = T::fused(t33, pinion_wz, t34 * pinion_wy);
+        let t36 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
         let t37 = pinion_e0 * pinion_e3;
         let t38 = pinion_e1 * pinion_e2;
         let t39 = k(2.0) * (t38 - t37);
         let t40 = k(2.0) * (t6 + t5);
-        let t41 = t40 * pinion_wy - t39 * pinion_wz;
+        let t41 = T::fused(-t39, pinion_wz, t40 * pinion_wy);
         let t42 = k(2.0) * (t38 + t37);
-        let t43 = k(1.0) / (t42 * t42 + t36 * t36);
-        let t44 = t43 * t43 * (k(2.0) * (t36 * t41 - t42 * t35))
-            * (t42 * t41 + t36 * t35);
-        let t45 = pinion_wz * pinion_wz + t1;
-        let t46 = pinion_wx * pinion_wy;
-        let t47 = t35 * t41;
-        let t48 = t47 + t42 * (t40 * t7 + (t39 * t46 + t36 * t45));
-        let t49 = t36 * (t34 * t7 - (t33 * t46 + t42 * t45)) - t47;
-        let t50 = k(2.5) * (t43 * (t49 + t48) + t44) - (t24 * (t32 + t31) - t25);
-        let t51 = t43 * (t39 * t42 - t36 * t33);
-        let t52 = k(87.5) * t51 + k(2.5) * ((t40 * t42 + t36 * t34) * t43) * t8;
-        let t53 = turn1.cos();
-        let t54 = turn1.sin();
-        let t55 = (t23 * t53 + t15 * t54).atan2(t23 * t54 - t15 * t53);
-        let t56 = k(8.0) * (k(0.2) + (turn1 + t55));
-        let t57 = (t21 * t23 - t15 * t13) * t24;
-        let t58 = (t27 + wheel_wy * wheel_wy)
-            * (k(0.5) / (k(0.5) - (t12 + wheel_e1 * wheel_e1)));
-        let t59 = t26 - k(2.0) * (t17 - t16) * t58;
-        let t60 = t24 * (t18 * t23 + t15 * t11) * t59 - t57 * t56;
-        let t61 = k(125.0) * t51;
-        let t62 = k(20.0) * t57;
-        let t63 = (t60 + t52 + t50) / (t57 * t62 + k(2.5) * t51 * t61);
+        let t43 = k(1.0) / T::fused(t36, t36, t42 * t42);
+        let t44 = T::fused(pinion_wz, pinion_wz, t1);
+        let t45 = pinion_wx * pinion_wy;
+        let t46 = t35 * t41;
+        let t47 = T::fused(t42, T::fused(t40, t7, T::fused(t36, t44, t39 * t45)), t46);
+        let t48 = T::fused(t36, T::fused(t34, t7, -T::fused(t42, t44, t33 * t45)), -t46);
+        let t49 = T::fused(
+            t43 * t43 * (k(2.0) * T::fused(-t42, t35, t36 * t41)),
+            T::fused(t36, t35, t42 * t41),
+            t43 * (t48 + t47),
+        );
+        let t50 = t43 * T::fused(-t36, t33, t39 * t42);
+        let t51 = T::fused(
+            k(2.5) * (T::fused(t36, t34, t40 * t42) * t43),
+            t8,
+            k(87.5) * t50,
+        );
+        let t52 = turn1.cos();
+        let t53 = turn1.sin();
+        let t54 = T::fused(t15, t53, t23 * t52).atan2(T::fused(-t15, t52, t23 * t53));
+        let t55 = k(8.0) * (k(0.2) + (turn1 + t54));
+        let t56 = T::fused(-t15, t13, t21 * t23) * t24;
+        let t57 = T::fused(wheel_wy, wheel_wy, t26)
+            * (k(0.5) / (k(0.5) - T::fused(wheel_e1, wheel_e1, t12)));
+        let t58 = T::fused(-(k(2.0) * (t17 - t16)), t57, t25);
+        let t59 = T::fused(-t56, t55, t24 * T::fused(t15, t11, t18 * t23) * t58);
+        let t60 = k(125.0) * t50;
+        let t61 = k(20.0) * t56;
+        let t62 = (t59 + t51 + T::fused(k(2.5), t49, -t32))
+            / T::fused(k(2.5) * t50, t60, t56 * t61);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            pinion_wy * pinion_wz - k(2.0) * (t4 + t3) * t2,
+            T::fused(-(k(2.0) * (t4 + t3)), t2, pinion_wy * pinion_wz),
             -t8,
-            k(35.0) - t61 * t63,
+            T::fused(-t60, t62, k(35.0)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t56 + t62 * t63),
-            wheel_wx * wheel_wz - k(2.0) * (t10 + t9) * t58,
-            -t59,
-            -t63,
+            -T::fused(t61, t62, t55),
+            T::fused(-(k(2.0) * (t10 + t9)), t57, wheel_wx * wheel_wz),
+            -t58,
+            -t62,
         ];
     }
     /// Writes λ: 111 operations (32 ±, 75 ×, 4 ÷).
@@ -951,42 +1054,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_dwz = accelerations[11];
         let closing0 = accelerations[12];
         let t0 = pinion_e0 * pinion_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + pinion_e2 * pinion_e2));
-        let t2 = k(2.0) * (k(0.5) - (t0 + pinion_e1 * pinion_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
         let t3 = pinion_e0 * pinion_e3;
         let t4 = pinion_e1 * pinion_e2;
         let t5 = k(2.0) * (t4 + t3);
         let t6 = k(2.0) * (t4 - t3);
-        let t7 = k(1.0) / (t6 * t5 - t2 * t1);
-        let t8 = k(0.01) * (pinion_wy * pinion_wz + pinion_dwx);
-        let t9 = k(2.0) * (pinion_e1 * pinion_e3 + pinion_e0 * pinion_e2) * t5
-            + t2 * (k(2.0) * (pinion_e2 * pinion_e3 - pinion_e0 * pinion_e1));
-        let t10 = closing0 * (k(2.5) * (t9 / (t5 * t5 + t2 * t2)));
-        let t11 = k(0.01) * (pinion_wx * pinion_wz - pinion_dwy) - t10;
-        let t12 = wheel_e0 * wheel_e0;
-        let t13 = k(2.0) * (k(0.5) - (t12 + wheel_e3 * wheel_e3));
-        let t14 = k(2.0) * (k(0.5) - (t12 + wheel_e2 * wheel_e2));
-        let t15 = wheel_e0 * wheel_e1;
-        let t16 = wheel_e2 * wheel_e3;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = k(2.0) * (t16 - t15);
-        let t19 = k(1.0) / (t18 * t17 - t14 * t13);
-        let t20 = k(0.025) * (wheel_wx * wheel_wz + wheel_dwy);
-        let t21 = k(2.0) * (wheel_e1 * wheel_e2 + wheel_e0 * wheel_e3) * t17
-            + t14 * (k(2.0) * (wheel_e1 * wheel_e3 - wheel_e0 * wheel_e2));
-        let t22 = k(0.025) * (wheel_wx * wheel_wy - wheel_dwz)
-            - closing0 * (t21 / (t17 * t17 + t14 * t14));
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = k(0.01) * T::fused(pinion_wy, pinion_wz, pinion_dwx);
+        let t9 = T::fused(
+            t2,
+            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3),
+            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * t5,
+        );
+        let t10 = T::fused(
+            -closing0,
+            k(2.5) * (t9 / T::fused(t2, t2, t5 * t5)),
+            k(0.01) * T::fused(pinion_wx, pinion_wz, -pinion_dwy),
+        );
+        let t11 = wheel_e0 * wheel_e0;
+        let t12 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t11));
+        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t11));
+        let t14 = wheel_e0 * wheel_e1;
+        let t15 = wheel_e2 * wheel_e3;
+        let t16 = k(2.0) * (t15 + t14);
+        let t17 = k(2.0) * (t15 - t14);
+        let t18 = k(1.0) / T::fused(-t13, t12, t17 * t16);
+        let t19 = k(0.025) * T::fused(wheel_wx, wheel_wz, wheel_dwy);
+        let t20 = T::fused(
+            t13,
+            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
+            k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2) * t16,
+        );
+        let t21 = T::fused(
+            -closing0,
+            t20 / T::fused(t13, t13, t16 * t16),
+            k(0.025) * T::fused(wheel_wx, wheel_wy, -wheel_dwz),
+        );
         *lambda = [
             -(k(2.0) * pinion_dsx),
             -(k(2.0) * pinion_dsy),
             -(k(2.0) * pinion_dsz),
-            t11 * (t1 * t7) + t8 * (t5 * t7),
-            t11 * (t6 * t7) + t8 * (t2 * t7),
+            T::fused(t8, t5 * t7, t10 * (t1 * t7)),
+            T::fused(t8, t2 * t7, t10 * (t6 * t7)),
             -(k(4.0) * wheel_dsx),
             -(k(4.0) * wheel_dsy),
             -(k(4.0) * wheel_dsz),
-            t22 * (t13 * t19) + t20 * (t17 * t19),
-            t22 * (t18 * t19) + t20 * (t14 * t19),
+            T::fused(t19, t16 * t18, t21 * (t12 * t18)),
+            T::fused(t19, t13 * t18, t21 * (t17 * t18)),
             closing0,
         ];
     }

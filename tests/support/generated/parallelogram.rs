@@ -153,41 +153,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Parallelogram<T> {
             crank_sy,
             crank_sz,
             -(k(0.5)
-                * (crank_e1 * crank_wx + crank_e2 * crank_wy + crank_e3 * crank_wz)),
-            k(0.5) * (crank_e0 * crank_wx - crank_e3 * crank_wy + crank_e2 * crank_wz),
-            k(0.5) * (crank_e3 * crank_wx + crank_e0 * crank_wy - crank_e1 * crank_wz),
+                * T::fused(
+                    crank_e3,
+                    crank_wz,
+                    T::fused(crank_e2, crank_wy, crank_e1 * crank_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    crank_e2,
+                    crank_wz,
+                    T::fused(-crank_e3, crank_wy, crank_e0 * crank_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -crank_e1,
+                    crank_wz,
+                    T::fused(crank_e0, crank_wy, crank_e3 * crank_wx),
+                ),
             -(k(0.5)
-                * (crank_e2 * crank_wx - crank_e1 * crank_wy - crank_e0 * crank_wz)),
+                * T::fused(
+                    -crank_e0,
+                    crank_wz,
+                    T::fused(-crank_e1, crank_wy, crank_e2 * crank_wx),
+                )),
             coupler_sx,
             coupler_sy,
             coupler_sz,
             -(k(0.5)
-                * (coupler_e1 * coupler_wx + coupler_e2 * coupler_wy
-                    + coupler_e3 * coupler_wz)),
+                * T::fused(
+                    coupler_e3,
+                    coupler_wz,
+                    T::fused(coupler_e2, coupler_wy, coupler_e1 * coupler_wx),
+                )),
             k(0.5)
-                * (coupler_e0 * coupler_wx - coupler_e3 * coupler_wy
-                    + coupler_e2 * coupler_wz),
+                * T::fused(
+                    coupler_e2,
+                    coupler_wz,
+                    T::fused(-coupler_e3, coupler_wy, coupler_e0 * coupler_wx),
+                ),
             k(0.5)
-                * (coupler_e3 * coupler_wx + coupler_e0 * coupler_wy
-                    - coupler_e1 * coupler_wz),
+                * T::fused(
+                    -coupler_e1,
+                    coupler_wz,
+                    T::fused(coupler_e0, coupler_wy, coupler_e3 * coupler_wx),
+                ),
             -(k(0.5)
-                * (coupler_e2 * coupler_wx - coupler_e1 * coupler_wy
-                    - coupler_e0 * coupler_wz)),
+                * T::fused(
+                    -coupler_e0,
+                    coupler_wz,
+                    T::fused(-coupler_e1, coupler_wy, coupler_e2 * coupler_wx),
+                )),
             rocker_sx,
             rocker_sy,
             rocker_sz,
             -(k(0.5)
-                * (rocker_e1 * rocker_wx + rocker_e2 * rocker_wy
-                    + rocker_e3 * rocker_wz)),
+                * T::fused(
+                    rocker_e3,
+                    rocker_wz,
+                    T::fused(rocker_e2, rocker_wy, rocker_e1 * rocker_wx),
+                )),
             k(0.5)
-                * (rocker_e0 * rocker_wx - rocker_e3 * rocker_wy
-                    + rocker_e2 * rocker_wz),
+                * T::fused(
+                    rocker_e2,
+                    rocker_wz,
+                    T::fused(-rocker_e3, rocker_wy, rocker_e0 * rocker_wx),
+                ),
             k(0.5)
-                * (rocker_e3 * rocker_wx + rocker_e0 * rocker_wy
-                    - rocker_e1 * rocker_wz),
+                * T::fused(
+                    -rocker_e1,
+                    rocker_wz,
+                    T::fused(rocker_e0, rocker_wy, rocker_e3 * rocker_wx),
+                ),
             -(k(0.5)
-                * (rocker_e2 * rocker_wx - rocker_e1 * rocker_wy
-                    - rocker_e0 * rocker_wz)),
+                * T::fused(
+                    -rocker_e0,
+                    rocker_wz,
+                    T::fused(-rocker_e1, rocker_wy, rocker_e2 * rocker_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -247,53 +289,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let rocker_e2 = y[19];
         let rocker_e3 = y[20];
         let t0 = crank_e0 * crank_e0;
-        let t1 = t0 + crank_e1 * crank_e1;
+        let t1 = T::fused(crank_e1, crank_e1, t0);
         let t2 = k(0.5) - t1;
-        let t3 = crank_e1 * crank_e2 + crank_e0 * crank_e3;
+        let t3 = T::fused(crank_e0, crank_e3, crank_e1 * crank_e2);
         let t4 = crank_e0 * crank_e2;
         let t5 = crank_e1 * crank_e3;
         let t6 = t5 - t4;
-        let t7 = k(2.0) * (crank_e2 * crank_e3 - crank_e0 * crank_e1);
+        let t7 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
         let t8 = k(2.0) * (t5 + t4);
-        let t9 = rocker_e0 * rocker_e0 + rocker_e1 * rocker_e1;
+        let t9 = T::fused(rocker_e1, rocker_e1, rocker_e0 * rocker_e0);
         let t10 = k(0.3) * (k(0.5) - t9);
-        let t11 = k(0.3) * (rocker_e1 * rocker_e2 + rocker_e0 * rocker_e3);
+        let t11 = k(0.3) * T::fused(rocker_e0, rocker_e3, rocker_e1 * rocker_e2);
         let t12 = rocker_e0 * rocker_e2;
         let t13 = rocker_e1 * rocker_e3;
         let t14 = k(0.3) * (t13 - t12);
         let t15 = coupler_e0 * coupler_e0;
-        let t16 = t15 + coupler_e1 * coupler_e1;
+        let t16 = T::fused(coupler_e1, coupler_e1, t15);
         let t17 = k(0.5) * (k(0.5) - t16);
         let t18 = coupler_e0 * coupler_e3;
         let t19 = coupler_e1 * coupler_e2;
         let t20 = k(0.5) * (t19 + t18);
-        let t21 = k(0.5) * (coupler_e1 * coupler_e3 - coupler_e0 * coupler_e2);
+        let t21 = k(0.5) * T::fused(-coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
         let t22 = coupler_e2 * coupler_e2;
-        let t23 = t8 * (k(2.0) * (t19 - t18)) - t7 * (k(2.0) * (k(0.5) - (t15 + t22)));
+        let t23 = T::fused(
+            -t7,
+            k(2.0) * (k(0.5) - (t15 + t22)),
+            t8 * (k(2.0) * (t19 - t18)),
+        );
         let t24 = crank_e3 * crank_e3;
-        let t25 = k(2.0) * (k(0.5) - (t0 + t24))
-            * (k(2.0) * (coupler_e2 * coupler_e3 + coupler_e0 * coupler_e1));
+        let t25 = T::fused(
+            k(2.0) * (k(0.5) - (t0 + t24)),
+            k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3),
+            -t23,
+        );
         *out = [
-            crank_rx + k(0.2) * t2,
-            crank_ry - k(0.2) * t3,
-            crank_rz - k(0.2) * t6,
+            T::fused(k(0.2), t2, crank_rx),
+            T::fused(-k(0.2), t3, crank_ry),
+            T::fused(-k(0.2), t6, crank_rz),
             -t7,
             t8,
             rocker_rx + t10 - k(0.5),
             rocker_ry - t11,
             rocker_rz - t14,
-            -(k(2.0) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1)),
+            -(k(2.0) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3)),
             k(2.0) * (t13 + t12),
-            coupler_rx + t17 - (crank_rx - k(0.4) * t2),
-            coupler_ry - t20 - (crank_ry + k(0.4) * t3),
-            coupler_rz - t21 - (crank_rz + k(0.4) * t6),
-            t23 - t25,
+            coupler_rx + t17 - T::fused(-k(0.4), t2, crank_rx),
+            coupler_ry - t20 - T::fused(k(0.4), t3, crank_ry),
+            coupler_rz - t21 - T::fused(k(0.4), t6, crank_rz),
+            -t25,
             rocker_rx - t10 - (coupler_rx - t17),
             rocker_ry + t11 - (coupler_ry + t20),
             rocker_rz + t14 - (coupler_rz + t21),
-            t24 + (t1 + crank_e2 * crank_e2) - k(1.0),
-            coupler_e3 * coupler_e3 + (t16 + t22) - k(1.0),
-            rocker_e3 * rocker_e3 + (t9 + rocker_e2 * rocker_e2) - k(1.0),
+            t24 + T::fused(crank_e2, crank_e2, t1) - k(1.0),
+            T::fused(coupler_e3, coupler_e3, t16 + t22) - k(1.0),
+            T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t9)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 193 operations (83 ±, 110 ×, 0 ÷).
@@ -335,70 +384,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let t3 = crank_e0 * crank_e2;
         let t4 = crank_e1 * crank_e3;
         let t5 = k(2.0) * (t4 + t3);
-        let t6 = t5 * crank_wy - t2 * crank_wz;
+        let t6 = T::fused(-t2, crank_wz, t5 * crank_wy);
         let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - (t7 + crank_e2 * crank_e2));
+        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
         let t9 = crank_e0 * crank_e1;
         let t10 = crank_e2 * crank_e3;
         let t11 = k(2.0) * (t10 - t9);
-        let t12 = t11 * crank_wy + t8 * crank_wz;
+        let t12 = T::fused(t8, crank_wz, t11 * crank_wy);
         let t13 = k(2.0) * (t10 + t9);
-        let t14 = k(2.0) * (k(0.5) - (t7 + crank_e3 * crank_e3));
-        let t15 = t14 * crank_wy + t13 * crank_wz;
+        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
+        let t15 = T::fused(t13, crank_wz, t14 * crank_wy);
         let t16 = k(2.0) * (t1 + t0);
-        let t17 = k(2.0) * (k(0.5) - (t7 + crank_e1 * crank_e1));
+        let t17 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
         let t18 = rocker_e0 * rocker_e3;
         let t19 = rocker_e1 * rocker_e2;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = k(2.0) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2) * rocker_wy
-            - t20 * rocker_wz;
+        let t21 = T::fused(
+            -t20,
+            rocker_wz,
+            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+        );
         let t22 = k(0.15) * t21;
         let t23 = rocker_e0 * rocker_e0;
-        let t24 = k(2.0) * (k(0.5) - (t23 + rocker_e2 * rocker_e2));
+        let t24 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t23));
         let t25 = rocker_e0 * rocker_e1;
         let t26 = rocker_e2 * rocker_e3;
-        let t27 = k(0.15) * (k(2.0) * (t26 - t25) * rocker_wy + t24 * rocker_wz);
-        let t28 = k(2.0) * (k(0.5) - (t23 + rocker_e3 * rocker_e3)) * rocker_wy
-            + k(2.0) * (t26 + t25) * rocker_wz;
+        let t27 = k(0.15) * T::fused(t24, rocker_wz, k(2.0) * (t26 - t25) * rocker_wy);
+        let t28 = T::fused(
+            k(2.0) * (t26 + t25),
+            rocker_wz,
+            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t23)) * rocker_wy,
+        );
         let t29 = k(0.15) * t28;
-        let t30 = t20 * rocker_wx
-            + k(2.0) * (k(0.5) - (t23 + rocker_e1 * rocker_e1)) * rocker_wy;
+        let t30 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t23)),
+            rocker_wy,
+            t20 * rocker_wx,
+        );
         let t31 = coupler_e0 * coupler_e3;
         let t32 = coupler_e1 * coupler_e2;
         let t33 = k(2.0) * (t32 - t31);
         let t34 = coupler_e0 * coupler_e2;
         let t35 = coupler_e1 * coupler_e3;
         let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.25) * (t36 * coupler_wy - t33 * coupler_wz);
+        let t37 = k(0.25) * T::fused(-t33, coupler_wz, t36 * coupler_wy);
         let t38 = coupler_e0 * coupler_e0;
-        let t39 = k(2.0) * (k(0.5) - (t38 + coupler_e2 * coupler_e2));
+        let t39 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t38));
         let t40 = coupler_e0 * coupler_e1;
         let t41 = coupler_e2 * coupler_e3;
         let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.25) * (t42 * coupler_wy + t39 * coupler_wz);
+        let t43 = k(0.25) * T::fused(t39, coupler_wz, t42 * coupler_wy);
         let t44 = k(2.0) * (t41 + t40);
-        let t45 = k(2.0) * (k(0.5) - (t38 + coupler_e3 * coupler_e3));
-        let t46 = k(0.25) * (t45 * coupler_wy + t44 * coupler_wz);
-        let t47 = t11 * (k(2.0) * (t32 + t31))
-            - t5 * (k(2.0) * (k(0.5) - (t38 + coupler_e1 * coupler_e1)));
-        let t48 = coupler_wx * (t5 * t36 + t11 * t42 + t14 * t45)
-            + coupler_wz * (t14 * (k(2.0) * (t35 - t34)) - t47);
-        let t49 = k(2.0) * (t4 - t3) * t44 - (t16 * t39 + t17 * t33);
-        let t50 = crank_wx * (t13 * t44 + (t2 * t33 + t8 * t39)) - crank_wy * t49;
+        let t45 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t38));
+        let t46 = k(0.25) * T::fused(t44, coupler_wz, t45 * coupler_wy);
+        let t47 = T::fused(
+            -t5,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t38)),
+            t11 * (k(2.0) * (t32 + t31)),
+        );
+        let t48 = T::fused(
+            coupler_wz,
+            T::fused(t14, k(2.0) * (t35 - t34), -t47),
+            coupler_wx * T::fused(t14, t45, T::fused(t11, t42, t5 * t36)),
+        );
+        let t49 = T::fused(k(2.0) * (t4 - t3), t44, -T::fused(t17, t33, t16 * t39));
+        let t50 = T::fused(
+            -crank_wy,
+            t49,
+            crank_wx * T::fused(t13, t44, T::fused(t8, t39, t2 * t33)),
+        );
         *out = [
-            crank_sx + k(0.1) * t6,
-            crank_sy + k(0.1) * t12,
-            crank_sz - k(0.1) * t15,
-            -(t8 * crank_wx + t16 * crank_wy),
-            -(t2 * crank_wx + t17 * crank_wy),
+            T::fused(k(0.1), t6, crank_sx),
+            T::fused(k(0.1), t12, crank_sy),
+            T::fused(-k(0.1), t15, crank_sz),
+            -T::fused(t16, crank_wy, t8 * crank_wx),
+            -T::fused(t17, crank_wy, t2 * crank_wx),
             rocker_sx + t22,
             rocker_sy + t27,
             rocker_sz - t29,
-            -(t24 * rocker_wx + k(2.0) * (t19 + t18) * rocker_wy),
+            -T::fused(k(2.0) * (t19 + t18), rocker_wy, t24 * rocker_wx),
             -t30,
-            coupler_sx + t37 - (crank_sx - k(0.2) * t6),
-            coupler_sy + t43 - (crank_sy - k(0.2) * t12),
-            coupler_sz - t46 - (crank_sz + k(0.2) * t15),
+            coupler_sx + t37 - T::fused(-k(0.2), t6, crank_sx),
+            coupler_sy + t43 - T::fused(-k(0.2), t12, crank_sy),
+            coupler_sz - t46 - T::fused(k(0.2), t15, crank_sz),
             t48 - t50,
             rocker_sx - t22 - (coupler_sx - t37),
             rocker_sy - t27 - (coupler_sy - t43),
@@ -429,25 +497,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = rocker_wx * (k(4e-5) * rocker_wx) + rocker_wy * (k(0.005) * rocker_wy)
-            + rocker_wz * (k(0.005) * rocker_wz);
-        let t1 = t0
-            + k(0.6)
-                * (rocker_sx * rocker_sx + rocker_sy * rocker_sy
-                    + rocker_sz * rocker_sz);
-        let t2 = coupler_wx * (k(5e-5) * coupler_wx)
-            + coupler_wy * (k(0.02) * coupler_wy) + coupler_wz * (k(0.02) * coupler_wz);
-        let t3 = t2
-            + k(0.8)
-                * (coupler_sx * coupler_sx + coupler_sy * coupler_sy
-                    + coupler_sz * coupler_sz);
-        let t4 = crank_wx * (k(2e-5) * crank_wx) + crank_wy * (k(0.004) * crank_wy)
-            + crank_wz * (k(0.004) * crank_wz);
-        let t5 = t4
-            + k(0.5) * (crank_sx * crank_sx + crank_sy * crank_sy + crank_sz * crank_sz);
+        let t0 = T::fused(
+            rocker_wz,
+            k(0.005) * rocker_wz,
+            T::fused(rocker_wy, k(0.005) * rocker_wy, rocker_wx * (k(4e-5) * rocker_wx)),
+        );
+        let t1 = T::fused(
+            k(0.6),
+            T::fused(
+                rocker_sz,
+                rocker_sz,
+                T::fused(rocker_sy, rocker_sy, rocker_sx * rocker_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            coupler_wz,
+            k(0.02) * coupler_wz,
+            T::fused(
+                coupler_wy,
+                k(0.02) * coupler_wy,
+                coupler_wx * (k(5e-5) * coupler_wx),
+            ),
+        );
+        let t3 = T::fused(
+            k(0.8),
+            T::fused(
+                coupler_sz,
+                coupler_sz,
+                T::fused(coupler_sy, coupler_sy, coupler_sx * coupler_sx),
+            ),
+            t2,
+        );
+        let t4 = T::fused(
+            crank_wz,
+            k(0.004) * crank_wz,
+            T::fused(crank_wy, k(0.004) * crank_wy, crank_wx * (k(2e-5) * crank_wx)),
+        );
+        let t5 = T::fused(
+            k(0.5),
+            T::fused(
+                crank_sz,
+                crank_sz,
+                T::fused(crank_sy, crank_sy, crank_sx * crank_sx),
+            ),
+            t4,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t5 + t3 + t1),
-            potential: k(4.905) * crank_ry + k(7.848) * coupler_ry + k(5.886) * rocker_ry,
+            potential: T::fused(
+                k(5.886),
+                rocker_ry,
+                T::fused(k(7.848), coupler_ry, k(4.905) * crank_ry),
+            ),
         }
     }
     /// Writes the joint readings: 250 operations (114 ±, 136 ×, 0 ÷).
@@ -476,7 +578,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let rocker_wz = y[38];
         let t0 = crank_e2 * crank_e2;
         let t1 = crank_e0 * crank_e0;
-        let t2 = t1 + crank_e1 * crank_e1;
+        let t2 = T::fused(crank_e1, crank_e1, t1);
         let t3 = crank_e3 * crank_e3;
         let t4 = k(1.0) - (t3 + (t2 + t0));
         let t5 = k(2.0) * (k(0.5) - t2);
@@ -486,7 +588,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let t9 = k(2.0) * (t8 + t7);
         let t10 = rocker_e2 * rocker_e2;
         let t11 = rocker_e0 * rocker_e0;
-        let t12 = t11 + rocker_e1 * rocker_e1;
+        let t12 = T::fused(rocker_e1, rocker_e1, t11);
         let t13 = rocker_e3 * rocker_e3;
         let t14 = k(2.0) * (k(0.5) - t12);
         let t15 = rocker_e0 * rocker_e3;
@@ -500,7 +602,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let t23 = k(2.0) * (t22 - t21) * t20;
         let t24 = coupler_e2 * coupler_e2;
         let t25 = coupler_e0 * coupler_e0;
-        let t26 = t25 + coupler_e1 * coupler_e1;
+        let t26 = T::fused(coupler_e1, coupler_e1, t25);
         let t27 = coupler_e3 * coupler_e3;
         let t28 = k(1.0) - (t27 + (t26 + t24));
         let t29 = k(2.0) * (k(0.5) - (t25 + t24));
@@ -522,43 +624,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let t45 = coupler_e1 * coupler_e3;
         let t46 = k(2.0) * (t45 - t44);
         let t47 = k(2.0) * (k(0.5) - (t1 + t3));
-        let t48 = t47 * t20 - (t40 * t33 - t42 * t29);
-        let t49 = coupler_wy * t48 + coupler_wx * (t47 * t46 - (t43 - t40 * t39));
+        let t48 = T::fused(t47, t20, -T::fused(-t42, t29, t40 * t33));
+        let t49 = T::fused(
+            coupler_wx,
+            T::fused(t47, t46, -T::fused(-t40, t39, t43)),
+            coupler_wy * t48,
+        );
         let t50 = k(2.0) * (k(0.5) - (t25 + t27));
         let t51 = k(2.0) * (t19 - t18);
         let t52 = k(2.0) * (t45 + t44);
-        let t53 = t40 * t52 + t42 * t51;
+        let t53 = T::fused(t42, t51, t40 * t52);
         let t54 = t47 - t4;
-        let t55 = crank_wy * (t36 + (t38 + t37 * t29))
-            + crank_wx * (t23 - (t9 * t29 + t5 * t33));
-        let t56 = coupler_e0 * rocker_e0 + coupler_e1 * rocker_e1
-            + coupler_e2 * rocker_e2 + coupler_e3 * rocker_e3;
-        let t57 = coupler_e1 * rocker_e0 - coupler_e0 * rocker_e1
-            - coupler_e3 * rocker_e2 + coupler_e2 * rocker_e3;
-        let t58 = coupler_e2 * rocker_e0 + coupler_e3 * rocker_e1
-            - coupler_e0 * rocker_e2 - coupler_e1 * rocker_e3;
-        let t59 = coupler_e3 * rocker_e0 - coupler_e2 * rocker_e1
-            + coupler_e1 * rocker_e2 - coupler_e0 * rocker_e3;
+        let t55 = T::fused(
+            crank_wx,
+            t23 - T::fused(t5, t33, t9 * t29),
+            crank_wy * (t36 + T::fused(t37, t29, t38)),
+        );
+        let t56 = T::fused(
+            coupler_e3,
+            rocker_e3,
+            T::fused(
+                coupler_e2,
+                rocker_e2,
+                T::fused(coupler_e1, rocker_e1, coupler_e0 * rocker_e0),
+            ),
+        );
+        let t57 = T::fused(
+            coupler_e2,
+            rocker_e3,
+            T::fused(
+                -coupler_e3,
+                rocker_e2,
+                T::fused(-coupler_e0, rocker_e1, coupler_e1 * rocker_e0),
+            ),
+        );
+        let t58 = T::fused(
+            -coupler_e1,
+            rocker_e3,
+            T::fused(
+                -coupler_e0,
+                rocker_e2,
+                T::fused(coupler_e3, rocker_e1, coupler_e2 * rocker_e0),
+            ),
+        );
+        let t59 = T::fused(
+            -coupler_e0,
+            rocker_e3,
+            T::fused(
+                coupler_e1,
+                rocker_e2,
+                T::fused(-coupler_e2, rocker_e1, coupler_e3 * rocker_e0),
+            ),
+        );
         let t60 = rocker_e0 * rocker_e2;
         let t61 = rocker_e1 * rocker_e3;
         let t62 = k(2.0) * (t61 - t60);
-        let t63 = coupler_wy * (t20 * t62 - (t29 * t17 + t33 * t14))
-            + coupler_wx * (t46 * t62 + (t41 * t17 + t39 * t14));
-        let t64 = coupler_wz * (t50 * t62 - (t51 * t17 - t52 * t14)) - t63;
+        let t63 = T::fused(
+            coupler_wx,
+            T::fused(t46, t62, T::fused(t39, t14, t41 * t17)),
+            coupler_wy * T::fused(t20, t62, -T::fused(t33, t14, t29 * t17)),
+        );
+        let t64 = T::fused(
+            coupler_wz,
+            T::fused(t50, t62, -T::fused(-t52, t14, t51 * t17)),
+            -t63,
+        );
         let t65 = k(2.0) * (t16 - t15);
         let t66 = k(2.0) * (k(0.5) - (t11 + t10));
         let t67 = rocker_e0 * rocker_e1;
         let t68 = rocker_e2 * rocker_e3;
         let t69 = k(2.0) * (t68 + t67);
-        let t70 = coupler_wy * (t20 * t69 + (t29 * t66 + t33 * t65))
-            + coupler_wx * (t46 * t69 - (t41 * t66 + t39 * t65));
-        let t71 = coupler_wz * (t50 * t69 + (t51 * t66 - t52 * t65)) - t70;
+        let t70 = T::fused(
+            coupler_wx,
+            T::fused(t46, t69, -T::fused(t39, t65, t41 * t66)),
+            coupler_wy * T::fused(t20, t69, T::fused(t33, t65, t29 * t66)),
+        );
+        let t71 = T::fused(
+            coupler_wz,
+            T::fused(t50, t69, T::fused(-t52, t65, t51 * t66)),
+            -t70,
+        );
         let t72 = k(2.0) * (t61 + t60);
         let t73 = k(2.0) * (t68 - t67);
         let t74 = k(2.0) * (k(0.5) - (t11 + t13));
-        let t75 = coupler_wy * (t20 * t74 + (t29 * t73 - t33 * t72))
-            + coupler_wx * (t46 * t74 - (t41 * t73 - t39 * t72));
-        let t76 = coupler_wz * (t50 * t74 + (t51 * t73 + t52 * t72)) - t75;
+        let t75 = T::fused(
+            coupler_wx,
+            T::fused(t46, t74, -T::fused(-t39, t72, t41 * t73)),
+            coupler_wy * T::fused(t20, t74, T::fused(-t33, t72, t29 * t73)),
+        );
+        let t76 = T::fused(
+            coupler_wz,
+            T::fused(t50, t74, T::fused(t52, t72, t51 * t73)),
+            -t75,
+        );
         *out = [
             -t6,
             -t9,
@@ -566,12 +724,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
             k(1.0) - (t13 + (t12 + t10)) - t14,
             -t17,
             rocker_wz,
-            t33 * t6 + t9 * t30 - t23,
-            t38 + (t37 - t4) * t30 + t36,
-            coupler_wz * (t53 + t47 * t50) - t49 - crank_wz,
-            t40 * (t39 - t28) - t43 + t46 * t54,
-            t53 + t54 * (t50 - t28),
-            coupler_wy + (crank_wz * t48 - t55),
+            T::fused(t9, t30, t33 * t6) - t23,
+            T::fused(t37 - t4, t30, t38) + t36,
+            T::fused(coupler_wz, T::fused(t47, t50, t53), -t49) - crank_wz,
+            T::fused(t46, t54, T::fused(t40, t39 - t28, -t43)),
+            T::fused(t54, t50 - t28, t53),
+            coupler_wy + T::fused(crank_wz, t48, -t55),
             t56,
             -t57,
             -t58,
@@ -983,15 +1141,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t23 = k(0.5) * coupler_e2;
         let t24 = k(0.5) * coupler_e1;
         let t25 = k(0.5) * coupler_e0;
-        let t26 = k(2.0) * (coupler_e2 * coupler_e3 + coupler_e0 * coupler_e1);
+        let t26 = k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
         let t27 = k(2.0)
-            * (k(0.5) - (coupler_e0 * coupler_e0 + coupler_e2 * coupler_e2));
-        let t28 = k(2.0) * (coupler_e1 * coupler_e2 - coupler_e0 * coupler_e3);
+            * (k(0.5) - T::fused(coupler_e2, coupler_e2, coupler_e0 * coupler_e0));
+        let t28 = k(2.0) * T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
         let t29 = k(2.0) * coupler_e1;
-        let t30 = k(2.0) * (k(0.5) - (crank_e0 * crank_e0 + crank_e3 * crank_e3));
-        let t31 = k(2.0) * (crank_e2 * crank_e3 - crank_e0 * crank_e1);
+        let t30 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, crank_e0 * crank_e0));
+        let t31 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
         let t32 = k(2.0) * coupler_e3;
-        let t33 = k(2.0) * (crank_e1 * crank_e3 + crank_e0 * crank_e2);
+        let t33 = k(2.0) * T::fused(crank_e0, crank_e2, crank_e1 * crank_e3);
         let t34 = k(2.0) * coupler_e0;
         let t35 = k(2.0) * coupler_e2;
         *out = [
@@ -1063,14 +1221,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             -t22,
             t25,
             -t24,
-            t28 * t9 + t27 * t6 + t26 * (k(4.0) * crank_e0),
-            t28 * t8 + t27 * t7,
-            t28 * t7 - t27 * t8,
-            t28 * t6 - t27 * t9 + t26 * (k(4.0) * crank_e3),
-            -(t33 * t32 - t31 * (k(4.0) * coupler_e0) + t30 * t29),
-            t33 * t35 - t30 * t34,
-            t33 * t29 + t31 * (k(4.0) * coupler_e2) - t30 * t32,
-            -(t33 * t34 + t30 * t35),
+            T::fused(t26, k(4.0) * crank_e0, T::fused(t27, t6, t28 * t9)),
+            T::fused(t27, t7, t28 * t8),
+            T::fused(-t27, t8, t28 * t7),
+            T::fused(t26, k(4.0) * crank_e3, T::fused(-t27, t9, t28 * t6)),
+            -T::fused(t30, t29, T::fused(-t31, k(4.0) * coupler_e0, t33 * t32)),
+            T::fused(-t30, t34, t33 * t35),
+            T::fused(-t30, t32, T::fused(t31, k(4.0) * coupler_e2, t33 * t29)),
+            -T::fused(t30, t35, t33 * t34),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1136,14 +1294,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t7 = crank_e2 * crank_e3;
         let t8 = t7 - t6;
         let t9 = crank_e0 * crank_e0;
-        let t10 = k(0.5) - (t9 + crank_e2 * crank_e2);
-        let t11 = k(0.5) - (t9 + crank_e3 * crank_e3);
+        let t10 = k(0.5) - T::fused(crank_e2, crank_e2, t9);
+        let t11 = k(0.5) - T::fused(crank_e3, crank_e3, t9);
         let t12 = t7 + t6;
         let t13 = k(2.0) * t10;
         let t14 = k(2.0) * (t4 + t3);
         let t15 = k(2.0) * t5;
-        let t16 = k(2.0) * (k(0.5) - (t9 + crank_e1 * crank_e1));
-        let t17 = k(0.3) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
+        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t9));
+        let t17 = k(0.3) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
         let t18 = rocker_e0 * rocker_e3;
         let t19 = rocker_e1 * rocker_e2;
         let t20 = t19 - t18;
@@ -1152,9 +1310,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t23 = rocker_e2 * rocker_e3;
         let t24 = k(0.3) * (t23 - t22);
         let t25 = rocker_e0 * rocker_e0;
-        let t26 = k(0.5) - (t25 + rocker_e2 * rocker_e2);
+        let t26 = k(0.5) - T::fused(rocker_e2, rocker_e2, t25);
         let t27 = k(0.3) * t26;
-        let t28 = k(0.3) * (k(0.5) - (t25 + rocker_e3 * rocker_e3));
+        let t28 = k(0.3) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t25));
         let t29 = k(0.3) * (t23 + t22);
         let t30 = coupler_e0 * coupler_e2;
         let t31 = coupler_e1 * coupler_e3;
@@ -1169,22 +1327,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t40 = t39 - t38;
         let t41 = k(0.5) * t40;
         let t42 = coupler_e0 * coupler_e0;
-        let t43 = k(0.5) - (t42 + coupler_e2 * coupler_e2);
+        let t43 = k(0.5) - T::fused(coupler_e2, coupler_e2, t42);
         let t44 = k(0.5) * t43;
-        let t45 = k(0.5) - (t42 + coupler_e3 * coupler_e3);
+        let t45 = k(0.5) - T::fused(coupler_e3, coupler_e3, t42);
         let t46 = k(0.5) * t45;
         let t47 = t39 + t38;
         let t48 = k(0.5) * t47;
         let t49 = k(2.0) * t43;
         let t50 = k(2.0) * t36;
         let t51 = k(2.0) * t47;
-        let t52 = k(2.0) * (t1 - t0) * t51 - (t14 * t49 + t16 * t50);
+        let t52 = T::fused(k(2.0) * (t1 - t0), t51, -T::fused(t16, t50, t14 * t49));
         let t53 = k(2.0) * t11;
         let t54 = k(2.0) * t8;
         let t55 = k(2.0) * t2;
-        let t56 = t55 * (k(2.0) * t32) + t54 * (k(2.0) * t40) + t53 * (k(2.0) * t45);
-        let t57 = t54 * (k(2.0) * (t35 + t34))
-            - t55 * (k(2.0) * (k(0.5) - (t42 + coupler_e1 * coupler_e1)));
+        let t56 = T::fused(
+            t53,
+            k(2.0) * t45,
+            T::fused(t54, k(2.0) * t40, t55 * (k(2.0) * t32)),
+        );
+        let t57 = T::fused(
+            -t55,
+            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t42)),
+            t54 * (k(2.0) * (t35 + t34)),
+        );
         *out = [
             k(1.0),
             k(0.2) * t2,
@@ -1211,7 +1376,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             -(k(2.0) * t26),
             -(k(2.0) * (t19 + t18)),
             -(k(2.0) * t20),
-            -(k(2.0) * (k(0.5) - (t25 + rocker_e1 * rocker_e1))),
+            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t25))),
             k(-1.0),
             k(0.4) * t2,
             -(k(0.4) * t5),
@@ -1230,10 +1395,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             k(1.0),
             -t46,
             -t48,
-            -(k(2.0) * t12 * t51 + (t15 * t50 + t13 * t49)),
+            -T::fused(k(2.0) * t12, t51, T::fused(t13, t49, t15 * t50)),
             t52,
             t56,
-            t53 * (k(2.0) * (t31 - t30)) - t57,
+            T::fused(t53, k(2.0) * (t31 - t30), -t57),
             k(-1.0),
             t33,
             -t37,
@@ -1302,9 +1467,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let t0 = crank_wy * crank_wy;
-        let t1 = crank_wz * crank_wz + t0;
+        let t1 = T::fused(crank_wz, crank_wz, t0);
         let t2 = crank_e0 * crank_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
         let t4 = crank_wx * crank_wy;
         let t5 = crank_e0 * crank_e3;
         let t6 = crank_e1 * crank_e2;
@@ -1313,23 +1478,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t9 = crank_e0 * crank_e2;
         let t10 = crank_e1 * crank_e3;
         let t11 = k(2.0) * (t10 + t9);
-        let t12 = t11 * t8 + (t7 * t4 + t3 * t1);
+        let t12 = T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
         let t13 = k(2.0) * (t6 + t5);
-        let t14 = k(2.0) * (k(0.5) - (t2 + crank_e2 * crank_e2));
+        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t2));
         let t15 = crank_e0 * crank_e1;
         let t16 = crank_e2 * crank_e3;
         let t17 = k(2.0) * (t16 - t15);
-        let t18 = t17 * t8 - (t14 * t4 + t13 * t1);
+        let t18 = T::fused(t17, t8, -T::fused(t13, t1, t14 * t4));
         let t19 = k(2.0) * (t10 - t9);
         let t20 = k(2.0) * (t16 + t15);
-        let t21 = k(2.0) * (k(0.5) - (t2 + crank_e3 * crank_e3));
-        let t22 = t21 * t8 - (t20 * t4 - t19 * t1);
+        let t21 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t2));
+        let t22 = T::fused(t21, t8, -T::fused(-t19, t1, t20 * t4));
         let t23 = crank_wy * crank_wz;
-        let t24 = t0 + crank_wx * crank_wx;
+        let t24 = T::fused(crank_wx, crank_wx, t0);
         let t25 = rocker_wy * rocker_wy;
-        let t26 = rocker_wz * rocker_wz + t25;
+        let t26 = T::fused(rocker_wz, rocker_wz, t25);
         let t27 = rocker_e0 * rocker_e0;
-        let t28 = k(2.0) * (k(0.5) - (t27 + rocker_e1 * rocker_e1));
+        let t28 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t27));
         let t29 = rocker_wx * rocker_wy;
         let t30 = rocker_e0 * rocker_e3;
         let t31 = rocker_e1 * rocker_e2;
@@ -1338,22 +1503,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t34 = rocker_e0 * rocker_e2;
         let t35 = rocker_e1 * rocker_e3;
         let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.15) * (t36 * t33 + (t32 * t29 + t28 * t26));
+        let t37 = k(0.15) * T::fused(t36, t33, T::fused(t28, t26, t32 * t29));
         let t38 = k(2.0) * (t31 + t30);
-        let t39 = k(2.0) * (k(0.5) - (t27 + rocker_e2 * rocker_e2));
+        let t39 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t27));
         let t40 = rocker_e0 * rocker_e1;
         let t41 = rocker_e2 * rocker_e3;
         let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.15) * (t42 * t33 - (t39 * t29 + t38 * t26));
-        let t44 = k(2.0) * (t41 + t40) * t29 - k(2.0) * (t35 - t34) * t26;
+        let t43 = k(0.15) * T::fused(t42, t33, -T::fused(t38, t26, t39 * t29));
+        let t44 = T::fused(-(k(2.0) * (t35 - t34)), t26, k(2.0) * (t41 + t40) * t29);
         let t45 = k(0.15)
-            * (k(2.0) * (k(0.5) - (t27 + rocker_e3 * rocker_e3)) * t33 - t44);
+            * T::fused(
+                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t27)),
+                t33,
+                -t44,
+            );
         let t46 = rocker_wy * rocker_wz;
-        let t47 = t25 + rocker_wx * rocker_wx;
+        let t47 = T::fused(rocker_wx, rocker_wx, t25);
         let t48 = coupler_wz * coupler_wz;
-        let t49 = t48 + coupler_wy * coupler_wy;
+        let t49 = T::fused(coupler_wy, coupler_wy, t48);
         let t50 = coupler_e0 * coupler_e0;
-        let t51 = k(2.0) * (k(0.5) - (t50 + coupler_e1 * coupler_e1));
+        let t51 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t50));
         let t52 = coupler_wx * coupler_wy;
         let t53 = coupler_e0 * coupler_e3;
         let t54 = coupler_e1 * coupler_e2;
@@ -1362,43 +1531,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t57 = coupler_e0 * coupler_e2;
         let t58 = coupler_e1 * coupler_e3;
         let t59 = k(2.0) * (t58 + t57);
-        let t60 = k(0.25) * (t59 * t56 + (t55 * t52 + t51 * t49));
+        let t60 = k(0.25) * T::fused(t59, t56, T::fused(t51, t49, t55 * t52));
         let t61 = k(2.0) * (t54 + t53);
-        let t62 = k(2.0) * (k(0.5) - (t50 + coupler_e2 * coupler_e2));
+        let t62 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t50));
         let t63 = coupler_e0 * coupler_e1;
         let t64 = coupler_e2 * coupler_e3;
         let t65 = k(2.0) * (t64 - t63);
-        let t66 = k(0.25) * (t65 * t56 - (t62 * t52 + t61 * t49));
+        let t66 = k(0.25) * T::fused(t65, t56, -T::fused(t61, t49, t62 * t52));
         let t67 = k(2.0) * (t58 - t57);
         let t68 = k(2.0) * (t64 + t63);
-        let t69 = k(2.0) * (k(0.5) - (t50 + coupler_e3 * coupler_e3));
-        let t70 = k(0.25) * (t69 * t56 - (t68 * t52 - t67 * t49));
-        let t71 = t23 * (t20 * t68 + (t7 * t55 + t14 * t62))
-            + t8 * (t19 * t68 - (t13 * t62 + t3 * t55));
-        let t72 = t21 * t68 - (t11 * t55 - t17 * t62);
-        let t73 = coupler_wx * (t19 * t69 - (t13 * t65 - t3 * t59))
-            + coupler_wz * (t19 * t67 + (t13 * t61 + t3 * t51));
-        let t74 = coupler_wx * (t20 * t69 - (t7 * t59 - t14 * t65))
-            + coupler_wz * (t20 * t67 - (t14 * t61 + t7 * t51));
-        let t75 = (t48 + coupler_wx * coupler_wx) * t72
-            - t52 * (t21 * t67 - (t17 * t61 - t11 * t51));
-        let t76 = coupler_wy * coupler_wz * (t11 * t59 + t17 * t65 + t21 * t69);
-        let t77 = t76 + t75 + k(2.0) * (crank_wx * t74 - crank_wy * t73)
-            + (t24 * t72 + t71);
+        let t69 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t50));
+        let t70 = k(0.25) * T::fused(t69, t56, -T::fused(-t67, t49, t68 * t52));
+        let t71 = T::fused(
+            t8,
+            T::fused(t19, t68, -T::fused(t3, t55, t13 * t62)),
+            t23 * T::fused(t20, t68, T::fused(t14, t62, t7 * t55)),
+        );
+        let t72 = T::fused(t21, t68, -T::fused(-t17, t62, t11 * t55));
+        let t73 = T::fused(
+            coupler_wz,
+            T::fused(t19, t67, T::fused(t3, t51, t13 * t61)),
+            coupler_wx * T::fused(t19, t69, -T::fused(-t3, t59, t13 * t65)),
+        );
+        let t74 = T::fused(
+            coupler_wz,
+            T::fused(t20, t67, -T::fused(t7, t51, t14 * t61)),
+            coupler_wx * T::fused(t20, t69, -T::fused(-t14, t65, t7 * t59)),
+        );
+        let t75 = T::fused(
+            -t52,
+            T::fused(t21, t67, -T::fused(-t11, t51, t17 * t61)),
+            T::fused(coupler_wx, coupler_wx, t48) * t72,
+        );
+        let t76 = T::fused(
+            coupler_wy * coupler_wz,
+            T::fused(t21, t69, T::fused(t17, t65, t11 * t59)),
+            t75,
+        );
+        let t77 = T::fused(k(2.0), T::fused(-crank_wy, t73, crank_wx * t74), t76)
+            + T::fused(t24, t72, t71);
         *out = [
             k(0.1) * t12,
             k(0.1) * t18,
             -(k(0.1) * t22),
-            -(t17 * t24 + (t14 * t23 - t13 * t8)),
-            t11 * t24 - (t7 * t23 - t3 * t8),
+            -T::fused(t17, t24, T::fused(-t13, t8, t14 * t23)),
+            T::fused(t11, t24, -T::fused(-t3, t8, t7 * t23)),
             t37,
             t43,
             -t45,
-            -(t42 * t47 + (t39 * t46 - t38 * t33)),
-            t36 * t47 - (t32 * t46 - t28 * t33),
-            t60 + k(0.2) * t12,
-            t66 + k(0.2) * t18,
-            -(t70 + k(0.2) * t22),
+            -T::fused(t42, t47, T::fused(-t38, t33, t39 * t46)),
+            T::fused(t36, t47, -T::fused(-t28, t33, t32 * t46)),
+            T::fused(k(0.2), t12, t60),
+            T::fused(k(0.2), t18, t66),
+            -T::fused(k(0.2), t22, t70),
             -t77,
             t60 - t37,
             t66 - t43,
@@ -1506,21 +1691,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t100,
             t104,
             t106,
-            t142,
-            t145,
+            t141,
+            t144,
+            t151,
             t152,
             t153,
             t154,
             t155,
-            t156,
-            t158,
+            t157,
+            t162,
             t163,
             t164,
             t165,
             t166,
             t167,
             t168,
-            t169,
+            t171,
             t172,
             t173,
             t174,
@@ -1528,9 +1714,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t176,
             t177,
             t178,
-            t179,
-            t182,
-            t185,
+            t181,
+            t184,
+            t189,
             t190,
             t191,
             t192,
@@ -1543,9 +1729,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t199,
         ) = {
             let t0 = crank_wy * crank_wy;
-            let t1 = crank_wz * crank_wz + t0;
+            let t1 = T::fused(crank_wz, crank_wz, t0);
             let t2 = crank_e0 * crank_e0;
-            let t3 = k(2.0) * (k(0.5) - (t2 + crank_e1 * crank_e1));
+            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
             let t4 = crank_wx * crank_wy;
             let t5 = crank_e0 * crank_e3;
             let t6 = crank_e1 * crank_e2;
@@ -1554,30 +1740,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             let t9 = crank_e0 * crank_e2;
             let t10 = crank_e1 * crank_e3;
             let t11 = k(2.0) * (t10 + t9);
-            let t12 = t11 * t8 + (t7 * t4 + t3 * t1);
+            let t12 = T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
             let t13 = k(0.1) * t12;
             let t14 = k(2.0) * (t6 + t5);
-            let t15 = k(0.5) - (t2 + crank_e2 * crank_e2);
+            let t15 = k(0.5) - T::fused(crank_e2, crank_e2, t2);
             let t16 = k(2.0) * t15;
             let t17 = crank_e0 * crank_e1;
             let t18 = crank_e2 * crank_e3;
             let t19 = k(2.0) * (t18 - t17);
-            let t20 = t19 * t8 - (t16 * t4 + t14 * t1);
+            let t20 = T::fused(t19, t8, -T::fused(t14, t1, t16 * t4));
             let t21 = k(0.1) * t20;
             let t22 = k(2.0) * (t10 - t9);
             let t23 = k(2.0) * (t18 + t17);
-            let t24 = k(0.5) - (t2 + crank_e3 * crank_e3);
+            let t24 = k(0.5) - T::fused(crank_e3, crank_e3, t2);
             let t25 = k(2.0) * t24;
-            let t26 = t25 * t8 - (t23 * t4 - t22 * t1);
+            let t26 = T::fused(t25, t8, -T::fused(-t22, t1, t23 * t4));
             let t27 = k(0.1) * t26;
-            let t28 = t22 * t27 - (t14 * t21 - t3 * t13);
+            let t28 = T::fused(t22, t27, -T::fused(-t3, t13, t14 * t21));
             let t29 = coupler_e0 * coupler_e1;
             let t30 = coupler_e2 * coupler_e3;
             let t31 = t30 - t29;
             let t32 = coupler_wx * coupler_wz;
-            let t33 = k(0.01995) * t32 + k(3.924) * t31;
+            let t33 = T::fused(k(3.924), t31, k(0.01995) * t32);
             let t34 = coupler_e0 * coupler_e0;
-            let t35 = k(0.5) - (t34 + coupler_e2 * coupler_e2);
+            let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t34);
             let t36 = k(2.0) * t35;
             let t37 = coupler_e0 * coupler_e3;
             let t38 = coupler_e1 * coupler_e2;
@@ -1585,174 +1771,241 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             let t40 = k(2.0) * t39;
             let t41 = t30 + t29;
             let t42 = k(2.0) * t41;
-            let t43 = t25 * t42 - (t11 * t40 - t19 * t36);
+            let t43 = T::fused(t25, t42, -T::fused(-t19, t36, t11 * t40));
             let t44 = coupler_wx * coupler_wy;
-            let t45 = k(0.01995) * t44 - k(3.924) * t35;
-            let t46 = k(0.5) - (t34 + coupler_e3 * coupler_e3);
+            let t45 = T::fused(-k(3.924), t35, k(0.01995) * t44);
+            let t46 = k(0.5) - T::fused(coupler_e3, coupler_e3, t34);
             let t47 = k(2.0) * t46;
             let t48 = k(2.0) * t31;
             let t49 = coupler_e0 * coupler_e2;
             let t50 = coupler_e1 * coupler_e3;
             let t51 = t50 + t49;
             let t52 = k(2.0) * t51;
-            let t53 = t11 * t52 + t19 * t48 + t25 * t47;
-            let t54 = t53 * t45 + t43 * t33;
-            let t55 = k(2.0) * (k(0.5) - (t34 + coupler_e1 * coupler_e1));
+            let t53 = T::fused(t25, t47, T::fused(t19, t48, t11 * t52));
+            let t54 = T::fused(t43, t33, t53 * t45);
+            let t55 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t34));
             let t56 = t38 + t37;
             let t57 = k(2.0) * t56;
             let t58 = k(2.0) * (t50 - t49);
-            let t59 = t25 * t58 - (t19 * t57 - t11 * t55);
+            let t59 = T::fused(t25, t58, -T::fused(-t11, t55, t19 * t57));
             let t60 = k(5e-5) * t59;
             let t61 = k(0.07) * t43;
             let t62 = k(0.07) * t53;
-            let t63 = k(1.0) / (t53 * t62 + (t43 * t61 + t59 * t60));
+            let t63 = k(1.0) / T::fused(t53, t62, T::fused(t59, t60, t43 * t61));
             let t64 = t63 * t54;
-            let t65 = t33 - t61 * t64;
+            let t65 = T::fused(-t61, t64, t33);
             let t66 = t61 * t63;
-            let t67 = k(1.0) / (k(0.07) - t61 * t66);
+            let t67 = k(1.0) / T::fused(-t61, t66, k(0.07));
             let t68 = t67 * t65;
             let t69 = t60 * t63;
             let t70 = t61 * t69;
-            let t71 = k(1.0) / (t59 * t59 + t53 * t53);
-            let t72 = t22 * t42 - (t14 * t36 + t3 * t40);
-            let t73 = t23 * t42 + (t7 * t40 + t16 * t36);
+            let t71 = k(1.0) / T::fused(t53, t53, t59 * t59);
+            let t72 = T::fused(t22, t42, -T::fused(t3, t40, t14 * t36));
+            let t73 = T::fused(t23, t42, T::fused(t16, t36, t7 * t40));
             let t74 = crank_wy * crank_wz;
-            let t75 = t0 + crank_wx * crank_wx;
-            let t76 = t22 * t58 + (t14 * t57 + t3 * t55);
-            let t77 = t22 * t47 - (t14 * t48 - t3 * t52);
-            let t78 = t23 * t58 - (t16 * t57 + t7 * t55);
-            let t79 = t23 * t47 - (t7 * t52 - t16 * t48);
-            let t80 = crank_wx * (coupler_wx * t79 + coupler_wz * t78)
-                - crank_wy * (coupler_wx * t77 + coupler_wz * t76);
+            let t75 = T::fused(crank_wx, crank_wx, t0);
+            let t76 = T::fused(t22, t58, T::fused(t3, t55, t14 * t57));
+            let t77 = T::fused(t22, t47, -T::fused(-t3, t52, t14 * t48));
+            let t78 = T::fused(t23, t58, -T::fused(t7, t55, t16 * t57));
+            let t79 = T::fused(t23, t47, -T::fused(-t16, t48, t7 * t52));
+            let t80 = T::fused(
+                -crank_wy,
+                T::fused(coupler_wz, t76, coupler_wx * t77),
+                crank_wx * T::fused(coupler_wz, t78, coupler_wx * t79),
+            );
             let t81 = coupler_wz * coupler_wz;
-            let t82 = coupler_wy * coupler_wz * t53
-                + ((t81 + coupler_wx * coupler_wx) * t43 - t44 * t59);
-            let t83 = t82 + k(2.0) * t80 + (t75 * t43 + (t74 * t73 + t8 * t72));
+            let t82 = T::fused(
+                coupler_wy * coupler_wz,
+                t53,
+                T::fused(-t44, t59, T::fused(coupler_wx, coupler_wx, t81) * t43),
+            );
+            let t83 = T::fused(k(2.0), t80, t82)
+                + T::fused(t75, t43, T::fused(t8, t72, t74 * t73));
             let t84 = t83 * (t53 * t71);
             let t85 = t67 * t70;
-            let t86 = t70 * t85 - (k(5e-5) - t60 * t69);
+            let t86 = T::fused(t70, t85, -T::fused(-t60, t69, k(5e-5)));
             let t87 = t59 * t71 * t83;
             let t88 = t62 * t66;
-            let t89 = t88 * t85 + t62 * t69;
-            let t90 = t81 + coupler_wy * coupler_wy;
-            let t91 = k(0.25) * (t52 * t32 + (t40 * t44 + t55 * t90));
-            let t92 = t91 + k(0.2) * t12;
-            let t93 = k(0.25) * (t48 * t32 - (t36 * t44 + t57 * t90));
-            let t94 = t93 + k(0.2) * t20;
-            let t95 = k(0.25) * (t47 * t32 - (t42 * t44 - t58 * t90));
-            let t96 = t95 + k(0.2) * t26;
-            let t97 = t42 * t96 + (t36 * t94 - t40 * t92);
+            let t89 = T::fused(t62, t69, t88 * t85);
+            let t90 = T::fused(coupler_wy, coupler_wy, t81);
+            let t91 = k(0.25) * T::fused(t52, t32, T::fused(t55, t90, t40 * t44));
+            let t92 = T::fused(k(0.2), t12, t91);
+            let t93 = k(0.25) * T::fused(t48, t32, -T::fused(t57, t90, t36 * t44));
+            let t94 = T::fused(k(0.2), t20, t93);
+            let t95 = k(0.25) * T::fused(t47, t32, -T::fused(-t58, t90, t42 * t44));
+            let t96 = T::fused(k(0.2), t26, t95);
+            let t97 = T::fused(t42, t96, T::fused(-t40, t92, t36 * t94));
             let t98 = k(0.2) * t53;
             let t99 = t63 * t98;
             let t100 = t61 * t99;
             let t101 = t67 * t100;
-            let t102 = t70 * t101 + t60 * t99;
-            let t103 = t47 * t96 + (t48 * t94 + t52 * t92);
+            let t102 = T::fused(t60, t99, t70 * t101);
+            let t103 = T::fused(t47, t96, T::fused(t52, t92, t48 * t94));
             let t104 = k(0.2) * t43;
             let t105 = t63 * t104;
-            let t106 = k(0.2) - t61 * t105;
+            let t106 = T::fused(-t61, t105, k(0.2));
             let t107 = t67 * t106;
-            let t108 = t70 * t107 - t60 * t105;
-            let t109 = t108 * t103 + t102 * t97 + (t89 * t87 - t86 * t84);
-            let t110 = t88 * (t67 * t88) - (k(0.07) - t62 * (t62 * t63));
-            let t111 = t88 * t101 - (k(0.2) - t62 * t99);
-            let t112 = t88 * t107 - t62 * t105;
-            let t113 = t112 * t103 + t111 * t97 + (t110 * t87 - t89 * t84);
-            let t114 = t53 * (t113 + (t88 * t68 + (t45 - t62 * t64)))
-                + t59 * (t109 + (t70 * t68 - t60 * t64));
-            let t115 = t58 * t96 - (t57 * t94 - t55 * t92);
-            let t116 = t100 * t101 + t98 * t99;
-            let t117 = t106 * t101 - t104 * t99;
-            let t118 = t111 * t87 - t102 * t84
-                + (t117 * t103 + t116 * t97 - k(0.8) * t97);
-            let t119 = t73 * (t118 + (t100 * t68 - (t98 * t64 + k(15.696) * t35)));
-            let t120 = t106 * t107 + t104 * t105;
-            let t121 = t112 * t87 - t108 * t84
-                + (t120 * t103 + t117 * t97 - k(0.8) * t103);
-            let t122 = t79 * (t121 + (t106 * t68 + (t104 * t64 - k(15.696) * t31)));
-            let t123 = t122 + (t119 - t78 * (k(0.8) * t115 - k(15.696) * t56));
-            let t124 = k(0.1) * (t123 - k(9.81) * t15)
-                + (k(0.00398) * t4 + (k(0.2) * t123 + t114));
-            let t125 = t53 * (t112 * t77 + t72 * t111) + t59 * (t108 * t77 + t72 * t102);
-            let t126 = t79 * (t120 * t77 + t72 * t117) + t73 * (t117 * t77 + t72 * t116);
-            let t127 = t23 * t27 + (t16 * t21 - t7 * t13);
-            let t128 = t79 * t117 + t73 * t116;
-            let t129 = t79 * t120 + t73 * t117;
-            let t130 = t79 * t129 + t73 * t128;
-            let t131 = t79 * t108 + t73 * t102;
-            let t132 = t79 * t112 + t73 * t111;
-            let t133 = t53 * t132 + t59 * t131;
-            let t134 = k(0.16) - k(0.2) * t130 - t133;
-            let t135 = (t134 + (k(0.13) - k(0.1) * t130)) * t127
-                - (k(0.1) * t126 + (k(0.2) * t126 + t125)) * t28;
-            let t136 = t25 * t27 + (t19 * t21 + t11 * t13);
-            let t137 = t53 * t129 + t43 * t128;
-            let t138 = t53 * (t53 * t112 + t43 * t111) + t59 * (t53 * t108 + t43 * t102);
-            let t139 = k(0.2) * t137;
-            let t140 = t139 + t138;
-            let t141 = t75 * (k(0.5) / t24);
-            let t142 = t74 - t23 * t141;
-            let t143 = t53 * (t110 * t77 + t89 * t76) + t59 * (t89 * t77 + t86 * t76);
-            let t144 = t132 * t77 + t131 * t76;
-            let t145 = t8 - t22 * t141;
-            let t146 = t53 * (t79 * t110 + t78 * t89) + t59 * (t79 * t89 + t78 * t86);
-            let t147 = t79 * t132 + t78 * t131;
-            let t148 = k(0.1) * (t140 + (t139 - t147)) + k(0.01) * t137
-                + (k(0.2) * (t138 - t147) + k(0.04) * t137 - t146);
-            let t149 = t148 * t145 + (k(0.1) * t144 + (k(0.2) * t144 + t143)) * t142;
-            let t150 = t53 * (t53 * t110 + t59 * t89) + t59 * (t53 * t89 + t59 * t86);
-            let t151 = k(0.013)
-                + (k(0.004) - (k(0.4) * t133 + k(0.04) * t130 - (k(0.032) - t150)));
-            let t152 = k(1.0) / (k(0.2) * t134 - k(0.01) * t130 + t151);
-            let t153 = t152 * (t149 + ((t140 + k(0.1) * t137) * t136 - t135) + t124);
-            let t154 = t127 + k(0.1) * t153;
-            let t155 = t136 + k(0.1) * t145;
-            let t156 = t39 * t53 + t51 * t43;
-            let t157 = t156 * t63;
-            let t158 = t51 - t61 * t157;
-            let t159 = t158 * t67;
-            let t160 = t53 * (t159 * t88 + (t39 - t62 * t157))
-                + t59 * (t159 * t70 - t60 * t157);
-            let t161 = t73 * (t159 * t100 + (t40 - t157 * t98)) - t55 * t78;
-            let t162 = (t159 * t106 - (t52 - t157 * t104)) * t79 + t161;
-            let t163 = (k(0.1) * t162 + (k(0.2) * t162 + t160)) * t152;
-            let t164 = k(0.1) * t163;
-            let t165 = rocker_wy * rocker_wy;
-            let t166 = rocker_wz * rocker_wz + t165;
-            let t167 = rocker_e0 * rocker_e0;
-            let t168 = k(2.0) * (k(0.5) - (t167 + rocker_e1 * rocker_e1));
-            let t169 = rocker_wx * rocker_wy;
-            let t170 = rocker_e0 * rocker_e3;
-            let t171 = rocker_e1 * rocker_e2;
-            let t172 = t171 - t170;
-            let t173 = k(2.0) * t172;
-            let t174 = rocker_wx * rocker_wz;
-            let t175 = rocker_e0 * rocker_e2;
-            let t176 = rocker_e1 * rocker_e3;
-            let t177 = t176 + t175;
-            let t178 = k(2.0) * t177;
-            let t179 = k(0.15) * (t178 * t174 + (t173 * t169 + t168 * t166));
-            let t180 = k(0.2) * t153 + t154;
-            let t181 = k(0.2) * t145 + t155;
-            let t182 = t115 + (t59 * t181 + (t78 * t180 + t76 * t28));
-            let t183 = t97 + (t43 * t181 + (t73 * t180 + t72 * t28));
-            let t184 = t103 + (t53 * t181 + (t79 * t180 + t77 * t28));
-            let t185 = t84 - (t59 * t153 - (t78 * t145 - t76 * t142));
-            let t186 = t87 + (t53 * t153 - (t79 * t145 - t77 * t142));
-            let t187 = t88 * t186 - t70 * t185 + (t106 * t184 + t100 * t183);
-            let t188 = t67 * (t65 + t187);
-            let t189 = t62 * t186 + (t61 * t188 - t60 * t185)
-                - (t104 * t184 - t98 * t183);
-            let t190 = t63 * (t54 - t189);
-            let t191 = t186 + t53 * t190;
-            let t192 = t183 + k(0.25) * t191;
-            let t193 = t188 + t43 * t190;
-            let t194 = t184 - k(0.25) * t193;
-            let t195 = t52 * t194 - (t40 * t192 - t55 * t182);
-            let t196 = k(0.5) * t51;
-            let t197 = k(0.5) * t39;
-            let t198 = k(2.0) * (t171 + t170);
-            let t199 = k(0.5) - (t167 + rocker_e2 * rocker_e2);
+            let t108 = T::fused(-t60, t105, t70 * t107);
+            let t109 = T::fused(t102, t97, t108 * t103) + T::fused(-t86, t84, t89 * t87);
+            let t110 = T::fused(t88, t67 * t88, -T::fused(-t62, t62 * t63, k(0.07)));
+            let t111 = T::fused(t88, t101, -T::fused(-t62, t99, k(0.2)));
+            let t112 = T::fused(-t62, t105, t88 * t107);
+            let t113 = T::fused(t111, t97, t112 * t103)
+                + T::fused(-t89, t84, t110 * t87);
+            let t114 = T::fused(
+                t59,
+                t109 + T::fused(-t60, t64, t70 * t68),
+                t53 * (t113 + T::fused(t88, t68, T::fused(-t62, t64, t45))),
+            );
+            let t115 = T::fused(t58, t96, -T::fused(-t55, t92, t57 * t94));
+            let t116 = T::fused(t98, t99, t100 * t101);
+            let t117 = T::fused(-t104, t99, t106 * t101);
+            let t118 = T::fused(-t102, t84, t111 * t87)
+                + T::fused(-k(0.8), t97, T::fused(t116, t97, t117 * t103));
+            let t119 = T::fused(
+                -t78,
+                T::fused(-k(15.696), t56, k(0.8) * t115),
+                t73 * (t118 + T::fused(t100, t68, -T::fused(k(15.696), t35, t98 * t64))),
+            );
+            let t120 = T::fused(t104, t105, t106 * t107);
+            let t121 = T::fused(-t108, t84, t112 * t87)
+                + T::fused(-k(0.8), t103, T::fused(t117, t97, t120 * t103));
+            let t122 = T::fused(
+                t79,
+                t121 + T::fused(t106, t68, T::fused(-k(15.696), t31, t104 * t64)),
+                t119,
+            );
+            let t123 = T::fused(
+                k(0.1),
+                T::fused(-k(9.81), t15, t122),
+                T::fused(k(0.00398), t4, T::fused(k(0.2), t122, t114)),
+            );
+            let t124 = T::fused(
+                t59,
+                T::fused(t72, t102, t108 * t77),
+                t53 * T::fused(t72, t111, t112 * t77),
+            );
+            let t125 = T::fused(
+                t73,
+                T::fused(t72, t116, t117 * t77),
+                t79 * T::fused(t72, t117, t120 * t77),
+            );
+            let t126 = T::fused(t23, t27, T::fused(-t7, t13, t16 * t21));
+            let t127 = T::fused(t73, t116, t79 * t117);
+            let t128 = T::fused(t73, t117, t79 * t120);
+            let t129 = T::fused(t73, t127, t79 * t128);
+            let t130 = T::fused(t73, t102, t79 * t108);
+            let t131 = T::fused(t73, t111, t79 * t112);
+            let t132 = T::fused(t59, t130, t53 * t131);
+            let t133 = T::fused(-k(0.2), t129, k(0.16)) - t132;
+            let t134 = T::fused(
+                -T::fused(k(0.1), t125, T::fused(k(0.2), t125, t124)),
+                t28,
+                (t133 + T::fused(-k(0.1), t129, k(0.13))) * t126,
+            );
+            let t135 = T::fused(t25, t27, T::fused(t11, t13, t19 * t21));
+            let t136 = T::fused(t43, t127, t53 * t128);
+            let t137 = T::fused(
+                t59,
+                T::fused(t43, t102, t53 * t108),
+                t53 * T::fused(t43, t111, t53 * t112),
+            );
+            let t138 = k(0.2) * t136;
+            let t139 = t138 + t137;
+            let t140 = t75 * (k(0.5) / t24);
+            let t141 = T::fused(-t23, t140, t74);
+            let t142 = T::fused(
+                t59,
+                T::fused(t86, t76, t89 * t77),
+                t53 * T::fused(t89, t76, t110 * t77),
+            );
+            let t143 = T::fused(t130, t76, t131 * t77);
+            let t144 = T::fused(-t22, t140, t8);
+            let t145 = T::fused(
+                t59,
+                T::fused(t78, t86, t79 * t89),
+                t53 * T::fused(t78, t89, t79 * t110),
+            );
+            let t146 = T::fused(t78, t130, t79 * t131);
+            let t147 = T::fused(k(0.01), t136, k(0.1) * (t139 + (t138 - t146)))
+                + (T::fused(k(0.04), t136, k(0.2) * (t137 - t146)) - t145);
+            let t148 = T::fused(
+                T::fused(k(0.1), t143, T::fused(k(0.2), t143, t142)),
+                t141,
+                t147 * t144,
+            );
+            let t149 = T::fused(
+                t59,
+                T::fused(t59, t86, t53 * t89),
+                t53 * T::fused(t59, t89, t53 * t110),
+            );
+            let t150 = k(0.013)
+                + (k(0.004)
+                    - (T::fused(k(0.04), t129, k(0.4) * t132) - (k(0.032) - t149)));
+            let t151 = k(1.0) / (T::fused(-k(0.01), t129, k(0.2) * t133) + t150);
+            let t152 = t151
+                * (t148 + T::fused(T::fused(k(0.1), t136, t139), t135, -t134) + t123);
+            let t153 = T::fused(k(0.1), t152, t126);
+            let t154 = T::fused(k(0.1), t144, t135);
+            let t155 = T::fused(t51, t43, t39 * t53);
+            let t156 = t155 * t63;
+            let t157 = T::fused(-t61, t156, t51);
+            let t158 = t157 * t67;
+            let t159 = T::fused(
+                t59,
+                T::fused(-t60, t156, t158 * t70),
+                t53 * T::fused(t158, t88, T::fused(-t62, t156, t39)),
+            );
+            let t160 = T::fused(
+                -t55,
+                t78,
+                t73 * T::fused(t158, t100, T::fused(-t156, t98, t40)),
+            );
+            let t161 = T::fused(
+                T::fused(t158, t106, -T::fused(-t156, t104, t52)),
+                t79,
+                t160,
+            );
+            let t162 = T::fused(k(0.1), t161, T::fused(k(0.2), t161, t159)) * t151;
+            let t163 = k(0.1) * t162;
+            let t164 = rocker_wy * rocker_wy;
+            let t165 = T::fused(rocker_wz, rocker_wz, t164);
+            let t166 = rocker_e0 * rocker_e0;
+            let t167 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t166));
+            let t168 = rocker_wx * rocker_wy;
+            let t169 = rocker_e0 * rocker_e3;
+            let t170 = rocker_e1 * rocker_e2;
+            let t171 = t170 - t169;
+            let t172 = k(2.0) * t171;
+            let t173 = rocker_wx * rocker_wz;
+            let t174 = rocker_e0 * rocker_e2;
+            let t175 = rocker_e1 * rocker_e3;
+            let t176 = t175 + t174;
+            let t177 = k(2.0) * t176;
+            let t178 = k(0.15) * T::fused(t177, t173, T::fused(t167, t165, t172 * t168));
+            let t179 = T::fused(k(0.2), t152, t153);
+            let t180 = T::fused(k(0.2), t144, t154);
+            let t181 = t115 + T::fused(t59, t180, T::fused(t76, t28, t78 * t179));
+            let t182 = t97 + T::fused(t43, t180, T::fused(t72, t28, t73 * t179));
+            let t183 = t103 + T::fused(t53, t180, T::fused(t77, t28, t79 * t179));
+            let t184 = t84 - T::fused(t59, t152, -T::fused(-t76, t141, t78 * t144));
+            let t185 = t87 + T::fused(t53, t152, -T::fused(-t77, t141, t79 * t144));
+            let t186 = T::fused(-t70, t184, t88 * t185)
+                + T::fused(t100, t182, t106 * t183);
+            let t187 = t67 * (t65 + t186);
+            let t188 = T::fused(t62, t185, T::fused(-t60, t184, t61 * t187))
+                - T::fused(-t98, t182, t104 * t183);
+            let t189 = t63 * (t54 - t188);
+            let t190 = T::fused(t53, t189, t185);
+            let t191 = T::fused(k(0.25), t190, t182);
+            let t192 = T::fused(t43, t189, t187);
+            let t193 = T::fused(-k(0.25), t192, t183);
+            let t194 = T::fused(t52, t193, -T::fused(-t55, t181, t40 * t191));
+            let t195 = k(0.5) * t51;
+            let t196 = k(0.5) * t39;
+            let t197 = k(2.0) * (t170 + t169);
+            let t198 = k(0.5) - T::fused(rocker_e2, rocker_e2, t166);
+            let t199 = k(2.0) * t198;
             (
                 t3,
                 t7,
@@ -1797,21 +2050,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
                 t100,
                 t104,
                 t106,
-                t142,
-                t145,
+                t141,
+                t144,
+                t151,
                 t152,
                 t153,
                 t154,
                 t155,
-                t156,
-                t158,
+                t157,
+                t162,
                 t163,
                 t164,
                 t165,
                 t166,
                 t167,
                 t168,
-                t169,
+                t171,
                 t172,
                 t173,
                 t174,
@@ -1819,9 +2073,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
                 t176,
                 t177,
                 t178,
-                t179,
-                t182,
-                t185,
+                t181,
+                t184,
+                t189,
                 t190,
                 t191,
                 t192,
@@ -1835,31 +2089,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             )
         };
         let (
-            t208,
+            t207,
+            t215,
             t216,
-            t217,
-            t220,
-            t234,
-            t236,
-            t239,
-            t262,
-            t273,
-            t275,
-            t278,
-            t283,
-            t286,
+            t219,
+            t233,
+            t235,
+            t238,
+            t261,
+            t272,
+            t274,
+            t277,
+            t282,
+            t285,
+            t288,
             t289,
-            t290,
+            t292,
             t293,
-            t294,
-            t305,
-            t310,
+            t304,
+            t309,
+            t314,
             t315,
-            t316,
-            t318,
+            t317,
+            t319,
             t320,
-            t321,
-            t323,
+            t322,
+            t324,
             t325,
             t326,
             t327,
@@ -1867,191 +2122,266 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t329,
             t330,
             t331,
-            t332,
+            t333,
             t334,
             t335,
             t336,
             t337,
-            t338,
         ) = {
-            let t200 = k(2.0) * t199;
-            let t201 = rocker_e0 * rocker_e1;
-            let t202 = rocker_e2 * rocker_e3;
-            let t203 = t202 - t201;
-            let t204 = k(2.0) * t203;
-            let t205 = k(0.15) * (t204 * t174 - (t200 * t169 + t198 * t166));
-            let t206 = k(2.0) * (t176 - t175);
-            let t207 = t202 + t201;
-            let t208 = k(2.0) * t207;
-            let t209 = k(0.5) - (t167 + rocker_e3 * rocker_e3);
-            let t210 = k(2.0) * t209;
-            let t211 = k(0.15) * (t210 * t174 - (t208 * t169 - t206 * t166));
-            let t212 = t206 * t211 - (t198 * t205 - t168 * t179);
-            let t213 = t208 * t211 + (t200 * t205 - t173 * t179);
-            let t214 = k(0.09) * t213 - (k(0.00496) * t169 - k(1.7658) * t199);
-            let t215 = t213 - k(8.108108108108109) * t214;
-            let t216 = (t165 + rocker_wx * rocker_wx) * (k(0.5) / t209);
-            let t217 = t174 - t206 * t216;
-            let t218 = k(0.15) * t217 + (t210 * t211 + (t204 * t205 + t178 * t179));
-            let t219 = t178 * t218 - (t173 * t215 - t168 * t212);
-            let t220 = k(54.054054054054056) * t214;
-            let t221 = k(0.3) * t172;
-            let t222 = t221 * t220 + k(0.3) * t177 * t217 + t219
-                + (t197 * t191 + t196 * t193 - t195);
-            let t223 = t222 + (t179 - t91);
-            let t224 = k(0.3) * t163;
-            let t225 = t78 * t224;
-            let t226 = t73 * t224;
-            let t227 = t79 * t224;
-            let t228 = t59 * t163;
-            let t229 = t53 * t163;
-            let t230 = t88 * t229 + t70 * t228 + (t106 * t227 + t100 * t226);
-            let t231 = t67 * (t158 + t230);
-            let t232 = t62 * t229 + (t61 * t231 + t60 * t228)
-                - (t104 * t227 - t98 * t226);
-            let t233 = t63 * (t156 - t232);
-            let t234 = t229 + t53 * t233;
-            let t235 = t226 + k(0.25) * t234;
-            let t236 = t231 + t43 * t233;
-            let t237 = t227 - k(0.25) * t236;
-            let t238 = t52 * t237 - (t40 * t235 - t55 * t225);
-            let t239 = k(32.432432432432435) * t172;
-            let t240 = k(4.864864864864865) * t172;
-            let t241 = t173 * t240;
-            let t242 = t241 + t221 * t239 + (t197 * t234 + t196 * t236 - t238);
-            let t243 = k(1.0) / t242;
-            let t244 = t48 * t194 + (t36 * t192 - t57 * t182);
-            let t245 = k(0.5) * t31;
-            let t246 = k(0.5) * t35;
-            let t247 = t204 * t218 + (t200 * t215 - t198 * t212);
-            let t248 = k(0.3) * t199;
-            let t249 = t248 * t220 - k(0.3) * t203 * t217 - t247
-                + (t246 * t191 - t245 * t193 + t244);
-            let t250 = t48 * t237 + (t36 * t235 - t57 * t225);
-            let t251 = t200 * t240;
-            let t252 = t251 + t248 * t239 + (t246 * t234 - t245 * t236 + t250);
-            let t253 = t243 * t252;
-            let t254 = t253 * t223 - (t249 - (t205 - t93));
-            let t255 = t35 * t53 - t31 * t43;
-            let t256 = t63 * t255;
-            let t257 = t31 + t61 * t256;
-            let t258 = t67 * t257;
-            let t259 = t53 * (t88 * t258 - (t35 - t62 * t256))
-                + t59 * (t70 * t258 + t60 * t256);
-            let t260 = t73 * (t100 * t258 - (t36 - t98 * t256)) + t57 * t78;
-            let t261 = t79 * (t106 * t258 - (t48 + t104 * t256)) + t260;
-            let t262 = t152 * (k(0.1) * t261 + (k(0.2) * t261 + t259));
-            let t263 = k(0.3) * t262;
-            let t264 = t78 * t263;
-            let t265 = t73 * t263;
-            let t266 = t79 * t263;
-            let t267 = t59 * t262;
-            let t268 = t53 * t262;
-            let t269 = t88 * t268 + t70 * t267 + (t106 * t266 + t100 * t265);
-            let t270 = t67 * (t257 + t269);
-            let t271 = t62 * t268 + (t61 * t270 + t60 * t267)
-                - (t104 * t266 - t98 * t265);
-            let t272 = t63 * (t255 + t271);
-            let t273 = t268 - t53 * t272;
-            let t274 = t265 + k(0.25) * t273;
-            let t275 = t270 - t43 * t272;
-            let t276 = t266 - k(0.25) * t275;
-            let t277 = t48 * t276 + (t36 * t274 - t57 * t264);
-            let t278 = k(32.432432432432435) * t199;
-            let t279 = k(4.864864864864865) * t199;
-            let t280 = t200 * t279;
-            let t281 = t280 + t248 * t278 - (t246 * t273 - t245 * t275 + t277);
-            let t282 = k(1.0) / (t252 * t253 - t281);
-            let t283 = t47 * t194 + (t42 * t192 + t58 * t182);
-            let t284 = k(0.5) * t46;
-            let t285 = k(0.5) * t41;
-            let t286 = t210 * t218 + (t208 * t215 + t206 * t212);
-            let t287 = k(0.3) * t207;
-            let t288 = t287 * t220 - k(0.3) * t209 * t217 - t286
-                + (t285 * t191 - t284 * t193 + t283);
-            let t289 = t47 * t237 + (t42 * t235 + t58 * t225);
-            let t290 = t208 * t240;
-            let t291 = t290 + t287 * t239 + (t285 * t234 - t284 * t236 + t289);
-            let t292 = t243 * t291;
-            let t293 = t47 * t276 + (t42 * t274 + t58 * t264);
-            let t294 = t208 * t279;
-            let t295 = t294 + t287 * t278 - (t285 * t273 - t284 * t275 + t293);
-            let t296 = t252 * t292 - t295;
-            let t297 = t282 * t296;
-            let t298 = t41 * t53 - t46 * t43;
-            let t299 = t63 * t298;
-            let t300 = t46 + t61 * t299;
-            let t301 = t67 * t300;
-            let t302 = t53 * (t88 * t301 - (t41 - t62 * t299))
-                + t59 * (t70 * t301 + t60 * t299);
-            let t303 = t73 * (t100 * t301 - (t42 - t98 * t299)) - t58 * t78;
-            let t304 = t79 * (t106 * t301 - (t47 + t104 * t299)) + t303;
-            let t305 = t152 * (k(0.1) * t304 + (k(0.2) * t304 + t302));
-            let t306 = k(0.3) * t305;
-            let t307 = t78 * t306;
-            let t308 = t73 * t306;
-            let t309 = t79 * t306;
-            let t310 = t59 * t305;
-            let t311 = t53 * t305;
-            let t312 = t88 * t311 + t70 * t310 + (t106 * t309 + t100 * t308);
-            let t313 = t67 * (t300 + t312);
-            let t314 = t62 * t311 + (t61 * t313 + t60 * t310)
-                - (t104 * t309 - t98 * t308);
-            let t315 = t63 * (t298 + t314);
-            let t316 = t311 - t53 * t315;
-            let t317 = t308 + k(0.25) * t316;
-            let t318 = t313 - t43 * t315;
-            let t319 = t309 - k(0.25) * t318;
-            let t320 = t47 * t319 + (t42 * t317 + t58 * t307);
-            let t321 = k(32.432432432432435) * t207;
-            let t322 = k(4.864864864864865) * t207;
-            let t323 = t208 * t322;
-            let t324 = t323 + t287 * t321 - (t285 * t316 - t284 * t318 + t320);
-            let t325 = (t297 * t254 - (t292 * t223 - (t288 - (t211 - t95))))
-                / (t296 * t297 - (t291 * t292 - t324));
-            let t326 = t297 * t325 - t282 * t254;
-            let t327 = t292 * t325 - (t253 * t326 + t243 * t223);
-            let t328 = t327 * (t7 * t164) - (t11 * t155 - (t7 * t154 - t3 * t28));
-            let t329 = k(0.1) * t262;
-            let t330 = k(0.1) * t305;
-            let t331 = t327 * (t16 * t164) + (t19 * t155 + (t16 * t154 - t14 * t28));
-            let t332 = t327 * (t23 * t164) + (t25 * t155 + (t23 * t154 + t22 * t28));
-            let t333 = t326 * (t52 * t276 - (t40 * t274 - t55 * t264))
-                - (t195 + t238 * t327);
-            let t334 = t325 * (t52 * t319 - (t40 * t317 - t55 * t307)) - t333;
-            let t335 = t325 * (t48 * t319 + (t36 * t317 - t57 * t307))
-                - (t277 * t326 - (t244 + t250 * t327));
-            let t336 = t326 * (t267 - t59 * t272)
-                - (t327 * (t228 + t59 * t233) - (t185 - t59 * t190));
-            let t337 = t325 * (t173 * t322)
-                - (t326 * (t173 * t279) + (t219 + t241 * t327));
-            let t338 = t325 * (t200 * t322) - (t280 * t326 - (t247 - t251 * t327));
-            (
-                t208,
+            let t200 = rocker_e0 * rocker_e1;
+            let t201 = rocker_e2 * rocker_e3;
+            let t202 = t201 - t200;
+            let t203 = k(2.0) * t202;
+            let t204 = k(0.15)
+                * T::fused(t203, t173, -T::fused(t197, t165, t199 * t168));
+            let t205 = k(2.0) * (t175 - t174);
+            let t206 = t201 + t200;
+            let t207 = k(2.0) * t206;
+            let t208 = k(0.5) - T::fused(rocker_e3, rocker_e3, t166);
+            let t209 = k(2.0) * t208;
+            let t210 = k(0.15)
+                * T::fused(t209, t173, -T::fused(-t205, t165, t207 * t168));
+            let t211 = T::fused(t205, t210, -T::fused(-t167, t178, t197 * t204));
+            let t212 = T::fused(t207, t210, T::fused(-t172, t178, t199 * t204));
+            let t213 = T::fused(
+                k(0.09),
+                t212,
+                -T::fused(-k(1.7658), t198, k(0.00496) * t168),
+            );
+            let t214 = T::fused(-k(8.108108108108109), t213, t212);
+            let t215 = T::fused(rocker_wx, rocker_wx, t164) * (k(0.5) / t208);
+            let t216 = T::fused(-t205, t215, t173);
+            let t217 = T::fused(
+                k(0.15),
                 t216,
-                t217,
-                t220,
-                t234,
-                t236,
-                t239,
-                t262,
-                t273,
-                t275,
-                t278,
-                t283,
-                t286,
+                T::fused(t209, t210, T::fused(t177, t178, t203 * t204)),
+            );
+            let t218 = T::fused(t177, t217, -T::fused(-t167, t211, t172 * t214));
+            let t219 = k(54.054054054054056) * t213;
+            let t220 = k(0.3) * t171;
+            let t221 = T::fused(k(0.3) * t176, t216, t220 * t219) + t218
+                + (T::fused(t195, t192, t196 * t190) - t194);
+            let t222 = t221 + (t178 - t91);
+            let t223 = k(0.3) * t162;
+            let t224 = t78 * t223;
+            let t225 = t73 * t223;
+            let t226 = t79 * t223;
+            let t227 = t59 * t162;
+            let t228 = t53 * t162;
+            let t229 = T::fused(t70, t227, t88 * t228)
+                + T::fused(t100, t225, t106 * t226);
+            let t230 = t67 * (t157 + t229);
+            let t231 = T::fused(t62, t228, T::fused(t60, t227, t61 * t230))
+                - T::fused(-t98, t225, t104 * t226);
+            let t232 = t63 * (t155 - t231);
+            let t233 = T::fused(t53, t232, t228);
+            let t234 = T::fused(k(0.25), t233, t225);
+            let t235 = T::fused(t43, t232, t230);
+            let t236 = T::fused(-k(0.25), t235, t226);
+            let t237 = T::fused(t52, t236, -T::fused(-t55, t224, t40 * t234));
+            let t238 = k(32.432432432432435) * t171;
+            let t239 = k(4.864864864864865) * t171;
+            let t240 = t172 * t239;
+            let t241 = T::fused(t220, t238, t240)
+                + (T::fused(t195, t235, t196 * t233) - t237);
+            let t242 = k(1.0) / t241;
+            let t243 = T::fused(t48, t193, T::fused(-t57, t181, t36 * t191));
+            let t244 = k(0.5) * t31;
+            let t245 = k(0.5) * t35;
+            let t246 = T::fused(t203, t217, T::fused(-t197, t211, t199 * t214));
+            let t247 = k(0.3) * t198;
+            let t248 = T::fused(-(k(0.3) * t202), t216, t247 * t219) - t246
+                + (T::fused(-t244, t192, t245 * t190) + t243);
+            let t249 = T::fused(t48, t236, T::fused(-t57, t224, t36 * t234));
+            let t250 = t199 * t239;
+            let t251 = T::fused(t247, t238, t250)
+                + (T::fused(-t244, t235, t245 * t233) + t249);
+            let t252 = t242 * t251;
+            let t253 = T::fused(t252, t222, -(t248 - (t204 - t93)));
+            let t254 = T::fused(-t31, t43, t35 * t53);
+            let t255 = t63 * t254;
+            let t256 = T::fused(t61, t255, t31);
+            let t257 = t67 * t256;
+            let t258 = T::fused(
+                t59,
+                T::fused(t60, t255, t70 * t257),
+                t53 * T::fused(t88, t257, -T::fused(-t62, t255, t35)),
+            );
+            let t259 = T::fused(
+                t57,
+                t78,
+                t73 * T::fused(t100, t257, -T::fused(-t98, t255, t36)),
+            );
+            let t260 = T::fused(
+                t79,
+                T::fused(t106, t257, -T::fused(t104, t255, t48)),
+                t259,
+            );
+            let t261 = t151 * T::fused(k(0.1), t260, T::fused(k(0.2), t260, t258));
+            let t262 = k(0.3) * t261;
+            let t263 = t78 * t262;
+            let t264 = t73 * t262;
+            let t265 = t79 * t262;
+            let t266 = t59 * t261;
+            let t267 = t53 * t261;
+            let t268 = T::fused(t70, t266, t88 * t267)
+                + T::fused(t100, t264, t106 * t265);
+            let t269 = t67 * (t256 + t268);
+            let t270 = T::fused(t62, t267, T::fused(t60, t266, t61 * t269))
+                - T::fused(-t98, t264, t104 * t265);
+            let t271 = t63 * (t254 + t270);
+            let t272 = T::fused(-t53, t271, t267);
+            let t273 = T::fused(k(0.25), t272, t264);
+            let t274 = T::fused(-t43, t271, t269);
+            let t275 = T::fused(-k(0.25), t274, t265);
+            let t276 = T::fused(t48, t275, T::fused(-t57, t263, t36 * t273));
+            let t277 = k(32.432432432432435) * t198;
+            let t278 = k(4.864864864864865) * t198;
+            let t279 = t199 * t278;
+            let t280 = T::fused(t247, t277, t279)
+                - (T::fused(-t244, t274, t245 * t272) + t276);
+            let t281 = k(1.0) / T::fused(t251, t252, -t280);
+            let t282 = T::fused(t47, t193, T::fused(t58, t181, t42 * t191));
+            let t283 = k(0.5) * t46;
+            let t284 = k(0.5) * t41;
+            let t285 = T::fused(t209, t217, T::fused(t205, t211, t207 * t214));
+            let t286 = k(0.3) * t206;
+            let t287 = T::fused(-(k(0.3) * t208), t216, t286 * t219) - t285
+                + (T::fused(-t283, t192, t284 * t190) + t282);
+            let t288 = T::fused(t47, t236, T::fused(t58, t224, t42 * t234));
+            let t289 = t207 * t239;
+            let t290 = T::fused(t286, t238, t289)
+                + (T::fused(-t283, t235, t284 * t233) + t288);
+            let t291 = t242 * t290;
+            let t292 = T::fused(t47, t275, T::fused(t58, t263, t42 * t273));
+            let t293 = t207 * t278;
+            let t294 = T::fused(t286, t277, t293)
+                - (T::fused(-t283, t274, t284 * t272) + t292);
+            let t295 = T::fused(t251, t291, -t294);
+            let t296 = t281 * t295;
+            let t297 = T::fused(-t46, t43, t41 * t53);
+            let t298 = t63 * t297;
+            let t299 = T::fused(t61, t298, t46);
+            let t300 = t67 * t299;
+            let t301 = T::fused(
+                t59,
+                T::fused(t60, t298, t70 * t300),
+                t53 * T::fused(t88, t300, -T::fused(-t62, t298, t41)),
+            );
+            let t302 = T::fused(
+                -t58,
+                t78,
+                t73 * T::fused(t100, t300, -T::fused(-t98, t298, t42)),
+            );
+            let t303 = T::fused(
+                t79,
+                T::fused(t106, t300, -T::fused(t104, t298, t47)),
+                t302,
+            );
+            let t304 = t151 * T::fused(k(0.1), t303, T::fused(k(0.2), t303, t301));
+            let t305 = k(0.3) * t304;
+            let t306 = t78 * t305;
+            let t307 = t73 * t305;
+            let t308 = t79 * t305;
+            let t309 = t59 * t304;
+            let t310 = t53 * t304;
+            let t311 = T::fused(t70, t309, t88 * t310)
+                + T::fused(t100, t307, t106 * t308);
+            let t312 = t67 * (t299 + t311);
+            let t313 = T::fused(t62, t310, T::fused(t60, t309, t61 * t312))
+                - T::fused(-t98, t307, t104 * t308);
+            let t314 = t63 * (t297 + t313);
+            let t315 = T::fused(-t53, t314, t310);
+            let t316 = T::fused(k(0.25), t315, t307);
+            let t317 = T::fused(-t43, t314, t312);
+            let t318 = T::fused(-k(0.25), t317, t308);
+            let t319 = T::fused(t47, t318, T::fused(t58, t306, t42 * t316));
+            let t320 = k(32.432432432432435) * t206;
+            let t321 = k(4.864864864864865) * t206;
+            let t322 = t207 * t321;
+            let t323 = T::fused(t286, t320, t322)
+                - (T::fused(-t283, t317, t284 * t315) + t319);
+            let t324 = T::fused(
+                t296,
+                t253,
+                -T::fused(t291, t222, -(t287 - (t210 - t95))),
+            ) / T::fused(t295, t296, -T::fused(t290, t291, -t323));
+            let t325 = T::fused(-t281, t253, t296 * t324);
+            let t326 = T::fused(t291, t324, -T::fused(t242, t222, t252 * t325));
+            let t327 = T::fused(
+                t326,
+                t7 * t163,
+                -T::fused(t11, t154, -T::fused(-t3, t28, t7 * t153)),
+            );
+            let t328 = k(0.1) * t261;
+            let t329 = k(0.1) * t304;
+            let t330 = T::fused(
+                t326,
+                t16 * t163,
+                T::fused(t19, t154, T::fused(-t14, t28, t16 * t153)),
+            );
+            let t331 = T::fused(
+                t326,
+                t23 * t163,
+                T::fused(t25, t154, T::fused(t22, t28, t23 * t153)),
+            );
+            let t332 = T::fused(
+                t325,
+                T::fused(t52, t275, -T::fused(-t55, t263, t40 * t273)),
+                -T::fused(t237, t326, t194),
+            );
+            let t333 = T::fused(
+                t324,
+                T::fused(t52, t318, -T::fused(-t55, t306, t40 * t316)),
+                -t332,
+            );
+            let t334 = T::fused(
+                t324,
+                T::fused(t48, t318, T::fused(-t57, t306, t36 * t316)),
+                -T::fused(t276, t325, -T::fused(t249, t326, t243)),
+            );
+            let t335 = T::fused(
+                t325,
+                T::fused(-t59, t271, t266),
+                -T::fused(t326, T::fused(t59, t232, t227), -T::fused(-t59, t189, t184)),
+            );
+            let t336 = T::fused(
+                t324,
+                t172 * t321,
+                -T::fused(t325, t172 * t278, T::fused(t240, t326, t218)),
+            );
+            let t337 = T::fused(
+                t324,
+                t199 * t321,
+                -T::fused(t279, t325, -T::fused(-t250, t326, t246)),
+            );
+            (
+                t207,
+                t215,
+                t216,
+                t219,
+                t233,
+                t235,
+                t238,
+                t261,
+                t272,
+                t274,
+                t277,
+                t282,
+                t285,
+                t288,
                 t289,
-                t290,
+                t292,
                 t293,
-                t294,
-                t305,
-                t310,
+                t304,
+                t309,
+                t314,
                 t315,
-                t316,
-                t318,
+                t317,
+                t319,
                 t320,
-                t321,
-                t323,
+                t322,
+                t324,
                 t325,
                 t326,
                 t327,
@@ -2059,36 +2389,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
                 t329,
                 t330,
                 t331,
-                t332,
+                t333,
                 t334,
                 t335,
                 t336,
                 t337,
-                t338,
             )
         };
         *out = [
-            t326 * (t7 * t329) - t328 - t325 * (t7 * t330),
-            t325 * (t16 * t330) - (t326 * (t16 * t329) - t331),
-            t326 * (t23 * t329) - t332 - t325 * (t23 * t330),
-            t142,
-            -t145,
-            t262 * t326 - (t153 + t163 * t327) - t305 * t325,
+            T::fused(-t324, t7 * t329, T::fused(t325, t7 * t328, -t327)),
+            T::fused(t324, t16 * t329, -T::fused(t325, t16 * t328, -t330)),
+            T::fused(-t324, t23 * t329, T::fused(t325, t23 * t328, -t331)),
+            t141,
+            -t144,
+            T::fused(-t304, t324, T::fused(t261, t325, -T::fused(t162, t326, t152))),
+            t333,
             t334,
-            t335,
-            t293 * t326 - (t283 + t289 * t327) - t320 * t325,
-            t325 * (t310 - t59 * t315) - t336,
-            t318 * t325 - (t275 * t326 - (t193 + t236 * t327)),
-            t273 * t326 - (t191 + t234 * t327) - t316 * t325,
-            -t337,
-            t338,
-            t294 * t326 - (t286 - t290 * t327) - t323 * t325,
-            rocker_wy * rocker_wz - t208 * t216,
-            -t217,
-            t278 * t326 + (t220 + t239 * t327) - t321 * t325,
-            -t327,
-            t326,
+            T::fused(-t319, t324, T::fused(t292, t325, -T::fused(t288, t326, t282))),
+            T::fused(t324, T::fused(-t59, t314, t309), -t335),
+            T::fused(t317, t324, -T::fused(t274, t325, -T::fused(t235, t326, t192))),
+            T::fused(-t315, t324, T::fused(t272, t325, -T::fused(t233, t326, t190))),
+            -t336,
+            t337,
+            T::fused(-t322, t324, T::fused(t293, t325, -T::fused(-t289, t326, t285))),
+            T::fused(-t207, t215, rocker_wy * rocker_wz),
+            -t216,
+            T::fused(-t320, t324, T::fused(t277, t325, T::fused(t238, t326, t219))),
+            -t326,
             t325,
+            t324,
         ];
     }
     /// Writes λ: 278 operations (104 ±, 171 ×, 3 ÷).
@@ -2138,22 +2467,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let closing0 = accelerations[18];
         let closing1 = accelerations[19];
         let closing2 = accelerations[20];
-        let t0 = k(0.8) * coupler_dsx - closing0;
-        let t1 = k(0.5) * crank_dsx + t0;
-        let t2 = k(7.848) + k(0.8) * coupler_dsy - closing1;
-        let t3 = k(4.905) + k(0.5) * crank_dsy + t2;
-        let t4 = k(0.8) * coupler_dsz - closing2;
-        let t5 = k(0.5) * crank_dsz + t4;
+        let t0 = T::fused(k(0.8), coupler_dsx, -closing0);
+        let t1 = T::fused(k(0.5), crank_dsx, t0);
+        let t2 = T::fused(k(0.8), coupler_dsy, k(7.848)) - closing1;
+        let t3 = T::fused(k(0.5), crank_dsy, k(4.905)) + t2;
+        let t4 = T::fused(k(0.8), coupler_dsz, -closing2);
+        let t5 = T::fused(k(0.5), crank_dsz, t4);
         let t6 = crank_e0 * crank_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + crank_e2 * crank_e2));
-        let t8 = k(2.0) * (k(0.5) - (t6 + crank_e1 * crank_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t6));
+        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t6));
         let t9 = crank_e0 * crank_e3;
         let t10 = crank_e1 * crank_e2;
         let t11 = k(2.0) * (t10 + t9);
         let t12 = k(2.0) * (t10 - t9);
-        let t13 = k(1.0) / (t12 * t11 - t8 * t7);
+        let t13 = k(1.0) / T::fused(-t8, t7, t12 * t11);
         let t14 = coupler_e0 * coupler_e0;
-        let t15 = k(2.0) * (k(0.5) - (t14 + coupler_e1 * coupler_e1));
+        let t15 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t14));
         let t16 = coupler_e0 * coupler_e3;
         let t17 = coupler_e1 * coupler_e2;
         let t18 = k(2.0) * (t17 + t16);
@@ -2170,85 +2499,129 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t29 = coupler_e2 * coupler_e3;
         let t30 = t29 - t28;
         let t31 = k(0.5) * t30;
-        let t32 = closing1 * t31
-            - (k(0.01995) * (coupler_wx * coupler_wz) - k(0.02) * coupler_dwy
-                - closing0 * t27);
-        let t33 = k(0.5) - (t14 + coupler_e3 * coupler_e3);
+        let t32 = T::fused(
+            closing1,
+            t31,
+            -T::fused(
+                -closing0,
+                t27,
+                T::fused(-k(0.02), coupler_dwy, k(0.01995) * (coupler_wx * coupler_wz)),
+            ),
+        );
+        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t14);
         let t34 = k(0.5) * t33;
-        let t35 = t4 * t34 - (t2 * t31 + t0 * t27) - (closing2 * t34 - t32);
+        let t35 = T::fused(t4, t34, -T::fused(t0, t27, t2 * t31))
+            - T::fused(closing2, t34, -t32);
         let t36 = t17 - t16;
         let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - (t14 + coupler_e2 * coupler_e2);
+        let t38 = k(0.5) - T::fused(coupler_e2, coupler_e2, t14);
         let t39 = k(2.0) * t38;
         let t40 = t29 + t28;
         let t41 = k(2.0) * t40;
-        let t42 = (t24 * t41 - (t11 * t39 + t8 * t37)) * t35
-            + t25 * (t24 * t21 + (t11 * t18 + t8 * t15));
+        let t42 = T::fused(
+            t25,
+            T::fused(t24, t21, T::fused(t8, t15, t11 * t18)),
+            T::fused(t24, t41, -T::fused(t8, t37, t11 * t39)) * t35,
+        );
         let t43 = k(0.5) * t36;
         let t44 = k(0.5) * t38;
-        let t45 = closing1 * t44
-            + (k(0.01995) * (coupler_wx * coupler_wy) + k(0.02) * coupler_dwz
-                - closing0 * t43);
+        let t45 = T::fused(
+            closing1,
+            t44,
+            T::fused(
+                -closing0,
+                t43,
+                T::fused(k(0.02), coupler_dwz, k(0.01995) * (coupler_wx * coupler_wy)),
+            ),
+        );
         let t46 = k(0.5) * t40;
-        let t47 = t4 * t46 - (t2 * t44 - t0 * t43) - (closing2 * t46 - t45);
+        let t47 = T::fused(t4, t46, -T::fused(-t0, t43, t2 * t44))
+            - T::fused(closing2, t46, -t45);
         let t48 = k(2.0) * t26;
         let t49 = k(2.0) * t30;
         let t50 = k(2.0) * t33;
-        let t51 = (t24 * t50 - (t11 * t49 - t8 * t48)) * t47 - t42;
-        let t52 = k(2e-5) * crank_dwx - t51;
+        let t51 = T::fused(
+            T::fused(t24, t50, -T::fused(-t8, t48, t11 * t49)),
+            t47,
+            -t42,
+        );
+        let t52 = T::fused(k(2e-5), crank_dwx, -t51);
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = (t55 * t41 + (t12 * t37 + t7 * t39)) * t35
-            + t25 * (t55 * t21 - (t7 * t18 + t12 * t15));
-        let t57 = (t55 * t50 - (t12 * t48 - t7 * t49)) * t47 - t56;
+        let t56 = T::fused(
+            t25,
+            T::fused(t55, t21, -T::fused(t12, t15, t7 * t18)),
+            T::fused(t55, t41, T::fused(t7, t39, t12 * t37)) * t35,
+        );
+        let t57 = T::fused(
+            T::fused(t55, t50, -T::fused(-t7, t49, t12 * t48)),
+            t47,
+            -t56,
+        );
         let t58 = t23 + t22;
         let t59 = t54 - t53;
-        let t60 = k(0.5) - (t6 + crank_e3 * crank_e3);
-        let t61 = t4 * (k(0.4) * t60) - (t2 * (k(0.4) * t59) + t0 * (k(0.4) * t58));
-        let t62 = t5 * (k(0.2) * t60) - (t3 * (k(0.2) * t59) + t1 * (k(0.2) * t58));
+        let t60 = k(0.5) - T::fused(crank_e3, crank_e3, t6);
+        let t61 = T::fused(
+            t4,
+            k(0.4) * t60,
+            -T::fused(t0, k(0.4) * t58, t2 * (k(0.4) * t59)),
+        );
+        let t62 = T::fused(
+            t5,
+            k(0.2) * t60,
+            -T::fused(t1, k(0.2) * t58, t3 * (k(0.2) * t59)),
+        );
         let t63 = t62
-            - (k(0.00398) * (crank_wx * crank_wz) - k(0.004) * crank_dwy - (t61 - t57));
-        let t64 = k(0.6) * rocker_dsx + closing0;
-        let t65 = k(5.886) + k(0.6) * rocker_dsy + closing1;
-        let t66 = k(0.6) * rocker_dsz + closing2;
+            - (T::fused(-k(0.004), crank_dwy, k(0.00398) * (crank_wx * crank_wz))
+                - (t61 - t57));
+        let t64 = T::fused(k(0.6), rocker_dsx, closing0);
+        let t65 = T::fused(k(0.6), rocker_dsy, k(5.886)) + closing1;
+        let t66 = T::fused(k(0.6), rocker_dsz, closing2);
         let t67 = rocker_e0 * rocker_e0;
-        let t68 = k(2.0) * (k(0.5) - (t67 + rocker_e2 * rocker_e2));
-        let t69 = k(2.0) * (k(0.5) - (t67 + rocker_e1 * rocker_e1));
+        let t68 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t67));
+        let t69 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t67));
         let t70 = rocker_e0 * rocker_e3;
         let t71 = rocker_e1 * rocker_e2;
         let t72 = k(2.0) * (t71 + t70);
         let t73 = k(2.0) * (t71 - t70);
-        let t74 = k(1.0) / (t73 * t72 - t69 * t68);
+        let t74 = k(1.0) / T::fused(-t69, t68, t73 * t72);
         let t75 = k(4e-5) * rocker_dwx;
-        let t76 = k(0.3) * (rocker_e1 * rocker_e3 + rocker_e0 * rocker_e2);
-        let t77 = k(0.3) * (rocker_e2 * rocker_e3 - rocker_e0 * rocker_e1);
-        let t78 = closing1 * t77
-            + (k(0.00496) * (rocker_wx * rocker_wz) - k(0.005) * rocker_dwy
-                + closing0 * t76);
-        let t79 = k(0.3) * (k(0.5) - (t67 + rocker_e3 * rocker_e3));
-        let t80 = t66 * t79 - (t65 * t77 + t64 * t76) + (closing2 * t79 - t78);
+        let t76 = k(0.3) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
+        let t77 = k(0.3) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
+        let t78 = T::fused(
+            closing1,
+            t77,
+            T::fused(
+                closing0,
+                t76,
+                T::fused(-k(0.005), rocker_dwy, k(0.00496) * (rocker_wx * rocker_wz)),
+            ),
+        );
+        let t79 = k(0.3) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t67));
+        let t80 = T::fused(t66, t79, -T::fused(t64, t76, t65 * t77))
+            + T::fused(closing2, t79, -t78);
         let t81 = k(2.0) * t60;
         let t82 = k(2.0) * t59;
         let t83 = k(2.0) * t58;
-        let t84 = t83 * t48 + t82 * t49 + t81 * t50;
-        let t85 = t81 * t21 - (t82 * t18 - t83 * t15);
-        let t86 = k(1.0) / (t85 * t85 + t84 * t84);
+        let t84 = T::fused(t81, t50, T::fused(t82, t49, t83 * t48));
+        let t85 = T::fused(t81, t21, -T::fused(-t83, t15, t82 * t18));
+        let t86 = k(1.0) / T::fused(t84, t84, t85 * t85);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            t63 * (t12 * t13) - t52 * (t8 * t13),
-            t52 * (t11 * t13) - t63 * (t7 * t13),
+            T::fused(-t52, t8 * t13, t63 * (t12 * t13)),
+            T::fused(-t63, t7 * t13, t52 * (t11 * t13)),
             -t64,
             -t65,
             -t66,
-            t80 * (t73 * t74) - t75 * (t69 * t74),
-            t75 * (t72 * t74) - t80 * (t68 * t74),
+            T::fused(-t75, t69 * t74, t80 * (t73 * t74)),
+            T::fused(-t80, t68 * t74, t75 * (t72 * t74)),
             -t0,
             -t2,
             -t4,
-            -(t85 * t86 * t47 + t25 * (t84 * t86)),
+            -T::fused(t25, t84 * t86, t85 * t86 * t47),
             closing0,
             closing1,
             closing2,

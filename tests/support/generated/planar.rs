@@ -123,11 +123,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Planar<T> {
             block_sy,
             block_sz,
             -(k(0.5)
-                * (block_e1 * block_wx + block_e2 * block_wy + block_e3 * block_wz)),
-            k(0.5) * (block_e0 * block_wx - block_e3 * block_wy + block_e2 * block_wz),
-            k(0.5) * (block_e3 * block_wx + block_e0 * block_wy - block_e1 * block_wz),
+                * T::fused(
+                    block_e3,
+                    block_wz,
+                    T::fused(block_e2, block_wy, block_e1 * block_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    block_e2,
+                    block_wz,
+                    T::fused(-block_e3, block_wy, block_e0 * block_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -block_e1,
+                    block_wz,
+                    T::fused(block_e0, block_wy, block_e3 * block_wx),
+                ),
             -(k(0.5)
-                * (block_e2 * block_wx - block_e1 * block_wy - block_e0 * block_wz)),
+                * T::fused(
+                    -block_e0,
+                    block_wz,
+                    T::fused(-block_e1, block_wy, block_e2 * block_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -150,6 +168,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 7]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let block_e0 = y[3];
+        let block_e1 = y[4];
+        let block_e2 = y[5];
+        let block_e3 = y[6];
+        let block_sx = y[7];
+        let block_sy = y[8];
+        let block_sz = y[9];
+        let block_wx = y[10];
+        let block_wy = y[11];
+        let block_wz = y[12];
+        *dy = [
+            block_sx,
+            block_sy,
+            block_sz,
+            -(k(0.5)
+                * T::fused(
+                    block_e3,
+                    block_wz,
+                    T::fused(block_e2, block_wy, block_e1 * block_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    block_e2,
+                    block_wz,
+                    T::fused(-block_e3, block_wy, block_e0 * block_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -block_e1,
+                    block_wz,
+                    T::fused(block_e0, block_wy, block_e3 * block_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -block_e0,
+                    block_wz,
+                    T::fused(-block_e1, block_wy, block_e2 * block_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 26 operations (13 ±, 13 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -164,13 +233,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let t3 = block_e2 * block_e3;
         let t4 = block_e3 * block_e3;
         let t5 = block_e0 * block_e0;
-        let t6 = k(0.1) * (k(0.5) - (t5 + t4))
-            + (k(0.2) * (t3 + t2) - k(0.4) * (t1 - t0));
+        let t6 = T::fused(
+            k(0.1),
+            k(0.5) - (t5 + t4),
+            T::fused(-k(0.4), t1 - t0, k(0.2) * (t3 + t2)),
+        );
         *out = [
             block_rz - t6,
             k(2.0) * (t1 + t0),
             k(2.0) * (t3 - t2),
-            t4 + (t5 + block_e1 * block_e1 + block_e2 * block_e2) - k(1.0),
+            t4 + T::fused(block_e2, block_e2, T::fused(block_e1, block_e1, t5)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 48 operations (18 ±, 30 ×, 0 ÷).
@@ -184,19 +256,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = k(2.0) * (block_e1 * block_e3 - block_e0 * block_e2);
-        let t1 = k(2.0) * (block_e2 * block_e3 + block_e0 * block_e1);
+        let t0 = k(2.0) * T::fused(-block_e0, block_e2, block_e1 * block_e3);
+        let t1 = k(2.0) * T::fused(block_e0, block_e1, block_e2 * block_e3);
         let t2 = block_e0 * block_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + block_e3 * block_e3));
-        let t4 = k(0.2) * (t3 * block_wy + t1 * block_wz)
-            + k(0.1) * (t3 * block_wx + t0 * block_wz);
+        let t3 = k(2.0) * (k(0.5) - T::fused(block_e3, block_e3, t2));
+        let t4 = T::fused(
+            k(0.1),
+            T::fused(t0, block_wz, t3 * block_wx),
+            k(0.2) * T::fused(t1, block_wz, t3 * block_wy),
+        );
         let t5 = block_e0 * block_e3;
         let t6 = block_e1 * block_e2;
-        let t7 = k(2.0) * (t6 - t5) * block_wx
-            + k(2.0) * (k(0.5) - (t2 + block_e1 * block_e1)) * block_wy;
-        let t8 = k(2.0) * (k(0.5) - (t2 + block_e2 * block_e2)) * block_wx
-            + k(2.0) * (t6 + t5) * block_wy;
-        *out = [block_sz + (t4 - k(0.05) * (t1 * block_wx - t0 * block_wy)), -t7, t8];
+        let t7 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t2)),
+            block_wy,
+            k(2.0) * (t6 - t5) * block_wx,
+        );
+        let t8 = T::fused(
+            k(2.0) * (t6 + t5),
+            block_wy,
+            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t2)) * block_wx,
+        );
+        *out = [
+            block_sz + T::fused(-k(0.05), T::fused(-t0, block_wy, t1 * block_wx), t4),
+            -t7,
+            t8,
+        ];
     }
     /// Kinetic and potential energy: 21 operations (7 ±, 14 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
@@ -210,13 +295,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = block_wx * (k(0.01) * block_wx) + block_wy * (k(0.02) * block_wy)
-            + block_wz * (k(0.025) * block_wz);
-        let t1 = t0
-            + k(0.8) * (block_sx * block_sx + block_sy * block_sy + block_sz * block_sz);
+        let t0 = T::fused(
+            block_wz,
+            k(0.025) * block_wz,
+            T::fused(block_wy, k(0.02) * block_wy, block_wx * (k(0.01) * block_wx)),
+        );
+        let t1 = T::fused(
+            k(0.8),
+            T::fused(
+                block_sz,
+                block_sz,
+                T::fused(block_sy, block_sy, block_sx * block_sx),
+            ),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
-            potential: k(6.4) * block_rz - (k(1.2) * block_rx - k(3.2) * block_ry),
+            potential: T::fused(
+                k(6.4),
+                block_rz,
+                -T::fused(-k(3.2), block_ry, k(1.2) * block_rx),
+            ),
         }
     }
     /// Writes the joint readings: 70 operations (30 ±, 40 ×, 0 ÷).
@@ -234,33 +333,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_wy = y[11];
         let block_wz = y[12];
         let t0 = block_e0 * block_e0;
-        let t1 = t0 + block_e1 * block_e1;
+        let t1 = T::fused(block_e1, block_e1, t0);
         let t2 = k(0.5) - t1;
         let t3 = block_e0 * block_e3;
         let t4 = block_e1 * block_e2;
         let t5 = t4 - t3;
-        let t6 = block_e1 * block_e3 + block_e0 * block_e2;
+        let t6 = T::fused(block_e0, block_e2, block_e1 * block_e3);
         let t7 = k(2.0) * t2;
         let t8 = k(2.0) * t5;
         let t9 = k(2.0) * t6;
-        let t10 = k(0.2) * (t9 * block_wy - t8 * block_wz)
-            + k(0.1) * (t9 * block_wx + t7 * block_wz);
+        let t10 = T::fused(
+            k(0.1),
+            T::fused(t7, block_wz, t9 * block_wx),
+            k(0.2) * T::fused(-t8, block_wz, t9 * block_wy),
+        );
         let t11 = t4 + t3;
         let t12 = block_e2 * block_e2;
         let t13 = k(0.5) - (t0 + t12);
-        let t14 = block_e2 * block_e3 - block_e0 * block_e1;
+        let t14 = T::fused(-block_e0, block_e1, block_e2 * block_e3);
         let t15 = k(2.0) * t11;
         let t16 = k(2.0) * t13;
         let t17 = k(2.0) * t14;
-        let t18 = k(0.2) * (t17 * block_wy + t16 * block_wz)
-            + k(0.1) * (t17 * block_wx - t15 * block_wz);
+        let t18 = T::fused(
+            k(0.1),
+            T::fused(-t15, block_wz, t17 * block_wx),
+            k(0.2) * T::fused(t16, block_wz, t17 * block_wy),
+        );
         *out = [
-            block_rx + (k(0.1) * t6 - (k(0.2) * t5 + k(0.4) * t2)),
-            block_sx - (t10 + k(0.05) * (t8 * block_wx + t7 * block_wy)),
-            block_ry + (k(0.1) * t14 + (k(0.2) * t13 + k(0.4) * t11)),
-            block_sy - (t18 - k(0.05) * (t16 * block_wx + t15 * block_wy)),
+            block_rx + T::fused(k(0.1), t6, -T::fused(k(0.4), t2, k(0.2) * t5)),
+            block_sx - T::fused(k(0.05), T::fused(t7, block_wy, t8 * block_wx), t10),
+            block_ry + T::fused(k(0.1), t14, T::fused(k(0.4), t11, k(0.2) * t13)),
+            block_sy - T::fused(-k(0.05), T::fused(t15, block_wy, t16 * block_wx), t18),
             t15,
-            k(1.0) - (block_e3 * block_e3 + (t1 + t12)) - t7,
+            k(1.0) - T::fused(block_e3, block_e3, t1 + t12) - t7,
             block_wz,
         ];
     }
@@ -354,39 +459,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Planar<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let block_e0 = y[3];
-        let block_e1 = y[4];
-        let block_e2 = y[5];
-        let block_e3 = y[6];
-        let block_sx = y[7];
-        let block_sy = y[8];
-        let block_sz = y[9];
-        let block_wx = y[10];
-        let block_wy = y[11];
-        let block_wz = y[12];
-        *dy = [
-            block_sx,
-            block_sy,
-            block_sz,
-            -(k(0.5)
-                * (block_e1 * block_wx + block_e2 * block_wy + block_e3 * block_wz)),
-            k(0.5) * (block_e0 * block_wx - block_e3 * block_wy + block_e2 * block_wz),
-            k(0.5) * (block_e3 * block_wx + block_e0 * block_wy - block_e1 * block_wz),
-            -(k(0.5)
-                * (block_e2 * block_wx - block_e1 * block_wy - block_e0 * block_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
-    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
     type Velocities = [T; 6];
@@ -445,10 +517,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t5 = k(2.0) * block_e1;
         *out = [
             k(1.0),
-            t0 - (k(0.2) * block_e1 + k(0.4) * block_e2),
-            k(0.4) * block_e3 - t0,
-            -(t1 + k(0.4) * block_e0),
-            t1 - (k(0.2) * block_e2 - k(0.4) * block_e1),
+            t0 - T::fused(k(0.4), block_e2, k(0.2) * block_e1),
+            T::fused(k(0.4), block_e3, -t0),
+            -T::fused(k(0.4), block_e0, t1),
+            t1 - T::fused(-k(0.4), block_e1, k(0.2) * block_e2),
             t2,
             t3,
             t4,
@@ -470,20 +542,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_e1 = y[4];
         let block_e2 = y[5];
         let block_e3 = y[6];
-        let t0 = block_e2 * block_e3 + block_e0 * block_e1;
+        let t0 = T::fused(block_e0, block_e1, block_e2 * block_e3);
         let t1 = block_e0 * block_e0;
-        let t2 = k(0.5) - (t1 + block_e3 * block_e3);
-        let t3 = block_e1 * block_e3 - block_e0 * block_e2;
+        let t2 = k(0.5) - T::fused(block_e3, block_e3, t1);
+        let t3 = T::fused(-block_e0, block_e2, block_e1 * block_e3);
         let t4 = block_e0 * block_e3;
         let t5 = block_e1 * block_e2;
         *out = [
             k(1.0),
-            k(0.2) * t2 - k(0.1) * t0,
-            k(0.4) * t2 + k(0.1) * t3,
-            k(0.4) * t0 + k(0.2) * t3,
+            T::fused(-k(0.1), t0, k(0.2) * t2),
+            T::fused(k(0.1), t3, k(0.4) * t2),
+            T::fused(k(0.2), t3, k(0.4) * t0),
             -(k(2.0) * (t5 - t4)),
-            -(k(2.0) * (k(0.5) - (t1 + block_e1 * block_e1))),
-            k(2.0) * (k(0.5) - (t1 + block_e2 * block_e2)),
+            -(k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t1))),
+            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t1)),
             k(2.0) * (t5 + t4),
         ];
     }
@@ -513,20 +585,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t8 = k(2.0) * (t7 + t6);
         let t9 = block_wx * block_wz;
         let t10 = block_e0 * block_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + block_e3 * block_e3));
-        let t12 = k(0.2) * (t11 * t9 - (t8 * t5 - t4 * (t1 + t0)));
-        let t13 = block_wx * block_wx;
-        let t14 = block_wy * block_wz;
-        let t15 = k(0.1) * (t11 * t14 + (t8 * (t1 + t13) - t4 * t5));
-        let t16 = t0 + t13;
-        let t17 = k(0.05) * (t11 * t16 + (t8 * t14 + t4 * t9)) + (t15 - t12);
-        let t18 = block_e0 * block_e3;
-        let t19 = block_e1 * block_e2;
-        let t20 = k(2.0) * (t19 - t18) * t14
-            - k(2.0) * (k(0.5) - (t10 + block_e1 * block_e1)) * t9;
-        let t21 = k(2.0) * (k(0.5) - (t10 + block_e2 * block_e2)) * t14
-            - k(2.0) * (t19 + t18) * t9;
-        *out = [-t17, k(2.0) * (t3 + t2) * t16 - t20, k(2.0) * (t7 - t6) * t16 + t21];
+        let t11 = k(2.0) * (k(0.5) - T::fused(block_e3, block_e3, t10));
+        let t12 = block_wx * block_wx;
+        let t13 = block_wy * block_wz;
+        let t14 = T::fused(
+            -k(0.2),
+            T::fused(t11, t9, -T::fused(-t4, t1 + t0, t8 * t5)),
+            k(0.1) * T::fused(t11, t13, T::fused(-t4, t5, t8 * (t1 + t12))),
+        );
+        let t15 = t0 + t12;
+        let t16 = T::fused(k(0.05), T::fused(t11, t15, T::fused(t4, t9, t8 * t13)), t14);
+        let t17 = block_e0 * block_e3;
+        let t18 = block_e1 * block_e2;
+        let t19 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t10))),
+            t9,
+            k(2.0) * (t18 - t17) * t13,
+        );
+        let t20 = T::fused(
+            -(k(2.0) * (t18 + t17)),
+            t9,
+            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t10)) * t13,
+        );
+        *out = [
+            -t16,
+            T::fused(k(2.0) * (t3 + t2), t15, -t19),
+            T::fused(k(2.0) * (t7 - t6), t15, t20),
+        ];
     }
     /// Writes (f, n' − w̃'J'w'): 6 operations (0 ±, 6 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -559,9 +644,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t3 = block_e0 * block_e2;
         let t4 = block_e1 * block_e3;
         let t5 = t4 + t3;
-        let t6 = k(0.2) * t5 + k(0.1) * t2;
+        let t6 = T::fused(k(0.1), t2, k(0.2) * t5);
         let t7 = block_e0 * block_e0;
-        let t8 = k(0.5) - (t7 + block_e3 * block_e3);
+        let t8 = k(0.5) - T::fused(block_e3, block_e3, t7);
         let t9 = block_wx * block_wx;
         let t10 = block_wy * block_wy;
         let t11 = t10 + t9;
@@ -571,43 +656,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t15 = t14 + t13;
         let t16 = k(2.0) * t15;
         let t17 = block_wy * block_wz;
-        let t18 = t17 - t16 * t12;
-        let t19 = k(0.5) - (t7 + block_e1 * block_e1);
-        let t20 = k(0.4) * t5 + k(0.1) * t19;
+        let t18 = T::fused(-t16, t12, t17);
+        let t19 = k(0.5) - T::fused(block_e1, block_e1, t7);
+        let t20 = T::fused(k(0.1), t19, k(0.4) * t5);
         let t21 = t4 - t3;
         let t22 = k(2.0) * t21;
         let t23 = block_wx * block_wz;
-        let t24 = t23 - t22 * t12;
-        let t25 = k(0.4) * t2 - k(0.2) * t19;
+        let t24 = T::fused(-t22, t12, t23);
+        let t25 = T::fused(-k(0.2), t19, k(0.4) * t2);
         let t26 = k(0.8) * t25;
         let t27 = t1 + t0;
-        let t28 = k(0.5) - (t7 + block_e2 * block_e2);
-        let t29 = k(0.4) * t28 - k(0.2) * t27;
+        let t28 = k(0.5) - T::fused(block_e2, block_e2, t7);
+        let t29 = T::fused(-k(0.2), t27, k(0.4) * t28);
         let t30 = k(0.8) * t29;
         let t31 = k(1.2) * t25;
         let t32 = k(3.2) * t29;
-        let t33 = k(0.4) * t15 + k(0.2) * t21;
+        let t33 = T::fused(k(0.2), t21, k(0.4) * t15);
         let t34 = block_wx * block_wy;
-        let t35 = t32 + (t31 - (k(0.01) * t34 - (k(6.4) * t33 - (t32 + t31))));
+        let t35 = t32
+            + (t31 - T::fused(k(0.01), t34, -T::fused(k(6.4), t33, -(t32 + t31))));
         let t36 = block_wz * block_wz;
         let t37 = k(2.0) * t8;
-        let t38 = k(0.2) * (t37 * t23 - (t16 * t34 - t22 * (t36 + t10)));
-        let t39 = k(0.1) * (t37 * t17 + (t16 * (t36 + t9) - t22 * t34));
-        let t40 = k(0.05) * (t37 * t11 + (t16 * t17 + t22 * t23)) + (t39 - t38);
-        let t41 = t14 - t13;
-        let t42 = k(0.2) * t41 - k(0.1) * t28;
-        let t43 = k(0.4) * t41 - k(0.1) * t27;
-        let t44 = (t43 * t30 - (k(0.004) + t20 * t26)) * t24
-            - (t42 * t30 + (k(0.008) - t6 * t26)) * t18;
-        let t45 = (t44 + k(0.8) * t33 * t40 - t35)
-            / (t29 * t30 - (k(0.065) - t25 * t26));
-        let t46 = t26 * t45 + (t24 * (k(0.8) * t20) - t18 * (k(0.8) * t6));
-        let t47 = t25 * t45 + (t20 * t24 - t6 * t18) - k(1.25) * (k(1.2) + t46);
-        let t48 = t30 * t45 - (t24 * (k(0.8) * t43) - t18 * (k(0.8) * t42));
-        let t49 = t29 * t45 - (t43 * t24 - t42 * t18) - k(1.25) * (k(3.2) + t48);
-        let t50 = (k(0.4) * t8 + k(0.1) * t21) * t24
-            - (k(0.2) * t8 - k(0.1) * t15) * t18;
-        *out = [-t47, t49, -(t40 + (t33 * t45 - t50)), t18, -t24, t45];
+        let t38 = T::fused(
+            -k(0.2),
+            T::fused(t37, t23, -T::fused(-t22, t36 + t10, t16 * t34)),
+            k(0.1) * T::fused(t37, t17, T::fused(-t22, t34, t16 * (t36 + t9))),
+        );
+        let t39 = T::fused(
+            k(0.05),
+            T::fused(t37, t11, T::fused(t22, t23, t16 * t17)),
+            t38,
+        );
+        let t40 = t14 - t13;
+        let t41 = T::fused(-k(0.1), t28, k(0.2) * t40);
+        let t42 = T::fused(-k(0.1), t27, k(0.4) * t40);
+        let t43 = T::fused(
+            -T::fused(t41, t30, T::fused(-t6, t26, k(0.008))),
+            t18,
+            T::fused(t42, t30, -T::fused(t20, t26, k(0.004))) * t24,
+        );
+        let t44 = (T::fused(k(0.8) * t33, t39, t43) - t35)
+            / T::fused(t29, t30, -T::fused(-t25, t26, k(0.065)));
+        let t45 = T::fused(t26, t44, T::fused(-t18, k(0.8) * t6, t24 * (k(0.8) * t20)));
+        let t46 = T::fused(
+            -k(1.25),
+            k(1.2) + t45,
+            T::fused(t25, t44, T::fused(-t6, t18, t20 * t24)),
+        );
+        let t47 = T::fused(
+            t30,
+            t44,
+            -T::fused(-t18, k(0.8) * t41, t24 * (k(0.8) * t42)),
+        );
+        let t48 = T::fused(
+            -k(1.25),
+            k(3.2) + t47,
+            T::fused(t29, t44, -T::fused(-t41, t18, t42 * t24)),
+        );
+        let t49 = T::fused(
+            -T::fused(-k(0.1), t15, k(0.2) * t8),
+            t18,
+            T::fused(k(0.1), t21, k(0.4) * t8) * t24,
+        );
+        *out = [-t46, t48, -(t39 + T::fused(t33, t44, -t49)), t18, -t24, t44];
     }
     /// Writes λ: 84 operations (32 ±, 51 ×, 1 ÷).
     fn multipliers(
@@ -630,7 +741,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_dsz = accelerations[2];
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
-        let t0 = k(6.4) + k(0.8) * block_dsz;
+        let t0 = T::fused(k(0.8), block_dsz, k(6.4));
         let t1 = block_e0 * block_e3;
         let t2 = block_e1 * block_e2;
         let t3 = t2 + t1;
@@ -638,32 +749,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let t5 = t2 - t1;
         let t6 = k(2.0) * t5;
         let t7 = block_e0 * block_e0;
-        let t8 = k(0.5) - (t7 + block_e2 * block_e2);
+        let t8 = k(0.5) - T::fused(block_e2, block_e2, t7);
         let t9 = k(2.0) * t8;
-        let t10 = k(0.5) - (t7 + block_e1 * block_e1);
+        let t10 = k(0.5) - T::fused(block_e1, block_e1, t7);
         let t11 = k(2.0) * t10;
-        let t12 = k(1.0) / (t11 * t9 - t6 * t4);
+        let t12 = k(1.0) / T::fused(-t6, t4, t11 * t9);
         let t13 = block_e0 * block_e2;
         let t14 = block_e1 * block_e3;
         let t15 = t14 + t13;
-        let t16 = k(1.2) - k(0.8) * block_dsx;
+        let t16 = T::fused(-k(0.8), block_dsx, k(1.2));
         let t17 = block_e0 * block_e1;
         let t18 = block_e2 * block_e3;
         let t19 = t18 - t17;
-        let t20 = k(3.2) + k(0.8) * block_dsy;
-        let t21 = t20 * (k(0.2) * t19 - k(0.1) * t8)
-            - t16 * (k(0.2) * t15 + k(0.1) * t5);
-        let t22 = k(0.5) - (t7 + block_e3 * block_e3);
-        let t23 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx
-            - (t0 * (k(0.2) * t22 - k(0.1) * (t18 + t17)) - t21);
-        let t24 = t20 * (k(0.4) * t19 - k(0.1) * t3)
-            - t16 * (k(0.4) * t15 + k(0.1) * t10);
-        let t25 = k(0.015) * (block_wx * block_wz) - k(0.02) * block_dwy
-            + (t0 * (k(0.4) * t22 + k(0.1) * (t14 - t13)) - t24);
+        let t20 = T::fused(k(0.8), block_dsy, k(3.2));
+        let t21 = T::fused(
+            -t16,
+            T::fused(k(0.1), t5, k(0.2) * t15),
+            t20 * T::fused(-k(0.1), t8, k(0.2) * t19),
+        );
+        let t22 = k(0.5) - T::fused(block_e3, block_e3, t7);
+        let t23 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
+            - T::fused(t0, T::fused(-k(0.1), t18 + t17, k(0.2) * t22), -t21);
+        let t24 = T::fused(
+            -t16,
+            T::fused(k(0.1), t10, k(0.4) * t15),
+            t20 * T::fused(-k(0.1), t3, k(0.4) * t19),
+        );
+        let t25 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
+            + T::fused(t0, T::fused(k(0.1), t14 - t13, k(0.4) * t22), -t24);
         *lambda = [
             -t0,
-            -(t25 * (t9 * t12) + t23 * (t4 * t12)),
-            -(t25 * (t6 * t12) + t23 * (t11 * t12)),
+            -T::fused(t23, t4 * t12, t25 * (t9 * t12)),
+            -T::fused(t23, t11 * t12, t25 * (t6 * t12)),
         ];
     }
 }
@@ -688,20 +805,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let u2 = x[5];
         let t0 = x2.sin();
         let t1 = x2.cos();
-        let t2 = k(0.16) * t1 + k(0.08) * t0;
+        let t2 = T::fused(k(0.08), t0, k(0.16) * t1);
         let t3 = u2 * u2;
-        let t4 = k(0.52) * t1 + k(0.56) * t0;
-        let t5 = k(0.16) * t0 - k(0.08) * t1;
+        let t4 = T::fused(k(0.56), t0, k(0.52) * t1);
+        let t5 = T::fused(-k(0.08), t1, k(0.16) * t0);
         let t6 = k(15.384615384615385) * t5;
         let t7 = k(15.384615384615385) * t2;
-        let t8 = t7 * t4 - (k(3.2) + t3 * t5);
+        let t8 = T::fused(t7, t4, -T::fused(t3, t5, k(3.2)));
         let t9 = t5 * t7;
-        let t10 = k(1.0) / (k(0.8) - t2 * t7);
+        let t10 = k(1.0) / T::fused(-t2, t7, k(0.8));
         let t11 = t10 * t9;
-        let t12 = (t11 * t8 + (t6 * t4 - (k(1.2) - t3 * t2)))
-            / (t9 * t11 - (k(0.8) - t5 * t6));
-        let t13 = t11 * t12 - t10 * t8;
-        *out = [t12, -t13, -(t7 * t13 + (t6 * t12 - k(15.384615384615385) * t4))];
+        let t12 = T::fused(t11, t8, T::fused(t6, t4, -T::fused(-t3, t2, k(1.2))))
+            / T::fused(t9, t11, -T::fused(-t5, t6, k(0.8)));
+        let t13 = T::fused(-t10, t8, t11 * t12);
+        *out = [
+            t12,
+            -t13,
+            -T::fused(t7, t13, T::fused(-k(15.384615384615385), t4, t6 * t12)),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -732,15 +853,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let t8 = k(0.1) * u2;
         let t9 = k(2.0) * t5;
         *y = [
-            x0 + (k(0.4) * t5 - k(0.2) * t3),
-            x1 - (k(0.4) * t3 + k(0.2) * t5),
-            k(0.1) * (k(0.5) - (t4 + t2 * t2)),
+            x0 + T::fused(-k(0.2), t3, k(0.4) * t5),
+            x1 - T::fused(k(0.2), t5, k(0.4) * t3),
+            k(0.1) * (k(0.5) - T::fused(t2, t2, t4)),
             t1,
             k(0.0),
             k(0.0),
             t2,
-            u0 + (t9 * t8 + t7 * t6),
-            u1 - (t7 * t8 - t9 * t6),
+            u0 + T::fused(t7, t6, t9 * t8),
+            u1 - T::fused(-t9, t6, t7 * t8),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -763,35 +884,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_wz = y[12];
         let x2 = x[2];
         let t0 = block_e0 * block_e0;
-        let t1 = t0 + block_e1 * block_e1;
+        let t1 = T::fused(block_e1, block_e1, t0);
         let t2 = k(0.5) - t1;
         let t3 = block_e0 * block_e3;
         let t4 = block_e1 * block_e2;
         let t5 = t4 - t3;
-        let t6 = block_e1 * block_e3 + block_e0 * block_e2;
+        let t6 = T::fused(block_e0, block_e2, block_e1 * block_e3);
         let t7 = t4 + t3;
         let t8 = block_e2 * block_e2;
         let t9 = k(0.5) - (t0 + t8);
-        let t10 = block_e2 * block_e3 - block_e0 * block_e1;
+        let t10 = T::fused(-block_e0, block_e1, block_e2 * block_e3);
         let t11 = x2.sin();
         let t12 = k(2.0) * t7;
         let t13 = x2.cos();
         let t14 = k(2.0) * t2;
-        let t15 = t14 - (k(1.0) - (block_e3 * block_e3 + (t1 + t8)));
-        let t16 = (t15 * t11 + t12 * t13).atan2(t12 * t11 - t15 * t13);
+        let t15 = t14 - (k(1.0) - T::fused(block_e3, block_e3, t1 + t8));
+        let t16 = T::fused(t12, t13, t15 * t11).atan2(T::fused(-t15, t13, t12 * t11));
         let t17 = k(2.0) * t5;
         let t18 = k(2.0) * t6;
-        let t19 = k(0.2) * (t18 * block_wy - t17 * block_wz)
-            + k(0.1) * (t18 * block_wx + t14 * block_wz);
+        let t19 = T::fused(
+            k(0.1),
+            T::fused(t14, block_wz, t18 * block_wx),
+            k(0.2) * T::fused(-t17, block_wz, t18 * block_wy),
+        );
         let t20 = k(2.0) * t9;
         let t21 = k(2.0) * t10;
-        let t22 = k(0.2) * (t21 * block_wy + t20 * block_wz)
-            + k(0.1) * (t21 * block_wx - t12 * block_wz);
-        x[0] = block_rx + (k(0.1) * t6 - (k(0.2) * t5 + k(0.4) * t2));
-        x[1] = block_ry + (k(0.1) * t10 + (k(0.2) * t9 + k(0.4) * t7));
+        let t22 = T::fused(
+            k(0.1),
+            T::fused(-t12, block_wz, t21 * block_wx),
+            k(0.2) * T::fused(t20, block_wz, t21 * block_wy),
+        );
+        x[0] = block_rx + T::fused(k(0.1), t6, -T::fused(k(0.4), t2, k(0.2) * t5));
+        x[1] = block_ry + T::fused(k(0.1), t10, T::fused(k(0.4), t7, k(0.2) * t9));
         x[2] = x2 + t16;
-        x[3] = block_sx - (t19 + k(0.05) * (t17 * block_wx + t14 * block_wy));
-        x[4] = block_sy - (t22 - k(0.05) * (t20 * block_wx + t12 * block_wy));
+        x[3] = block_sx
+            - T::fused(k(0.05), T::fused(t14, block_wy, t17 * block_wx), t19);
+        x[4] = block_sy
+            - T::fused(-k(0.05), T::fused(t12, block_wy, t20 * block_wx), t22);
         x[5] = block_wz;
     }
     /// Writes u̇ at a state that satisfies the constraints: 44 operations (15 ±, 27 ×, 2 ÷).
@@ -802,21 +931,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_wz = y[12];
         let t0 = k(2.0) * block_e3;
         let t1 = block_e0 * t0;
-        let t2 = k(1.0) - block_e3 * t0;
-        let t3 = k(0.16) * t2 + k(0.08) * t1;
+        let t2 = T::fused(-block_e3, t0, k(1.0));
+        let t3 = T::fused(k(0.08), t1, k(0.16) * t2);
         let t4 = block_wz * block_wz;
-        let t5 = k(0.52) * t2 + k(0.56) * t1;
-        let t6 = k(0.16) * t1 - k(0.08) * t2;
+        let t5 = T::fused(k(0.56), t1, k(0.52) * t2);
+        let t6 = T::fused(-k(0.08), t2, k(0.16) * t1);
         let t7 = k(15.384615384615385) * t6;
         let t8 = k(15.384615384615385) * t3;
-        let t9 = t8 * t5 - (k(3.2) + t4 * t6);
+        let t9 = T::fused(t8, t5, -T::fused(t4, t6, k(3.2)));
         let t10 = t6 * t8;
-        let t11 = k(1.0) / (k(0.8) - t3 * t8);
+        let t11 = k(1.0) / T::fused(-t3, t8, k(0.8));
         let t12 = t11 * t10;
-        let t13 = (t12 * t9 + (t7 * t5 - (k(1.2) - t4 * t3)))
-            / (t10 * t12 - (k(0.8) - t6 * t7));
-        let t14 = t12 * t13 - t11 * t9;
-        *out = [t13, -t14, -(t8 * t14 + (t7 * t13 - k(15.384615384615385) * t5))];
+        let t13 = T::fused(t12, t9, T::fused(t7, t5, -T::fused(-t4, t3, k(1.2))))
+            / T::fused(t10, t12, -T::fused(-t6, t7, k(0.8)));
+        let t14 = T::fused(-t11, t9, t12 * t13);
+        *out = [
+            t13,
+            -t14,
+            -T::fused(t8, t14, T::fused(-k(15.384615384615385), t5, t7 * t13)),
+        ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 130 operations (49 ±, 79 ×, 2 ÷).
     fn corrected_accelerations(
@@ -834,48 +967,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_wy = y[11];
         let block_wz = y[12];
         let t0 = k(2.0) * block_e3;
-        let t1 = k(1.0) - block_e3 * t0;
+        let t1 = T::fused(-block_e3, t0, k(1.0));
         let t2 = block_e0 * t0;
-        let t3 = k(0.16) * t2 - k(0.08) * t1;
+        let t3 = T::fused(-k(0.08), t1, k(0.16) * t2);
         let t4 = block_wz * block_wz;
-        let t5 = k(0.52) * t1 + k(0.56) * t2;
-        let t6 = k(0.16) * t1 + k(0.08) * t2;
+        let t5 = T::fused(k(0.56), t2, k(0.52) * t1);
+        let t6 = T::fused(k(0.08), t2, k(0.16) * t1);
         let t7 = k(15.384615384615385) * t6;
-        let t8 = t7 * t5 - (k(3.2) + t4 * t3);
-        let t9 = k(1.0) / (k(0.8) - t6 * t7);
+        let t8 = T::fused(t7, t5, -T::fused(t4, t3, k(3.2)));
+        let t9 = k(1.0) / T::fused(-t6, t7, k(0.8));
         let t10 = k(15.384615384615385) * t3;
         let t11 = t3 * t7;
         let t12 = t9 * t11;
-        let t13 = (t12 * t8 + (t10 * t5 - (k(1.2) - t4 * t6)))
-            / (t11 * t12 - (k(0.8) - t3 * t10));
-        let t14 = t12 * t13 - t9 * t8;
-        let t15 = k(0.2) * block_wz - k(0.05) * block_wx;
-        let t16 = k(0.1) * block_wx + k(0.2) * block_wy;
-        let t17 = t1 * t13 + (block_wy * t16 + block_wz * t15 - t2 * t14);
-        let t18 = t7 * t14 + (t10 * t13 - k(15.384615384615385) * t5);
+        let t13 = T::fused(t12, t8, T::fused(t10, t5, -T::fused(-t4, t6, k(1.2))))
+            / T::fused(t11, t12, -T::fused(-t3, t10, k(0.8)));
+        let t14 = T::fused(-t9, t8, t12 * t13);
+        let t15 = T::fused(-k(0.05), block_wx, k(0.2) * block_wz);
+        let t16 = T::fused(k(0.2), block_wy, k(0.1) * block_wx);
+        let t17 = T::fused(
+            t1,
+            t13,
+            T::fused(-t2, t14, T::fused(block_wz, t15, block_wy * t16)),
+        );
+        let t18 = T::fused(t7, t14, T::fused(-k(15.384615384615385), t5, t10 * t13));
         let t19 = block_wx * block_wz;
-        let t20 = k(0.05) * t19 + k(0.1) * t18 + t17;
+        let t20 = T::fused(k(0.1), t18, k(0.05) * t19) + t17;
         let t21 = block_e0 * block_e0;
-        let t22 = k(0.05) * block_wy + k(0.1) * block_wz;
-        let t23 = t2 * t13 + (block_wz * t22 + block_wx * t16 + t1 * t14);
+        let t22 = T::fused(k(0.1), block_wz, k(0.05) * block_wy);
+        let t23 = T::fused(
+            t2,
+            t13,
+            T::fused(t1, t14, T::fused(block_wx, t16, block_wz * t22)),
+        );
         let t24 = block_wy * block_wz;
-        let t25 = k(0.05) * t24 + k(0.2) * t18 - t23;
+        let t25 = T::fused(k(0.2), t18, k(0.05) * t24) - t23;
         let t26 = block_e0 * block_e3;
         let t27 = block_e1 * block_e2;
-        let t28 = k(2.0) * (t27 - t26) * t25
-            - k(2.0) * (k(0.5) - (t21 + block_e1 * block_e1)) * t20;
-        let t29 = block_wx * t15 - block_wy * t22 + (k(0.2) * t19 - k(0.1) * t24);
+        let t28 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t21))),
+            t20,
+            k(2.0) * (t27 - t26) * t25,
+        );
+        let t29 = T::fused(-block_wy, t22, block_wx * t15)
+            + T::fused(-k(0.1), t24, k(0.2) * t19);
         let t30 = block_e0 * block_e2;
         let t31 = block_e1 * block_e3;
-        let t32 = k(2.0) * (k(0.5) - (t21 + block_e2 * block_e2)) * t25
-            - k(2.0) * (t27 + t26) * t20;
+        let t32 = T::fused(
+            -(k(2.0) * (t27 + t26)),
+            t20,
+            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t21)) * t25,
+        );
         let t33 = block_e0 * block_e1;
         let t34 = block_e2 * block_e3;
-        let t35 = k(2.0) * (t34 + t33) * t25 + k(2.0) * (t31 - t30) * t20;
+        let t35 = T::fused(k(2.0) * (t31 - t30), t20, k(2.0) * (t34 + t33) * t25);
         *out = [
-            t28 - k(2.0) * (t31 + t30) * t29,
-            -(k(2.0) * (t34 - t33) * t29 + t32),
-            k(2.0) * (k(0.5) - (t21 + block_e3 * block_e3)) * t29 + t35,
+            T::fused(-(k(2.0) * (t31 + t30)), t29, t28),
+            -T::fused(k(2.0) * (t34 - t33), t29, t32),
+            T::fused(k(2.0) * (k(0.5) - T::fused(block_e3, block_e3, t21)), t29, t35),
             t24,
             -t19,
             -t18,
@@ -902,31 +1050,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_dsz = accelerations[2];
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
-        let t0 = k(6.4) + k(0.8) * block_dsz;
+        let t0 = T::fused(k(0.8), block_dsz, k(6.4));
         let t1 = block_e0 * block_e3;
         let t2 = block_e1 * block_e2;
         let t3 = block_e0 * block_e2;
         let t4 = block_e1 * block_e3;
         let t5 = t4 + t3;
-        let t6 = k(1.2) - k(0.8) * block_dsx;
+        let t6 = T::fused(-k(0.8), block_dsx, k(1.2));
         let t7 = block_e0 * block_e0;
         let t8 = block_e0 * block_e1;
         let t9 = block_e2 * block_e3;
         let t10 = t9 - t8;
-        let t11 = k(3.2) + k(0.8) * block_dsy;
-        let t12 = t11 * (k(0.2) * t10 - k(0.1) * (k(0.5) - (t7 + block_e2 * block_e2)));
-        let t13 = k(0.5) - (t7 + block_e3 * block_e3);
-        let t14 = t0 * (k(0.2) * t13 - k(0.1) * (t9 + t8))
-            - (t12 - t6 * (k(0.2) * t5 + k(0.1) * (t2 - t1)));
-        let t15 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx - t14;
-        let t16 = k(2.0) * block_e3;
-        let t17 = block_e0 * t16;
-        let t18 = t6 * (k(0.4) * t5 + k(0.1) * (k(0.5) - (t7 + block_e1 * block_e1)));
-        let t19 = t0 * (k(0.4) * t13 + k(0.1) * (t4 - t3))
-            - (t11 * (k(0.4) * t10 - k(0.1) * (t2 + t1)) - t18);
-        let t20 = k(0.015) * (block_wx * block_wz) - k(0.02) * block_dwy + t19;
-        let t21 = k(1.0) - block_e3 * t16;
-        *lambda = [-t0, t21 * t20 - t17 * t15, t17 * t20 + t21 * t15];
+        let t11 = T::fused(k(0.8), block_dsy, k(3.2));
+        let t12 = T::fused(
+            -t6,
+            T::fused(k(0.1), t2 - t1, k(0.2) * t5),
+            t11
+                * T::fused(
+                    -k(0.1),
+                    k(0.5) - T::fused(block_e2, block_e2, t7),
+                    k(0.2) * t10,
+                ),
+        );
+        let t13 = k(0.5) - T::fused(block_e3, block_e3, t7);
+        let t14 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
+            - T::fused(t0, T::fused(-k(0.1), t9 + t8, k(0.2) * t13), -t12);
+        let t15 = k(2.0) * block_e3;
+        let t16 = block_e0 * t15;
+        let t17 = T::fused(
+            -t6,
+            T::fused(k(0.1), k(0.5) - T::fused(block_e1, block_e1, t7), k(0.4) * t5),
+            t11 * T::fused(-k(0.1), t2 + t1, k(0.4) * t10),
+        );
+        let t18 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
+            + T::fused(t0, T::fused(k(0.1), t4 - t3, k(0.4) * t13), -t17);
+        let t19 = T::fused(-block_e3, t15, k(1.0));
+        *lambda = [-t0, T::fused(-t16, t14, t19 * t18), T::fused(t19, t14, t16 * t18)];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 174 operations (66 ±, 106 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
@@ -939,60 +1098,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
         let block_wy = y[11];
         let block_wz = y[12];
         let t0 = k(2.0) * block_e3;
-        let t1 = k(1.0) - block_e3 * t0;
+        let t1 = T::fused(-block_e3, t0, k(1.0));
         let t2 = block_e0 * t0;
-        let t3 = k(0.16) * t2 - k(0.08) * t1;
+        let t3 = T::fused(-k(0.08), t1, k(0.16) * t2);
         let t4 = block_wz * block_wz;
-        let t5 = k(0.52) * t1 + k(0.56) * t2;
-        let t6 = k(0.16) * t1 + k(0.08) * t2;
+        let t5 = T::fused(k(0.56), t2, k(0.52) * t1);
+        let t6 = T::fused(k(0.08), t2, k(0.16) * t1);
         let t7 = k(15.384615384615385) * t6;
-        let t8 = t7 * t5 - (k(3.2) + t4 * t3);
-        let t9 = k(1.0) / (k(0.8) - t6 * t7);
+        let t8 = T::fused(t7, t5, -T::fused(t4, t3, k(3.2)));
+        let t9 = k(1.0) / T::fused(-t6, t7, k(0.8));
         let t10 = k(15.384615384615385) * t3;
         let t11 = t3 * t7;
         let t12 = t9 * t11;
-        let t13 = (t12 * t8 + (t10 * t5 - (k(1.2) - t4 * t6)))
-            / (t11 * t12 - (k(0.8) - t3 * t10));
-        let t14 = t12 * t13 - t9 * t8;
-        let t15 = k(0.2) * block_wz - k(0.05) * block_wx;
-        let t16 = k(0.1) * block_wx + k(0.2) * block_wy;
-        let t17 = t1 * t13 + (block_wy * t16 + block_wz * t15 - t2 * t14);
-        let t18 = t7 * t14 + (t10 * t13 - k(15.384615384615385) * t5);
+        let t13 = T::fused(t12, t8, T::fused(t10, t5, -T::fused(-t4, t6, k(1.2))))
+            / T::fused(t11, t12, -T::fused(-t3, t10, k(0.8)));
+        let t14 = T::fused(-t9, t8, t12 * t13);
+        let t15 = T::fused(-k(0.05), block_wx, k(0.2) * block_wz);
+        let t16 = T::fused(k(0.2), block_wy, k(0.1) * block_wx);
+        let t17 = T::fused(
+            t1,
+            t13,
+            T::fused(-t2, t14, T::fused(block_wz, t15, block_wy * t16)),
+        );
+        let t18 = T::fused(t7, t14, T::fused(-k(15.384615384615385), t5, t10 * t13));
         let t19 = block_wx * block_wz;
-        let t20 = k(0.05) * t19 + k(0.1) * t18 + t17;
+        let t20 = T::fused(k(0.1), t18, k(0.05) * t19) + t17;
         let t21 = block_e0 * block_e0;
-        let t22 = k(0.5) - (t21 + block_e1 * block_e1);
-        let t23 = k(0.05) * block_wy + k(0.1) * block_wz;
-        let t24 = t2 * t13 + (block_wz * t23 + block_wx * t16 + t1 * t14);
+        let t22 = k(0.5) - T::fused(block_e1, block_e1, t21);
+        let t23 = T::fused(k(0.1), block_wz, k(0.05) * block_wy);
+        let t24 = T::fused(
+            t2,
+            t13,
+            T::fused(t1, t14, T::fused(block_wx, t16, block_wz * t23)),
+        );
         let t25 = block_wy * block_wz;
-        let t26 = k(0.05) * t25 + k(0.2) * t18 - t24;
+        let t26 = T::fused(k(0.2), t18, k(0.05) * t25) - t24;
         let t27 = block_e0 * block_e3;
         let t28 = block_e1 * block_e2;
         let t29 = t28 - t27;
-        let t30 = block_wx * t15 - block_wy * t23 + (k(0.2) * t19 - k(0.1) * t25);
+        let t30 = T::fused(-block_wy, t23, block_wx * t15)
+            + T::fused(-k(0.1), t25, k(0.2) * t19);
         let t31 = block_e0 * block_e2;
         let t32 = block_e1 * block_e3;
         let t33 = t32 + t31;
-        let t34 = k(2.0) * t33 * t30 - (k(2.0) * t29 * t26 - k(2.0) * t22 * t20);
+        let t34 = T::fused(
+            k(2.0) * t33,
+            t30,
+            -T::fused(-(k(2.0) * t22), t20, k(2.0) * t29 * t26),
+        );
         let t35 = t28 + t27;
-        let t36 = k(0.5) - (t21 + block_e2 * block_e2);
+        let t36 = k(0.5) - T::fused(block_e2, block_e2, t21);
         let t37 = block_e0 * block_e1;
         let t38 = block_e2 * block_e3;
         let t39 = t38 - t37;
-        let t40 = k(2.0) * t39 * t30 + (k(2.0) * t36 * t26 - k(2.0) * t35 * t20);
+        let t40 = T::fused(
+            k(2.0) * t39,
+            t30,
+            T::fused(-(k(2.0) * t35), t20, k(2.0) * t36 * t26),
+        );
         let t41 = t32 - t31;
         let t42 = t38 + t37;
-        let t43 = k(0.5) - (t21 + block_e3 * block_e3);
-        let t44 = k(2.0) * t43 * t30 + (k(2.0) * t42 * t26 + k(2.0) * t41 * t20);
-        let t45 = k(6.4) + k(0.8) * t44;
-        let t46 = k(3.2) - k(0.8) * t40;
-        let t47 = k(1.2) + k(0.8) * t34;
-        let t48 = (k(0.4) * t33 + k(0.1) * t22) * t47
-            - (k(0.4) * t39 - k(0.1) * t35) * t46;
-        let t49 = t48 + (k(0.4) * t43 + k(0.1) * t41) * t45 + k(0.035) * t19;
-        let t50 = (k(0.2) * t33 + k(0.1) * t29) * t47
-            - (k(0.2) * t39 - k(0.1) * t36) * t46;
-        let t51 = t50 + (k(0.2) * t43 - k(0.1) * t42) * t45 - k(0.015) * t25;
+        let t43 = k(0.5) - T::fused(block_e3, block_e3, t21);
+        let t44 = T::fused(
+            k(2.0) * t43,
+            t30,
+            T::fused(k(2.0) * t41, t20, k(2.0) * t42 * t26),
+        );
+        let t45 = T::fused(k(0.8), t44, k(6.4));
+        let t46 = T::fused(-k(0.8), t40, k(3.2));
+        let t47 = T::fused(k(0.8), t34, k(1.2));
+        let t48 = T::fused(
+            -T::fused(-k(0.1), t35, k(0.4) * t39),
+            t46,
+            T::fused(k(0.1), t22, k(0.4) * t33) * t47,
+        );
+        let t49 = T::fused(
+            k(0.035),
+            t19,
+            T::fused(T::fused(k(0.1), t41, k(0.4) * t43), t45, t48),
+        );
+        let t50 = T::fused(
+            -T::fused(-k(0.1), t36, k(0.2) * t39),
+            t46,
+            T::fused(k(0.1), t29, k(0.2) * t33) * t47,
+        );
+        let t51 = T::fused(
+            -k(0.015),
+            t25,
+            T::fused(T::fused(-k(0.1), t42, k(0.2) * t43), t45, t50),
+        );
         *out = [
             -t34,
             -t40,
@@ -1001,8 +1195,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
             -t19,
             -t18,
             -t45,
-            t2 * t51 + t1 * t49,
-            t2 * t49 - t1 * t51,
+            T::fused(t1, t49, t2 * t51),
+            T::fused(-t1, t51, t2 * t49),
         ];
     }
 }
@@ -1030,7 +1224,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
         let block_dsz = accelerations[2];
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
-        let t0 = k(6.4) + k(0.8) * block_dsz;
+        let t0 = T::fused(k(0.8), block_dsz, k(6.4));
         let t1 = block_e0 * block_e3;
         let t2 = block_e1 * block_e2;
         let t3 = t2 + t1;
@@ -1038,40 +1232,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
         let t5 = t2 - t1;
         let t6 = k(2.0) * t5;
         let t7 = block_e0 * block_e0;
-        let t8 = k(0.5) - (t7 + block_e2 * block_e2);
+        let t8 = k(0.5) - T::fused(block_e2, block_e2, t7);
         let t9 = k(2.0) * t8;
-        let t10 = k(0.5) - (t7 + block_e1 * block_e1);
+        let t10 = k(0.5) - T::fused(block_e1, block_e1, t7);
         let t11 = k(2.0) * t10;
-        let t12 = k(1.0) / (t11 * t9 - t6 * t4);
+        let t12 = k(1.0) / T::fused(-t6, t4, t11 * t9);
         let t13 = block_e0 * block_e2;
         let t14 = block_e1 * block_e3;
         let t15 = t14 + t13;
-        let t16 = k(1.2) - k(0.8) * block_dsx;
+        let t16 = T::fused(-k(0.8), block_dsx, k(1.2));
         let t17 = block_e0 * block_e1;
         let t18 = block_e2 * block_e3;
         let t19 = t18 - t17;
-        let t20 = k(3.2) + k(0.8) * block_dsy;
-        let t21 = t20 * (k(0.2) * t19 - k(0.1) * t8)
-            - t16 * (k(0.2) * t15 + k(0.1) * t5);
+        let t20 = T::fused(k(0.8), block_dsy, k(3.2));
+        let t21 = T::fused(
+            -t16,
+            T::fused(k(0.1), t5, k(0.2) * t15),
+            t20 * T::fused(-k(0.1), t8, k(0.2) * t19),
+        );
         let t22 = t18 + t17;
-        let t23 = k(0.5) - (t7 + block_e3 * block_e3);
-        let t24 = t0 * (k(0.2) * t23 - k(0.1) * t22);
-        let t25 = k(0.005) * (block_wy * block_wz) + k(0.01) * block_dwx - (t24 - t21);
-        let t26 = t20 * (k(0.4) * t19 - k(0.1) * t3)
-            - t16 * (k(0.4) * t15 + k(0.1) * t10);
+        let t23 = k(0.5) - T::fused(block_e3, block_e3, t7);
+        let t24 = t0 * T::fused(-k(0.1), t22, k(0.2) * t23);
+        let t25 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
+            - (t24 - t21);
+        let t26 = T::fused(
+            -t16,
+            T::fused(k(0.1), t10, k(0.4) * t15),
+            t20 * T::fused(-k(0.1), t3, k(0.4) * t19),
+        );
         let t27 = t14 - t13;
-        let t28 = t0 * (k(0.4) * t23 + k(0.1) * t27);
-        let t29 = k(0.015) * (block_wx * block_wz) - k(0.02) * block_dwy + (t28 - t26);
-        let t30 = t29 * (t9 * t12) + t25 * (t4 * t12);
-        let t31 = t29 * (t6 * t12) + t25 * (t11 * t12);
-        let t32 = t9 * t31 + (t24 - t6 * t30);
-        let t33 = t4 * t31 + (t28 - t11 * t30);
-        let t34 = t0 * (k(0.4) * t22 + k(0.2) * t27);
-        let t35 = block_ry - (block_ry + (k(0.1) * t19 + (k(0.2) * t8 + k(0.4) * t3)));
-        let t36 = t0 * t35 + (k(2.0) * t15 * t34 + (t6 * t33 - t11 * t32));
-        let t37 = block_rx - (block_rx + (k(0.1) * t15 - (k(0.2) * t5 + k(0.4) * t10)));
-        let t38 = t0 * t37 - (k(2.0) * t19 * t34 - (t9 * t33 - t4 * t32));
-        let t39 = k(2.0) * t23 * t34 - (k(2.0) * t22 * t33 + k(2.0) * t27 * t32);
+        let t28 = t0 * T::fused(k(0.1), t27, k(0.4) * t23);
+        let t29 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
+            + (t28 - t26);
+        let t30 = T::fused(t25, t4 * t12, t29 * (t9 * t12));
+        let t31 = T::fused(t25, t11 * t12, t29 * (t6 * t12));
+        let t32 = T::fused(t9, t31, T::fused(-t6, t30, t24));
+        let t33 = T::fused(t4, t31, T::fused(-t11, t30, t28));
+        let t34 = t0 * T::fused(k(0.2), t27, k(0.4) * t22);
+        let t35 = block_ry
+            - (block_ry + T::fused(k(0.1), t19, T::fused(k(0.4), t3, k(0.2) * t8)));
+        let t36 = T::fused(
+            t0,
+            t35,
+            T::fused(k(2.0) * t15, t34, T::fused(-t11, t32, t6 * t33)),
+        );
+        let t37 = block_rx
+            - (block_rx + T::fused(k(0.1), t15, -T::fused(k(0.4), t10, k(0.2) * t5)));
+        let t38 = T::fused(
+            t0,
+            t37,
+            -T::fused(k(2.0) * t19, t34, -T::fused(-t4, t32, t9 * t33)),
+        );
+        let t39 = T::fused(
+            k(2.0) * t23,
+            t34,
+            -T::fused(k(2.0) * t27, t32, k(2.0) * t22 * t33),
+        );
         *out = [k(0.0), k(0.0), t0, t36, -t38, -t39];
     }
     fn n_outputs(&self) -> usize {

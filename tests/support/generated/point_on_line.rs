@@ -122,10 +122,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PointOnLine<T> {
             bead_sx,
             bead_sy,
             bead_sz,
-            -(k(0.5) * (bead_e1 * bead_wx + bead_e2 * bead_wy + bead_e3 * bead_wz)),
-            k(0.5) * (bead_e0 * bead_wx - bead_e3 * bead_wy + bead_e2 * bead_wz),
-            k(0.5) * (bead_e3 * bead_wx + bead_e0 * bead_wy - bead_e1 * bead_wz),
-            -(k(0.5) * (bead_e2 * bead_wx - bead_e1 * bead_wy - bead_e0 * bead_wz)),
+            -(k(0.5)
+                * T::fused(
+                    bead_e3,
+                    bead_wz,
+                    T::fused(bead_e2, bead_wy, bead_e1 * bead_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    bead_e2,
+                    bead_wz,
+                    T::fused(-bead_e3, bead_wy, bead_e0 * bead_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -bead_e1,
+                    bead_wz,
+                    T::fused(bead_e0, bead_wy, bead_e3 * bead_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -bead_e0,
+                    bead_wz,
+                    T::fused(-bead_e1, bead_wy, bead_e2 * bead_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -148,6 +168,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 2]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let bead_e0 = y[3];
+        let bead_e1 = y[4];
+        let bead_e2 = y[5];
+        let bead_e3 = y[6];
+        let bead_sx = y[7];
+        let bead_sy = y[8];
+        let bead_sz = y[9];
+        let bead_wx = y[10];
+        let bead_wy = y[11];
+        let bead_wz = y[12];
+        *dy = [
+            bead_sx,
+            bead_sy,
+            bead_sz,
+            -(k(0.5)
+                * T::fused(
+                    bead_e3,
+                    bead_wz,
+                    T::fused(bead_e2, bead_wy, bead_e1 * bead_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    bead_e2,
+                    bead_wz,
+                    T::fused(-bead_e3, bead_wy, bead_e0 * bead_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -bead_e1,
+                    bead_wz,
+                    T::fused(bead_e0, bead_wy, bead_e3 * bead_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -bead_e0,
+                    bead_wz,
+                    T::fused(-bead_e1, bead_wy, bead_e2 * bead_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 17 operations (8 ±, 9 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -158,13 +229,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
         let bead_e1 = y[4];
         let bead_e2 = y[5];
         let bead_e3 = y[6];
-        let t0 = bead_e3 * bead_e3
-            + (bead_e0 * bead_e0 + bead_e1 * bead_e1 + bead_e2 * bead_e2);
+        let t0 = T::fused(
+            bead_e3,
+            bead_e3,
+            T::fused(bead_e2, bead_e2, T::fused(bead_e1, bead_e1, bead_e0 * bead_e0)),
+        );
         *out = [
-            k(0.6666666666666666) * bead_rx + k(0.3333333333333333) * bead_ry
-                + k(0.6666666666666666) * bead_rz,
-            k(0.6666666666666666) * (bead_rx - bead_ry)
-                - k(0.3333333333333333) * bead_rz,
+            T::fused(
+                k(0.6666666666666666),
+                bead_rz,
+                T::fused(k(0.3333333333333333), bead_ry, k(0.6666666666666666) * bead_rx),
+            ),
+            T::fused(
+                -k(0.3333333333333333),
+                bead_rz,
+                k(0.6666666666666666) * (bead_rx - bead_ry),
+            ),
             t0 - k(1.0),
         ];
     }
@@ -175,9 +255,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
         let bead_sy = y[8];
         let bead_sz = y[9];
         *out = [
-            k(0.6666666666666666) * bead_sz
-                + (k(0.3333333333333333) * bead_sy + k(0.6666666666666666) * bead_sx),
-            k(0.6666666666666666) * (bead_sx - bead_sy) - k(0.3333333333333333) * bead_sz,
+            T::fused(
+                k(0.6666666666666666),
+                bead_sz,
+                T::fused(k(0.6666666666666666), bead_sx, k(0.3333333333333333) * bead_sy),
+            ),
+            T::fused(
+                -k(0.3333333333333333),
+                bead_sz,
+                k(0.6666666666666666) * (bead_sx - bead_sy),
+            ),
         ];
     }
     /// Kinetic and potential energy: 19 operations (6 ±, 13 ×, 0 ÷).
@@ -191,13 +278,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
         let bead_wx = y[10];
         let bead_wy = y[11];
         let bead_wz = y[12];
-        let t0 = bead_wx * (k(0.02) * bead_wx) + bead_wy * (k(0.05) * bead_wy)
-            + bead_wz * (k(0.04) * bead_wz);
-        let t1 = t0
-            + k(0.7) * (bead_sx * bead_sx + bead_sy * bead_sy + bead_sz * bead_sz);
+        let t0 = T::fused(
+            bead_wz,
+            k(0.04) * bead_wz,
+            T::fused(bead_wy, k(0.05) * bead_wy, bead_wx * (k(0.02) * bead_wx)),
+        );
+        let t1 = T::fused(
+            k(0.7),
+            T::fused(bead_sz, bead_sz, T::fused(bead_sy, bead_sy, bead_sx * bead_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
-            potential: k(6.867) * bead_rz - k(0.21) * bead_rx,
+            potential: T::fused(-k(0.21), bead_rx, k(6.867) * bead_rz),
         }
     }
     /// Writes the joint readings: 10 operations (4 ±, 6 ×, 0 ÷).
@@ -210,10 +303,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PointOnLine<T> {
         let bead_sy = y[8];
         let bead_sz = y[9];
         *out = [
-            k(0.6666666666666666) * bead_ry + k(0.3333333333333333) * bead_rx
-                - k(0.6666666666666666) * bead_rz,
-            k(0.3333333333333333) * bead_sx + k(0.6666666666666666) * bead_sy
-                - k(0.6666666666666666) * bead_sz,
+            T::fused(
+                -k(0.6666666666666666),
+                bead_rz,
+                T::fused(k(0.3333333333333333), bead_rx, k(0.6666666666666666) * bead_ry),
+            ),
+            T::fused(
+                -k(0.6666666666666666),
+                bead_sz,
+                T::fused(k(0.6666666666666666), bead_sy, k(0.3333333333333333) * bead_sx),
+            ),
         ];
     }
     fn n_bodies(&self) -> usize {
@@ -297,37 +396,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for PointOnLine<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-    }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let bead_e0 = y[3];
-        let bead_e1 = y[4];
-        let bead_e2 = y[5];
-        let bead_e3 = y[6];
-        let bead_sx = y[7];
-        let bead_sy = y[8];
-        let bead_sz = y[9];
-        let bead_wx = y[10];
-        let bead_wy = y[11];
-        let bead_wz = y[12];
-        *dy = [
-            bead_sx,
-            bead_sy,
-            bead_sz,
-            -(k(0.5) * (bead_e1 * bead_wx + bead_e2 * bead_wy + bead_e3 * bead_wz)),
-            k(0.5) * (bead_e0 * bead_wx - bead_e3 * bead_wy + bead_e2 * bead_wz),
-            k(0.5) * (bead_e3 * bead_wx + bead_e0 * bead_wy - bead_e1 * bead_wz),
-            -(k(0.5) * (bead_e2 * bead_wx - bead_e1 * bead_wy - bead_e0 * bead_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
@@ -438,11 +506,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
         let bead_dsx = accelerations[0];
         let bead_dsy = accelerations[1];
         let bead_dsz = accelerations[2];
-        let t0 = k(6.867) + k(0.7) * bead_dsz;
-        let t1 = k(0.6666666666666666) * (k(0.21) - k(0.7) * bead_dsx);
+        let t0 = T::fused(k(0.7), bead_dsz, k(6.867));
+        let t1 = k(0.6666666666666666) * T::fused(-k(0.7), bead_dsx, k(0.21));
         *lambda = [
-            t1 - k(0.23333333333333334) * bead_dsy - k(0.6666666666666666) * t0,
-            t1 + k(0.4666666666666667) * bead_dsy + k(0.3333333333333333) * t0,
+            T::fused(
+                -k(0.6666666666666666),
+                t0,
+                T::fused(-k(0.23333333333333334), bead_dsy, t1),
+            ),
+            T::fused(
+                k(0.3333333333333333),
+                t0,
+                T::fused(k(0.4666666666666667), bead_dsy, t1),
+            ),
         ];
     }
 }
@@ -493,10 +569,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
         let u3 = x[8];
         *dx = [
             u0,
-            -(k(0.5) * (x2 * u1 + x3 * u2 + x4 * u3)),
-            k(0.5) * (x1 * u1 - x4 * u2 + x3 * u3),
-            k(0.5) * (x4 * u1 + x1 * u2 - x2 * u3),
-            -(k(0.5) * (x3 * u1 - x2 * u2 - x1 * u3)),
+            -(k(0.5) * T::fused(x4, u3, T::fused(x3, u2, x2 * u1))),
+            k(0.5) * T::fused(x3, u3, T::fused(-x4, u2, x1 * u1)),
+            k(0.5) * T::fused(-x2, u3, T::fused(x1, u2, x4 * u1)),
+            -(k(0.5) * T::fused(-x1, u3, T::fused(-x2, u2, x3 * u1))),
             rates[0],
             rates[1],
             rates[2],
@@ -549,14 +625,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
         let bead_wx = y[10];
         let bead_wy = y[11];
         let bead_wz = y[12];
-        x[0] = k(0.6666666666666666) * bead_ry + k(0.3333333333333333) * bead_rx
-            - k(0.6666666666666666) * bead_rz;
+        x[0] = T::fused(
+            -k(0.6666666666666666),
+            bead_rz,
+            T::fused(k(0.3333333333333333), bead_rx, k(0.6666666666666666) * bead_ry),
+        );
         x[1] = bead_e0;
         x[2] = bead_e1;
         x[3] = bead_e2;
         x[4] = bead_e3;
-        x[5] = k(0.3333333333333333) * bead_sx + k(0.6666666666666666) * bead_sy
-            - k(0.6666666666666666) * bead_sz;
+        x[5] = T::fused(
+            -k(0.6666666666666666),
+            bead_sz,
+            T::fused(k(0.6666666666666666), bead_sy, k(0.3333333333333333) * bead_sx),
+        );
         x[6] = bead_wx;
         x[7] = bead_wy;
         x[8] = bead_wz;
@@ -606,11 +688,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
         let bead_dsx = accelerations[0];
         let bead_dsy = accelerations[1];
         let bead_dsz = accelerations[2];
-        let t0 = k(6.867) + k(0.7) * bead_dsz;
-        let t1 = k(0.6666666666666666) * (k(0.21) - k(0.7) * bead_dsx);
+        let t0 = T::fused(k(0.7), bead_dsz, k(6.867));
+        let t1 = k(0.6666666666666666) * T::fused(-k(0.7), bead_dsx, k(0.21));
         *lambda = [
-            t1 - k(0.23333333333333334) * bead_dsy - k(0.6666666666666666) * t0,
-            t1 + k(0.4666666666666667) * bead_dsy + k(0.3333333333333333) * t0,
+            T::fused(
+                -k(0.6666666666666666),
+                t0,
+                T::fused(-k(0.23333333333333334), bead_dsy, t1),
+            ),
+            T::fused(
+                k(0.3333333333333333),
+                t0,
+                T::fused(k(0.4666666666666667), bead_dsy, t1),
+            ),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 6 operations (0 ±, 6 ×, 0 ÷).
@@ -644,20 +734,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PointOnLine<T> {
         let bead_dsx = accelerations[0];
         let bead_dsy = accelerations[1];
         let bead_dsz = accelerations[2];
-        let t0 = k(6.867) + k(0.7) * bead_dsz;
-        let t1 = k(0.6666666666666666) * (k(0.21) - k(0.7) * bead_dsx);
-        let t2 = t1 + k(0.4666666666666667) * bead_dsy + k(0.3333333333333333) * t0;
-        let t3 = t1 - k(0.23333333333333334) * bead_dsy - k(0.6666666666666666) * t0;
-        let t4 = k(0.6666666666666666) * t3 - k(0.3333333333333333) * t2;
+        let t0 = T::fused(k(0.7), bead_dsz, k(6.867));
+        let t1 = k(0.6666666666666666) * T::fused(-k(0.7), bead_dsx, k(0.21));
+        let t2 = T::fused(
+            k(0.3333333333333333),
+            t0,
+            T::fused(k(0.4666666666666667), bead_dsy, t1),
+        );
+        let t3 = T::fused(
+            -k(0.6666666666666666),
+            t0,
+            T::fused(-k(0.23333333333333334), bead_dsy, t1),
+        );
+        let t4 = T::fused(-k(0.3333333333333333), t2, k(0.6666666666666666) * t3);
         let t5 = k(0.6666666666666666) * t4;
-        let t6 = k(0.3333333333333333) * t3 - k(0.6666666666666666) * t2;
+        let t6 = T::fused(-k(0.6666666666666666), t2, k(0.3333333333333333) * t3);
         let t7 = t3 + t2;
         let t8 = k(0.4444444444444444) * t7;
         let t9 = k(0.6666666666666666) * t6;
         *out = [
-            -(t8 + k(0.3333333333333333) * t6 + t5),
-            k(0.3333333333333333) * t4 - (t8 - t9),
-            t5 - (t9 + k(0.2222222222222222) * t7),
+            -(T::fused(k(0.3333333333333333), t6, t8) + t5),
+            T::fused(k(0.3333333333333333), t4, -(t8 - t9)),
+            t5 - T::fused(k(0.2222222222222222), t7, t9),
             k(0.0),
             k(0.0),
             k(0.0),

@@ -105,10 +105,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Rod<T> {
             bob_sx,
             bob_sy,
             bob_sz,
-            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
-            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
-            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
-            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
+            -(k(0.5)
+                * T::fused(bob_e3, bob_wz, T::fused(bob_e2, bob_wy, bob_e1 * bob_wx))),
+            k(0.5)
+                * T::fused(bob_e2, bob_wz, T::fused(-bob_e3, bob_wy, bob_e0 * bob_wx)),
+            k(0.5)
+                * T::fused(-bob_e1, bob_wz, T::fused(bob_e0, bob_wy, bob_e3 * bob_wx)),
+            -(k(0.5)
+                * T::fused(-bob_e0, bob_wz, T::fused(-bob_e1, bob_wy, bob_e2 * bob_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -141,8 +145,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Rod<T> {
         let bob_e1 = y[4];
         let bob_e2 = y[5];
         let bob_e3 = y[6];
-        let t0 = k(0.5) - k(2.0) * (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz);
-        let t1 = bob_e3 * bob_e3 + (bob_e0 * bob_e0 + bob_e1 * bob_e1 + bob_e2 * bob_e2);
+        let t0 = T::fused(
+            -k(2.0),
+            T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx)),
+            k(0.5),
+        );
+        let t1 = T::fused(
+            bob_e3,
+            bob_e3,
+            T::fused(bob_e2, bob_e2, T::fused(bob_e1, bob_e1, bob_e0 * bob_e0)),
+        );
         *out = [-(k(0.5) * t0), t1 - k(1.0)];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 6 operations (2 ±, 4 ×, 0 ÷).
@@ -154,7 +166,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Rod<T> {
         let bob_sx = y[7];
         let bob_sy = y[8];
         let bob_sz = y[9];
-        *out = [k(2.0) * (bob_rz * bob_sz + (bob_ry * bob_sy + bob_rx * bob_sx))];
+        *out = [
+            k(2.0) * T::fused(bob_rz, bob_sz, T::fused(bob_rx, bob_sx, bob_ry * bob_sy)),
+        ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
@@ -166,9 +180,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Rod<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_wx * (k(0.02) * bob_wx) + bob_wy * (k(0.05) * bob_wy)
-            + bob_wz * (k(0.04) * bob_wz);
-        let t1 = t0 + k(0.7) * (bob_sx * bob_sx + bob_sy * bob_sy + bob_sz * bob_sz);
+        let t0 = T::fused(
+            bob_wz,
+            k(0.04) * bob_wz,
+            T::fused(bob_wy, k(0.05) * bob_wy, bob_wx * (k(0.02) * bob_wx)),
+        );
+        let t1 = T::fused(
+            k(0.7),
+            T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(6.867) * bob_rz,
@@ -320,7 +341,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Rod<T> {
         let bob_sx = y[7];
         let bob_sy = y[8];
         let bob_sz = y[9];
-        *out = [-(k(2.0) * (bob_sx * bob_sx + bob_sy * bob_sy + bob_sz * bob_sz))];
+        *out = [
+            -(k(2.0)
+                * T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx))),
+        ];
     }
     /// Writes (f, n' − w̃'J'w'): 6 operations (0 ±, 6 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -352,14 +376,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Rod<T> {
         let t0 = k(2.857142857142857) * bob_rz;
         let t1 = k(2.857142857142857) * bob_ry;
         let t2 = k(2.857142857142857) * bob_rx;
-        let t3 = k(2.0) * bob_rx * t2 + k(2.0) * bob_ry * t1 + k(2.0) * bob_rz * t0;
-        let t4 = k(2.0) * (bob_sx * bob_sx + bob_sy * bob_sy + bob_sz * bob_sz)
-            - k(19.62) * bob_rz;
+        let t3 = T::fused(
+            k(2.0) * bob_rz,
+            t0,
+            T::fused(k(2.0) * bob_ry, t1, k(2.0) * bob_rx * t2),
+        );
+        let t4 = T::fused(
+            -k(19.62),
+            bob_rz,
+            k(2.0) * T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx)),
+        );
         let t5 = t4 / t3;
         *out = [
             -(t2 * t5),
             -(t1 * t5),
-            -(k(9.81) + t0 * t5),
+            -T::fused(t0, t5, k(9.81)),
             k(0.5) * (bob_wy * bob_wz),
             k(0.4) * (bob_wx * bob_wz),
             -(k(0.75) * (bob_wx * bob_wy)),

@@ -123,10 +123,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Screw<T> {
             nut_sx,
             nut_sy,
             nut_sz,
-            -(k(0.5) * (nut_e1 * nut_wx + nut_e2 * nut_wy + nut_e3 * nut_wz)),
-            k(0.5) * (nut_e0 * nut_wx - nut_e3 * nut_wy + nut_e2 * nut_wz),
-            k(0.5) * (nut_e3 * nut_wx + nut_e0 * nut_wy - nut_e1 * nut_wz),
-            -(k(0.5) * (nut_e2 * nut_wx - nut_e1 * nut_wy - nut_e0 * nut_wz)),
+            -(k(0.5)
+                * T::fused(nut_e3, nut_wz, T::fused(nut_e2, nut_wy, nut_e1 * nut_wx))),
+            k(0.5)
+                * T::fused(nut_e2, nut_wz, T::fused(-nut_e3, nut_wy, nut_e0 * nut_wx)),
+            k(0.5)
+                * T::fused(-nut_e1, nut_wz, T::fused(nut_e0, nut_wy, nut_e3 * nut_wx)),
+            -(k(0.5)
+                * T::fused(-nut_e0, nut_wz, T::fused(-nut_e1, nut_wy, nut_e2 * nut_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -150,6 +154,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let nut_e0 = y[3];
+        let nut_e1 = y[4];
+        let nut_e2 = y[5];
+        let nut_e3 = y[6];
+        let nut_sx = y[7];
+        let nut_sy = y[8];
+        let nut_sz = y[9];
+        let nut_wx = y[10];
+        let nut_wy = y[11];
+        let nut_wz = y[12];
+        *dy = [
+            nut_sx,
+            nut_sy,
+            nut_sz,
+            -(k(0.5)
+                * T::fused(nut_e3, nut_wz, T::fused(nut_e2, nut_wy, nut_e1 * nut_wx))),
+            k(0.5)
+                * T::fused(nut_e2, nut_wz, T::fused(-nut_e3, nut_wy, nut_e0 * nut_wx)),
+            k(0.5)
+                * T::fused(-nut_e1, nut_wz, T::fused(nut_e0, nut_wy, nut_e3 * nut_wx)),
+            -(k(0.5)
+                * T::fused(-nut_e0, nut_wz, T::fused(-nut_e1, nut_wy, nut_e2 * nut_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            nut_wz,
+        ];
+    }
     /// Writes Φ: 31 operations (12 ±, 19 ×, 0 ÷) and 3 functions.
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -162,18 +202,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         let nut_e3 = y[6];
         let turn0 = y[13];
         let t0 = turn0.cos();
-        let t1 = nut_e0 * nut_e0 + nut_e1 * nut_e1;
+        let t1 = T::fused(nut_e1, nut_e1, nut_e0 * nut_e0);
         let t2 = k(2.0) * (k(0.5) - t1);
         let t3 = turn0.sin();
-        let t4 = k(2.0) * (nut_e1 * nut_e2 + nut_e0 * nut_e3);
-        let t5 = (t4 * t0 + t2 * t3).atan2(t4 * t3 - t2 * t0);
+        let t4 = k(2.0) * T::fused(nut_e0, nut_e3, nut_e1 * nut_e2);
+        let t5 = T::fused(t2, t3, t4 * t0).atan2(T::fused(-t2, t0, t4 * t3));
         *out = [
             nut_rx,
             nut_ry,
-            nut_rz - k(0.02) * (turn0 + t5),
-            k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2),
-            k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1),
-            nut_e3 * nut_e3 + (t1 + nut_e2 * nut_e2) - k(1.0),
+            T::fused(-k(0.02), turn0 + t5, nut_rz),
+            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3),
+            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
+            T::fused(nut_e3, nut_e3, T::fused(nut_e2, nut_e2, t1)) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 44 operations (15 ±, 28 ×, 1 ÷).
@@ -190,21 +230,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         let nut_wy = y[11];
         let nut_wz = y[12];
         let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + nut_e2 * nut_e2));
-        let t2 = k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1) * nut_wy + t1 * nut_wz;
-        let t3 = k(2.0) * (k(0.5) - (t0 + nut_e1 * nut_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
+        let t2 = T::fused(
+            t1,
+            nut_wz,
+            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3) * nut_wy,
+        );
+        let t3 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
         let t4 = nut_e0 * nut_e3;
         let t5 = nut_e1 * nut_e2;
         let t6 = k(2.0) * (t5 - t4);
-        let t7 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2) * nut_wy - t6 * nut_wz;
+        let t7 = T::fused(
+            -t6,
+            nut_wz,
+            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * nut_wy,
+        );
         let t8 = k(2.0) * (t5 + t4);
-        let t9 = (t8 * t7 + t3 * t2) / (t8 * t8 + t3 * t3);
+        let t9 = T::fused(t3, t2, t8 * t7) / T::fused(t3, t3, t8 * t8);
         *out = [
             nut_sx,
             nut_sy,
-            nut_sz - k(0.02) * t9,
-            -(t6 * nut_wx + t3 * nut_wy),
-            t1 * nut_wx + t8 * nut_wy,
+            T::fused(-k(0.02), t9, nut_sz),
+            -T::fused(t3, nut_wy, t6 * nut_wx),
+            T::fused(t8, nut_wy, t1 * nut_wx),
         ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
@@ -217,9 +265,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = nut_wx * (k(0.002) * nut_wx) + nut_wy * (k(0.0025) * nut_wy)
-            + nut_wz * (k(0.003) * nut_wz);
-        let t1 = t0 + k(2.0) * (nut_sx * nut_sx + nut_sy * nut_sy + nut_sz * nut_sz);
+        let t0 = T::fused(
+            nut_wz,
+            k(0.003) * nut_wz,
+            T::fused(nut_wy, k(0.0025) * nut_wy, nut_wx * (k(0.002) * nut_wx)),
+        );
+        let t1 = T::fused(
+            k(2.0),
+            T::fused(nut_sz, nut_sz, T::fused(nut_sy, nut_sy, nut_sx * nut_sx)),
+            t0,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
             potential: k(19.62) * nut_rz,
@@ -233,10 +288,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         let nut_e2 = y[5];
         let nut_e3 = y[6];
         let nut_wz = y[12];
-        let t0 = nut_e0 * nut_e0 + nut_e1 * nut_e1;
-        let t1 = k(2.0) * (k(0.5) - t0)
-            - (k(1.0) - (nut_e3 * nut_e3 + (t0 + nut_e2 * nut_e2)));
-        *out = [k(2.0) * (nut_e1 * nut_e2 + nut_e0 * nut_e3), -t1, nut_wz];
+        let t0 = T::fused(nut_e1, nut_e1, nut_e0 * nut_e0);
+        let t1 = T::fused(
+            k(2.0),
+            k(0.5) - t0,
+            -(k(1.0) - T::fused(nut_e3, nut_e3, T::fused(nut_e2, nut_e2, t0))),
+        );
+        *out = [k(2.0) * T::fused(nut_e0, nut_e3, nut_e1 * nut_e2), -t1, nut_wz];
     }
     fn n_bodies(&self) -> usize {
         1
@@ -332,38 +390,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Screw<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let nut_e0 = y[3];
-        let nut_e1 = y[4];
-        let nut_e2 = y[5];
-        let nut_e3 = y[6];
-        let nut_sx = y[7];
-        let nut_sy = y[8];
-        let nut_sz = y[9];
-        let nut_wx = y[10];
-        let nut_wy = y[11];
-        let nut_wz = y[12];
-        *dy = [
-            nut_sx,
-            nut_sy,
-            nut_sz,
-            -(k(0.5) * (nut_e1 * nut_wx + nut_e2 * nut_wy + nut_e3 * nut_wz)),
-            k(0.5) * (nut_e0 * nut_wx - nut_e3 * nut_wy + nut_e2 * nut_wz),
-            k(0.5) * (nut_e3 * nut_wx + nut_e0 * nut_wy - nut_e1 * nut_wz),
-            -(k(0.5) * (nut_e2 * nut_wx - nut_e1 * nut_wy - nut_e0 * nut_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            nut_wz,
-        ];
-    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
     type Velocities = [T; 6];
@@ -417,9 +443,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_e2 = y[5];
         let nut_e3 = y[6];
         let t0 = k(2.0) * nut_e3;
-        let t1 = k(2.0) * (k(0.5) - (nut_e0 * nut_e0 + nut_e1 * nut_e1));
-        let t2 = k(2.0) * (nut_e1 * nut_e2 + nut_e0 * nut_e3);
-        let t3 = k(1.0) / (t2 * t2 + t1 * t1);
+        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, nut_e0 * nut_e0));
+        let t2 = k(2.0) * T::fused(nut_e0, nut_e3, nut_e1 * nut_e2);
+        let t3 = k(1.0) / T::fused(t1, t1, t2 * t2);
         let t4 = k(2.0) * nut_e2;
         let t5 = k(2.0) * nut_e1;
         let t6 = k(2.0) * nut_e0;
@@ -427,8 +453,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
             k(1.0),
             k(1.0),
             k(1.0),
-            k(0.02) * (t3 * (t2 * (k(4.0) * nut_e0) + t1 * t0)),
-            k(0.02) * (t3 * (t2 * (k(4.0) * nut_e1) + t1 * t4)),
+            k(0.02) * (t3 * T::fused(t1, t0, t2 * (k(4.0) * nut_e0))),
+            k(0.02) * (t3 * T::fused(t1, t4, t2 * (k(4.0) * nut_e1))),
             k(0.02) * (t3 * (t1 * t5)),
             k(0.02) * (t3 * (t1 * t6)),
             t4,
@@ -453,21 +479,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_e2 = y[5];
         let nut_e3 = y[6];
         let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + nut_e1 * nut_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
         let t2 = nut_e0 * nut_e3;
         let t3 = nut_e1 * nut_e2;
         let t4 = k(2.0) * (t3 + t2);
-        let t5 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2) * t4
-            + t1 * (k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1));
-        let t6 = k(1.0) / (t4 * t4 + t1 * t1);
-        let t7 = k(2.0) * (k(0.5) - (t0 + nut_e2 * nut_e2));
+        let t5 = T::fused(
+            t1,
+            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
+            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t4,
+        );
+        let t6 = k(1.0) / T::fused(t1, t1, t4 * t4);
+        let t7 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
         let t8 = k(2.0) * (t3 - t2);
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
             -(k(0.02) * (t6 * t5)),
-            k(0.02) * ((t8 * t4 - t1 * t7) * t6),
+            k(0.02) * (T::fused(-t1, t7, t8 * t4) * t6),
             -t8,
             -t1,
             t7,
@@ -490,33 +519,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_wy = y[11];
         let nut_wz = y[12];
         let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + nut_e2 * nut_e2));
-        let t2 = k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1);
-        let t3 = t2 * nut_wy + t1 * nut_wz;
-        let t4 = k(2.0) * (k(0.5) - (t0 + nut_e1 * nut_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
+        let t2 = k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3);
+        let t3 = T::fused(t1, nut_wz, t2 * nut_wy);
+        let t4 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
         let t5 = nut_e0 * nut_e3;
         let t6 = nut_e1 * nut_e2;
         let t7 = k(2.0) * (t6 - t5);
-        let t8 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2);
-        let t9 = t8 * nut_wy - t7 * nut_wz;
+        let t8 = k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3);
+        let t9 = T::fused(-t7, nut_wz, t8 * nut_wy);
         let t10 = k(2.0) * (t6 + t5);
-        let t11 = k(1.0) / (t10 * t10 + t4 * t4);
-        let t12 = t11 * t11 * (k(2.0) * (t4 * t9 - t10 * t3)) * (t10 * t9 + t4 * t3);
-        let t13 = nut_wy * nut_wy;
-        let t14 = nut_wz * nut_wz + t13;
-        let t15 = nut_wx * nut_wy;
-        let t16 = nut_wx * nut_wz;
-        let t17 = t3 * t9;
-        let t18 = t17 + t10 * (t8 * t16 + (t7 * t15 + t4 * t14));
-        let t19 = t4 * (t2 * t16 - (t1 * t15 + t10 * t14)) - t17;
+        let t11 = k(1.0) / T::fused(t4, t4, t10 * t10);
+        let t12 = nut_wy * nut_wy;
+        let t13 = T::fused(nut_wz, nut_wz, t12);
+        let t14 = nut_wx * nut_wy;
+        let t15 = nut_wx * nut_wz;
+        let t16 = t3 * t9;
+        let t17 = T::fused(t10, T::fused(t8, t15, T::fused(t4, t13, t7 * t14)), t16);
+        let t18 = T::fused(t4, T::fused(t2, t15, -T::fused(t10, t13, t1 * t14)), -t16);
+        let t19 = T::fused(
+            t11 * t11 * (k(2.0) * T::fused(-t10, t3, t4 * t9)),
+            T::fused(t4, t3, t10 * t9),
+            t11 * (t18 + t17),
+        );
         let t20 = nut_wy * nut_wz;
-        let t21 = t13 + nut_wx * nut_wx;
+        let t21 = T::fused(nut_wx, nut_wx, t12);
         *out = [
             k(0.0),
             k(0.0),
-            -(k(0.02) * (t11 * (t19 + t18) + t12)),
-            t8 * t21 - (t7 * t20 - t4 * t16),
-            t2 * t21 + (t1 * t20 - t10 * t16),
+            -(k(0.02) * t19),
+            T::fused(t8, t21, -T::fused(-t4, t15, t7 * t20)),
+            T::fused(t2, t21, T::fused(-t10, t15, t1 * t20)),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 6 operations (0 ±, 6 ×, 0 ÷).
@@ -545,14 +578,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_wy = y[11];
         let nut_wz = y[12];
         let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + nut_e1 * nut_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
         let t2 = nut_e0 * nut_e3;
         let t3 = nut_e1 * nut_e2;
         let t4 = k(2.0) * (t3 + t2);
-        let t5 = k(1.0) / (t4 * t4 + t1 * t1);
-        let t6 = k(2.0) * (k(0.5) - (t0 + nut_e2 * nut_e2));
+        let t5 = k(1.0) / T::fused(t1, t1, t4 * t4);
+        let t6 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
         let t7 = k(2.0) * (t3 - t2);
-        let t8 = t7 * t4 - t1 * t6;
+        let t8 = T::fused(-t1, t6, t7 * t4);
         let t9 = t8 * t5;
         let t10 = k(0.02) * t9;
         let t11 = k(0.04) * t9;
@@ -560,33 +593,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let t13 = nut_wx * nut_wz;
         let t14 = nut_wy * nut_wz;
         let t15 = nut_wy * nut_wy;
-        let t16 = t15 + nut_wx * nut_wx;
-        let t17 = k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1);
-        let t18 = t17 * t16 + (t6 * t14 - t4 * t13);
+        let t16 = T::fused(nut_wx, nut_wx, t15);
+        let t17 = k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3);
+        let t18 = T::fused(t17, t16, T::fused(-t4, t13, t6 * t14));
         let t19 = k(1.0) / t8;
         let t20 = t7 * t19;
-        let t21 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2);
-        let t22 = k(0.02) * (t5 * (t21 * t4 + t1 * t17));
-        let t23 = t17 * nut_wy + t6 * nut_wz;
-        let t24 = t21 * nut_wy - t7 * nut_wz;
-        let t25 = t5 * t5 * (k(2.0) * (t1 * t24 - t4 * t23)) * (t4 * t24 + t1 * t23);
-        let t26 = nut_wz * nut_wz + t15;
-        let t27 = t23 * t24;
-        let t28 = t27 + t4 * (t21 * t13 + (t7 * t12 + t1 * t26));
-        let t29 = t1 * (t17 * t13 - (t6 * t12 + t4 * t26)) - t27;
-        let t30 = t21 * t16 - (t7 * t14 - t1 * t13);
+        let t21 = k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3);
+        let t22 = k(0.02) * (t5 * T::fused(t1, t17, t21 * t4));
+        let t23 = T::fused(t6, nut_wz, t17 * nut_wy);
+        let t24 = T::fused(-t7, nut_wz, t21 * nut_wy);
+        let t25 = T::fused(nut_wz, nut_wz, t15);
+        let t26 = t23 * t24;
+        let t27 = T::fused(t4, T::fused(t21, t13, T::fused(t1, t25, t7 * t12)), t26);
+        let t28 = T::fused(t1, T::fused(t17, t13, -T::fused(t4, t25, t6 * t12)), -t26);
+        let t29 = T::fused(
+            t5 * t5 * (k(2.0) * T::fused(-t4, t23, t1 * t24)),
+            T::fused(t1, t23, t4 * t24),
+            t5 * (t28 + t27),
+        );
+        let t30 = T::fused(t21, t16, -T::fused(-t1, t13, t7 * t14));
         let t31 = t6 * t19;
-        let t32 = t31 * t22 * t30 - k(0.02) * (t5 * (t29 + t28) + t25);
-        let t33 = t32 + t22 * t20 * t18;
-        let t34 = (t11 * t33 - (k(0.0005) * t12 - k(0.3924) * t9))
-            / (k(0.003) + t11 * t10);
+        let t32 = T::fused(t22 * t20, t18, T::fused(-k(0.02), t29, t31 * t22 * t30));
+        let t33 = T::fused(t11, t32, -T::fused(-k(0.3924), t9, k(0.0005) * t12))
+            / T::fused(t11, t10, k(0.003));
         *out = [
             k(0.0),
             k(0.0),
-            t33 - t10 * t34,
-            -(t18 * (t1 * t19) + t30 * (t4 * t19)),
-            t20 * t18 + t31 * t30,
-            t34,
+            T::fused(-t10, t33, t32),
+            -T::fused(t30, t4 * t19, t18 * (t1 * t19)),
+            T::fused(t31, t30, t20 * t18),
+            t33,
         ];
     }
     /// Writes λ: 63 operations (18 ±, 43 ×, 2 ÷).
@@ -610,24 +646,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_dsz = accelerations[2];
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
-        let t0 = k(19.62) + k(2.0) * nut_dsz;
+        let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
         let t1 = nut_e0 * nut_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + nut_e2 * nut_e2));
-        let t3 = k(2.0) * (k(0.5) - (t1 + nut_e1 * nut_e1));
+        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t1));
         let t4 = nut_e0 * nut_e3;
         let t5 = nut_e1 * nut_e2;
         let t6 = k(2.0) * (t5 + t4);
         let t7 = k(2.0) * (t5 - t4);
-        let t8 = k(1.0) / (t7 * t6 - t3 * t2);
-        let t9 = k(0.0005) * (nut_wy * nut_wz) + k(0.002) * nut_dwx;
+        let t8 = k(1.0) / T::fused(-t3, t2, t7 * t6);
+        let t9 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
         let t10 = t2 * t8;
-        let t11 = k(0.001) * (nut_wx * nut_wz) - k(0.0025) * nut_dwy;
-        let t12 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2) * t6
-            + t3 * (k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1));
-        let t13 = k(0.02) * (t12 / (t6 * t6 + t3 * t3));
-        let t14 = t0 * (t10 * t13) - (t11 * t10 + t9 * (t6 * t8));
+        let t11 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
+        let t12 = T::fused(
+            t3,
+            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
+            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t6,
+        );
+        let t13 = k(0.02) * (t12 / T::fused(t3, t3, t6 * t6));
+        let t14 = T::fused(t0, t10 * t13, -T::fused(t9, t6 * t8, t11 * t10));
         let t15 = t7 * t8;
-        let t16 = t0 * (t13 * t15) - (t11 * t15 + t9 * (t3 * t8));
+        let t16 = T::fused(t0, t13 * t15, -T::fused(t9, t3 * t8, t11 * t15));
         *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, -t14, -t16];
     }
 }
@@ -690,12 +729,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
         let nut_wz = y[12];
         let x0 = x[0];
         let t0 = x0.sin();
-        let t1 = k(2.0) * (nut_e1 * nut_e2 + nut_e0 * nut_e3);
+        let t1 = k(2.0) * T::fused(nut_e0, nut_e3, nut_e1 * nut_e2);
         let t2 = x0.cos();
-        let t3 = nut_e0 * nut_e0 + nut_e1 * nut_e1;
-        let t4 = k(2.0) * (k(0.5) - t3)
-            - (k(1.0) - (nut_e3 * nut_e3 + (t3 + nut_e2 * nut_e2)));
-        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        let t3 = T::fused(nut_e1, nut_e1, nut_e0 * nut_e0);
+        let t4 = T::fused(
+            k(2.0),
+            k(0.5) - t3,
+            -(k(1.0) - T::fused(nut_e3, nut_e3, T::fused(nut_e2, nut_e2, t3))),
+        );
+        let t5 = T::fused(t1, t2, t4 * t0).atan2(T::fused(-t4, t2, t1 * t0));
         x[0] = x0 + t5;
         x[1] = nut_wz;
     }
@@ -720,9 +762,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
         let nut_wy = y[11];
         let nut_wz = y[12];
         *out = [
-            -(k(4.130526315789473) * (nut_e1 * nut_e3 + nut_e0 * nut_e2)),
-            -(k(4.130526315789473) * (nut_e2 * nut_e3 - nut_e0 * nut_e1)),
-            k(4.130526315789473) * (k(0.5) - (nut_e0 * nut_e0 + nut_e3 * nut_e3)),
+            -(k(4.130526315789473) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3)),
+            -(k(4.130526315789473) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3)),
+            k(4.130526315789473) * (k(0.5) - T::fused(nut_e3, nut_e3, nut_e0 * nut_e0)),
             nut_wy * nut_wz,
             -(nut_wx * nut_wz),
             k(-103.26315789473684),
@@ -749,25 +791,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
         let nut_dsz = accelerations[2];
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
-        let t0 = k(19.62) + k(2.0) * nut_dsz;
+        let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
         let t1 = nut_e0 * nut_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + nut_e1 * nut_e1));
+        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t1));
         let t3 = nut_e0 * nut_e3;
         let t4 = nut_e1 * nut_e2;
         let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(2.0) * (nut_e1 * nut_e3 + nut_e0 * nut_e2) * t5
-            + t2 * (k(2.0) * (nut_e2 * nut_e3 - nut_e0 * nut_e1));
-        let t7 = k(0.02) * (t6 / (t5 * t5 + t2 * t2));
-        let t8 = k(2.0) * (k(0.5) - (t1 + nut_e2 * nut_e2));
+        let t6 = T::fused(
+            t2,
+            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
+            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t5,
+        );
+        let t7 = k(0.02) * (t6 / T::fused(t2, t2, t5 * t5));
+        let t8 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t1));
         let t9 = k(2.0) * (t4 - t3);
-        let t10 = k(1.0) / (t9 * t5 - t2 * t8);
+        let t10 = k(1.0) / T::fused(-t2, t8, t9 * t5);
         let t11 = k(2.0) * nut_e3;
         let t12 = nut_e0 * t11;
-        let t13 = k(0.0005) * (nut_wy * nut_wz) + k(0.002) * nut_dwx;
-        let t14 = k(1.0) - nut_e3 * t11;
-        let t15 = k(0.001) * (nut_wx * nut_wz) - k(0.0025) * nut_dwy;
-        let t16 = t15 * t14 - t13 * t12 - t0 * (t8 * t10 * t7);
-        let t17 = t15 * t12 + t13 * t14 - t0 * (t7 * (t9 * t10));
+        let t13 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
+        let t14 = T::fused(-nut_e3, t11, k(1.0));
+        let t15 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
+        let t16 = T::fused(-t0, t8 * t10 * t7, T::fused(-t13, t12, t15 * t14));
+        let t17 = T::fused(-t0, t7 * (t9 * t10), T::fused(t13, t14, t15 * t12));
         *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, t16, t17];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 67 operations (19 ±, 46 ×, 2 ÷).
@@ -780,29 +825,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = nut_e1 * nut_e3 + nut_e0 * nut_e2;
-        let t1 = nut_e2 * nut_e3 - nut_e0 * nut_e1;
+        let t0 = T::fused(nut_e0, nut_e2, nut_e1 * nut_e3);
+        let t1 = T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3);
         let t2 = nut_e0 * nut_e0;
-        let t3 = k(0.5) - (t2 + nut_e3 * nut_e3);
+        let t3 = k(0.5) - T::fused(nut_e3, nut_e3, t2);
         let t4 = nut_wy * nut_wz;
         let t5 = nut_wx * nut_wz;
-        let t6 = k(19.62) + k(8.261052631578947) * t3;
+        let t6 = T::fused(k(8.261052631578947), t3, k(19.62));
         let t7 = k(0.0035) * t5;
         let t8 = k(2.0) * nut_e3;
-        let t9 = k(1.0) - nut_e3 * t8;
+        let t9 = T::fused(-nut_e3, t8, k(1.0));
         let t10 = k(0.0025) * t4;
         let t11 = nut_e0 * t8;
-        let t12 = k(2.0) * (k(0.5) - (t2 + nut_e1 * nut_e1));
+        let t12 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t2));
         let t13 = nut_e0 * nut_e3;
         let t14 = nut_e1 * nut_e2;
         let t15 = k(2.0) * (t14 + t13);
-        let t16 = (k(2.0) * t0 * t15 + t12 * (k(2.0) * t1)) / (t15 * t15 + t12 * t12);
+        let t16 = T::fused(t12, k(2.0) * t1, k(2.0) * t0 * t15)
+            / T::fused(t12, t12, t15 * t15);
         let t17 = k(0.02) * t16;
-        let t18 = k(2.0) * (k(0.5) - (t2 + nut_e2 * nut_e2));
+        let t18 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t2));
         let t19 = k(2.0) * (t14 - t13);
-        let t20 = k(1.0) / (t19 * t15 - t12 * t18);
-        let t21 = t18 * t20 * t17 * t6 + (t11 * t10 - t9 * t7);
-        let t22 = t17 * (t19 * t20) * t6 - (t9 * t10 + t11 * t7);
+        let t20 = k(1.0) / T::fused(-t12, t18, t19 * t15);
+        let t21 = T::fused(t18 * t20 * t17, t6, T::fused(-t9, t7, t11 * t10));
+        let t22 = T::fused(t17 * (t19 * t20), t6, -T::fused(t11, t7, t9 * t10));
         *out = [
             -(k(4.130526315789473) * t0),
             -(k(4.130526315789473) * t1),
@@ -840,41 +886,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
         let nut_dsz = accelerations[2];
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
-        let t0 = k(19.62) + k(2.0) * nut_dsz;
+        let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
         let t1 = nut_e0 * nut_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + nut_e2 * nut_e2));
-        let t3 = k(2.0) * (k(0.5) - (t1 + nut_e1 * nut_e1));
+        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t1));
         let t4 = nut_e0 * nut_e3;
         let t5 = nut_e1 * nut_e2;
         let t6 = k(2.0) * (t5 + t4);
         let t7 = k(2.0) * (t5 - t4);
-        let t8 = t7 * t6 - t3 * t2;
+        let t8 = T::fused(-t3, t2, t7 * t6);
         let t9 = k(1.0) / t8;
-        let t10 = k(0.0005) * (nut_wy * nut_wz) + k(0.002) * nut_dwx;
+        let t10 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
         let t11 = t2 * t9;
-        let t12 = k(0.001) * (nut_wx * nut_wz) - k(0.0025) * nut_dwy;
+        let t12 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
         let t13 = nut_e0 * nut_e1;
         let t14 = nut_e2 * nut_e3;
         let t15 = k(2.0) * (t14 - t13);
         let t16 = nut_e0 * nut_e2;
         let t17 = nut_e1 * nut_e3;
         let t18 = k(2.0) * (t17 + t16);
-        let t19 = k(1.0) / (t6 * t6 + t3 * t3);
-        let t20 = k(0.02) * (t19 * (t18 * t6 + t3 * t15));
-        let t21 = t0 * (t11 * t20) - (t12 * t11 + t10 * (t6 * t9));
+        let t19 = k(1.0) / T::fused(t3, t3, t6 * t6);
+        let t20 = k(0.02) * (t19 * T::fused(t3, t15, t18 * t6));
+        let t21 = T::fused(t0, t11 * t20, -T::fused(t10, t6 * t9, t12 * t11));
         let t22 = t7 * t9;
-        let t23 = t0 * (t20 * t22) - (t12 * t22 + t10 * (t3 * t9));
-        let t24 = t2 * t23 - t7 * t21;
-        let t25 = t6 * t23 - (t3 * t21 + t0 * t20);
+        let t23 = T::fused(t0, t20 * t22, -T::fused(t10, t3 * t9, t12 * t22));
+        let t24 = T::fused(-t7, t21, t2 * t23);
+        let t25 = T::fused(t6, t23, -T::fused(t0, t20, t3 * t21));
         let t26 = t0 * (k(0.02) * (t8 * t19));
-        let t27 = k(2.0) * (t14 + t13) * t25 + k(2.0) * (t17 - t16) * t24;
+        let t27 = T::fused(k(2.0) * (t17 - t16), t24, k(2.0) * (t14 + t13) * t25);
         *out = [
             k(2.0) * nut_dsx,
             k(2.0) * nut_dsy,
             t0,
-            t18 * t26 + (t7 * t25 - t3 * t24),
-            t15 * t26 - (t2 * t25 - t6 * t24),
-            t27 - k(2.0) * (k(0.5) - (t1 + nut_e3 * nut_e3)) * t26,
+            T::fused(t18, t26, T::fused(-t3, t24, t7 * t25)),
+            T::fused(t15, t26, -T::fused(-t6, t24, t2 * t25)),
+            T::fused(-(k(2.0) * (k(0.5) - T::fused(nut_e3, nut_e3, t1))), t26, t27),
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -126,10 +126,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Spherical<T> {
             top_sx,
             top_sy,
             top_sz,
-            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
-            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
-            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
-            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -152,6 +156,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 7]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let top_sx = y[7];
+        let top_sy = y[8];
+        let top_sz = y[9];
+        let top_wx = y[10];
+        let top_wy = y[11];
+        let top_wz = y[12];
+        *dy = [
+            top_sx,
+            top_sy,
+            top_sz,
+            -(k(0.5)
+                * T::fused(top_e3, top_wz, T::fused(top_e2, top_wy, top_e1 * top_wx))),
+            k(0.5)
+                * T::fused(top_e2, top_wz, T::fused(-top_e3, top_wy, top_e0 * top_wx)),
+            k(0.5)
+                * T::fused(-top_e1, top_wz, T::fused(top_e0, top_wy, top_e3 * top_wx)),
+            -(k(0.5)
+                * T::fused(-top_e0, top_wz, T::fused(-top_e1, top_wy, top_e2 * top_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+        ];
+    }
     /// Writes Φ: 40 operations (24 ±, 16 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -163,18 +202,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         let top_e2 = y[5];
         let top_e3 = y[6];
         let t0 = top_e0 * top_e0;
-        let t1 = t0 + top_e1 * top_e1;
+        let t1 = T::fused(top_e1, top_e1, t0);
         let t2 = top_e0 * top_e3;
         let t3 = top_e1 * top_e2;
         let t4 = top_e0 * top_e2;
         let t5 = top_e1 * top_e3;
-        let t6 = k(0.4) * (t5 + t4) - (t3 - t2 - k(0.6) * (k(0.5) - t1));
+        let t6 = T::fused(k(0.4), t5 + t4, -T::fused(-k(0.6), k(0.5) - t1, t3 - t2));
         let t7 = top_e2 * top_e2;
         let t8 = top_e0 * top_e1;
         let t9 = top_e2 * top_e3;
-        let t10 = k(0.4) * (t9 - t8) + (k(0.5) - (t0 + t7) - k(0.6) * (t3 + t2));
+        let t10 = T::fused(
+            k(0.4),
+            t9 - t8,
+            T::fused(-k(0.6), t3 + t2, k(0.5) - (t0 + t7)),
+        );
         let t11 = top_e3 * top_e3;
-        let t12 = k(0.4) * (k(0.5) - (t0 + t11)) + (t9 + t8 + k(0.6) * (t5 - t4));
+        let t12 = T::fused(
+            k(0.4),
+            k(0.5) - (t0 + t11),
+            T::fused(k(0.6), t5 - t4, t9 + t8),
+        );
         *out = [top_rx + t6, top_ry + t10, top_rz - t12, t11 + (t1 + t7) - k(1.0)];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 76 operations (30 ±, 46 ×, 0 ÷).
@@ -191,31 +238,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         let top_wy = y[11];
         let top_wz = y[12];
         let t0 = top_e0 * top_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + top_e1 * top_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0));
         let t2 = top_e0 * top_e3;
         let t3 = top_e1 * top_e2;
         let t4 = k(2.0) * (t3 - t2);
         let t5 = top_e0 * top_e2;
         let t6 = top_e1 * top_e3;
         let t7 = k(2.0) * (t6 + t5);
-        let t8 = k(0.3) * (t7 * top_wy - t4 * top_wz)
-            - k(0.5) * (t7 * top_wx + t1 * top_wz);
+        let t8 = T::fused(
+            -k(0.5),
+            T::fused(t1, top_wz, t7 * top_wx),
+            k(0.3) * T::fused(-t4, top_wz, t7 * top_wy),
+        );
         let t9 = k(2.0) * (t3 + t2);
-        let t10 = k(2.0) * (k(0.5) - (t0 + top_e2 * top_e2));
+        let t10 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0));
         let t11 = top_e0 * top_e1;
         let t12 = top_e2 * top_e3;
         let t13 = k(2.0) * (t12 - t11);
-        let t14 = k(0.3) * (t13 * top_wy + t10 * top_wz)
-            - k(0.5) * (t13 * top_wx - t9 * top_wz);
+        let t14 = T::fused(
+            -k(0.5),
+            T::fused(-t9, top_wz, t13 * top_wx),
+            k(0.3) * T::fused(t10, top_wz, t13 * top_wy),
+        );
         let t15 = k(2.0) * (t6 - t5);
         let t16 = k(2.0) * (t12 + t11);
-        let t17 = k(2.0) * (k(0.5) - (t0 + top_e3 * top_e3));
-        let t18 = k(0.3) * (t17 * top_wy + t16 * top_wz)
-            - k(0.5) * (t17 * top_wx + t15 * top_wz);
+        let t17 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0));
+        let t18 = T::fused(
+            -k(0.5),
+            T::fused(t15, top_wz, t17 * top_wx),
+            k(0.3) * T::fused(t16, top_wz, t17 * top_wy),
+        );
         *out = [
-            top_sx + (t8 - k(0.2) * (t4 * top_wx + t1 * top_wy)),
-            top_sy + (t14 + k(0.2) * (t10 * top_wx + t9 * top_wy)),
-            top_sz - (t18 + k(0.2) * (t16 * top_wx - t15 * top_wy)),
+            top_sx + T::fused(-k(0.2), T::fused(t1, top_wy, t4 * top_wx), t8),
+            top_sy + T::fused(k(0.2), T::fused(t9, top_wy, t10 * top_wx), t14),
+            top_sz - T::fused(k(0.2), T::fused(-t15, top_wy, t16 * top_wx), t18),
         ];
     }
     /// Kinetic and potential energy: 29 operations (11 ±, 18 ×, 0 ÷).
@@ -228,10 +284,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wx * (k(0.25) * top_wx + k(0.01) * top_wy - k(0.02) * top_wz)
-            + top_wy * (k(0.01) * top_wx + k(0.5) * top_wy + k(0.03) * top_wz);
-        let t1 = t0 - top_wz * (k(0.02) * top_wx - k(0.03) * top_wy - k(0.375) * top_wz);
-        let t2 = t1 + k(15.0) * (top_sx * top_sx + top_sy * top_sy + top_sz * top_sz);
+        let t0 = T::fused(
+            top_wy,
+            T::fused(k(0.03), top_wz, T::fused(k(0.5), top_wy, k(0.01) * top_wx)),
+            top_wx
+                * T::fused(-k(0.02), top_wz, T::fused(k(0.01), top_wy, k(0.25) * top_wx)),
+        );
+        let t1 = T::fused(
+            -top_wz,
+            T::fused(-k(0.375), top_wz, T::fused(-k(0.03), top_wy, k(0.02) * top_wx)),
+            t0,
+        );
+        let t2 = T::fused(
+            k(15.0),
+            T::fused(top_sz, top_sz, T::fused(top_sy, top_sy, top_sx * top_sx)),
+            t1,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * t2,
             potential: k(147.15) * top_rz,
@@ -310,32 +378,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> Spherical<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Spherical<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 13]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
         let top_e3 = y[6];
         [[top_e0, top_e1, top_e2, top_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Spherical<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 59 operations (29 ±, 29 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -345,25 +399,43 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Spherical<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = top_e0 * chart0_0 + top_e1 * chart0_1 + top_e2 * chart0_2
-            + top_e3 * chart0_3;
-        let t1 = top_e3 * top_e3 + (top_e0 * top_e0 + top_e1 * top_e1 + top_e2 * top_e2);
+        let t0 = T::fused(
+            top_e3,
+            chart0_3,
+            T::fused(top_e2, chart0_2, T::fused(top_e1, chart0_1, top_e0 * chart0_0)),
+        );
+        let t1 = T::fused(
+            top_e3,
+            top_e3,
+            T::fused(top_e2, top_e2, T::fused(top_e1, top_e1, top_e0 * top_e0)),
+        );
         let t2 = (k(1.0) - t1) * (k(0.5) / t0);
-        let t3 = top_e0 + chart0_0 * t2;
+        let t3 = T::fused(chart0_0, t2, top_e0);
         let t4 = t3 * t3;
-        let t5 = top_e1 + chart0_1 * t2;
-        let t6 = top_e2 + chart0_2 * t2;
+        let t5 = T::fused(chart0_1, t2, top_e1);
+        let t6 = T::fused(chart0_2, t2, top_e2);
         let t7 = t5 * t6;
-        let t8 = top_e3 + chart0_3 * t2;
+        let t8 = T::fused(chart0_3, t2, top_e3);
         let t9 = t3 * t8;
         let t10 = t5 * t8;
         let t11 = t3 * t6;
-        let t12 = k(0.4) * (t11 + t10) + (t9 - t7 + k(0.6) * (k(0.5) - (t5 * t5 + t4)));
+        let t12 = T::fused(
+            k(0.4),
+            t11 + t10,
+            T::fused(k(0.6), k(0.5) - T::fused(t5, t5, t4), t9 - t7),
+        );
         let t13 = t6 * t8;
         let t14 = t3 * t5;
-        let t15 = k(0.4) * (t14 - t13) - (k(0.5) - (t4 + t6 * t6) - k(0.6) * (t9 + t7));
-        let t16 = k(0.4) * (k(0.5) - (t4 + t8 * t8))
-            + (t14 + t13 - k(0.6) * (t11 - t10));
+        let t15 = T::fused(
+            k(0.4),
+            t14 - t13,
+            -T::fused(-k(0.6), t9 + t7, k(0.5) - T::fused(t6, t6, t4)),
+        );
+        let t16 = T::fused(
+            k(0.4),
+            k(0.5) - T::fused(t8, t8, t4),
+            T::fused(-k(0.6), t11 - t10, t14 + t13),
+        );
         y[0] = -t12;
         y[1] = t15;
         y[2] = t16;
@@ -371,15 +443,9 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Spherical<T> {
         y[4] = t5;
         y[5] = t6;
         y[6] = t8;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 73 operations (27 ±, 46 ×, 0 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
@@ -389,62 +455,76 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Spherical<T> {
         let top_wy = y[11];
         let top_wz = y[12];
         let t0 = top_e0 * top_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + top_e1 * top_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0));
         let t2 = top_e0 * top_e3;
         let t3 = top_e1 * top_e2;
         let t4 = k(2.0) * (t3 - t2);
         let t5 = top_e0 * top_e2;
         let t6 = top_e1 * top_e3;
         let t7 = k(2.0) * (t6 + t5);
-        let t8 = k(0.3) * (t7 * top_wy - t4 * top_wz)
-            - k(0.5) * (t7 * top_wx + t1 * top_wz);
+        let t8 = T::fused(
+            -k(0.5),
+            T::fused(t1, top_wz, t7 * top_wx),
+            k(0.3) * T::fused(-t4, top_wz, t7 * top_wy),
+        );
         let t9 = k(2.0) * (t3 + t2);
-        let t10 = k(2.0) * (k(0.5) - (t0 + top_e2 * top_e2));
+        let t10 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0));
         let t11 = top_e0 * top_e1;
         let t12 = top_e2 * top_e3;
         let t13 = k(2.0) * (t12 - t11);
-        let t14 = k(0.3) * (t13 * top_wy + t10 * top_wz)
-            - k(0.5) * (t13 * top_wx - t9 * top_wz);
+        let t14 = T::fused(
+            -k(0.5),
+            T::fused(-t9, top_wz, t13 * top_wx),
+            k(0.3) * T::fused(t10, top_wz, t13 * top_wy),
+        );
         let t15 = k(2.0) * (t6 - t5);
         let t16 = k(2.0) * (t12 + t11);
-        let t17 = k(2.0) * (k(0.5) - (t0 + top_e3 * top_e3));
-        let t18 = k(0.3) * (t17 * top_wy + t16 * top_wz)
-            - k(0.5) * (t17 * top_wx + t15 * top_wz);
-        y[7] = k(0.2) * (t4 * top_wx + t1 * top_wy) - t8;
-        y[8] = -(t14 + k(0.2) * (t10 * top_wx + t9 * top_wy));
-        y[9] = t18 + k(0.2) * (t16 * top_wx - t15 * top_wy);
+        let t17 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0));
+        let t18 = T::fused(
+            -k(0.5),
+            T::fused(t15, top_wz, t17 * top_wx),
+            k(0.3) * T::fused(t16, top_wz, t17 * top_wy),
+        );
+        y[7] = T::fused(k(0.2), T::fused(t1, top_wy, t4 * top_wx), -t8);
+        y[8] = -T::fused(k(0.2), T::fused(t9, top_wy, t10 * top_wx), t14);
+        y[9] = T::fused(k(0.2), T::fused(-t15, top_wy, t16 * top_wx), t18);
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Spherical<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let top_e0 = y[3];
-        let top_e1 = y[4];
-        let top_e2 = y[5];
-        let top_e3 = y[6];
-        let top_sx = y[7];
-        let top_sy = y[8];
-        let top_sz = y[9];
-        let top_wx = y[10];
-        let top_wy = y[11];
-        let top_wz = y[12];
-        *dy = [
-            top_sx,
-            top_sy,
-            top_sz,
-            -(k(0.5) * (top_e1 * top_wx + top_e2 * top_wy + top_e3 * top_wz)),
-            k(0.5) * (top_e0 * top_wx - top_e3 * top_wy + top_e2 * top_wz),
-            k(0.5) * (top_e3 * top_wx + top_e0 * top_wy - top_e1 * top_wz),
-            -(k(0.5) * (top_e2 * top_wx - top_e1 * top_wy - top_e0 * top_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
@@ -523,8 +603,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t9 = k(0.6) * top_e0;
         *out = [
             k(1.0),
-            t0 + (top_e3 - k(1.2) * top_e0),
-            t1 - (top_e2 + k(1.2) * top_e1),
+            t0 + T::fused(-k(1.2), top_e0, top_e3),
+            t1 - T::fused(k(1.2), top_e1, top_e2),
             t2 - top_e1,
             top_e0 + t3,
             k(1.0),
@@ -533,10 +613,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
             t1 - (t8 + t7),
             t0 - t9,
             k(1.0),
-            k(0.8) * top_e0 - (top_e1 - t6),
+            T::fused(k(0.8), top_e0, -(top_e1 - t6)),
             -(top_e0 + t4),
             t9 - top_e3,
-            k(0.8) * top_e3 - (top_e2 + t7),
+            T::fused(k(0.8), top_e3, -(top_e2 + t7)),
             t5,
             k(2.0) * top_e1,
             t8,
@@ -557,28 +637,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t4 = top_e1 * top_e3;
         let t5 = t4 + t3;
         let t6 = top_e0 * top_e0;
-        let t7 = k(0.5) - (t6 + top_e1 * top_e1);
-        let t8 = k(0.5) - (t6 + top_e2 * top_e2);
+        let t7 = k(0.5) - T::fused(top_e1, top_e1, t6);
+        let t8 = k(0.5) - T::fused(top_e2, top_e2, t6);
         let t9 = top_e0 * top_e1;
         let t10 = top_e2 * top_e3;
         let t11 = t10 - t9;
         let t12 = t1 + t0;
         let t13 = t10 + t9;
-        let t14 = k(0.5) - (t6 + top_e3 * top_e3);
+        let t14 = k(0.5) - T::fused(top_e3, top_e3, t6);
         let t15 = t4 - t3;
         *out = [
             k(1.0),
-            -(t5 + k(0.4) * t2),
-            k(0.6) * t5 - k(0.4) * t7,
-            -(t7 + k(0.6) * t2),
+            -T::fused(k(0.4), t2, t5),
+            T::fused(-k(0.4), t7, k(0.6) * t5),
+            -T::fused(k(0.6), t2, t7),
             k(1.0),
-            k(0.4) * t8 - t11,
-            k(0.6) * t11 + k(0.4) * t12,
-            t12 + k(0.6) * t8,
+            T::fused(k(0.4), t8, -t11),
+            T::fused(k(0.4), t12, k(0.6) * t11),
+            T::fused(k(0.6), t8, t12),
             k(1.0),
-            t14 - k(0.4) * t13,
-            k(0.4) * t15 - k(0.6) * t14,
-            t15 - k(0.6) * t13,
+            T::fused(-k(0.4), t13, t14),
+            T::fused(-k(0.6), t14, k(0.4) * t15),
+            T::fused(-k(0.6), t13, t15),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -600,7 +680,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t1 = top_wz * top_wz;
         let t2 = t1 + t0;
         let t3 = top_e0 * top_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + top_e1 * top_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t3));
         let t5 = top_wx * top_wy;
         let t6 = top_e0 * top_e3;
         let t7 = top_e1 * top_e2;
@@ -612,24 +692,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t13 = top_wx * top_wx;
         let t14 = t1 + t13;
         let t15 = top_wy * top_wz;
-        let t16 = k(0.5) * (t12 * t15 - (t8 * t14 + t4 * t5))
-            + k(0.3) * (t12 * t9 + (t8 * t5 + t4 * t2));
+        let t16 = T::fused(
+            k(0.3),
+            T::fused(t12, t9, T::fused(t4, t2, t8 * t5)),
+            k(0.5) * T::fused(t12, t15, -T::fused(t4, t5, t8 * t14)),
+        );
         let t17 = t0 + t13;
-        let t18 = k(0.2) * (t12 * t17 - (t8 * t15 - t4 * t9)) + t16;
+        let t18 = T::fused(
+            k(0.2),
+            T::fused(t12, t17, -T::fused(-t4, t9, t8 * t15)),
+            t16,
+        );
         let t19 = k(2.0) * (t7 + t6);
-        let t20 = k(2.0) * (k(0.5) - (t3 + top_e2 * top_e2));
+        let t20 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t3));
         let t21 = top_e0 * top_e1;
         let t22 = top_e2 * top_e3;
         let t23 = k(2.0) * (t22 - t21);
-        let t24 = k(0.5) * (t23 * t15 + (t20 * t14 + t19 * t5))
-            + k(0.3) * (t23 * t9 - (t20 * t5 + t19 * t2));
-        let t25 = k(0.2) * (t23 * t17 + (t20 * t15 - t19 * t9)) + t24;
+        let t24 = T::fused(
+            k(0.3),
+            T::fused(t23, t9, -T::fused(t19, t2, t20 * t5)),
+            k(0.5) * T::fused(t23, t15, T::fused(t19, t5, t20 * t14)),
+        );
+        let t25 = T::fused(
+            k(0.2),
+            T::fused(t23, t17, T::fused(-t19, t9, t20 * t15)),
+            t24,
+        );
         let t26 = k(2.0) * (t11 - t10);
         let t27 = k(2.0) * (t22 + t21);
-        let t28 = k(2.0) * (k(0.5) - (t3 + top_e3 * top_e3));
-        let t29 = k(0.5) * (t28 * t15 + (t27 * t14 - t26 * t5))
-            + k(0.3) * (t28 * t9 - (t27 * t5 - t26 * t2));
-        let t30 = k(0.2) * (t28 * t17 + (t27 * t15 + t26 * t9)) + t29;
+        let t28 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t3));
+        let t29 = T::fused(
+            k(0.3),
+            T::fused(t28, t9, -T::fused(-t26, t2, t27 * t5)),
+            k(0.5) * T::fused(t28, t15, T::fused(-t26, t5, t27 * t14)),
+        );
+        let t30 = T::fused(
+            k(0.2),
+            T::fused(t28, t17, T::fused(t26, t9, t27 * t15)),
+            t29,
+        );
         *out = [t18, t25, -t30];
     }
     /// Writes (f, n' − w̃'J'w'): 30 operations (12 ±, 18 ×, 0 ÷).
@@ -642,14 +743,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t1 = top_wz * top_wz;
         let t2 = k(0.01) * top_wz;
         let t3 = k(0.02) * top_wy;
-        let t4 = top_wx * (t3 + t2)
-            + (k(0.125) * (top_wy * top_wz) + k(0.03) * (t1 - t0));
+        let t4 = T::fused(
+            top_wx,
+            t3 + t2,
+            T::fused(k(0.03), t1 - t0, k(0.125) * (top_wy * top_wz)),
+        );
         let t5 = top_wx * top_wx;
         let t6 = k(0.03) * top_wx;
-        let t7 = top_wy * (t2 - t6)
-            - (k(0.125) * (top_wx * top_wz) + k(0.02) * (t1 - t5));
-        let t8 = top_wz * (t3 + t6)
-            + (k(0.25) * (top_wx * top_wy) - k(0.01) * (t0 - t5));
+        let t7 = T::fused(
+            top_wy,
+            t2 - t6,
+            -T::fused(k(0.02), t1 - t5, k(0.125) * (top_wx * top_wz)),
+        );
+        let t8 = T::fused(
+            top_wz,
+            t3 + t6,
+            T::fused(-k(0.01), t0 - t5, k(0.25) * (top_wx * top_wy)),
+        );
         *out = [k(0.0), k(0.0), k(-147.15), t4, -t7, -t8];
     }
     /// Solves eq. (17): 209 operations (89 ±, 120 ×, 0 ÷).
@@ -666,7 +776,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t1 = top_wz * top_wz;
         let t2 = t1 + t0;
         let t3 = top_e0 * top_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + top_e1 * top_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t3));
         let t5 = top_wx * top_wy;
         let t6 = top_e0 * top_e3;
         let t7 = top_e1 * top_e2;
@@ -678,58 +788,112 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t13 = top_wx * top_wx;
         let t14 = t1 + t13;
         let t15 = top_wy * top_wz;
-        let t16 = k(0.5) * (t12 * t15 - (t8 * t14 + t4 * t5))
-            + k(0.3) * (t12 * t9 + (t8 * t5 + t4 * t2));
+        let t16 = T::fused(
+            k(0.3),
+            T::fused(t12, t9, T::fused(t4, t2, t8 * t5)),
+            k(0.5) * T::fused(t12, t15, -T::fused(t4, t5, t8 * t14)),
+        );
         let t17 = t0 + t13;
-        let t18 = k(0.2) * (t12 * t17 - (t8 * t15 - t4 * t9)) + t16;
+        let t18 = T::fused(
+            k(0.2),
+            T::fused(t12, t17, -T::fused(-t4, t9, t8 * t15)),
+            t16,
+        );
         let t19 = k(2.0) * (t7 + t6);
-        let t20 = k(2.0) * (k(0.5) - (t3 + top_e2 * top_e2));
+        let t20 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t3));
         let t21 = top_e0 * top_e1;
         let t22 = top_e2 * top_e3;
         let t23 = k(2.0) * (t22 - t21);
-        let t24 = k(0.5) * (t23 * t15 + (t20 * t14 + t19 * t5))
-            + k(0.3) * (t23 * t9 - (t20 * t5 + t19 * t2));
-        let t25 = k(0.2) * (t23 * t17 + (t20 * t15 - t19 * t9)) + t24;
+        let t24 = T::fused(
+            k(0.3),
+            T::fused(t23, t9, -T::fused(t19, t2, t20 * t5)),
+            k(0.5) * T::fused(t23, t15, T::fused(t19, t5, t20 * t14)),
+        );
+        let t25 = T::fused(
+            k(0.2),
+            T::fused(t23, t17, T::fused(-t19, t9, t20 * t15)),
+            t24,
+        );
         let t26 = t11 - t10;
         let t27 = k(2.0) * t26;
         let t28 = t22 + t21;
         let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - (t3 + top_e3 * top_e3);
+        let t30 = k(0.5) - T::fused(top_e3, top_e3, t3);
         let t31 = k(2.0) * t30;
-        let t32 = k(0.5) * (t31 * t15 + (t29 * t14 - t27 * t5))
-            + k(0.3) * (t31 * t9 - (t29 * t5 - t27 * t2));
-        let t33 = k(0.2) * (t31 * t17 + (t29 * t15 + t27 * t9)) + t32;
-        let t34 = t27 * t33 - (t19 * t25 - t4 * t18);
-        let t35 = t29 * t33 + (t20 * t25 - t8 * t18);
-        let t36 = t31 * t33 + (t23 * t25 + t12 * t18);
+        let t32 = T::fused(
+            k(0.3),
+            T::fused(t31, t9, -T::fused(-t27, t2, t29 * t5)),
+            k(0.5) * T::fused(t31, t15, T::fused(-t27, t5, t29 * t14)),
+        );
+        let t33 = T::fused(
+            k(0.2),
+            T::fused(t31, t17, T::fused(t27, t9, t29 * t15)),
+            t32,
+        );
+        let t34 = T::fused(t27, t33, -T::fused(-t4, t18, t19 * t25));
+        let t35 = T::fused(t29, t33, T::fused(-t8, t18, t20 * t25));
+        let t36 = T::fused(t31, t33, T::fused(t12, t18, t23 * t25));
         let t37 = k(0.03) * top_wx;
         let t38 = k(0.02) * top_wy;
-        let t39 = top_wz * (t38 + t37) + (k(0.25) * t5 - k(0.01) * (t0 - t13));
+        let t39 = T::fused(
+            top_wz,
+            t38 + t37,
+            T::fused(-k(0.01), t0 - t13, k(0.25) * t5),
+        );
         let t40 = k(0.01) * top_wz;
-        let t41 = top_wx * (t38 + t40) + (k(0.125) * t15 + k(0.03) * (t1 - t0));
-        let t42 = t41 - (k(58.86) * t28 - k(147.15) * t30);
-        let t43 = top_wy * (t40 - t37) - (k(0.125) * t9 + k(0.02) * (t1 - t13));
-        let t44 = k(0.48695652173913045) * t42
-            - (t43 - (k(58.86) * t26 - k(88.29) * t30));
-        let t45 = k(1.440918687224106) * t44
-            + (k(0.19130434782608696) * t42
-                + (t39 - (k(147.15) * t26 - k(88.29) * t28)));
-        let t46 = k(0.21313415648391018) * t36
-            + (k(1.8210927004030453) * t35 - k(3.177243938327682) * t34) - t45;
-        let t47 = k(0.7882702418008584) * t46
-            - (k(0.8478260869565217) * t36
-                + (k(1.4608695652173913) * t35 - k(3.0) * t34));
+        let t41 = T::fused(
+            top_wx,
+            t38 + t40,
+            T::fused(k(0.03), t1 - t0, k(0.125) * t15),
+        );
+        let t42 = t41 - T::fused(-k(147.15), t30, k(58.86) * t28);
+        let t43 = T::fused(
+            top_wy,
+            t40 - t37,
+            -T::fused(k(0.02), t1 - t13, k(0.125) * t9),
+        );
+        let t44 = T::fused(
+            k(0.48695652173913045),
+            t42,
+            -(t43 - T::fused(-k(88.29), t30, k(58.86) * t26)),
+        );
+        let t45 = T::fused(
+            k(1.440918687224106),
+            t44,
+            T::fused(
+                k(0.19130434782608696),
+                t42,
+                t39 - T::fused(-k(88.29), t28, k(147.15) * t26),
+            ),
+        );
+        let t46 = T::fused(
+            k(0.21313415648391018),
+            t36,
+            T::fused(-k(3.177243938327682), t34, k(1.8210927004030453) * t35),
+        ) - t45;
+        let t47 = T::fused(
+            k(0.7882702418008584),
+            t46,
+            -T::fused(
+                k(0.8478260869565217),
+                t36,
+                T::fused(-k(3.0), t34, k(1.4608695652173913) * t35),
+            ),
+        );
         let t48 = t44 - t47;
-        let t49 = t34 + (k(0.20124112641987904) * t46 + k(0.14714349689719147) * t48);
-        let t50 = k(0.3541843824989871) * t46 - k(1.6480071652485446) * t48
-            + (k(7.5) * t36 - k(3.0) * t35);
+        let t49 = t34
+            + T::fused(k(0.14714349689719147), t48, k(0.20124112641987904) * t46);
+        let t50 = T::fused(-k(1.6480071652485446), t48, k(0.3541843824989871) * t46)
+            + T::fused(-k(3.0), t35, k(7.5) * t36);
         let t51 = t42 - t50;
-        let t52 = t35 - (k(0.12074467585192743) * t46 + k(0.043478260869565216) * t51);
-        let t53 = t36 - (k(0.2207152453457872) * t48 - k(0.10869565217391304) * t51);
+        let t52 = t35
+            - T::fused(k(0.043478260869565216), t51, k(0.12074467585192743) * t46);
+        let t53 = t36
+            - T::fused(-k(0.10869565217391304), t51, k(0.2207152453457872) * t48);
         *out = [
-            t12 * t53 - (t8 * t52 - t4 * t49),
-            t23 * t53 + (t20 * t52 - t19 * t49),
-            -(t31 * t53 + (t29 * t52 + t27 * t49)),
+            T::fused(t12, t53, -T::fused(-t4, t49, t8 * t52)),
+            T::fused(t23, t53, T::fused(-t19, t49, t20 * t52)),
+            -T::fused(t31, t53, T::fused(t27, t49, t29 * t52)),
             k(0.21739130434782608) * t51,
             k(0.7357174844859574) * t48,
             k(0.4024822528397581) * t46,
@@ -750,7 +914,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         *lambda = [
             -(k(15.0) * top_dsx),
             -(k(15.0) * top_dsy),
-            -(k(147.15) + k(15.0) * top_dsz),
+            -T::fused(k(15.0), top_dsz, k(147.15)),
         ];
     }
 }
@@ -778,24 +942,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let u0 = x[4];
         let u1 = x[5];
         let u2 = x[6];
-        let t0 = x1 * x3 - x0 * x2;
-        let t1 = x2 * x3 + x0 * x1;
-        let t2 = k(0.88) * u2 - k(2.24) * u1;
-        let t3 = k(2.24) * u0 - k(1.53) * u2;
-        let t4 = u0 * (t3 + k(2.15) * u1) + (u1 * t2 - (k(88.29) * t1 - k(147.15) * t0));
-        let t5 = k(0.5) - (x1 * x1 + x2 * x2);
-        let t6 = k(0.88) * u0 + k(1.53) * u1;
-        let t7 = u0 * (t6 + k(0.875) * u2) + (k(88.29) * t5 + (k(58.86) * t0 - u2 * t2));
-        let t8 = t7 - k(0.27945205479452057) * t4;
-        let t9 = u2 * (t3 + k(3.025) * u1)
-            + (k(147.15) * t5 + (k(58.86) * t1 + u1 * t6));
-        let t10 = t9 + k(0.16073059360730593) * t4 - k(1.2291686422194827) * t8;
-        let t11 = k(0.49445264769232855) * t8 - k(0.876134676932097) * t10;
+        let t0 = T::fused(-x0, x2, x1 * x3);
+        let t1 = T::fused(x0, x1, x2 * x3);
+        let t2 = T::fused(-k(2.24), u1, k(0.88) * u2);
+        let t3 = T::fused(-k(1.53), u2, k(2.24) * u0);
+        let t4 = T::fused(
+            u0,
+            T::fused(k(2.15), u1, t3),
+            T::fused(u1, t2, -T::fused(-k(147.15), t0, k(88.29) * t1)),
+        );
+        let t5 = k(0.5) - T::fused(x2, x2, x1 * x1);
+        let t6 = T::fused(k(1.53), u1, k(0.88) * u0);
+        let t7 = T::fused(
+            u0,
+            T::fused(k(0.875), u2, t6),
+            T::fused(k(88.29), t5, T::fused(-u2, t2, k(58.86) * t0)),
+        );
+        let t8 = T::fused(-k(0.27945205479452057), t4, t7);
+        let t9 = T::fused(
+            u2,
+            T::fused(k(3.025), u1, t3),
+            T::fused(k(147.15), t5, T::fused(u1, t6, k(58.86) * t1)),
+        );
+        let t10 = T::fused(
+            -k(1.2291686422194827),
+            t8,
+            T::fused(k(0.16073059360730593), t4, t9),
+        );
+        let t11 = T::fused(-k(0.876134676932097), t10, k(0.49445264769232855) * t8);
         *out = [
             -(k(0.7127863881640194) * t10),
             t11,
-            k(0.182648401826484) * t4 + k(0.11456657928481043) * t10
-                - k(0.27945205479452057) * t11,
+            T::fused(
+                -k(0.27945205479452057),
+                t11,
+                T::fused(k(0.11456657928481043), t10, k(0.182648401826484) * t4),
+            ),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 24 operations (8 ±, 16 ×, 0 ÷).
@@ -811,10 +993,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let u1 = x[5];
         let u2 = x[6];
         *dx = [
-            -(k(0.5) * (x1 * u0 + x2 * u1 + x3 * u2)),
-            k(0.5) * (x0 * u0 - x3 * u1 + x2 * u2),
-            k(0.5) * (x3 * u0 + x0 * u1 - x1 * u2),
-            -(k(0.5) * (x2 * u0 - x1 * u1 - x0 * u2)),
+            -(k(0.5) * T::fused(x3, u2, T::fused(x2, u1, x1 * u0))),
+            k(0.5) * T::fused(x2, u2, T::fused(-x3, u1, x0 * u0)),
+            k(0.5) * T::fused(-x1, u2, T::fused(x0, u1, x3 * u0)),
+            -(k(0.5) * T::fused(-x0, u2, T::fused(-x1, u1, x2 * u0))),
             rates[0],
             rates[1],
             rates[2],
@@ -834,7 +1016,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t1 = x1 * x3;
         let t2 = t1 + t0;
         let t3 = x0 * x0;
-        let t4 = k(0.5) - (t3 + x1 * x1);
+        let t4 = k(0.5) - T::fused(x1, x1, t3);
         let t5 = x0 * x3;
         let t6 = x1 * x2;
         let t7 = t6 - t5;
@@ -842,20 +1024,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t9 = x2 * x3;
         let t10 = t9 - t8;
         let t11 = t6 + t5;
-        let t12 = k(0.5) - (t3 + x2 * x2);
-        let t13 = k(0.5) - (t3 + x3 * x3);
+        let t12 = k(0.5) - T::fused(x2, x2, t3);
+        let t13 = k(0.5) - T::fused(x3, x3, t3);
         let t14 = t1 - t0;
         let t15 = t9 + t8;
-        let t16 = k(0.5) * u0 - k(0.3) * u1;
-        let t17 = k(0.3) * u2 + k(0.2) * u0;
-        let t18 = k(0.2) * u1 + k(0.5) * u2;
-        let t19 = k(2.0) * t4 * t18 + k(2.0) * t7 * t17 + k(2.0) * t2 * t16;
-        let t20 = k(2.0) * t11 * t18 + k(2.0) * t12 * t17 - k(2.0) * t10 * t16;
-        let t21 = k(2.0) * t14 * t18 - k(2.0) * t15 * t17 + k(2.0) * t13 * t16;
+        let t16 = T::fused(-k(0.3), u1, k(0.5) * u0);
+        let t17 = T::fused(k(0.2), u0, k(0.3) * u2);
+        let t18 = T::fused(k(0.5), u2, k(0.2) * u1);
+        let t19 = T::fused(
+            k(2.0) * t2,
+            t16,
+            T::fused(k(2.0) * t7, t17, k(2.0) * t4 * t18),
+        );
+        let t20 = T::fused(
+            -(k(2.0) * t10),
+            t16,
+            T::fused(k(2.0) * t12, t17, k(2.0) * t11 * t18),
+        );
+        let t21 = T::fused(
+            k(2.0) * t13,
+            t16,
+            T::fused(-(k(2.0) * t15), t17, k(2.0) * t14 * t18),
+        );
         *y = [
-            t7 - k(0.6) * t4 - k(0.4) * t2,
-            -(t12 - k(0.6) * t11 + k(0.4) * t10),
-            t15 + k(0.6) * t14 + k(0.4) * t13,
+            T::fused(-k(0.4), t2, T::fused(-k(0.6), t4, t7)),
+            -T::fused(k(0.4), t10, T::fused(-k(0.6), t11, t12)),
+            T::fused(k(0.4), t13, T::fused(k(0.6), t14, t15)),
             x0,
             x1,
             x2,
@@ -895,26 +1089,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(1.53) * top_wz - k(2.24) * top_wx;
-        let t1 = k(0.5) - (top_e1 * top_e1 + top_e2 * top_e2);
-        let t2 = top_e2 * top_e3 + top_e0 * top_e1;
-        let t3 = k(1.53) * top_wy + k(0.88) * top_wx;
-        let t4 = top_wy * t3 + k(58.86) * t2 + k(147.15) * t1
-            - top_wz * (t0 - k(3.025) * top_wy);
-        let t5 = k(2.24) * top_wy - k(0.88) * top_wz;
-        let t6 = top_e1 * top_e3 - top_e0 * top_e2;
-        let t7 = k(147.15) * t6 - k(88.29) * t2 - top_wy * t5
-            + top_wx * (k(2.15) * top_wy - t0);
-        let t8 = top_wz * t5 + k(58.86) * t6 + k(88.29) * t1
-            + top_wx * (k(0.875) * top_wz + t3);
-        let t9 = k(0.27945205479452057) * t7 - t8;
-        let t10 = k(1.2291686422194827) * t9 + (k(0.16073059360730593) * t7 + t4);
-        let t11 = k(0.876134676932097) * t10 + k(0.49445264769232855) * t9;
+        let t0 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
+        let t1 = k(0.5) - T::fused(top_e2, top_e2, top_e1 * top_e1);
+        let t2 = T::fused(top_e0, top_e1, top_e2 * top_e3);
+        let t3 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
+        let t4 = T::fused(
+            -top_wz,
+            T::fused(-k(3.025), top_wy, t0),
+            T::fused(k(147.15), t1, T::fused(k(58.86), t2, top_wy * t3)),
+        );
+        let t5 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t6 = T::fused(-top_e0, top_e2, top_e1 * top_e3);
+        let t7 = T::fused(
+            top_wx,
+            T::fused(k(2.15), top_wy, -t0),
+            T::fused(-top_wy, t5, T::fused(-k(88.29), t2, k(147.15) * t6)),
+        );
+        let t8 = T::fused(
+            top_wx,
+            T::fused(k(0.875), top_wz, t3),
+            T::fused(k(88.29), t1, T::fused(k(58.86), t6, top_wz * t5)),
+        );
+        let t9 = T::fused(k(0.27945205479452057), t7, -t8);
+        let t10 = T::fused(
+            k(1.2291686422194827),
+            t9,
+            T::fused(k(0.16073059360730593), t7, t4),
+        );
+        let t11 = T::fused(k(0.49445264769232855), t9, k(0.876134676932097) * t10);
         *out = [
             -(k(0.7127863881640194) * t10),
             -t11,
-            k(0.27945205479452057) * t11
-                + (k(0.11456657928481043) * t10 + k(0.182648401826484) * t7),
+            T::fused(
+                k(0.27945205479452057),
+                t11,
+                T::fused(k(0.182648401826484), t7, k(0.11456657928481043) * t10),
+            ),
         ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 129 operations (53 ±, 76 ×, 0 ÷).
@@ -932,47 +1142,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(1.53) * top_wy + k(0.88) * top_wx;
+        let t0 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
         let t1 = top_e2 * top_e2;
         let t2 = top_e1 * top_e1;
         let t3 = k(0.5) - (t2 + t1);
         let t4 = top_e0 * top_e2;
         let t5 = top_e1 * top_e3;
         let t6 = t5 - t4;
-        let t7 = k(2.24) * top_wy - k(0.88) * top_wz;
-        let t8 = top_wz * t7 + k(58.86) * t6 + k(88.29) * t3
-            + top_wx * (k(0.875) * top_wz + t0);
-        let t9 = k(1.53) * top_wz - k(2.24) * top_wx;
+        let t7 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t8 = T::fused(
+            top_wx,
+            T::fused(k(0.875), top_wz, t0),
+            T::fused(k(88.29), t3, T::fused(k(58.86), t6, top_wz * t7)),
+        );
+        let t9 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
         let t10 = top_e0 * top_e1;
         let t11 = top_e2 * top_e3;
         let t12 = t11 + t10;
-        let t13 = k(147.15) * t6 - k(88.29) * t12 - top_wy * t7
-            + top_wx * (k(2.15) * top_wy - t9);
-        let t14 = k(0.27945205479452057) * t13 - t8;
-        let t15 = top_wy * t0 + k(58.86) * t12 + k(147.15) * t3
-            - top_wz * (t9 - k(3.025) * top_wy);
-        let t16 = k(1.2291686422194827) * t14 + (k(0.16073059360730593) * t13 + t15);
-        let t17 = k(0.876134676932097) * t16 + k(0.49445264769232855) * t14;
-        let t18 = k(0.27945205479452057) * t17
-            + (k(0.11456657928481043) * t16 + k(0.182648401826484) * t13);
-        let t19 = k(0.3) * top_wz + k(0.2) * top_wx;
-        let t20 = k(0.5) * top_wx - k(0.3) * top_wy;
-        let t21 = top_wy * t20 - top_wz * t19 - (k(0.5) * t18 - k(0.2) * t17);
+        let t13 = T::fused(
+            top_wx,
+            T::fused(k(2.15), top_wy, -t9),
+            T::fused(-top_wy, t7, T::fused(-k(88.29), t12, k(147.15) * t6)),
+        );
+        let t14 = T::fused(k(0.27945205479452057), t13, -t8);
+        let t15 = T::fused(
+            -top_wz,
+            T::fused(-k(3.025), top_wy, t9),
+            T::fused(k(147.15), t3, T::fused(k(58.86), t12, top_wy * t0)),
+        );
+        let t16 = T::fused(
+            k(1.2291686422194827),
+            t14,
+            T::fused(k(0.16073059360730593), t13, t15),
+        );
+        let t17 = T::fused(k(0.49445264769232855), t14, k(0.876134676932097) * t16);
+        let t18 = T::fused(
+            k(0.27945205479452057),
+            t17,
+            T::fused(k(0.182648401826484), t13, k(0.11456657928481043) * t16),
+        );
+        let t19 = T::fused(k(0.2), top_wx, k(0.3) * top_wz);
+        let t20 = T::fused(-k(0.3), top_wy, k(0.5) * top_wx);
+        let t21 = T::fused(-top_wz, t19, top_wy * t20)
+            - T::fused(-k(0.2), t17, k(0.5) * t18);
         let t22 = top_e0 * top_e0;
-        let t23 = k(0.2) * top_wy + k(0.5) * top_wz;
-        let t24 = top_wz * t23 + top_wx * t20
-            - (k(0.3) * t18 - k(0.14255727763280387) * t16);
+        let t23 = T::fused(k(0.5), top_wz, k(0.2) * top_wy);
+        let t24 = T::fused(top_wx, t20, top_wz * t23)
+            - T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
         let t25 = top_e0 * top_e3;
         let t26 = top_e1 * top_e2;
-        let t27 = k(2.0) * (t26 - t25) * t24 + k(2.0) * (k(0.5) - (t22 + t2)) * t21;
-        let t28 = top_wx * t19 + top_wy * t23
-            + (k(0.3) * t17 - k(0.3563931940820097) * t16);
-        let t29 = k(2.0) * (k(0.5) - (t22 + t1)) * t24 + k(2.0) * (t26 + t25) * t21;
-        let t30 = k(2.0) * (k(0.5) - (t22 + top_e3 * top_e3)) * t28
-            + (k(2.0) * t12 * t24 - k(2.0) * t6 * t21);
+        let t27 = T::fused(
+            k(2.0) * (k(0.5) - (t22 + t2)),
+            t21,
+            k(2.0) * (t26 - t25) * t24,
+        );
+        let t28 = T::fused(top_wy, t23, top_wx * t19)
+            + T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
+        let t29 = T::fused(
+            k(2.0) * (t26 + t25),
+            t21,
+            k(2.0) * (k(0.5) - (t22 + t1)) * t24,
+        );
+        let t30 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t22)),
+            t28,
+            T::fused(-(k(2.0) * t6), t21, k(2.0) * t12 * t24),
+        );
         *out = [
-            k(2.0) * (t5 + t4) * t28 - t27,
-            k(2.0) * (t11 - t10) * t28 + t29,
+            T::fused(k(2.0) * (t5 + t4), t28, -t27),
+            T::fused(k(2.0) * (t11 - t10), t28, t29),
             -t30,
             -(k(0.7127863881640194) * t16),
             -t17,
@@ -994,7 +1232,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         *lambda = [
             -(k(15.0) * top_dsx),
             -(k(15.0) * top_dsy),
-            -(k(147.15) + k(15.0) * top_dsz),
+            -T::fused(k(15.0), top_dsz, k(147.15)),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 133 operations (54 ±, 79 ×, 0 ÷).
@@ -1007,46 +1245,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = k(1.53) * top_wy + k(0.88) * top_wx;
+        let t0 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
         let t1 = top_e2 * top_e2;
         let t2 = top_e1 * top_e1;
         let t3 = k(0.5) - (t2 + t1);
         let t4 = top_e0 * top_e2;
         let t5 = top_e1 * top_e3;
         let t6 = t5 - t4;
-        let t7 = k(2.24) * top_wy - k(0.88) * top_wz;
-        let t8 = top_wz * t7 + k(58.86) * t6 + k(88.29) * t3
-            + top_wx * (k(0.875) * top_wz + t0);
-        let t9 = k(1.53) * top_wz - k(2.24) * top_wx;
+        let t7 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t8 = T::fused(
+            top_wx,
+            T::fused(k(0.875), top_wz, t0),
+            T::fused(k(88.29), t3, T::fused(k(58.86), t6, top_wz * t7)),
+        );
+        let t9 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
         let t10 = top_e0 * top_e1;
         let t11 = top_e2 * top_e3;
         let t12 = t11 + t10;
-        let t13 = k(147.15) * t6 - k(88.29) * t12 - top_wy * t7
-            + top_wx * (k(2.15) * top_wy - t9);
-        let t14 = k(0.27945205479452057) * t13 - t8;
-        let t15 = top_wy * t0 + k(58.86) * t12 + k(147.15) * t3
-            - top_wz * (t9 - k(3.025) * top_wy);
-        let t16 = k(1.2291686422194827) * t14 + (k(0.16073059360730593) * t13 + t15);
-        let t17 = k(0.876134676932097) * t16 + k(0.49445264769232855) * t14;
-        let t18 = k(0.27945205479452057) * t17
-            + (k(0.11456657928481043) * t16 + k(0.182648401826484) * t13);
-        let t19 = k(0.3) * top_wz + k(0.2) * top_wx;
-        let t20 = k(0.5) * top_wx - k(0.3) * top_wy;
-        let t21 = top_wy * t20 - top_wz * t19 - (k(0.5) * t18 - k(0.2) * t17);
+        let t13 = T::fused(
+            top_wx,
+            T::fused(k(2.15), top_wy, -t9),
+            T::fused(-top_wy, t7, T::fused(-k(88.29), t12, k(147.15) * t6)),
+        );
+        let t14 = T::fused(k(0.27945205479452057), t13, -t8);
+        let t15 = T::fused(
+            -top_wz,
+            T::fused(-k(3.025), top_wy, t9),
+            T::fused(k(147.15), t3, T::fused(k(58.86), t12, top_wy * t0)),
+        );
+        let t16 = T::fused(
+            k(1.2291686422194827),
+            t14,
+            T::fused(k(0.16073059360730593), t13, t15),
+        );
+        let t17 = T::fused(k(0.49445264769232855), t14, k(0.876134676932097) * t16);
+        let t18 = T::fused(
+            k(0.27945205479452057),
+            t17,
+            T::fused(k(0.182648401826484), t13, k(0.11456657928481043) * t16),
+        );
+        let t19 = T::fused(k(0.2), top_wx, k(0.3) * top_wz);
+        let t20 = T::fused(-k(0.3), top_wy, k(0.5) * top_wx);
+        let t21 = T::fused(-top_wz, t19, top_wy * t20)
+            - T::fused(-k(0.2), t17, k(0.5) * t18);
         let t22 = top_e0 * top_e0;
-        let t23 = k(0.2) * top_wy + k(0.5) * top_wz;
-        let t24 = top_wz * t23 + top_wx * t20
-            - (k(0.3) * t18 - k(0.14255727763280387) * t16);
+        let t23 = T::fused(k(0.5), top_wz, k(0.2) * top_wy);
+        let t24 = T::fused(top_wx, t20, top_wz * t23)
+            - T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
         let t25 = top_e0 * top_e3;
         let t26 = top_e1 * top_e2;
-        let t27 = k(2.0) * (t26 - t25) * t24 + k(2.0) * (k(0.5) - (t22 + t2)) * t21;
-        let t28 = top_wx * t19 + top_wy * t23
-            + (k(0.3) * t17 - k(0.3563931940820097) * t16);
-        let t29 = k(2.0) * (t5 + t4) * t28 - t27;
-        let t30 = k(2.0) * (k(0.5) - (t22 + t1)) * t24 + k(2.0) * (t26 + t25) * t21;
-        let t31 = k(2.0) * (t11 - t10) * t28 + t30;
-        let t32 = k(2.0) * (k(0.5) - (t22 + top_e3 * top_e3)) * t28
-            + (k(2.0) * t12 * t24 - k(2.0) * t6 * t21);
+        let t27 = T::fused(
+            k(2.0) * (k(0.5) - (t22 + t2)),
+            t21,
+            k(2.0) * (t26 - t25) * t24,
+        );
+        let t28 = T::fused(top_wy, t23, top_wx * t19)
+            + T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
+        let t29 = T::fused(k(2.0) * (t5 + t4), t28, -t27);
+        let t30 = T::fused(
+            k(2.0) * (t26 + t25),
+            t21,
+            k(2.0) * (k(0.5) - (t22 + t1)) * t24,
+        );
+        let t31 = T::fused(k(2.0) * (t11 - t10), t28, t30);
+        let t32 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t22)),
+            t28,
+            T::fused(-(k(2.0) * t6), t21, k(2.0) * t12 * t24),
+        );
         *out = [
             t29,
             t31,
@@ -1056,7 +1322,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             t18,
             -(k(15.0) * t29),
             -(k(15.0) * t31),
-            k(15.0) * t32 - k(147.15),
+            T::fused(k(15.0), t32, -k(147.15)),
         ];
     }
 }
@@ -1082,7 +1348,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Spherical<T> {
         let top_dsz = accelerations[2];
         let t0 = k(15.0) * top_dsx;
         let t1 = k(15.0) * top_dsy;
-        let t2 = k(147.15) + k(15.0) * top_dsz;
+        let t2 = T::fused(k(15.0), top_dsz, k(147.15));
         let t3 = top_e0 * top_e3;
         let t4 = top_e1 * top_e2;
         let t5 = t4 - t3;
@@ -1090,34 +1356,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Spherical<T> {
         let t7 = top_e1 * top_e3;
         let t8 = t7 + t6;
         let t9 = top_e0 * top_e0;
-        let t10 = k(0.5) - (t9 + top_e2 * top_e2);
+        let t10 = k(0.5) - T::fused(top_e2, top_e2, t9);
         let t11 = top_e0 * top_e1;
         let t12 = top_e2 * top_e3;
         let t13 = t12 - t11;
-        let t14 = t1 * (t13 - k(0.4) * t10) + t0 * (t8 + k(0.4) * t5);
+        let t14 = T::fused(
+            t0,
+            T::fused(k(0.4), t5, t8),
+            t1 * T::fused(-k(0.4), t10, t13),
+        );
         let t15 = t12 + t11;
-        let t16 = k(0.5) - (t9 + top_e3 * top_e3);
-        let t17 = t2 * (t16 - k(0.4) * t15) - t14;
-        let t18 = k(0.5) - (t9 + top_e1 * top_e1);
+        let t16 = k(0.5) - T::fused(top_e3, top_e3, t9);
+        let t17 = T::fused(t2, T::fused(-k(0.4), t15, t16), -t14);
+        let t18 = k(0.5) - T::fused(top_e1, top_e1, t9);
         let t19 = t4 + t3;
-        let t20 = t1 * (k(0.6) * t13 + k(0.4) * t19) + t0 * (k(0.6) * t8 - k(0.4) * t18);
+        let t20 = T::fused(
+            t0,
+            T::fused(-k(0.4), t18, k(0.6) * t8),
+            t1 * T::fused(k(0.4), t19, k(0.6) * t13),
+        );
         let t21 = t7 - t6;
-        let t22 = t2 * (k(0.6) * t16 - k(0.4) * t21) - t20;
-        let t23 = t1 * (t19 + k(0.6) * t10) - t0 * (t18 + k(0.6) * t5);
-        let t24 = t2 * (t21 - k(0.6) * t15) + t23;
-        let t25 = k(2.0) * t8 * t24 - (k(2.0) * t5 * t22 + k(2.0) * t18 * t17);
-        let t26 = top_ry - (top_ry + (k(0.4) * t13 + (t10 - k(0.6) * t19)));
-        let t27 = top_rz - (top_rz - (k(0.4) * t16 + (t15 + k(0.6) * t21)));
-        let t28 = k(2.0) * t13 * t24 + (k(2.0) * t10 * t22 + k(2.0) * t19 * t17);
-        let t29 = top_rx - (top_rx + (k(0.4) * t8 - (t5 - k(0.6) * t18)));
-        let t30 = k(2.0) * t16 * t24 + (k(2.0) * t15 * t22 - k(2.0) * t21 * t17);
+        let t22 = T::fused(t2, T::fused(-k(0.4), t21, k(0.6) * t16), -t20);
+        let t23 = T::fused(
+            -t0,
+            T::fused(k(0.6), t5, t18),
+            t1 * T::fused(k(0.6), t10, t19),
+        );
+        let t24 = T::fused(t2, T::fused(-k(0.6), t15, t21), t23);
+        let t25 = T::fused(
+            k(2.0) * t8,
+            t24,
+            -T::fused(k(2.0) * t18, t17, k(2.0) * t5 * t22),
+        );
+        let t26 = top_ry - (top_ry + T::fused(k(0.4), t13, T::fused(-k(0.6), t19, t10)));
+        let t27 = top_rz - (top_rz - T::fused(k(0.4), t16, T::fused(k(0.6), t21, t15)));
+        let t28 = T::fused(
+            k(2.0) * t13,
+            t24,
+            T::fused(k(2.0) * t19, t17, k(2.0) * t10 * t22),
+        );
+        let t29 = top_rx - (top_rx + T::fused(k(0.4), t8, -T::fused(-k(0.6), t18, t5)));
+        let t30 = T::fused(
+            k(2.0) * t16,
+            t24,
+            T::fused(-(k(2.0) * t21), t17, k(2.0) * t15 * t22),
+        );
         *out = [
             t0,
             t1,
             t2,
-            t25 - (t1 * t27 - t2 * t26),
-            t28 - (t2 * t29 - t0 * t27),
-            -(t0 * t26 - t1 * t29 + t30),
+            t25 - T::fused(-t2, t26, t1 * t27),
+            t28 - T::fused(-t0, t27, t2 * t29),
+            -(T::fused(-t1, t29, t0 * t26) + t30),
         ];
     }
     fn n_outputs(&self) -> usize {

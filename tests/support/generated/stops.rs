@@ -146,46 +146,84 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Stops<T> {
         let disc_wz = y[25];
         let turn0 = y[27];
         let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
         let t5 = turn0 + t4;
         let t6 = k(15.7) - t5;
-        let t7 = (k(0.0025) + t6 * t6).sqrt();
-        let t8 = disc_wz * (k(0.05) * (k(1.0) - t6 / t7)) - k(25.0) * (t6 - t7);
+        let t7 = T::fused(t6, t6, k(0.0025)).sqrt();
+        let t8 = T::fused(-k(25.0), t6 - t7, disc_wz * (k(0.05) * (k(1.0) - t6 / t7)));
         let t9 = hammer_rz - k(0.8);
-        let t10 = (t9 * t9 + k(0.0004)).sqrt();
-        let t11 = k(1500.0) * (t9 + t10) + hammer_sz * (k(1.0) + t9 / t10);
-        let t12 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t13 = k(2000.0) * (hammer_rz - t12)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t12));
+        let t10 = T::fused(t9, t9, k(0.0004)).sqrt();
+        let t11 = T::fused(hammer_sz, k(1.0) + t9 / t10, k(1500.0) * (t9 + t10));
+        let t12 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t13 = T::fused(
+            hammer_sz,
+            k(2.5) * (k(1.0) - hammer_rz / t12),
+            k(2000.0) * (hammer_rz - t12),
+        );
         let t14 = k(9.5) + t5;
-        let t15 = disc_wz * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()))
-            + (hammer_sz * t13 + hammer_sz * t11 + disc_wz * t8);
+        let t15 = T::fused(
+            disc_wz,
+            k(20.0) * (t14 - T::fused(t14, t14, k(0.0025)).sqrt()),
+            T::fused(disc_wz, t8, T::fused(hammer_sz, t11, hammer_sz * t13)),
+        );
         *dy = [
             hammer_sx,
             hammer_sy,
             hammer_sz,
             -(k(0.5)
-                * (hammer_e1 * hammer_wx + hammer_e2 * hammer_wy
-                    + hammer_e3 * hammer_wz)),
+                * T::fused(
+                    hammer_e3,
+                    hammer_wz,
+                    T::fused(hammer_e2, hammer_wy, hammer_e1 * hammer_wx),
+                )),
             k(0.5)
-                * (hammer_e0 * hammer_wx - hammer_e3 * hammer_wy
-                    + hammer_e2 * hammer_wz),
+                * T::fused(
+                    hammer_e2,
+                    hammer_wz,
+                    T::fused(-hammer_e3, hammer_wy, hammer_e0 * hammer_wx),
+                ),
             k(0.5)
-                * (hammer_e3 * hammer_wx + hammer_e0 * hammer_wy
-                    - hammer_e1 * hammer_wz),
+                * T::fused(
+                    -hammer_e1,
+                    hammer_wz,
+                    T::fused(hammer_e0, hammer_wy, hammer_e3 * hammer_wx),
+                ),
             -(k(0.5)
-                * (hammer_e2 * hammer_wx - hammer_e1 * hammer_wy
-                    - hammer_e0 * hammer_wz)),
+                * T::fused(
+                    -hammer_e0,
+                    hammer_wz,
+                    T::fused(-hammer_e1, hammer_wy, hammer_e2 * hammer_wx),
+                )),
             disc_sx,
             disc_sy,
             disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
+            -(k(0.5)
+                * T::fused(
+                    disc_e3,
+                    disc_wz,
+                    T::fused(disc_e2, disc_wy, disc_e1 * disc_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    disc_e2,
+                    disc_wz,
+                    T::fused(-disc_e3, disc_wy, disc_e0 * disc_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -disc_e1,
+                    disc_wz,
+                    T::fused(disc_e0, disc_wy, disc_e3 * disc_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -disc_e0,
+                    disc_wz,
+                    T::fused(-disc_e1, disc_wy, disc_e2 * disc_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -216,6 +254,128 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 104 operations (42 ±, 59 ×, 3 ÷) and 7 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let hammer_rz = y[2];
+        let hammer_e0 = y[3];
+        let hammer_e1 = y[4];
+        let hammer_e2 = y[5];
+        let hammer_e3 = y[6];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let hammer_sx = y[14];
+        let hammer_sy = y[15];
+        let hammer_sz = y[16];
+        let disc_sx = y[20];
+        let disc_sy = y[21];
+        let disc_sz = y[22];
+        let hammer_wx = y[17];
+        let hammer_wy = y[18];
+        let hammer_wz = y[19];
+        let disc_wx = y[23];
+        let disc_wy = y[24];
+        let disc_wz = y[25];
+        let turn0 = y[27];
+        let t0 = turn0.cos();
+        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
+        let t2 = turn0.sin();
+        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
+        let t5 = turn0 + t4;
+        let t6 = k(15.7) - t5;
+        let t7 = T::fused(t6, t6, k(0.0025)).sqrt();
+        let t8 = T::fused(-k(25.0), t6 - t7, disc_wz * (k(0.05) * (k(1.0) - t6 / t7)));
+        let t9 = hammer_rz - k(0.8);
+        let t10 = T::fused(t9, t9, k(0.0004)).sqrt();
+        let t11 = T::fused(hammer_sz, k(1.0) + t9 / t10, k(1500.0) * (t9 + t10));
+        let t12 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t13 = T::fused(
+            hammer_sz,
+            k(2.5) * (k(1.0) - hammer_rz / t12),
+            k(2000.0) * (hammer_rz - t12),
+        );
+        let t14 = k(9.5) + t5;
+        let t15 = T::fused(
+            disc_wz,
+            k(20.0) * (t14 - T::fused(t14, t14, k(0.0025)).sqrt()),
+            T::fused(disc_wz, t8, T::fused(hammer_sz, t11, hammer_sz * t13)),
+        );
+        *dy = [
+            hammer_sx,
+            hammer_sy,
+            hammer_sz,
+            -(k(0.5)
+                * T::fused(
+                    hammer_e3,
+                    hammer_wz,
+                    T::fused(hammer_e2, hammer_wy, hammer_e1 * hammer_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    hammer_e2,
+                    hammer_wz,
+                    T::fused(-hammer_e3, hammer_wy, hammer_e0 * hammer_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -hammer_e1,
+                    hammer_wz,
+                    T::fused(hammer_e0, hammer_wy, hammer_e3 * hammer_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -hammer_e0,
+                    hammer_wz,
+                    T::fused(-hammer_e1, hammer_wy, hammer_e2 * hammer_wx),
+                )),
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -(k(0.5)
+                * T::fused(
+                    disc_e3,
+                    disc_wz,
+                    T::fused(disc_e2, disc_wy, disc_e1 * disc_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    disc_e2,
+                    disc_wz,
+                    T::fused(-disc_e3, disc_wy, disc_e0 * disc_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -disc_e1,
+                    disc_wz,
+                    T::fused(disc_e0, disc_wy, disc_e3 * disc_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -disc_e0,
+                    disc_wz,
+                    T::fused(-disc_e1, disc_wy, disc_e2 * disc_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+            -t15,
+            disc_wz,
+        ];
+    }
     /// Writes Φ: 37 operations (14 ±, 23 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -232,21 +392,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
         let disc_e1 = y[11];
         let disc_e2 = y[12];
         let disc_e3 = y[13];
-        let t0 = hammer_e3 * hammer_e3
-            + (hammer_e0 * hammer_e0 + hammer_e1 * hammer_e1 + hammer_e2 * hammer_e2);
-        let t1 = disc_e3 * disc_e3
-            + (disc_e0 * disc_e0 + disc_e1 * disc_e1 + disc_e2 * disc_e2);
+        let t0 = T::fused(
+            hammer_e3,
+            hammer_e3,
+            T::fused(
+                hammer_e2,
+                hammer_e2,
+                T::fused(hammer_e1, hammer_e1, hammer_e0 * hammer_e0),
+            ),
+        );
+        let t1 = T::fused(
+            disc_e3,
+            disc_e3,
+            T::fused(disc_e2, disc_e2, T::fused(disc_e1, disc_e1, disc_e0 * disc_e0)),
+        );
         *out = [
             hammer_rx,
             hammer_ry,
-            k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2),
-            k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1),
-            k(2.0) * (hammer_e1 * hammer_e2 - hammer_e0 * hammer_e3),
+            k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3),
+            k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3),
+            k(2.0) * T::fused(-hammer_e0, hammer_e3, hammer_e1 * hammer_e2),
             disc_rx - k(1.0),
             disc_ry,
             disc_rz,
-            k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2),
-            k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1),
+            k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3),
+            k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3),
             t0 - k(1.0),
             t1 - k(1.0),
         ];
@@ -273,24 +443,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
         let disc_wx = y[23];
         let disc_wy = y[24];
         let t0 = hammer_e0 * hammer_e0;
-        let t1 = k(2.0) * (k(0.5) - (t0 + hammer_e1 * hammer_e1));
+        let t1 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t0));
         let t2 = hammer_e0 * hammer_e3;
         let t3 = hammer_e1 * hammer_e2;
-        let t4 = k(2.0) * (k(0.5) - (t0 + hammer_e2 * hammer_e2)) * hammer_wx
-            + k(2.0) * (t3 + t2) * hammer_wy;
-        let t5 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2) * hammer_wx
-            + t1 * hammer_wz;
+        let t4 = T::fused(
+            k(2.0) * (t3 + t2),
+            hammer_wy,
+            k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t0)) * hammer_wx,
+        );
+        let t5 = T::fused(
+            t1,
+            hammer_wz,
+            k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * hammer_wx,
+        );
         let t6 = disc_e0 * disc_e0;
         let t7 = disc_e0 * disc_e3;
         let t8 = disc_e1 * disc_e2;
-        let t9 = k(2.0) * (t8 - t7) * disc_wx
-            + k(2.0) * (k(0.5) - (t6 + disc_e1 * disc_e1)) * disc_wy;
-        let t10 = k(2.0) * (k(0.5) - (t6 + disc_e2 * disc_e2)) * disc_wx
-            + k(2.0) * (t8 + t7) * disc_wy;
+        let t9 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t6)),
+            disc_wy,
+            k(2.0) * (t8 - t7) * disc_wx,
+        );
+        let t10 = T::fused(
+            k(2.0) * (t8 + t7),
+            disc_wy,
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t6)) * disc_wx,
+        );
         *out = [
             hammer_sx,
             hammer_sy,
-            -(k(2.0) * (t3 - t2) * hammer_wx + t1 * hammer_wy),
+            -T::fused(t1, hammer_wy, k(2.0) * (t3 - t2) * hammer_wx),
             t4,
             t5,
             disc_sx,
@@ -317,19 +499,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
         let disc_wx = y[23];
         let disc_wy = y[24];
         let disc_wz = y[25];
-        let t0 = disc_wx * (k(0.01) * disc_wx) + disc_wy * (k(0.01) * disc_wy)
-            + disc_wz * (k(0.02) * disc_wz);
-        let t1 = t0
-            + k(4.0) * (disc_sx * disc_sx + disc_sy * disc_sy + disc_sz * disc_sz);
-        let t2 = hammer_wx * (k(0.001) * hammer_wx) + hammer_wy * (k(0.001) * hammer_wy)
-            + hammer_wz * (k(0.001) * hammer_wz);
-        let t3 = t2
-            + k(0.5)
-                * (hammer_sx * hammer_sx + hammer_sy * hammer_sy
-                    + hammer_sz * hammer_sz);
+        let t0 = T::fused(
+            disc_wz,
+            k(0.02) * disc_wz,
+            T::fused(disc_wy, k(0.01) * disc_wy, disc_wx * (k(0.01) * disc_wx)),
+        );
+        let t1 = T::fused(
+            k(4.0),
+            T::fused(disc_sz, disc_sz, T::fused(disc_sy, disc_sy, disc_sx * disc_sx)),
+            t0,
+        );
+        let t2 = T::fused(
+            hammer_wz,
+            k(0.001) * hammer_wz,
+            T::fused(hammer_wy, k(0.001) * hammer_wy, hammer_wx * (k(0.001) * hammer_wx)),
+        );
+        let t3 = T::fused(
+            k(0.5),
+            T::fused(
+                hammer_sz,
+                hammer_sz,
+                T::fused(hammer_sy, hammer_sy, hammer_sx * hammer_sx),
+            ),
+            t2,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t3 + t1),
-            potential: k(4.905) * hammer_rz + k(39.24) * disc_rz,
+            potential: T::fused(k(39.24), disc_rz, k(4.905) * hammer_rz),
         }
     }
     /// Writes the joint readings: 15 operations (7 ±, 8 ×, 0 ÷).
@@ -342,13 +538,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
         let disc_e3 = y[13];
         let hammer_sz = y[16];
         let disc_wz = y[25];
-        let t0 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
-        let t1 = k(2.0) * (k(0.5) - t0)
-            - (k(1.0) - (disc_e3 * disc_e3 + (t0 + disc_e2 * disc_e2)));
+        let t0 = T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t1 = T::fused(
+            k(2.0),
+            k(0.5) - t0,
+            -(k(1.0) - T::fused(disc_e3, disc_e3, T::fused(disc_e2, disc_e2, t0))),
+        );
         *out = [
             hammer_rz,
             hammer_sz,
-            k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3),
+            k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2),
             -t1,
             disc_wz,
         ];
@@ -470,90 +669,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Stops<T> {
         y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
-    }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 104 operations (42 ±, 59 ×, 3 ÷) and 7 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let hammer_rz = y[2];
-        let hammer_e0 = y[3];
-        let hammer_e1 = y[4];
-        let hammer_e2 = y[5];
-        let hammer_e3 = y[6];
-        let disc_e0 = y[10];
-        let disc_e1 = y[11];
-        let disc_e2 = y[12];
-        let disc_e3 = y[13];
-        let hammer_sx = y[14];
-        let hammer_sy = y[15];
-        let hammer_sz = y[16];
-        let disc_sx = y[20];
-        let disc_sy = y[21];
-        let disc_sz = y[22];
-        let hammer_wx = y[17];
-        let hammer_wy = y[18];
-        let hammer_wz = y[19];
-        let disc_wx = y[23];
-        let disc_wy = y[24];
-        let disc_wz = y[25];
-        let turn0 = y[27];
-        let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
-        let t2 = turn0.sin();
-        let t3 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t4 = (t3 * t0 + t1 * t2).atan2(t3 * t2 - t1 * t0);
-        let t5 = turn0 + t4;
-        let t6 = k(15.7) - t5;
-        let t7 = (k(0.0025) + t6 * t6).sqrt();
-        let t8 = disc_wz * (k(0.05) * (k(1.0) - t6 / t7)) - k(25.0) * (t6 - t7);
-        let t9 = hammer_rz - k(0.8);
-        let t10 = (t9 * t9 + k(0.0004)).sqrt();
-        let t11 = k(1500.0) * (t9 + t10) + hammer_sz * (k(1.0) + t9 / t10);
-        let t12 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t13 = k(2000.0) * (hammer_rz - t12)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t12));
-        let t14 = k(9.5) + t5;
-        let t15 = disc_wz * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()))
-            + (hammer_sz * t13 + hammer_sz * t11 + disc_wz * t8);
-        *dy = [
-            hammer_sx,
-            hammer_sy,
-            hammer_sz,
-            -(k(0.5)
-                * (hammer_e1 * hammer_wx + hammer_e2 * hammer_wy
-                    + hammer_e3 * hammer_wz)),
-            k(0.5)
-                * (hammer_e0 * hammer_wx - hammer_e3 * hammer_wy
-                    + hammer_e2 * hammer_wz),
-            k(0.5)
-                * (hammer_e3 * hammer_wx + hammer_e0 * hammer_wy
-                    - hammer_e1 * hammer_wz),
-            -(k(0.5)
-                * (hammer_e2 * hammer_wx - hammer_e1 * hammer_wy
-                    - hammer_e0 * hammer_wz)),
-            disc_sx,
-            disc_sy,
-            disc_sz,
-            -(k(0.5) * (disc_e1 * disc_wx + disc_e2 * disc_wy + disc_e3 * disc_wz)),
-            k(0.5) * (disc_e0 * disc_wx - disc_e3 * disc_wy + disc_e2 * disc_wz),
-            k(0.5) * (disc_e3 * disc_wx + disc_e0 * disc_wy - disc_e1 * disc_wz),
-            -(k(0.5) * (disc_e2 * disc_wx - disc_e1 * disc_wy - disc_e0 * disc_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-            -t15,
-            disc_wz,
-        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
@@ -699,7 +814,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let t0 = hammer_e0 * hammer_e3;
         let t1 = hammer_e1 * hammer_e2;
         let t2 = hammer_e0 * hammer_e0;
-        let t3 = k(2.0) * (k(0.5) - (t2 + hammer_e1 * hammer_e1));
+        let t3 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t2));
         let t4 = disc_e0 * disc_e3;
         let t5 = disc_e1 * disc_e2;
         let t6 = disc_e0 * disc_e0;
@@ -708,16 +823,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             k(1.0),
             -(k(2.0) * (t1 - t0)),
             -t3,
-            k(2.0) * (k(0.5) - (t2 + hammer_e2 * hammer_e2)),
+            k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t2)),
             k(2.0) * (t1 + t0),
-            k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2),
+            k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3),
             t3,
             k(1.0),
             k(1.0),
             k(1.0),
             -(k(2.0) * (t5 - t4)),
-            -(k(2.0) * (k(0.5) - (t6 + disc_e1 * disc_e1))),
-            k(2.0) * (k(0.5) - (t6 + disc_e2 * disc_e2)),
+            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t6))),
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t6)),
             k(2.0) * (t5 + t4),
         ];
     }
@@ -756,39 +871,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_wz = y[25];
         let t0 = hammer_wx * hammer_wz;
         let t1 = hammer_e0 * hammer_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + hammer_e1 * hammer_e1));
+        let t2 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t1));
         let t3 = hammer_wy * hammer_wz;
         let t4 = hammer_e0 * hammer_e3;
         let t5 = hammer_e1 * hammer_e2;
         let t6 = k(2.0) * (t5 - t4);
         let t7 = hammer_wx * hammer_wx;
-        let t8 = hammer_wy * hammer_wy + t7;
-        let t9 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2);
-        let t10 = k(2.0) * (k(0.5) - (t1 + hammer_e2 * hammer_e2)) * t3
-            - k(2.0) * (t5 + t4) * t0;
-        let t11 = t9 * t3
-            - (t6 * (hammer_wz * hammer_wz + t7) + t2 * (hammer_wx * hammer_wy));
+        let t8 = T::fused(hammer_wy, hammer_wy, t7);
+        let t9 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
+        let t10 = T::fused(
+            -(k(2.0) * (t5 + t4)),
+            t0,
+            k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t1)) * t3,
+        );
+        let t11 = T::fused(
+            t9,
+            t3,
+            -T::fused(t2, hammer_wx * hammer_wy, t6 * T::fused(hammer_wz, hammer_wz, t7)),
+        );
         let t12 = disc_wx * disc_wz;
         let t13 = disc_e0 * disc_e0;
         let t14 = disc_wy * disc_wz;
         let t15 = disc_e0 * disc_e3;
         let t16 = disc_e1 * disc_e2;
-        let t17 = k(2.0) * (t16 - t15) * t14
-            - k(2.0) * (k(0.5) - (t13 + disc_e1 * disc_e1)) * t12;
-        let t18 = disc_wy * disc_wy + disc_wx * disc_wx;
-        let t19 = k(2.0) * (k(0.5) - (t13 + disc_e2 * disc_e2)) * t14
-            - k(2.0) * (t16 + t15) * t12;
+        let t17 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t13))),
+            t12,
+            k(2.0) * (t16 - t15) * t14,
+        );
+        let t18 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t19 = T::fused(
+            -(k(2.0) * (t16 + t15)),
+            t12,
+            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t13)) * t14,
+        );
         *out = [
             k(0.0),
             k(0.0),
-            t9 * t8 - (t6 * t3 - t2 * t0),
-            k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t8 + t10,
+            T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3)),
+            T::fused(
+                k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3),
+                t8,
+                t10,
+            ),
             -t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            k(2.0) * (disc_e1 * disc_e3 + disc_e0 * disc_e2) * t18 - t17,
-            k(2.0) * (disc_e2 * disc_e3 - disc_e0 * disc_e1) * t18 + t19,
+            T::fused(k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3), t18, -t17),
+            T::fused(k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3), t18, t19),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 56 operations (26 ±, 27 ×, 3 ÷) and 7 functions.
@@ -805,20 +936,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_wz = y[25];
         let turn0 = y[27];
         let t0 = hammer_rz - k(0.8);
-        let t1 = (t0 * t0 + k(0.0004)).sqrt();
-        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
-        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t4 = k(2000.0) * (hammer_rz - t3)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
+        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
+        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
+        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t4 = T::fused(
+            hammer_sz,
+            k(2.5) * (k(1.0) - hammer_rz / t3),
+            k(2000.0) * (hammer_rz - t3),
+        );
         let t5 = turn0.cos();
-        let t6 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t7 = turn0.sin();
-        let t8 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t9 = (t8 * t5 + t6 * t7).atan2(t8 * t7 - t6 * t5);
+        let t8 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t9 = T::fused(t6, t7, t8 * t5).atan2(T::fused(-t6, t5, t8 * t7));
         let t10 = turn0 + t9;
         let t11 = k(15.7) - t10;
-        let t12 = (k(0.0025) + t11 * t11).sqrt();
-        let t13 = disc_wz * (k(0.05) * (k(1.0) - t11 / t12)) - k(25.0) * (t11 - t12);
+        let t12 = T::fused(t11, t11, k(0.0025)).sqrt();
+        let t13 = T::fused(
+            -k(25.0),
+            t11 - t12,
+            disc_wz * (k(0.05) * (k(1.0) - t11 / t12)),
+        );
         let t14 = k(9.5) + t10;
         *out = [
             k(0.0),
@@ -832,7 +970,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             k(-39.24),
             -(k(0.01) * (disc_wy * disc_wz)),
             k(0.01) * (disc_wx * disc_wz),
-            -(k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()) + t13),
+            -T::fused(k(20.0), t14 - T::fused(t14, t14, k(0.0025)).sqrt(), t13),
         ];
     }
     /// Solves eq. (17): 150 operations (54 ±, 91 ×, 5 ÷) and 7 functions.
@@ -856,58 +994,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_wz = y[25];
         let turn0 = y[27];
         let t0 = hammer_rz - k(0.8);
-        let t1 = (t0 * t0 + k(0.0004)).sqrt();
-        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
-        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t4 = k(2000.0) * (hammer_rz - t3)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
+        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
+        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
+        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t4 = T::fused(
+            hammer_sz,
+            k(2.5) * (k(1.0) - hammer_rz / t3),
+            k(2000.0) * (hammer_rz - t3),
+        );
         let t5 = hammer_wx * hammer_wz;
         let t6 = hammer_e0 * hammer_e0;
-        let t7 = k(2.0) * (k(0.5) - (t6 + hammer_e1 * hammer_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t6));
         let t8 = hammer_wy * hammer_wz;
         let t9 = hammer_e0 * hammer_e3;
         let t10 = hammer_e1 * hammer_e2;
         let t11 = k(2.0) * (t10 - t9);
         let t12 = hammer_wx * hammer_wx;
-        let t13 = hammer_wy * hammer_wy + t12;
-        let t14 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2);
-        let t15 = t14 * t13 - (t11 * t8 - t7 * t5);
+        let t13 = T::fused(hammer_wy, hammer_wy, t12);
+        let t14 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
+        let t15 = T::fused(t14, t13, -T::fused(-t7, t5, t11 * t8));
         let t16 = k(2.0) * (t10 + t9);
-        let t17 = k(2.0) * (k(0.5) - (t6 + hammer_e2 * hammer_e2));
+        let t17 = k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t6));
         let t18 = t7 * t17;
-        let t19 = t11 * t16 - t18;
+        let t19 = T::fused(t11, t16, -t18);
         let t20 = k(1.0) / (t7 * t19);
-        let t21 = k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t13
-            + (t17 * t8 - t16 * t5);
-        let t22 = t20 * (t7 * t7) * t21 + t20 * (t7 * t16) * t15;
-        let t23 = t14 * t8
-            - (t11 * (hammer_wz * hammer_wz + t12) + t7 * (hammer_wx * hammer_wy));
-        let t24 = t21 * (t20 * (t7 * t14)) + t15 * (t20 * (t14 * t16));
+        let t21 = T::fused(
+            k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3),
+            t13,
+            T::fused(-t16, t5, t17 * t8),
+        );
+        let t22 = T::fused(t20 * (t7 * t16), t15, t20 * (t7 * t7) * t21);
+        let t23 = T::fused(
+            t14,
+            t8,
+            -T::fused(
+                t7,
+                hammer_wx * hammer_wy,
+                t11 * T::fused(hammer_wz, hammer_wz, t12),
+            ),
+        );
+        let t24 = T::fused(t15, t20 * (t14 * t16), t21 * (t20 * (t7 * t14)));
         let t25 = disc_e0 * disc_e0;
-        let t26 = (disc_wy * disc_wy + disc_wx * disc_wx)
-            * (k(0.5) / (k(0.5) - (t25 + disc_e3 * disc_e3)));
-        let t27 = disc_wy * disc_wz
-            - k(2.0) * (disc_e2 * disc_e3 + disc_e0 * disc_e1) * t26;
-        let t28 = disc_wx * disc_wz
-            - k(2.0) * (disc_e1 * disc_e3 - disc_e0 * disc_e2) * t26;
+        let t26 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
+            * (k(0.5) / (k(0.5) - T::fused(disc_e3, disc_e3, t25)));
+        let t27 = T::fused(
+            -(k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3)),
+            t26,
+            disc_wy * disc_wz,
+        );
+        let t28 = T::fused(
+            -(k(2.0) * T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3)),
+            t26,
+            disc_wx * disc_wz,
+        );
         let t29 = turn0.cos();
-        let t30 = k(2.0) * (k(0.5) - (t25 + disc_e1 * disc_e1));
+        let t30 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t25));
         let t31 = turn0.sin();
-        let t32 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t33 = (t32 * t29 + t30 * t31).atan2(t32 * t31 - t30 * t29);
+        let t32 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t33 = T::fused(t30, t31, t32 * t29).atan2(T::fused(-t30, t29, t32 * t31));
         let t34 = turn0 + t33;
         let t35 = k(15.7) - t34;
-        let t36 = (k(0.0025) + t35 * t35).sqrt();
-        let t37 = disc_wz * (k(0.05) * (k(1.0) - t35 / t36)) - k(25.0) * (t35 - t36);
+        let t36 = T::fused(t35, t35, k(0.0025)).sqrt();
+        let t37 = T::fused(
+            -k(25.0),
+            t35 - t36,
+            disc_wz * (k(0.05) * (k(1.0) - t35 / t36)),
+        );
         let t38 = k(9.5) + t34;
-        let t39 = k(50.0) * (k(20.0) * (t38 - (k(0.0025) + t38 * t38).sqrt()) + t37);
+        let t39 = k(50.0)
+            * T::fused(k(20.0), t38 - T::fused(t38, t38, k(0.0025)).sqrt(), t37);
         *out = [
             k(0.0),
             k(0.0),
             -(k(2.0) * (t4 + t2 + k(4.905))),
             -t22,
-            t21 * (t20 * (t7 * t11)) + t15 * (t18 * t20),
-            t24 - t19 * t20 * t23,
+            T::fused(t15, t18 * t20, t21 * (t20 * (t7 * t11))),
+            T::fused(-(t19 * t20), t23, t24),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -950,38 +1112,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let t1 = hammer_e1 * hammer_e2;
         let t2 = k(2.0) * (t1 + t0);
         let t3 = hammer_e0 * hammer_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + hammer_e1 * hammer_e1));
-        let t5 = t4 * (k(2.0) * (k(0.5) - (t3 + hammer_e2 * hammer_e2)));
+        let t4 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t3));
+        let t5 = t4 * (k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t3)));
         let t6 = k(2.0) * (t1 - t0);
-        let t7 = t6 * t2 - t5;
+        let t7 = T::fused(t6, t2, -t5);
         let t8 = k(1.0) / (t4 * t7);
         let t9 = k(0.001) * hammer_dwx;
         let t10 = k(0.001) * hammer_dwy;
-        let t11 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2);
+        let t11 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
         let t12 = k(0.001) * hammer_dwz;
-        let t13 = t12 * (t8 * (t11 * t2)) + (t10 * (t5 * t8) - t9 * (t8 * (t4 * t2)));
-        let t14 = t10 * (t8 * (t4 * t6)) - t9 * (t8 * (t4 * t4));
+        let t13 = T::fused(
+            t12,
+            t8 * (t11 * t2),
+            T::fused(-t9, t8 * (t4 * t2), t10 * (t5 * t8)),
+        );
+        let t14 = T::fused(-t9, t8 * (t4 * t4), t10 * (t8 * (t4 * t6)));
         let t15 = disc_e0 * disc_e3;
         let t16 = disc_e1 * disc_e2;
         let t17 = k(2.0) * (t16 + t15);
         let t18 = k(2.0) * (t16 - t15);
         let t19 = disc_e0 * disc_e0;
-        let t20 = k(2.0) * (k(0.5) - (t19 + disc_e2 * disc_e2));
-        let t21 = k(2.0) * (k(0.5) - (t19 + disc_e1 * disc_e1));
-        let t22 = k(1.0) / (t21 * t20 - t18 * t17);
-        let t23 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t24 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
+        let t20 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t19));
+        let t21 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t19));
+        let t22 = k(1.0) / T::fused(-t18, t17, t21 * t20);
+        let t23 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t24 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(0.5) * hammer_dsx),
             -(k(0.5) * hammer_dsy),
             -t13,
-            -(t12 * (t8 * (t4 * t11)) + t14),
+            -T::fused(t12, t8 * (t4 * t11), t14),
             -(t12 * (t7 * t8)),
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
-            -(k(39.24) + k(4.0) * disc_dsz),
-            -(t24 * (t20 * t22) + t23 * (t17 * t22)),
-            -(t24 * (t18 * t22) + t23 * (t21 * t22)),
+            -T::fused(k(4.0), disc_dsz, k(39.24)),
+            -T::fused(t23, t17 * t22, t24 * (t20 * t22)),
+            -T::fused(t23, t21 * t22, t24 * (t18 * t22)),
         ];
     }
 }
@@ -1007,16 +1173,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let u0 = x[2];
         let u1 = x[3];
         let t0 = k(0.8) - x0;
-        let t1 = (k(0.0004) + t0 * t0).sqrt();
-        let t2 = k(1500.0) * (t0 - t1) - u0 * (k(1.0) - t0 / t1);
-        let t3 = (k(0.0001) + x0 * x0).sqrt();
-        let t4 = k(2000.0) * (x0 - t3) + u0 * (k(2.5) * (k(1.0) - x0 / t3));
+        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
+        let t2 = T::fused(-u0, k(1.0) - t0 / t1, k(1500.0) * (t0 - t1));
+        let t3 = T::fused(x0, x0, k(0.0001)).sqrt();
+        let t4 = T::fused(u0, k(2.5) * (k(1.0) - x0 / t3), k(2000.0) * (x0 - t3));
         let t5 = k(9.5) + x1;
         let t6 = k(15.7) - x1;
-        let t7 = (k(0.0025) + t6 * t6).sqrt();
-        let t8 = k(25.0) * (t6 - t7) - u1 * (k(0.05) * (k(1.0) - t6 / t7));
-        let t9 = k(50.0) * (t8 - k(20.0) * (t5 - (k(0.0025) + t5 * t5).sqrt()));
-        *out = [-(k(9.81) + k(2.0) * (t4 - t2)), t9];
+        let t7 = T::fused(t6, t6, k(0.0025)).sqrt();
+        let t8 = T::fused(-u1, k(0.05) * (k(1.0) - t6 / t7), k(25.0) * (t6 - t7));
+        let t9 = k(50.0)
+            * T::fused(-k(20.0), t5 - T::fused(t5, t5, k(0.0025)).sqrt(), t8);
+        *out = [-T::fused(k(2.0), t4 - t2, k(9.81)), t9];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 40 operations (20 ±, 17 ×, 3 ÷) and 4 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -1027,17 +1194,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = (k(0.0001) + x0 * x0).sqrt();
-        let t1 = k(2000.0) * (x0 - t0) + u0 * (k(2.5) * (k(1.0) - x0 / t0));
+        let t0 = T::fused(x0, x0, k(0.0001)).sqrt();
+        let t1 = T::fused(u0, k(2.5) * (k(1.0) - x0 / t0), k(2000.0) * (x0 - t0));
         let t2 = k(0.8) - x0;
-        let t3 = (k(0.0004) + t2 * t2).sqrt();
-        let t4 = k(1500.0) * (t2 - t3) - u0 * (k(1.0) - t2 / t3);
+        let t3 = T::fused(t2, t2, k(0.0004)).sqrt();
+        let t4 = T::fused(-u0, k(1.0) - t2 / t3, k(1500.0) * (t2 - t3));
         let t5 = k(15.7) - x1;
-        let t6 = (k(0.0025) + t5 * t5).sqrt();
-        let t7 = k(25.0) * (t5 - t6) - u1 * (k(0.05) * (k(1.0) - t5 / t6));
+        let t6 = T::fused(t5, t5, k(0.0025)).sqrt();
+        let t7 = T::fused(-u1, k(0.05) * (k(1.0) - t5 / t6), k(25.0) * (t5 - t6));
         let t8 = k(9.5) + x1;
-        let t9 = u1 * (k(20.0) * (t8 - (k(0.0025) + t8 * t8).sqrt()))
-            - (u1 * t7 + (u0 * t4 - u0 * t1));
+        let t9 = T::fused(
+            u1,
+            k(20.0) * (t8 - T::fused(t8, t8, k(0.0025)).sqrt()),
+            -T::fused(u1, t7, T::fused(-u0, t1, u0 * t4)),
+        );
         *dx = [u0, u1, rates[0], rates[1], -t9];
     }
     /// Writes the maximal state of a joint state: 1 operations (0 ±, 1 ×, 0 ÷) and 2 functions.
@@ -1091,12 +1261,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_wz = y[25];
         let x1 = x[1];
         let t0 = x1.sin();
-        let t1 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
+        let t1 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
         let t2 = x1.cos();
-        let t3 = disc_e0 * disc_e0 + disc_e1 * disc_e1;
-        let t4 = k(2.0) * (k(0.5) - t3)
-            - (k(1.0) - (disc_e3 * disc_e3 + (t3 + disc_e2 * disc_e2)));
-        let t5 = (t4 * t0 + t1 * t2).atan2(t1 * t0 - t4 * t2);
+        let t3 = T::fused(disc_e1, disc_e1, disc_e0 * disc_e0);
+        let t4 = T::fused(
+            k(2.0),
+            k(0.5) - t3,
+            -(k(1.0) - T::fused(disc_e3, disc_e3, T::fused(disc_e2, disc_e2, t3))),
+        );
+        let t5 = T::fused(t1, t2, t4 * t0).atan2(T::fused(-t4, t2, t1 * t0));
         x[0] = hammer_rz;
         x[1] = x1 + t5;
         x[2] = hammer_sz;
@@ -1115,23 +1288,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_wz = y[25];
         let turn0 = y[27];
         let t0 = hammer_rz - k(0.8);
-        let t1 = (t0 * t0 + k(0.0004)).sqrt();
-        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
-        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t4 = k(2000.0) * (hammer_rz - t3)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
+        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
+        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
+        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t4 = T::fused(
+            hammer_sz,
+            k(2.5) * (k(1.0) - hammer_rz / t3),
+            k(2000.0) * (hammer_rz - t3),
+        );
         let t5 = turn0.cos();
-        let t6 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t7 = turn0.sin();
-        let t8 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t9 = (t8 * t5 + t6 * t7).atan2(t8 * t7 - t6 * t5);
+        let t8 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t9 = T::fused(t6, t7, t8 * t5).atan2(T::fused(-t6, t5, t8 * t7));
         let t10 = turn0 + t9;
         let t11 = k(15.7) - t10;
-        let t12 = (k(0.0025) + t11 * t11).sqrt();
-        let t13 = disc_wz * (k(0.05) * (k(1.0) - t11 / t12)) - k(25.0) * (t11 - t12);
+        let t12 = T::fused(t11, t11, k(0.0025)).sqrt();
+        let t13 = T::fused(
+            -k(25.0),
+            t11 - t12,
+            disc_wz * (k(0.05) * (k(1.0) - t11 / t12)),
+        );
         let t14 = k(9.5) + t10;
-        let t15 = k(50.0) * (k(20.0) * (t14 - (k(0.0025) + t14 * t14).sqrt()) + t13);
-        *out = [-(k(9.81) + k(2.0) * (t4 + t2)), -t15];
+        let t15 = k(50.0)
+            * T::fused(k(20.0), t14 - T::fused(t14, t14, k(0.0025)).sqrt(), t13);
+        *out = [-T::fused(k(2.0), t4 + t2, k(9.81)), -t15];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 72 operations (30 ±, 39 ×, 3 ÷) and 7 functions.
     fn corrected_accelerations(
@@ -1156,27 +1337,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_wz = y[25];
         let turn0 = y[27];
         let t0 = hammer_rz - k(0.8);
-        let t1 = (t0 * t0 + k(0.0004)).sqrt();
-        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
-        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t4 = k(2000.0) * (hammer_rz - t3)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
-        let t5 = k(9.81) + k(2.0) * (t4 + t2);
+        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
+        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
+        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t4 = T::fused(
+            hammer_sz,
+            k(2.5) * (k(1.0) - hammer_rz / t3),
+            k(2000.0) * (hammer_rz - t3),
+        );
+        let t5 = T::fused(k(2.0), t4 + t2, k(9.81));
         let t6 = turn0.cos();
-        let t7 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t7 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t8 = turn0.sin();
-        let t9 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t10 = (t9 * t6 + t7 * t8).atan2(t9 * t8 - t7 * t6);
+        let t9 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t10 = T::fused(t7, t8, t9 * t6).atan2(T::fused(-t7, t6, t9 * t8));
         let t11 = turn0 + t10;
         let t12 = k(15.7) - t11;
-        let t13 = (k(0.0025) + t12 * t12).sqrt();
-        let t14 = disc_wz * (k(0.05) * (k(1.0) - t12 / t13)) - k(25.0) * (t12 - t13);
+        let t13 = T::fused(t12, t12, k(0.0025)).sqrt();
+        let t14 = T::fused(
+            -k(25.0),
+            t12 - t13,
+            disc_wz * (k(0.05) * (k(1.0) - t12 / t13)),
+        );
         let t15 = k(9.5) + t11;
-        let t16 = k(50.0) * (k(20.0) * (t15 - (k(0.0025) + t15 * t15).sqrt()) + t14);
+        let t16 = k(50.0)
+            * T::fused(k(20.0), t15 - T::fused(t15, t15, k(0.0025)).sqrt(), t14);
         *out = [
-            -(k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2) * t5),
-            -(k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t5),
-            k(2.0) * (k(0.5) - (hammer_e0 * hammer_e0 + hammer_e3 * hammer_e3)) * t5,
+            -(k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * t5),
+            -(k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t5),
+            k(2.0) * (k(0.5) - T::fused(hammer_e3, hammer_e3, hammer_e0 * hammer_e0))
+                * t5,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1214,9 +1404,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_dwy = accelerations[10];
         let t0 = k(2.0) * disc_e3;
         let t1 = disc_e0 * t0;
-        let t2 = k(0.01) * (disc_wy * disc_wz + disc_dwx);
-        let t3 = k(1.0) - disc_e3 * t0;
-        let t4 = k(0.01) * (disc_wx * disc_wz - disc_dwy);
+        let t2 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t3 = T::fused(-disc_e3, t0, k(1.0));
+        let t4 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(0.5) * hammer_dsx),
             -(k(0.5) * hammer_dsy),
@@ -1225,9 +1415,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             k(0.001) * hammer_dwz,
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
-            -(k(39.24) + k(4.0) * disc_dsz),
-            t4 * t3 - t2 * t1,
-            t4 * t1 + t2 * t3,
+            -T::fused(k(4.0), disc_dsz, k(39.24)),
+            T::fused(-t2, t1, t4 * t3),
+            T::fused(t2, t3, t4 * t1),
         ];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 86 operations (33 ±, 50 ×, 3 ÷) and 7 functions.
@@ -1248,36 +1438,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
         let disc_wz = y[25];
         let turn0 = y[27];
         let t0 = hammer_rz - k(0.8);
-        let t1 = (t0 * t0 + k(0.0004)).sqrt();
-        let t2 = k(1500.0) * (t0 + t1) + hammer_sz * (k(1.0) + t0 / t1);
-        let t3 = (hammer_rz * hammer_rz + k(0.0001)).sqrt();
-        let t4 = k(2000.0) * (hammer_rz - t3)
-            + hammer_sz * (k(2.5) * (k(1.0) - hammer_rz / t3));
-        let t5 = k(9.81) + k(2.0) * (t4 + t2);
-        let t6 = k(2.0) * (hammer_e1 * hammer_e3 + hammer_e0 * hammer_e2) * t5;
-        let t7 = k(2.0) * (hammer_e2 * hammer_e3 - hammer_e0 * hammer_e1) * t5;
+        let t1 = T::fused(t0, t0, k(0.0004)).sqrt();
+        let t2 = T::fused(hammer_sz, k(1.0) + t0 / t1, k(1500.0) * (t0 + t1));
+        let t3 = T::fused(hammer_rz, hammer_rz, k(0.0001)).sqrt();
+        let t4 = T::fused(
+            hammer_sz,
+            k(2.5) * (k(1.0) - hammer_rz / t3),
+            k(2000.0) * (hammer_rz - t3),
+        );
+        let t5 = T::fused(k(2.0), t4 + t2, k(9.81));
+        let t6 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * t5;
+        let t7 = k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3) * t5;
         let t8 = disc_wy * disc_wz;
         let t9 = disc_wx * disc_wz;
         let t10 = turn0.cos();
-        let t11 = k(2.0) * (k(0.5) - (disc_e0 * disc_e0 + disc_e1 * disc_e1));
+        let t11 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
         let t12 = turn0.sin();
-        let t13 = k(2.0) * (disc_e1 * disc_e2 + disc_e0 * disc_e3);
-        let t14 = (t13 * t10 + t11 * t12).atan2(t13 * t12 - t11 * t10);
+        let t13 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t14 = T::fused(t11, t12, t13 * t10).atan2(T::fused(-t11, t10, t13 * t12));
         let t15 = turn0 + t14;
         let t16 = k(15.7) - t15;
-        let t17 = (k(0.0025) + t16 * t16).sqrt();
-        let t18 = disc_wz * (k(0.05) * (k(1.0) - t16 / t17)) - k(25.0) * (t16 - t17);
+        let t17 = T::fused(t16, t16, k(0.0025)).sqrt();
+        let t18 = T::fused(
+            -k(25.0),
+            t16 - t17,
+            disc_wz * (k(0.05) * (k(1.0) - t16 / t17)),
+        );
         let t19 = k(9.5) + t15;
-        let t20 = k(50.0) * (k(20.0) * (t19 - (k(0.0025) + t19 * t19).sqrt()) + t18);
+        let t20 = k(50.0)
+            * T::fused(k(20.0), t19 - T::fused(t19, t19, k(0.0025)).sqrt(), t18);
         let t21 = k(0.02) * t9;
         let t22 = k(2.0) * disc_e3;
-        let t23 = k(1.0) - disc_e3 * t22;
+        let t23 = T::fused(-disc_e3, t22, k(1.0));
         let t24 = k(0.02) * t8;
         let t25 = disc_e0 * t22;
         *out = [
             -t6,
             -t7,
-            k(2.0) * (k(0.5) - (hammer_e0 * hammer_e0 + hammer_e3 * hammer_e3)) * t5,
+            k(2.0) * (k(0.5) - T::fused(hammer_e3, hammer_e3, hammer_e0 * hammer_e0))
+                * t5,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1295,8 +1494,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             k(0.0),
             k(0.0),
             k(-39.24),
-            t23 * t21 - t25 * t24,
-            t23 * t24 + t25 * t21,
+            T::fused(-t25, t24, t23 * t21),
+            T::fused(t25, t21, t23 * t24),
         ];
     }
 }

@@ -118,17 +118,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = k(1.0) / (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
-        let t1 = bob_sx * (bob_rx * t0) + bob_sy * (bob_ry * t0)
-            + bob_sz * (bob_rz * t0);
+        let t0 = k(1.0)
+            / T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx)).sqrt();
+        let t1 = T::fused(
+            bob_sz,
+            bob_rz * t0,
+            T::fused(bob_sy, bob_ry * t0, bob_sx * (bob_rx * t0)),
+        );
         *dy = [
             bob_sx,
             bob_sy,
             bob_sz,
-            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
-            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
-            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
-            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
+            -(k(0.5)
+                * T::fused(bob_e3, bob_wz, T::fused(bob_e2, bob_wy, bob_e1 * bob_wx))),
+            k(0.5)
+                * T::fused(bob_e2, bob_wz, T::fused(-bob_e3, bob_wy, bob_e0 * bob_wx)),
+            k(0.5)
+                * T::fused(-bob_e1, bob_wz, T::fused(bob_e0, bob_wy, bob_e3 * bob_wx)),
+            -(k(0.5)
+                * T::fused(-bob_e0, bob_wz, T::fused(-bob_e1, bob_wy, bob_e2 * bob_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -152,6 +160,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 0]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let bob_rx = y[0];
+        let bob_ry = y[1];
+        let bob_rz = y[2];
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let t0 = k(1.0)
+            / T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx)).sqrt();
+        let t1 = T::fused(
+            bob_sz,
+            bob_rz * t0,
+            T::fused(bob_sy, bob_ry * t0, bob_sx * (bob_rx * t0)),
+        );
+        *dy = [
+            bob_sx,
+            bob_sy,
+            bob_sz,
+            -(k(0.5)
+                * T::fused(bob_e3, bob_wz, T::fused(bob_e2, bob_wy, bob_e1 * bob_wx))),
+            k(0.5)
+                * T::fused(bob_e2, bob_wz, T::fused(-bob_e3, bob_wy, bob_e0 * bob_wx)),
+            k(0.5)
+                * T::fused(-bob_e1, bob_wz, T::fused(bob_e0, bob_wy, bob_e3 * bob_wx)),
+            -(k(0.5)
+                * T::fused(-bob_e0, bob_wz, T::fused(-bob_e1, bob_wy, bob_e2 * bob_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            -(t1 * (k(0.3) * t1)),
+        ];
+    }
     /// Writes Φ: 8 operations (4 ±, 4 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -159,7 +213,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
         let bob_e1 = y[4];
         let bob_e2 = y[5];
         let bob_e3 = y[6];
-        let t0 = bob_e3 * bob_e3 + (bob_e0 * bob_e0 + bob_e1 * bob_e1 + bob_e2 * bob_e2);
+        let t0 = T::fused(
+            bob_e3,
+            bob_e3,
+            T::fused(bob_e2, bob_e2, T::fused(bob_e1, bob_e1, bob_e0 * bob_e0)),
+        );
         *out = [t0 - k(1.0)];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -178,13 +236,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_wx * (k(0.002) * bob_wx) + bob_wy * (k(0.003) * bob_wy)
-            + bob_wz * (k(0.004) * bob_wz);
-        let t1 = t0 + k(0.5) * (bob_sx * bob_sx + bob_sy * bob_sy + bob_sz * bob_sz);
-        let t2 = k(0.6) - (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t0 = T::fused(
+            bob_wz,
+            k(0.004) * bob_wz,
+            T::fused(bob_wy, k(0.003) * bob_wy, bob_wx * (k(0.002) * bob_wx)),
+        );
+        let t1 = T::fused(
+            k(0.5),
+            T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx)),
+            t0,
+        );
+        let t2 = k(0.6)
+            - T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx)).sqrt();
         gyro_sim::Energy {
             kinetic: k(0.5) * t1,
-            potential: k(0.5) * (t2 * (k(40.0) * t2)) + k(4.905) * bob_rz,
+            potential: T::fused(k(4.905), bob_rz, k(0.5) * (t2 * (k(40.0) * t2))),
         }
     }
     /// Writes the joint readings: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -235,32 +301,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Tether<T> {
         y[13]
     }
 }
-impl<T: gyro_sim::Scalar> Tether<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Tether<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 14]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let bob_e0 = y[3];
         let bob_e1 = y[4];
         let bob_e2 = y[5];
         let bob_e3 = y[6];
         [[bob_e0, bob_e1, bob_e2, bob_e3]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Tether<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 25 operations (11 ±, 13 ×, 1 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let bob_e0 = y[3];
         let bob_e1 = y[4];
@@ -270,62 +322,60 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Tether<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = bob_e0 * chart0_0 + bob_e1 * chart0_1 + bob_e2 * chart0_2
-            + bob_e3 * chart0_3;
-        let t1 = bob_e3 * bob_e3 + (bob_e0 * bob_e0 + bob_e1 * bob_e1 + bob_e2 * bob_e2);
+        let t0 = T::fused(
+            bob_e3,
+            chart0_3,
+            T::fused(bob_e2, chart0_2, T::fused(bob_e1, chart0_1, bob_e0 * chart0_0)),
+        );
+        let t1 = T::fused(
+            bob_e3,
+            bob_e3,
+            T::fused(bob_e2, bob_e2, T::fused(bob_e1, bob_e1, bob_e0 * bob_e0)),
+        );
         let t2 = (k(1.0) - t1) * (k(0.5) / t0);
-        y[3] = bob_e0 + chart0_0 * t2;
-        y[4] = bob_e1 + chart0_1 * t2;
-        y[5] = bob_e2 + chart0_2 * t2;
-        y[6] = bob_e3 + chart0_3 * t2;
-        Ok(())
+        y[3] = T::fused(chart0_0, t2, bob_e0);
+        y[4] = T::fused(chart0_1, t2, bob_e1);
+        y[5] = T::fused(chart0_2, t2, bob_e2);
+        y[6] = T::fused(chart0_3, t2, bob_e3);
     }
     /// Solves eq. (19) for the dependent velocities: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn solve_velocities(
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, _y: &mut Self::State) {}
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Tether<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
         &self,
-        _t: T,
-        _choice: &Self::Independent,
-        _y: &mut Self::State,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
     ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 40 operations (12 ±, 27 ×, 1 ÷) and 1 functions.
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let bob_rx = y[0];
-        let bob_ry = y[1];
-        let bob_rz = y[2];
-        let bob_e0 = y[3];
-        let bob_e1 = y[4];
-        let bob_e2 = y[5];
-        let bob_e3 = y[6];
-        let bob_sx = y[7];
-        let bob_sy = y[8];
-        let bob_sz = y[9];
-        let bob_wx = y[10];
-        let bob_wy = y[11];
-        let bob_wz = y[12];
-        let t0 = k(1.0) / (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
-        let t1 = bob_sx * (bob_rx * t0) + bob_sy * (bob_ry * t0)
-            + bob_sz * (bob_rz * t0);
-        *dy = [
-            bob_sx,
-            bob_sy,
-            bob_sz,
-            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
-            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
-            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
-            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            -(t1 * (k(0.3) * t1)),
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
@@ -385,17 +435,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t0 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
+            .sqrt();
         let t1 = k(1.0) / t0;
         let t2 = bob_rz * t1;
         let t3 = bob_ry * t1;
         let t4 = bob_rx * t1;
-        let t5 = k(40.0) * (k(0.6) - t0)
-            - k(0.3) * (bob_sx * t4 + bob_sy * t3 + bob_sz * t2);
+        let t5 = T::fused(
+            -k(0.3),
+            T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
+            k(40.0) * (k(0.6) - t0),
+        );
         *out = [
             t4 * t5,
             t3 * t5,
-            t2 * t5 - k(4.905),
+            T::fused(t2, t5, -k(4.905)),
             -(k(0.001) * (bob_wy * bob_wz)),
             k(0.002) * (bob_wx * bob_wz),
             -(k(0.001) * (bob_wx * bob_wy)),
@@ -413,17 +467,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t0 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
+            .sqrt();
         let t1 = k(1.0) / t0;
         let t2 = bob_rz * t1;
         let t3 = bob_ry * t1;
         let t4 = bob_rx * t1;
-        let t5 = k(40.0) * (k(0.6) - t0)
-            - k(0.3) * (bob_sx * t4 + bob_sy * t3 + bob_sz * t2);
+        let t5 = T::fused(
+            -k(0.3),
+            T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
+            k(40.0) * (k(0.6) - t0),
+        );
         *out = [
             k(2.0) * (t4 * t5),
             k(2.0) * (t3 * t5),
-            k(2.0) * (t2 * t5 - k(4.905)),
+            k(2.0) * T::fused(t2, t5, -k(4.905)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
@@ -485,15 +543,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let u3 = x[10];
         let u4 = x[11];
         let u5 = x[12];
-        let t0 = (x2 * x2 + (x1 * x1 + x0 * x0)).sqrt();
+        let t0 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
         let t1 = k(1.0) / t0;
         let t2 = x0 * t1;
         let t3 = x1 * t1;
         let t4 = x2 * t1;
-        let t5 = k(0.3) * (u2 * t4 + (u1 * t3 + u0 * t2)) - k(40.0) * (k(0.6) - t0);
+        let t5 = T::fused(
+            -k(40.0),
+            k(0.6) - t0,
+            k(0.3) * T::fused(u2, t4, T::fused(u0, t2, u1 * t3)),
+        );
         let t6 = t2 * t5;
         let t7 = x3 * x3;
-        let t8 = k(0.5) - (t7 + x4 * x4);
+        let t8 = k(0.5) - T::fused(x4, x4, t7);
         let t9 = k(2.0) * t8;
         let t10 = t3 * t5;
         let t11 = x3 * x6;
@@ -505,67 +567,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let t17 = x4 * x6;
         let t18 = t17 - t16;
         let t19 = k(2.0) * t18;
-        let t20 = t19 * t15 + (t14 * t10 - t9 * t6);
+        let t20 = T::fused(t19, t15, T::fused(-t9, t6, t14 * t10));
         let t21 = t12 - t11;
         let t22 = k(2.0) * t21;
-        let t23 = k(0.5) - (t7 + x5 * x5);
+        let t23 = k(0.5) - T::fused(x5, x5, t7);
         let t24 = k(2.0) * t23;
         let t25 = x3 * x4;
         let t26 = x5 * x6;
         let t27 = t26 + t25;
         let t28 = k(2.0) * t27;
-        let t29 = t28 * t15 - (t24 * t10 - t22 * t6);
+        let t29 = T::fused(t28, t15, -T::fused(-t22, t6, t24 * t10));
         let t30 = t17 + t16;
         let t31 = k(2.0) * t30;
         let t32 = t26 - t25;
         let t33 = k(2.0) * t32;
-        let t34 = k(0.5) - (t7 + x6 * x6);
+        let t34 = k(0.5) - T::fused(x6, x6, t7);
         let t35 = k(2.0) * t34;
-        let t36 = t35 * t15 - (t33 * t10 + t31 * t6);
-        let t37 = t31 * t36 - (t22 * t29 - t9 * t20);
-        let t38 = k(1.0) / (t8 * t9 + t21 * t22 + t30 * t31);
+        let t36 = T::fused(t35, t15, -T::fused(t31, t6, t33 * t10));
+        let t37 = T::fused(t31, t36, -T::fused(-t9, t20, t22 * t29));
+        let t38 = k(1.0) / T::fused(t30, t31, T::fused(t21, t22, t8 * t9));
         let t39 = t38 * t37;
-        let t40 = t20 - t8 * t39;
-        let t41 = t29 + t21 * t39;
-        let t42 = t36 - t30 * t39;
-        let t43 = t33 * t42 + (t24 * t41 - t14 * t40);
+        let t40 = T::fused(-t8, t39, t20);
+        let t41 = T::fused(t21, t39, t29);
+        let t42 = T::fused(-t30, t39, t36);
+        let t43 = T::fused(t33, t42, T::fused(-t14, t40, t24 * t41));
         let t44 = t30 * (t30 * t38);
         let t45 = t21 * t38;
         let t46 = t30 * t45;
         let t47 = t8 * t38;
         let t48 = t30 * t47;
-        let t49 = t32 + (t14 * t48 + t24 * t46 - t33 * t44);
+        let t49 = t32 + T::fused(-t33, t44, T::fused(t24, t46, t14 * t48));
         let t50 = t21 * t45;
         let t51 = t21 * t47;
-        let t52 = t23 - (t14 * t51 + t24 * t50 - t33 * t46);
+        let t52 = t23 - T::fused(-t33, t46, T::fused(t24, t50, t14 * t51));
         let t53 = t8 * t47;
-        let t54 = t13 - (t14 * t53 + t24 * t51 - t33 * t48);
-        let t55 = k(1.0) / (t14 * t54 + t24 * t52 + t33 * t49);
+        let t54 = t13 - T::fused(-t33, t48, T::fused(t24, t51, t14 * t53));
+        let t55 = k(1.0) / T::fused(t33, t49, T::fused(t24, t52, t14 * t54));
         let t56 = t55 * t43;
-        let t57 = t28 * (t41 - t52 * t56) + t19 * (t40 + t54 * t56);
+        let t57 = T::fused(t19, T::fused(t54, t56, t40), t28 * T::fused(-t52, t56, t41));
         let t58 = t52 * t55;
-        let t59 = t46 - t49 * t58;
+        let t59 = T::fused(-t49, t58, t46);
         let t60 = t54 * t55;
-        let t61 = t48 - t49 * t60;
-        let t62 = t19 * t61 - t28 * t59 + t35 * (t44 + t49 * (t49 * t55));
+        let t61 = T::fused(-t49, t60, t48);
+        let t62 = T::fused(
+            t35,
+            T::fused(t49, t49 * t55, t44),
+            T::fused(-t28, t59, t19 * t61),
+        );
         let t63 = t34 - t62;
         let t64 = k(19.62) * t34;
-        let t65 = t51 + t52 * t60;
-        let t66 = t19 * t65 - t28 * (t50 + t52 * t58) + t35 * t59;
+        let t65 = T::fused(t52, t60, t51);
+        let t66 = T::fused(t35, t59, T::fused(-t28, T::fused(t52, t58, t50), t19 * t65));
         let t67 = t27 + t66;
         let t68 = k(19.62) * t27;
-        let t69 = t19 * (t53 + t54 * t60) - t28 * t65 + t35 * t61;
+        let t69 = T::fused(t35, t61, T::fused(-t28, t65, t19 * T::fused(t54, t60, t53)));
         let t70 = t18 - t69;
         let t71 = k(19.62) * t18;
-        let t72 = t71 * t70 + t68 * t67 + t64 * t63 + (t35 * (t42 - t49 * t56) + t57);
-        let t73 = t72 / (t19 * t70 + t28 * t67 + t35 * t63);
-        let t74 = t71 - t19 * t73;
-        let t75 = t68 - t28 * t73;
-        let t76 = t64 - t35 * t73;
-        let t77 = t55 * (t43 + (t49 * t76 + (t52 * t75 - t54 * t74)));
-        let t78 = t21 * (t75 - t24 * t77) - t8 * (t74 + t14 * t77);
+        let t72 = T::fused(t64, t63, T::fused(t68, t67, t71 * t70))
+            + T::fused(t35, T::fused(-t49, t56, t42), t57);
+        let t73 = t72 / T::fused(t35, t63, T::fused(t28, t67, t19 * t70));
+        let t74 = T::fused(-t19, t73, t71);
+        let t75 = T::fused(-t28, t73, t68);
+        let t76 = T::fused(-t35, t73, t64);
+        let t77 = t55 * (t43 + T::fused(t49, t76, T::fused(-t54, t74, t52 * t75)));
+        let t78 = T::fused(-t8, T::fused(t14, t77, t74), t21 * T::fused(-t24, t77, t75));
         *out = [
-            t38 * (t37 + (t30 * (t76 - t33 * t77) - t78)),
+            t38 * (t37 + T::fused(t30, T::fused(-t33, t77, t76), -t78)),
             t77,
             -t73,
             -(k(0.5) * (u4 * u5)),
@@ -591,16 +658,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let u3 = x[10];
         let u4 = x[11];
         let u5 = x[12];
-        let t0 = k(1.0) / (x2 * x2 + (x1 * x1 + x0 * x0)).sqrt();
-        let t1 = u2 * (x2 * t0) + (u1 * (x1 * t0) + u0 * (x0 * t0));
+        let t0 = k(1.0) / T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
+        let t1 = T::fused(u2, x2 * t0, T::fused(u0, x0 * t0, u1 * (x1 * t0)));
         *dx = [
             u0,
             u1,
             u2,
-            -(k(0.5) * (x4 * u3 + x5 * u4 + x6 * u5)),
-            k(0.5) * (x3 * u3 - x6 * u4 + x5 * u5),
-            k(0.5) * (x6 * u3 + x3 * u4 - x4 * u5),
-            -(k(0.5) * (x5 * u3 - x4 * u4 - x3 * u5)),
+            -(k(0.5) * T::fused(x6, u5, T::fused(x5, u4, x4 * u3))),
+            k(0.5) * T::fused(x5, u5, T::fused(-x6, u4, x3 * u3)),
+            k(0.5) * T::fused(-x4, u5, T::fused(x3, u4, x6 * u3)),
+            -(k(0.5) * T::fused(-x3, u5, T::fused(-x4, u4, x5 * u3))),
             rates[0],
             rates[1],
             rates[2],
@@ -674,7 +741,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let t0 = bob_e0 * bob_e0;
-        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t1 = k(0.5) - T::fused(bob_e1, bob_e1, t0);
         let t2 = k(2.0) * t1;
         let t3 = bob_e0 * bob_e3;
         let t4 = bob_e1 * bob_e2;
@@ -684,77 +751,94 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let t8 = bob_e1 * bob_e3;
         let t9 = t8 + t7;
         let t10 = k(2.0) * t9;
-        let t11 = k(1.0) / (t9 * t10 + (t5 * t6 + t1 * t2));
+        let t11 = k(1.0) / T::fused(t9, t10, T::fused(t1, t2, t5 * t6));
         let t12 = t1 * t11;
         let t13 = t1 * t12;
         let t14 = t4 + t3;
         let t15 = k(2.0) * t14;
         let t16 = t5 * t12;
-        let t17 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t17 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
         let t18 = k(2.0) * t17;
         let t19 = t9 * t12;
         let t20 = bob_e0 * bob_e1;
         let t21 = bob_e2 * bob_e3;
         let t22 = t21 - t20;
         let t23 = k(2.0) * t22;
-        let t24 = t14 + (t23 * t19 - (t18 * t16 + t15 * t13));
+        let t24 = t14 + T::fused(t23, t19, -T::fused(t15, t13, t18 * t16));
         let t25 = t5 * t11;
         let t26 = t5 * t25;
         let t27 = t9 * t25;
-        let t28 = t17 + (t23 * t27 - (t18 * t26 + t15 * t16));
+        let t28 = t17 + T::fused(t23, t27, -T::fused(t15, t16, t18 * t26));
         let t29 = t9 * (t9 * t11);
-        let t30 = t22 - (t23 * t29 - (t18 * t27 + t15 * t19));
-        let t31 = k(1.0) / (t23 * t30 + (t18 * t28 + t15 * t24));
+        let t30 = t22 - T::fused(t23, t29, -T::fused(t15, t19, t18 * t27));
+        let t31 = k(1.0) / T::fused(t23, t30, T::fused(t15, t24, t18 * t28));
         let t32 = t24 * t31;
         let t33 = t8 - t7;
         let t34 = k(2.0) * t33;
-        let t35 = t16 + t28 * t32;
+        let t35 = T::fused(t28, t32, t16);
         let t36 = t21 + t20;
         let t37 = k(2.0) * t36;
-        let t38 = t19 - t30 * t32;
-        let t39 = k(0.5) - (t0 + bob_e3 * bob_e3);
+        let t38 = T::fused(-t30, t32, t19);
+        let t39 = k(0.5) - T::fused(bob_e3, bob_e3, t0);
         let t40 = k(2.0) * t39;
-        let t41 = t40 * t38 - (t37 * t35 - t34 * (t13 + t24 * t32));
+        let t41 = T::fused(
+            t40,
+            t38,
+            -T::fused(-t34, T::fused(t24, t32, t13), t37 * t35),
+        );
         let t42 = t33 - t41;
         let t43 = t28 * t31;
-        let t44 = t27 - t30 * t43;
-        let t45 = t40 * t44 - (t37 * (t26 + t28 * t43) - t34 * t35);
+        let t44 = T::fused(-t30, t43, t27);
+        let t45 = T::fused(
+            t40,
+            t44,
+            -T::fused(-t34, t35, t37 * T::fused(t28, t43, t26)),
+        );
         let t46 = t36 + t45;
-        let t47 = t40 * (t29 + t30 * (t30 * t31)) - (t37 * t44 - t34 * t38);
+        let t47 = T::fused(
+            t40,
+            T::fused(t30, t30 * t31, t29),
+            -T::fused(-t34, t38, t37 * t44),
+        );
         let t48 = t39 - t47;
-        let t49 = (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t49 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
+            .sqrt();
         let t50 = k(1.0) / t49;
         let t51 = bob_rz * t50;
         let t52 = bob_ry * t50;
         let t53 = bob_rx * t50;
-        let t54 = k(40.0) * (k(0.6) - t49)
-            - k(0.3) * (bob_sx * t53 + bob_sy * t52 + bob_sz * t51);
+        let t54 = T::fused(
+            -k(0.3),
+            T::fused(bob_sz, t51, T::fused(bob_sy, t52, bob_sx * t53)),
+            k(40.0) * (k(0.6) - t49),
+        );
         let t55 = t53 * t54;
         let t56 = t52 * t54;
         let t57 = t51 * t54;
-        let t58 = t34 * t57 + (t15 * t56 - t2 * t55);
-        let t59 = t37 * t57 - (t18 * t56 - t6 * t55);
-        let t60 = t40 * t57 - (t23 * t56 + t10 * t55);
-        let t61 = t10 * t60 - (t6 * t59 - t2 * t58);
+        let t58 = T::fused(t34, t57, T::fused(-t2, t55, t15 * t56));
+        let t59 = T::fused(t37, t57, -T::fused(-t6, t55, t18 * t56));
+        let t60 = T::fused(t40, t57, -T::fused(t10, t55, t23 * t56));
+        let t61 = T::fused(t10, t60, -T::fused(-t2, t58, t6 * t59));
         let t62 = t11 * t61;
-        let t63 = t58 - t1 * t62;
-        let t64 = t59 + t5 * t62;
-        let t65 = t60 - t9 * t62;
-        let t66 = t23 * t65 + (t18 * t64 - t15 * t63);
+        let t63 = T::fused(-t1, t62, t58);
+        let t64 = T::fused(t5, t62, t59);
+        let t65 = T::fused(-t9, t62, t60);
+        let t66 = T::fused(t23, t65, T::fused(-t15, t63, t18 * t64));
         let t67 = t31 * t66;
-        let t68 = t37 * (t64 - t28 * t67) + t34 * (t63 + t24 * t67);
+        let t68 = T::fused(t34, T::fused(t24, t67, t63), t37 * T::fused(-t28, t67, t64));
         let t69 = k(19.62) * t33;
         let t70 = k(19.62) * t36;
         let t71 = k(19.62) * t39;
-        let t72 = t48 * t71 + (t46 * t70 + t42 * t69) - (t40 * (t65 - t30 * t67) + t68);
-        let t73 = t72 / (t40 * t48 + (t37 * t46 + t34 * t42));
-        let t74 = t69 - t34 * t73;
-        let t75 = t70 - t37 * t73;
-        let t76 = t71 - t40 * t73;
-        let t77 = t31 * (t66 - (t30 * t76 + (t28 * t75 - t24 * t74)));
-        let t78 = t5 * (t75 + t18 * t77) - t1 * (t74 - t15 * t77);
+        let t72 = T::fused(t48, t71, T::fused(t42, t69, t46 * t70))
+            - T::fused(t40, T::fused(-t30, t67, t65), t68);
+        let t73 = t72 / T::fused(t40, t48, T::fused(t34, t42, t37 * t46));
+        let t74 = T::fused(-t34, t73, t69);
+        let t75 = T::fused(-t37, t73, t70);
+        let t76 = T::fused(-t40, t73, t71);
+        let t77 = t31 * (t66 - T::fused(t30, t76, T::fused(-t24, t74, t28 * t75)));
+        let t78 = T::fused(-t1, T::fused(-t15, t77, t74), t5 * T::fused(t18, t77, t75));
         *out = [
-            -(t11 * (t61 - (t9 * (t76 + t23 * t77) - t78))),
+            -(t11 * (t61 - T::fused(t9, T::fused(t23, t77, t76), -t78))),
             -t77,
             -t73,
             -(k(0.5) * (bob_wy * bob_wz)),
@@ -779,17 +863,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t0 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
+            .sqrt();
         let t1 = k(1.0) / t0;
         let t2 = bob_rz * t1;
         let t3 = bob_ry * t1;
         let t4 = bob_rx * t1;
-        let t5 = k(40.0) * (k(0.6) - t0)
-            - k(0.3) * (bob_sx * t4 + bob_sy * t3 + bob_sz * t2);
+        let t5 = T::fused(
+            -k(0.3),
+            T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
+            k(40.0) * (k(0.6) - t0),
+        );
         *out = [
             k(2.0) * (t4 * t5),
             k(2.0) * (t3 * t5),
-            k(2.0) * (t2 * t5 - k(4.905)),
+            k(2.0) * T::fused(t2, t5, -k(4.905)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
@@ -817,17 +905,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = (bob_rx * bob_rx + bob_ry * bob_ry + bob_rz * bob_rz).sqrt();
+        let t0 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
+            .sqrt();
         let t1 = k(1.0) / t0;
         let t2 = bob_rz * t1;
         let t3 = bob_ry * t1;
         let t4 = bob_rx * t1;
-        let t5 = k(40.0) * (k(0.6) - t0)
-            - k(0.3) * (bob_sx * t4 + bob_sy * t3 + bob_sz * t2);
+        let t5 = T::fused(
+            -k(0.3),
+            T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
+            k(40.0) * (k(0.6) - t0),
+        );
         *out = [
             k(2.0) * (t4 * t5),
             k(2.0) * (t3 * t5),
-            k(2.0) * (t2 * t5 - k(4.905)),
+            k(2.0) * T::fused(t2, t5, -k(4.905)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),

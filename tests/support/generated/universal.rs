@@ -36,10 +36,10 @@
 //! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 | 2 | 2 |
 //! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 | 431 | 82 |
 //! | to_joints | (x, u) of a maximal state | 20 | 26 | 0 | 46 | 0 of 4 | 104 | 46 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 | 551 | 82 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7374 | 164 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 30 | 50 | 1 | 81 | 0 of 2 | 558 | 82 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7444 | 164 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 | 197 | 110 |
-//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28664 | 238 |
+//! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28934 | 238 |
 //!
 //! # Proof
 //!
@@ -119,16 +119,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy
-            - k(2.0) * (k(0.5) - (bob_e0 * bob_e0 + bob_e1 * bob_e1)) * bob_wx;
+        let t0 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, bob_e0 * bob_e0))),
+            bob_wx,
+            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+        );
         *dy = [
             bob_sx,
             bob_sy,
             bob_sz,
-            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
-            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
-            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
-            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
+            -(k(0.5)
+                * T::fused(bob_e3, bob_wz, T::fused(bob_e2, bob_wy, bob_e1 * bob_wx))),
+            k(0.5)
+                * T::fused(bob_e2, bob_wz, T::fused(-bob_e3, bob_wy, bob_e0 * bob_wx)),
+            k(0.5)
+                * T::fused(-bob_e1, bob_wz, T::fused(bob_e0, bob_wy, bob_e3 * bob_wx)),
+            -(k(0.5)
+                * T::fused(-bob_e0, bob_wz, T::fused(-bob_e1, bob_wy, bob_e2 * bob_wx))),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -136,7 +143,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
             accelerations[4],
             accelerations[5],
             -(bob_wy * (k(0.05) * bob_wy)),
-            k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2) * bob_wz + t0,
+            T::fused(k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3), bob_wz, t0),
         ];
     }
 }
@@ -153,6 +160,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 6]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 44 operations (14 ±, 30 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let bob_e0 = y[3];
+        let bob_e1 = y[4];
+        let bob_e2 = y[5];
+        let bob_e3 = y[6];
+        let bob_sx = y[7];
+        let bob_sy = y[8];
+        let bob_sz = y[9];
+        let bob_wx = y[10];
+        let bob_wy = y[11];
+        let bob_wz = y[12];
+        let t0 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, bob_e0 * bob_e0))),
+            bob_wx,
+            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+        );
+        *dy = [
+            bob_sx,
+            bob_sy,
+            bob_sz,
+            -(k(0.5)
+                * T::fused(bob_e3, bob_wz, T::fused(bob_e2, bob_wy, bob_e1 * bob_wx))),
+            k(0.5)
+                * T::fused(bob_e2, bob_wz, T::fused(-bob_e3, bob_wy, bob_e0 * bob_wx)),
+            k(0.5)
+                * T::fused(-bob_e1, bob_wz, T::fused(bob_e0, bob_wy, bob_e3 * bob_wx)),
+            -(k(0.5)
+                * T::fused(-bob_e0, bob_wz, T::fused(-bob_e1, bob_wy, bob_e2 * bob_wx))),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            -(bob_wy * (k(0.05) * bob_wy)),
+            T::fused(k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3), bob_wz, t0),
+        ];
+    }
     /// Writes Φ: 44 operations (24 ±, 20 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -164,21 +213,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_e2 = y[5];
         let bob_e3 = y[6];
         let t0 = bob_e0 * bob_e0;
-        let t1 = t0 + bob_e1 * bob_e1;
+        let t1 = T::fused(bob_e1, bob_e1, t0);
         let t2 = bob_e0 * bob_e3;
         let t3 = bob_e1 * bob_e2;
         let t4 = t3 - t2;
         let t5 = bob_e0 * bob_e2;
         let t6 = bob_e1 * bob_e3;
-        let t7 = k(0.8) * (t6 + t5) + (k(0.04) * t4 + k(0.06) * (k(0.5) - t1));
+        let t7 = T::fused(k(0.8), t6 + t5, T::fused(k(0.06), k(0.5) - t1, k(0.04) * t4));
         let t8 = bob_e2 * bob_e2;
         let t9 = bob_e0 * bob_e1;
         let t10 = bob_e2 * bob_e3;
-        let t11 = k(0.8) * (t10 - t9)
-            - (k(0.04) * (k(0.5) - (t0 + t8)) + k(0.06) * (t3 + t2));
+        let t11 = T::fused(
+            k(0.8),
+            t10 - t9,
+            -T::fused(k(0.06), t3 + t2, k(0.04) * (k(0.5) - (t0 + t8))),
+        );
         let t12 = bob_e3 * bob_e3;
-        let t13 = k(0.8) * (k(0.5) - (t0 + t12))
-            - (k(0.04) * (t10 + t9) - k(0.06) * (t6 - t5));
+        let t13 = T::fused(
+            k(0.8),
+            k(0.5) - (t0 + t12),
+            -T::fused(-k(0.06), t6 - t5, k(0.04) * (t10 + t9)),
+        );
         *out = [
             bob_rx + t7,
             bob_ry + t11,
@@ -204,29 +259,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let t1 = bob_e1 * bob_e2;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = bob_e0 * bob_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + bob_e1 * bob_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t3));
         let t5 = bob_e0 * bob_e2;
         let t6 = bob_e1 * bob_e3;
         let t7 = k(2.0) * (t6 + t5);
-        let t8 = t7 * bob_wx + t4 * bob_wz;
-        let t9 = k(0.03) * (t7 * bob_wy - t2 * bob_wz) + k(0.02) * t8
-            - k(0.4) * (t4 * bob_wy + t2 * bob_wx);
+        let t8 = T::fused(t4, bob_wz, t7 * bob_wx);
+        let t9 = T::fused(
+            -k(0.4),
+            T::fused(t2, bob_wx, t4 * bob_wy),
+            T::fused(k(0.02), t8, k(0.03) * T::fused(-t2, bob_wz, t7 * bob_wy)),
+        );
         let t10 = k(2.0) * (t1 + t0);
-        let t11 = k(2.0) * (k(0.5) - (t3 + bob_e2 * bob_e2));
+        let t11 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
         let t12 = bob_e0 * bob_e1;
         let t13 = bob_e2 * bob_e3;
         let t14 = k(2.0) * (t13 - t12);
-        let t15 = k(0.03) * (t14 * bob_wy + t11 * bob_wz)
-            + k(0.02) * (t14 * bob_wx - t10 * bob_wz);
+        let t15 = T::fused(
+            k(0.02),
+            T::fused(-t10, bob_wz, t14 * bob_wx),
+            k(0.03) * T::fused(t11, bob_wz, t14 * bob_wy),
+        );
         let t16 = k(2.0) * (t6 - t5);
         let t17 = k(2.0) * (t13 + t12);
-        let t18 = k(2.0) * (k(0.5) - (t3 + bob_e3 * bob_e3));
-        let t19 = k(0.03) * (t18 * bob_wy + t17 * bob_wz)
-            + k(0.02) * (t18 * bob_wx + t16 * bob_wz);
+        let t18 = k(2.0) * (k(0.5) - T::fused(bob_e3, bob_e3, t3));
+        let t19 = T::fused(
+            k(0.02),
+            T::fused(t16, bob_wz, t18 * bob_wx),
+            k(0.03) * T::fused(t17, bob_wz, t18 * bob_wy),
+        );
         *out = [
             bob_sx + t9,
-            bob_sy + (t15 + k(0.4) * (t11 * bob_wx + t10 * bob_wy)),
-            bob_sz - (t19 + k(0.4) * (t17 * bob_wx - t16 * bob_wy)),
+            bob_sy + T::fused(k(0.4), T::fused(t10, bob_wy, t11 * bob_wx), t15),
+            bob_sz - T::fused(k(0.4), T::fused(-t16, bob_wy, t17 * bob_wx), t19),
             t8,
         ];
     }
@@ -245,20 +309,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let turn0 = y[14];
-        let t0 = bob_wx * (k(0.05) * bob_wx + k(0.002) * bob_wy - k(0.004) * bob_wz)
-            + bob_wy * (k(0.002) * bob_wx + k(0.06) * bob_wy + k(0.003) * bob_wz);
-        let t1 = t0
-            - bob_wz * (k(0.004) * bob_wx - k(0.003) * bob_wy - k(0.03) * bob_wz);
-        let t2 = t1 + k(2.0) * (bob_sx * bob_sx + bob_sy * bob_sy + bob_sz * bob_sz);
+        let t0 = T::fused(
+            bob_wy,
+            T::fused(k(0.003), bob_wz, T::fused(k(0.06), bob_wy, k(0.002) * bob_wx)),
+            bob_wx
+                * T::fused(
+                    -k(0.004),
+                    bob_wz,
+                    T::fused(k(0.002), bob_wy, k(0.05) * bob_wx),
+                ),
+        );
+        let t1 = T::fused(
+            -bob_wz,
+            T::fused(-k(0.03), bob_wz, T::fused(-k(0.003), bob_wy, k(0.004) * bob_wx)),
+            t0,
+        );
+        let t2 = T::fused(
+            k(2.0),
+            T::fused(bob_sz, bob_sz, T::fused(bob_sy, bob_sy, bob_sx * bob_sx)),
+            t1,
+        );
         let t3 = turn0.cos();
-        let t4 = k(2.0) * (k(0.5) - (bob_e0 * bob_e0 + bob_e2 * bob_e2));
+        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, bob_e0 * bob_e0));
         let t5 = turn0.sin();
-        let t6 = k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1);
-        let t7 = (t6 * t3 + t4 * t5).atan2(t6 * t5 - t4 * t3);
+        let t6 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
+        let t7 = T::fused(t4, t5, t6 * t3).atan2(T::fused(-t4, t3, t6 * t5));
         let t8 = k(0.2) - (turn0 + t7);
         gyro_sim::Energy {
             kinetic: k(0.5) * t2,
-            potential: k(19.62) * bob_rz + k(0.5) * (t8 * (k(1.5) * t8)),
+            potential: T::fused(k(0.5), t8 * (k(1.5) * t8), k(19.62) * bob_rz),
         }
     }
     /// Writes the joint readings: 32 operations (14 ±, 18 ×, 0 ÷).
@@ -273,15 +352,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wz = y[12];
         let t0 = bob_e2 * bob_e2;
         let t1 = bob_e0 * bob_e0;
-        let t2 = t1 + bob_e1 * bob_e1;
-        let t3 = k(1.0) - (bob_e3 * bob_e3 + (t2 + t0));
+        let t2 = T::fused(bob_e1, bob_e1, t1);
+        let t3 = k(1.0) - T::fused(bob_e3, bob_e3, t2 + t0);
         let t4 = k(2.0) * (k(0.5) - t2);
-        let t5 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy - t4 * bob_wx;
-        let t6 = k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2);
+        let t5 = T::fused(
+            -t4,
+            bob_wx,
+            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+        );
+        let t6 = k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3);
         *out = [
-            k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1),
-            t3 - k(2.0) * (k(0.5) - (t1 + t0)),
-            t6 * bob_wz + t5,
+            k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3),
+            T::fused(-k(2.0), k(0.5) - (t1 + t0), t3),
+            T::fused(t6, bob_wz, t5),
             t6,
             t3 - t4,
             bob_wy,
@@ -377,41 +460,6 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Universal<T> {
     ) -> ::core::result::Result<(), gyro_sim::Error> {
         gyro_sim::pivoting::solve_velocities(self, t, choice, y)
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 44 operations (14 ±, 30 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let bob_e0 = y[3];
-        let bob_e1 = y[4];
-        let bob_e2 = y[5];
-        let bob_e3 = y[6];
-        let bob_sx = y[7];
-        let bob_sy = y[8];
-        let bob_sz = y[9];
-        let bob_wx = y[10];
-        let bob_wy = y[11];
-        let bob_wz = y[12];
-        let t0 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy
-            - k(2.0) * (k(0.5) - (bob_e0 * bob_e0 + bob_e1 * bob_e1)) * bob_wx;
-        *dy = [
-            bob_sx,
-            bob_sy,
-            bob_sz,
-            -(k(0.5) * (bob_e1 * bob_wx + bob_e2 * bob_wy + bob_e3 * bob_wz)),
-            k(0.5) * (bob_e0 * bob_wx - bob_e3 * bob_wy + bob_e2 * bob_wz),
-            k(0.5) * (bob_e3 * bob_wx + bob_e0 * bob_wy - bob_e1 * bob_wz),
-            -(k(0.5) * (bob_e2 * bob_wx - bob_e1 * bob_wy - bob_e0 * bob_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            -(bob_wy * (k(0.05) * bob_wy)),
-            k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2) * bob_wz + t0,
-        ];
-    }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
     type Velocities = [T; 6];
@@ -501,20 +549,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t15 = k(2.0) * bob_e0;
         *out = [
             k(1.0),
-            t1 - (t0 + k(0.12) * bob_e0),
-            t3 + (t2 - k(0.12) * bob_e1),
+            t1 - T::fused(k(0.12), bob_e0, t0),
+            t3 + T::fused(-k(0.12), bob_e1, t2),
             t5 + t4,
             t7 - t6,
             k(1.0),
-            k(0.08) * bob_e0 - t8 - t7,
+            T::fused(k(0.08), bob_e0, -t8) - t7,
             -(t9 + t4),
-            t3 + (k(0.08) * bob_e2 - t10),
+            t3 + T::fused(k(0.08), bob_e2, -t10),
             t1 - t11,
             k(1.0),
-            k(1.6) * bob_e0 + (t5 + t9),
+            T::fused(k(1.6), bob_e0, t5 + t9),
             t6 - t8,
             t0 + t11,
-            k(1.6) * bob_e3 + (t2 - t10),
+            T::fused(k(1.6), bob_e3, t2 - t10),
             -t12,
             t13,
             t14,
@@ -539,28 +587,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t4 = bob_e1 * bob_e3;
         let t5 = t4 + t3;
         let t6 = bob_e0 * bob_e0;
-        let t7 = k(0.5) - (t6 + bob_e1 * bob_e1);
-        let t8 = k(0.5) - (t6 + bob_e2 * bob_e2);
+        let t7 = k(0.5) - T::fused(bob_e1, bob_e1, t6);
+        let t8 = k(0.5) - T::fused(bob_e2, bob_e2, t6);
         let t9 = bob_e0 * bob_e1;
         let t10 = bob_e2 * bob_e3;
         let t11 = t10 - t9;
         let t12 = t1 + t0;
         let t13 = t10 + t9;
-        let t14 = k(0.5) - (t6 + bob_e3 * bob_e3);
+        let t14 = k(0.5) - T::fused(bob_e3, bob_e3, t6);
         let t15 = t4 - t3;
         *out = [
             k(1.0),
-            k(0.04) * t5 - k(0.8) * t2,
-            k(0.06) * t5 - k(0.8) * t7,
-            k(0.04) * t7 - k(0.06) * t2,
+            T::fused(-k(0.8), t2, k(0.04) * t5),
+            T::fused(-k(0.8), t7, k(0.06) * t5),
+            T::fused(-k(0.06), t2, k(0.04) * t7),
             k(1.0),
-            k(0.04) * t11 + k(0.8) * t8,
-            k(0.06) * t11 + k(0.8) * t12,
-            k(0.06) * t8 - k(0.04) * t12,
+            T::fused(k(0.8), t8, k(0.04) * t11),
+            T::fused(k(0.8), t12, k(0.06) * t11),
+            T::fused(-k(0.04), t12, k(0.06) * t8),
             k(1.0),
-            -(k(0.04) * t14 + k(0.8) * t13),
-            k(0.8) * t15 - k(0.06) * t14,
-            -(k(0.06) * t13 + k(0.04) * t15),
+            -T::fused(k(0.8), t13, k(0.04) * t14),
+            T::fused(-k(0.06), t14, k(0.8) * t15),
+            -T::fused(k(0.04), t15, k(0.06) * t13),
             k(2.0) * t5,
             k(2.0) * t7,
         ];
@@ -584,7 +632,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t1 = bob_wz * bob_wz;
         let t2 = t1 + t0;
         let t3 = bob_e0 * bob_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + bob_e1 * bob_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t3));
         let t5 = bob_wx * bob_wy;
         let t6 = bob_e0 * bob_e3;
         let t7 = bob_e1 * bob_e2;
@@ -596,24 +644,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t13 = bob_wx * bob_wx;
         let t14 = t1 + t13;
         let t15 = bob_wy * bob_wz;
-        let t16 = t12 * t15 - (t8 * t14 + t4 * t5);
-        let t17 = k(0.02) * t16 - k(0.03) * (t12 * t9 + (t8 * t5 + t4 * t2));
+        let t16 = T::fused(t12, t15, -T::fused(t4, t5, t8 * t14));
+        let t17 = T::fused(
+            -k(0.03),
+            T::fused(t12, t9, T::fused(t4, t2, t8 * t5)),
+            k(0.02) * t16,
+        );
         let t18 = t0 + t13;
-        let t19 = k(0.4) * (t12 * t18 - (t8 * t15 - t4 * t9)) - t17;
+        let t19 = T::fused(
+            k(0.4),
+            T::fused(t12, t18, -T::fused(-t4, t9, t8 * t15)),
+            -t17,
+        );
         let t20 = k(2.0) * (t7 + t6);
-        let t21 = k(2.0) * (k(0.5) - (t3 + bob_e2 * bob_e2));
+        let t21 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
         let t22 = bob_e0 * bob_e1;
         let t23 = bob_e2 * bob_e3;
         let t24 = k(2.0) * (t23 - t22);
-        let t25 = k(0.02) * (t24 * t15 + (t21 * t14 + t20 * t5))
-            - k(0.03) * (t24 * t9 - (t21 * t5 + t20 * t2));
-        let t26 = k(0.4) * (t24 * t18 + (t21 * t15 - t20 * t9)) - t25;
+        let t25 = T::fused(
+            -k(0.03),
+            T::fused(t24, t9, -T::fused(t20, t2, t21 * t5)),
+            k(0.02) * T::fused(t24, t15, T::fused(t20, t5, t21 * t14)),
+        );
+        let t26 = T::fused(
+            k(0.4),
+            T::fused(t24, t18, T::fused(-t20, t9, t21 * t15)),
+            -t25,
+        );
         let t27 = k(2.0) * (t11 - t10);
         let t28 = k(2.0) * (t23 + t22);
-        let t29 = k(2.0) * (k(0.5) - (t3 + bob_e3 * bob_e3));
-        let t30 = k(0.02) * (t29 * t15 + (t28 * t14 - t27 * t5))
-            - k(0.03) * (t29 * t9 - (t28 * t5 - t27 * t2));
-        let t31 = k(0.4) * (t29 * t18 + (t28 * t15 + t27 * t9)) - t30;
+        let t29 = k(2.0) * (k(0.5) - T::fused(bob_e3, bob_e3, t3));
+        let t30 = T::fused(
+            -k(0.03),
+            T::fused(t29, t9, -T::fused(-t27, t2, t28 * t5)),
+            k(0.02) * T::fused(t29, t15, T::fused(-t27, t5, t28 * t14)),
+        );
+        let t31 = T::fused(
+            k(0.4),
+            T::fused(t29, t18, T::fused(t27, t9, t28 * t15)),
+            -t30,
+        );
         *out = [t19, t26, -t31, -t16];
     }
     /// Writes (f, n' − w̃'J'w'): 68 operations (27 ±, 41 ×, 0 ÷) and 3 functions.
@@ -629,31 +699,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let turn0 = y[14];
         let t0 = turn0.cos();
         let t1 = bob_e0 * bob_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + bob_e2 * bob_e2));
+        let t2 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t1));
         let t3 = turn0.sin();
-        let t4 = k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1);
-        let t5 = (t4 * t0 + t2 * t3).atan2(t4 * t3 - t2 * t0);
+        let t4 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
+        let t5 = T::fused(t2, t3, t4 * t0).atan2(T::fused(-t2, t0, t4 * t3));
         let t6 = k(1.5) * (k(0.2) - (turn0 + t5));
         let t7 = bob_wy * bob_wy;
         let t8 = bob_wz * bob_wz;
         let t9 = k(0.002) * bob_wz;
         let t10 = k(0.004) * bob_wy;
-        let t11 = bob_wx * (t10 + t9)
-            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (t8 - t7));
-        let t12 = k(0.05) * bob_wy - k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * t6;
+        let t11 = T::fused(
+            bob_wx,
+            t10 + t9,
+            T::fused(k(0.003), t8 - t7, k(0.03) * (bob_wy * bob_wz)),
+        );
+        let t12 = T::fused(
+            -(k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2)),
+            t6,
+            k(0.05) * bob_wy,
+        );
         let t13 = bob_wx * bob_wx;
         let t14 = k(0.003) * bob_wx;
-        let t15 = bob_wy * (t9 - t14)
-            + (k(0.02) * (bob_wx * bob_wz) - k(0.004) * (t8 - t13));
-        let t16 = bob_wz * (t10 + t14)
-            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t7 - t13));
+        let t15 = T::fused(
+            bob_wy,
+            t9 - t14,
+            T::fused(-k(0.004), t8 - t13, k(0.02) * (bob_wx * bob_wz)),
+        );
+        let t16 = T::fused(
+            bob_wz,
+            t10 + t14,
+            T::fused(-k(0.002), t7 - t13, k(0.01) * (bob_wx * bob_wy)),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(-19.62),
-            t11 - k(2.0) * (k(0.5) - (t1 + bob_e1 * bob_e1)) * t6,
+            T::fused(-(k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t1))), t6, t11),
             -(t15 + t12),
-            k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2) * t6 - t16,
+            T::fused(k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3), t6, -t16),
         ];
     }
     /// Solves eq. (17): 287 operations (117 ±, 167 ×, 3 ÷) and 3 functions.
@@ -671,7 +754,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t1 = bob_wz * bob_wz;
         let t2 = t1 + t0;
         let t3 = bob_e0 * bob_e0;
-        let t4 = k(0.5) - (t3 + bob_e1 * bob_e1);
+        let t4 = k(0.5) - T::fused(bob_e1, bob_e1, t3);
         let t5 = k(2.0) * t4;
         let t6 = bob_wx * bob_wy;
         let t7 = bob_e0 * bob_e3;
@@ -686,77 +769,126 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t16 = bob_wx * bob_wx;
         let t17 = t1 + t16;
         let t18 = bob_wy * bob_wz;
-        let t19 = t15 * t18 - (t10 * t17 + t5 * t6);
-        let t20 = k(0.02) * t19 - k(0.03) * (t15 * t11 + (t10 * t6 + t5 * t2));
+        let t19 = T::fused(t15, t18, -T::fused(t5, t6, t10 * t17));
+        let t20 = T::fused(
+            -k(0.03),
+            T::fused(t15, t11, T::fused(t5, t2, t10 * t6)),
+            k(0.02) * t19,
+        );
         let t21 = t0 + t16;
-        let t22 = k(0.4) * (t15 * t21 - (t10 * t18 - t5 * t11)) - t20;
+        let t22 = T::fused(
+            k(0.4),
+            T::fused(t15, t21, -T::fused(-t5, t11, t10 * t18)),
+            -t20,
+        );
         let t23 = k(2.0) * (t8 + t7);
-        let t24 = k(2.0) * (k(0.5) - (t3 + bob_e2 * bob_e2));
+        let t24 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
         let t25 = bob_e0 * bob_e1;
         let t26 = bob_e2 * bob_e3;
         let t27 = k(2.0) * (t26 - t25);
-        let t28 = k(0.02) * (t27 * t18 + (t24 * t17 + t23 * t6))
-            - k(0.03) * (t27 * t11 - (t24 * t6 + t23 * t2));
-        let t29 = k(0.4) * (t27 * t21 + (t24 * t18 - t23 * t11)) - t28;
+        let t28 = T::fused(
+            -k(0.03),
+            T::fused(t27, t11, -T::fused(t23, t2, t24 * t6)),
+            k(0.02) * T::fused(t27, t18, T::fused(t23, t6, t24 * t17)),
+        );
+        let t29 = T::fused(
+            k(0.4),
+            T::fused(t27, t21, T::fused(-t23, t11, t24 * t18)),
+            -t28,
+        );
         let t30 = t13 - t12;
         let t31 = k(2.0) * t30;
         let t32 = t26 + t25;
         let t33 = k(2.0) * t32;
-        let t34 = k(0.5) - (t3 + bob_e3 * bob_e3);
+        let t34 = k(0.5) - T::fused(bob_e3, bob_e3, t3);
         let t35 = k(2.0) * t34;
-        let t36 = k(0.02) * (t35 * t18 + (t33 * t17 - t31 * t6))
-            - k(0.03) * (t35 * t11 - (t33 * t6 - t31 * t2));
-        let t37 = k(0.4) * (t35 * t21 + (t33 * t18 + t31 * t11)) - t36;
-        let t38 = t31 * t37 - (t23 * t29 - t5 * t22);
-        let t39 = k(0.08) * t14 - k(1.6) * t9;
-        let t40 = t33 * t37 + (t24 * t29 - t10 * t22);
-        let t41 = k(0.12) * t14 - k(1.6) * t4;
-        let t42 = t35 * t37 + (t27 * t29 + t15 * t22);
-        let t43 = k(0.08) * t4 - k(0.12) * t9;
-        let t44 = k(1.0) / (t5 * t5 + t15 * t15);
+        let t36 = T::fused(
+            -k(0.03),
+            T::fused(t35, t11, -T::fused(-t31, t2, t33 * t6)),
+            k(0.02) * T::fused(t35, t18, T::fused(-t31, t6, t33 * t17)),
+        );
+        let t37 = T::fused(
+            k(0.4),
+            T::fused(t35, t21, T::fused(t31, t11, t33 * t18)),
+            -t36,
+        );
+        let t38 = T::fused(t31, t37, -T::fused(-t5, t22, t23 * t29));
+        let t39 = T::fused(-k(1.6), t9, k(0.08) * t14);
+        let t40 = T::fused(t33, t37, T::fused(-t10, t22, t24 * t29));
+        let t41 = T::fused(-k(1.6), t4, k(0.12) * t14);
+        let t42 = T::fused(t35, t37, T::fused(t15, t22, t27 * t29));
+        let t43 = T::fused(-k(0.12), t9, k(0.08) * t4);
+        let t44 = k(1.0) / T::fused(t15, t15, t5 * t5);
         let t45 = t19 * (t5 * t44);
-        let t46 = k(0.0652) * t14 - (k(0.04) * t4 + k(0.026) * t9);
+        let t46 = T::fused(k(0.0652), t14, -T::fused(k(0.026), t9, k(0.04) * t4));
         let t47 = t19 * (t15 * t44);
-        let t48 = k(0.04) * t14 - (k(0.7416) * t4 - k(0.0064) * t9);
-        let t49 = k(0.026) * t14 + (k(0.0064) * t4 - k(0.7636) * t9);
-        let t50 = k(1.0) / (t15 * t46 - (t10 * t49 + t5 * t48));
+        let t48 = T::fused(k(0.04), t14, -T::fused(-k(0.0064), t9, k(0.7416) * t4));
+        let t49 = T::fused(k(0.026), t14, T::fused(-k(0.7636), t9, k(0.0064) * t4));
+        let t50 = k(1.0) / T::fused(t15, t46, -T::fused(t5, t48, t10 * t49));
         let t51 = t49 * t50;
         let t52 = turn0.cos();
         let t53 = turn0.sin();
-        let t54 = (t33 * t52 + t24 * t53).atan2(t33 * t53 - t24 * t52);
+        let t54 = T::fused(t24, t53, t33 * t52).atan2(T::fused(-t24, t52, t33 * t53));
         let t55 = k(1.5) * (k(0.2) - (turn0 + t54));
         let t56 = k(0.002) * bob_wz;
         let t57 = k(0.004) * bob_wy;
-        let t58 = bob_wx * (t57 + t56) + (k(0.03) * t18 + k(0.003) * (t1 - t0));
-        let t59 = t5 * (k(0.7848) * t34 + k(15.696) * t32 - (t58 - t5 * t55));
-        let t60 = k(0.003) * bob_wx;
-        let t61 = bob_wy * (t56 - t60) + (k(0.02) * t11 - k(0.004) * (t1 - t16));
-        let t62 = k(1.1772) * t34 - k(15.696) * t30
-            + (t61 + (k(0.05) * bob_wy - t10 * t55));
-        let t63 = bob_wz * (t57 + t60) + (k(0.01) * t6 - k(0.002) * (t0 - t16));
-        let t64 = t15 * (k(1.1772) * t32 + k(0.7848) * t30 + (t63 - t15 * t55));
-        let t65 = t64 + (t10 * t62 - t59);
-        let t66 = (k(0.013) - t46 * t51) * t45 - (k(0.0032) + t49 * (t48 * t50)) * t47;
-        let t67 = t49 * (t41 * t50) * t40 - (k(0.8) - t49 * (t50 * t39)) * t38;
-        let t68 = (k(0.06) - t49 * (t43 * t50)) * t42 + t67 - t66
-            - (t62 + t49 * (t50 * t65));
-        let t69 = t68 / (k(0.3818) - t49 * t51);
-        let t70 = t49 * t69 + t48 * t47 + t46 * t45
-            - (t43 * t42 - (t41 * t40 + t39 * t38));
-        let t71 = t50 * (t65 - t70);
-        let t72 = t69 - t10 * t71;
-        let t73 = t45 + t15 * t71;
-        let t74 = t38 + (k(0.02) * t73 + k(0.4) * t72);
-        let t75 = t47 - t5 * t71;
-        let t76 = t40 + (k(0.03) * t73 + k(0.4) * t75);
-        let t77 = t42 - (k(0.03) * t72 - k(0.02) * t75);
+        let t58 = T::fused(
+            bob_wx,
+            t57 + t56,
+            T::fused(k(0.003), t1 - t0, k(0.03) * t18),
+        );
+        let t59 = k(0.003) * bob_wx;
+        let t60 = T::fused(
+            bob_wy,
+            t56 - t59,
+            T::fused(-k(0.004), t1 - t16, k(0.02) * t11),
+        );
+        let t61 = T::fused(-k(15.696), t30, k(1.1772) * t34)
+            + (t60 + T::fused(-t10, t55, k(0.05) * bob_wy));
+        let t62 = T::fused(
+            -t5,
+            T::fused(k(15.696), t32, k(0.7848) * t34) - T::fused(-t5, t55, t58),
+            t10 * t61,
+        );
+        let t63 = T::fused(
+            bob_wz,
+            t57 + t59,
+            T::fused(-k(0.002), t0 - t16, k(0.01) * t6),
+        );
+        let t64 = T::fused(
+            t15,
+            T::fused(k(0.7848), t30, k(1.1772) * t32) + T::fused(-t15, t55, t63),
+            t62,
+        );
+        let t65 = T::fused(
+            -T::fused(t49, t48 * t50, k(0.0032)),
+            t47,
+            T::fused(-t46, t51, k(0.013)) * t45,
+        );
+        let t66 = T::fused(
+            -T::fused(-t49, t50 * t39, k(0.8)),
+            t38,
+            t49 * (t41 * t50) * t40,
+        );
+        let t67 = T::fused(T::fused(-t49, t43 * t50, k(0.06)), t42, t66) - t65
+            - T::fused(t49, t50 * t64, t61);
+        let t68 = t67 / T::fused(-t49, t51, k(0.3818));
+        let t69 = T::fused(t46, t45, T::fused(t48, t47, t49 * t68))
+            - T::fused(t43, t42, -T::fused(t39, t38, t41 * t40));
+        let t70 = t50 * (t64 - t69);
+        let t71 = T::fused(-t10, t70, t68);
+        let t72 = T::fused(t15, t70, t45);
+        let t73 = t38 + T::fused(k(0.4), t71, k(0.02) * t72);
+        let t74 = T::fused(-t5, t70, t47);
+        let t75 = t40 + T::fused(k(0.4), t74, k(0.03) * t72);
+        let t76 = t42 - T::fused(-k(0.02), t74, k(0.03) * t71);
         *out = [
-            t15 * t77 - (t10 * t76 - t5 * t74),
-            t27 * t77 + (t24 * t76 - t23 * t74),
-            -(t35 * t77 + (t33 * t76 + t31 * t74)),
-            -t75,
-            t72,
-            -t73,
+            T::fused(t15, t76, -T::fused(-t5, t73, t10 * t75)),
+            T::fused(t27, t76, T::fused(-t23, t73, t24 * t75)),
+            -T::fused(t35, t76, T::fused(t31, t73, t33 * t75)),
+            -t74,
+            t71,
+            -t72,
         ];
     }
     /// Writes λ: 116 operations (47 ±, 68 ×, 1 ÷) and 3 functions.
@@ -784,46 +916,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let bob_dwz = accelerations[5];
         let t0 = k(2.0) * bob_dsx;
         let t1 = k(2.0) * bob_dsy;
-        let t2 = k(19.62) + k(2.0) * bob_dsz;
+        let t2 = T::fused(k(2.0), bob_dsz, k(19.62));
         let t3 = turn0.cos();
         let t4 = bob_e0 * bob_e0;
-        let t5 = k(0.5) - (t4 + bob_e2 * bob_e2);
+        let t5 = k(0.5) - T::fused(bob_e2, bob_e2, t4);
         let t6 = k(2.0) * t5;
         let t7 = turn0.sin();
         let t8 = bob_e0 * bob_e1;
         let t9 = bob_e2 * bob_e3;
         let t10 = t9 + t8;
         let t11 = k(2.0) * t10;
-        let t12 = (t11 * t3 + t6 * t7).atan2(t11 * t7 - t6 * t3);
+        let t12 = T::fused(t6, t7, t11 * t3).atan2(T::fused(-t6, t3, t11 * t7));
         let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(0.5) - (t4 + bob_e1 * bob_e1);
+        let t14 = k(0.5) - T::fused(bob_e1, bob_e1, t4);
         let t15 = k(2.0) * t14;
         let t16 = bob_wy * bob_wy;
         let t17 = k(0.004) * bob_wy;
-        let t18 = bob_wx * (t17 + k(0.002) * bob_wz)
-            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (bob_wz * bob_wz - t16));
-        let t19 = k(0.05) * bob_dwx + k(0.002) * bob_dwy - k(0.004) * bob_dwz
-            - (t18 - t15 * t13);
+        let t18 = T::fused(
+            bob_wx,
+            T::fused(k(0.002), bob_wz, t17),
+            T::fused(
+                k(0.003),
+                T::fused(bob_wz, bob_wz, -t16),
+                k(0.03) * (bob_wy * bob_wz),
+            ),
+        );
+        let t19 = T::fused(
+            -k(0.004),
+            bob_dwz,
+            T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
+        ) - T::fused(-t15, t13, t18);
         let t20 = bob_e0 * bob_e3;
         let t21 = bob_e1 * bob_e2;
         let t22 = t21 - t20;
         let t23 = bob_e0 * bob_e2;
         let t24 = bob_e1 * bob_e3;
         let t25 = t24 + t23;
-        let t26 = t1 * (k(0.04) * (t9 - t8) + k(0.8) * t5)
-            + t0 * (k(0.04) * t25 - k(0.8) * t22);
-        let t27 = t2 * (k(0.04) * (k(0.5) - (t4 + bob_e3 * bob_e3)) + k(0.8) * t10);
+        let t26 = T::fused(
+            t0,
+            T::fused(-k(0.8), t22, k(0.04) * t25),
+            t1 * T::fused(k(0.8), t5, k(0.04) * (t9 - t8)),
+        );
+        let t27 = T::fused(
+            t2,
+            T::fused(k(0.8), t10, k(0.04) * (k(0.5) - T::fused(bob_e3, bob_e3, t4))),
+            -t26,
+        );
         let t28 = k(2.0) * t25;
-        let t29 = k(1.0) / (t15 * t15 + t28 * t28);
-        let t30 = bob_wz * (t17 + k(0.003) * bob_wx)
-            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t16 - bob_wx * bob_wx));
-        let t31 = k(0.004) * bob_dwx - k(0.003) * bob_dwy - k(0.03) * bob_dwz
-            - (t30 - t28 * t13);
-        let t32 = t1 * (k(0.06) * t5 - k(0.04) * (t21 + t20))
-            + t0 * (k(0.04) * t14 - k(0.06) * t22);
-        let t33 = t2 * (k(0.06) * t10 + k(0.04) * (t24 - t23)) - t32 - t31;
-        let t34 = t15 * t29 * t33 + t28 * t29 * (t27 - t26 + t19);
-        *lambda = [-t0, -t1, -t2, -t34];
+        let t29 = k(1.0) / T::fused(t28, t28, t15 * t15);
+        let t30 = T::fused(
+            bob_wz,
+            T::fused(k(0.003), bob_wx, t17),
+            T::fused(
+                -k(0.002),
+                T::fused(-bob_wx, bob_wx, t16),
+                k(0.01) * (bob_wx * bob_wy),
+            ),
+        );
+        let t31 = T::fused(
+            -k(0.03),
+            bob_dwz,
+            T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
+        ) - T::fused(-t28, t13, t30);
+        let t32 = T::fused(
+            t0,
+            T::fused(-k(0.06), t22, k(0.04) * t14),
+            t1 * T::fused(-k(0.04), t21 + t20, k(0.06) * t5),
+        );
+        let t33 = T::fused(t2, T::fused(k(0.04), t24 - t23, k(0.06) * t10), -t32) - t31;
+        *lambda = [-t0, -t1, -t2, -T::fused(t28 * t29, t27 + t19, t15 * t29 * t33)];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
@@ -847,21 +1008,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = x1.cos();
-        let t1 = x1.sin();
-        let t2 = u0 * (k(0.5) - t1 * (t1 + k(8.455) * t0));
-        let t3 = k(0.0032) * (u1 * (k(25.0) * t2 - u1 * (t1 + k(4.0625) * t0)));
-        let t4 = x0.cos();
-        let t5 = k(1.5) * x0 - (k(0.3) + k(0.3924) * t4)
-            + k(0.5886) * (x0.sin() * (t1 + k(13.333333333333334) * t0));
-        let t6 = k(0.05) * u1 + k(7.848) * (t4 * (t1 - k(0.075) * t0))
-            - k(0.04) * (u0 * t2);
-        let t7 = k(0.013) * t1 - k(0.0032) * t0;
+        let t0 = x1.sin();
+        let t1 = x1.cos();
+        let t2 = u0 * T::fused(-t1, T::fused(-k(8.455), t0, t1), k(0.5));
+        let t3 = x0.cos();
+        let t4 = T::fused(
+            k(7.848),
+            x0.sin() * T::fused(k(0.075), t0, t1),
+            T::fused(k(1.5), x0, -T::fused(k(0.3924), t3, k(0.3))),
+        );
+        let t5 = T::fused(
+            -k(0.013),
+            u1
+                * T::fused(
+                    u1,
+                    T::fused(k(0.24615384615384617), t0, t1),
+                    k(6.153846153846154) * t2,
+                ),
+            t4,
+        );
+        let t6 = T::fused(
+            k(0.04),
+            u0 * t2,
+            T::fused(
+                -k(0.5886),
+                t3 * T::fused(-k(13.333333333333334), t0, t1),
+                k(0.05) * u1,
+            ),
+        );
+        let t7 = T::fused(-k(0.0032), t1, k(0.013) * t0);
         let t8 = k(2.6191723415400734) * t7;
-        let t9 = t7 * t8
-            - (k(0.3708) - k(0.3382) * (t1 * (t1 - k(0.11827321111768184) * t0)));
-        let t10 = (t8 * t6 + (t5 + t3)) / t9;
-        *out = [t10, t8 * t10 - k(2.6191723415400734) * t6];
+        let t9 = T::fused(
+            t7,
+            t8,
+            -T::fused(
+                k(0.3382),
+                t1 * T::fused(k(0.11827321111768184), t0, t1),
+                k(0.0326),
+            ),
+        );
+        let t10 = T::fused(t8, t6, t5) / t9;
+        *out = [t10, T::fused(-k(2.6191723415400734), t6, t8 * t10)];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 2 operations (0 ±, 2 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -896,28 +1083,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t14 = t10 * t4;
         let t15 = t14 - t13;
         let t16 = t6 * t6;
-        let t17 = k(0.5) - (t16 + t10 * t10);
+        let t17 = k(0.5) - T::fused(t10, t10, t16);
         let t18 = t6 * t10;
         let t19 = t4 * t9;
         let t20 = t19 - t18;
-        let t21 = k(0.5) - (t16 + t4 * t4);
+        let t21 = k(0.5) - T::fused(t4, t4, t16);
         let t22 = t14 + t13;
-        let t23 = k(0.5) - (t16 + t9 * t9);
+        let t23 = k(0.5) - T::fused(t9, t9, t16);
         let t24 = t19 + t18;
         let t25 = t11 - t7;
         let t26 = k(2.0) * t1;
         let t27 = u0 * (t5 * t26);
-        let t28 = k(0.4) * u1 - k(0.02) * t27;
-        let t29 = u0 * (k(1.0) - t1 * t26);
-        let t30 = k(0.4) * t29 + k(0.03) * t27;
-        let t31 = k(0.03) * u1 + k(0.02) * t29;
-        let t32 = k(2.0) * t12 * t31 - (k(2.0) * t15 * t30 + k(2.0) * t17 * t28);
-        let t33 = k(2.0) * t20 * t31 + (k(2.0) * t21 * t30 + k(2.0) * t22 * t28);
-        let t34 = k(2.0) * t23 * t31 + (k(2.0) * t24 * t30 - k(2.0) * t25 * t28);
+        let t28 = T::fused(-k(0.02), t27, k(0.4) * u1);
+        let t29 = u0 * T::fused(-t1, t26, k(1.0));
+        let t30 = T::fused(k(0.03), t27, k(0.4) * t29);
+        let t31 = T::fused(k(0.02), t29, k(0.03) * u1);
+        let t32 = T::fused(
+            k(2.0) * t12,
+            t31,
+            -T::fused(k(2.0) * t17, t28, k(2.0) * t15 * t30),
+        );
+        let t33 = T::fused(
+            k(2.0) * t20,
+            t31,
+            T::fused(k(2.0) * t22, t28, k(2.0) * t21 * t30),
+        );
+        let t34 = T::fused(
+            k(2.0) * t23,
+            t31,
+            T::fused(-(k(2.0) * t25), t28, k(2.0) * t24 * t30),
+        );
         *y = [
-            -(k(0.06) * t17 + k(0.04) * t15 + k(0.8) * t12),
-            k(0.06) * t22 + k(0.04) * t21 - k(0.8) * t20,
-            k(0.06) * t25 - k(0.04) * t24 + k(0.8) * t23,
+            -T::fused(k(0.8), t12, T::fused(k(0.04), t15, k(0.06) * t17)),
+            T::fused(-k(0.8), t20, T::fused(k(0.04), t21, k(0.06) * t22)),
+            T::fused(k(0.8), t23, T::fused(-k(0.04), t24, k(0.06) * t25)),
             t6,
             t10,
             t4,
@@ -945,24 +1144,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let x0 = x[0];
         let x1 = x[1];
         let t0 = x0.sin();
-        let t1 = k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1);
+        let t1 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
         let t2 = x0.cos();
         let t3 = bob_e2 * bob_e2;
         let t4 = bob_e0 * bob_e0;
-        let t5 = t4 + bob_e1 * bob_e1;
-        let t6 = k(1.0) - (bob_e3 * bob_e3 + (t5 + t3));
-        let t7 = k(2.0) * (k(0.5) - (t4 + t3)) - t6;
-        let t8 = (t7 * t0 + t1 * t2).atan2(t1 * t0 - t7 * t2);
+        let t5 = T::fused(bob_e1, bob_e1, t4);
+        let t6 = k(1.0) - T::fused(bob_e3, bob_e3, t5 + t3);
+        let t7 = T::fused(k(2.0), k(0.5) - (t4 + t3), -t6);
+        let t8 = T::fused(t1, t2, t7 * t0).atan2(T::fused(-t7, t2, t1 * t0));
         let t9 = x1.sin();
-        let t10 = k(2.0) * (bob_e1 * bob_e3 + bob_e0 * bob_e2);
+        let t10 = k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3);
         let t11 = x1.cos();
         let t12 = k(2.0) * (k(0.5) - t5);
         let t13 = t12 - t6;
-        let t14 = (t13 * t9 + t10 * t11).atan2(t10 * t9 - t13 * t11);
-        let t15 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy - t12 * bob_wx;
+        let t14 = T::fused(t10, t11, t13 * t9).atan2(T::fused(-t13, t11, t10 * t9));
+        let t15 = T::fused(
+            -t12,
+            bob_wx,
+            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+        );
         x[0] = x0 + t8;
         x[1] = x1 + t14;
-        x[2] = t10 * bob_wz + t15;
+        x[2] = T::fused(t10, bob_wz, t15);
         x[3] = bob_wy;
         x[4] = y[13];
     }
@@ -977,31 +1180,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let turn0 = y[14];
-        let t0 = bob_e0 * bob_e0;
-        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
-        let t2 = bob_e1 * bob_e3 + bob_e0 * bob_e2;
+        let t0 = T::fused(bob_e0, bob_e2, bob_e1 * bob_e3);
+        let t1 = bob_e0 * bob_e0;
+        let t2 = k(0.5) - T::fused(bob_e1, bob_e1, t1);
         let t3 = k(2.0) * t2;
-        let t4 = k(2.0) * (bob_e1 * bob_e2 - bob_e0 * bob_e3) * bob_wy
-            - k(2.0) * t1 * bob_wx;
-        let t5 = t3 * bob_wz + t4;
-        let t6 = t5 * (k(0.5) - t3 * (t3 - k(16.91) * t1));
-        let t7 = k(0.0032) * (bob_wy * (k(25.0) * t6 - bob_wy * (t3 - k(8.125) * t1)));
-        let t8 = k(2.0) * (bob_e2 * bob_e3 + bob_e0 * bob_e1);
-        let t9 = turn0.cos();
-        let t10 = k(0.5) - (t0 + bob_e2 * bob_e2);
-        let t11 = k(2.0) * t10;
-        let t12 = turn0.sin();
-        let t13 = (t8 * t9 + t11 * t12).atan2(t8 * t12 - t11 * t9);
-        let t14 = k(0.3) - k(0.7848) * t10 - k(1.5) * (turn0 + t13)
-            - k(0.5886) * (t8 * (t3 - k(26.666666666666668) * t1));
-        let t15 = k(0.05) * bob_wy - k(7.848) * (t11 * (t3 + k(0.15) * t1))
-            - k(0.04) * (t5 * t6);
-        let t16 = k(0.026) * t2 + k(0.0064) * t1;
+        let t4 = T::fused(
+            -t3,
+            bob_wx,
+            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+        );
+        let t5 = T::fused(k(2.0) * t0, bob_wz, t4);
+        let t6 = t5 * T::fused(-t3, T::fused(k(16.91), t0, t3), k(0.5));
+        let t7 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
+        let t8 = turn0.cos();
+        let t9 = k(0.5) - T::fused(bob_e2, bob_e2, t1);
+        let t10 = k(2.0) * t9;
+        let t11 = turn0.sin();
+        let t12 = T::fused(t10, t11, t7 * t8).atan2(T::fused(-t10, t8, t7 * t11));
+        let t13 = T::fused(
+            k(7.848),
+            t7 * T::fused(-k(0.15), t0, t3),
+            T::fused(-k(1.5), turn0 + t12, T::fused(-k(0.7848), t9, k(0.3))),
+        );
+        let t14 = T::fused(
+            k(0.013),
+            bob_wy
+                * T::fused(
+                    -bob_wy,
+                    T::fused(-k(0.49230769230769234), t0, t3),
+                    k(6.153846153846154) * t6,
+                ),
+            t13,
+        );
+        let t15 = T::fused(
+            k(0.04),
+            t5 * t6,
+            T::fused(
+                -k(0.5886),
+                t10 * T::fused(k(26.666666666666668), t0, t3),
+                k(0.05) * bob_wy,
+            ),
+        );
+        let t16 = T::fused(k(0.0064), t2, k(0.026) * t0);
         let t17 = k(2.6191723415400734) * t16;
-        let t18 = t16 * t17
-            - (k(0.3708) - k(0.3382) * (t3 * (t3 + k(0.23654642223536368) * t1)));
-        let t19 = (t17 * t15 - (t14 - t7)) / t18;
-        *out = [t19, t17 * t19 - k(2.6191723415400734) * t15];
+        let t18 = T::fused(
+            t16,
+            t17,
+            -T::fused(
+                k(0.3382),
+                t3 * T::fused(-k(0.23654642223536368), t0, t3),
+                k(0.0326),
+            ),
+        );
+        let t19 = T::fused(t17, t15, -t14) / t18;
+        *out = [t19, T::fused(-k(2.6191723415400734), t15, t17 * t19)];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 163 operations (63 ±, 99 ×, 1 ÷) and 3 functions.
     fn corrected_accelerations(
@@ -1020,7 +1252,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let bob_wz = y[12];
         let turn0 = y[14];
         let t0 = bob_e0 * bob_e0;
-        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t1 = k(0.5) - T::fused(bob_e1, bob_e1, t0);
         let t2 = k(2.0) * t1;
         let t3 = bob_e0 * bob_e3;
         let t4 = bob_e1 * bob_e2;
@@ -1029,42 +1261,97 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t7 = bob_e1 * bob_e3;
         let t8 = t7 + t6;
         let t9 = k(2.0) * t8;
-        let t10 = t9 * bob_wz + (t5 * bob_wy - t2 * bob_wx);
+        let t10 = T::fused(t9, bob_wz, T::fused(-t2, bob_wx, t5 * bob_wy));
         let t11 = t2 * t10;
         let t12 = t9 * t10;
-        let t13 = t10 * (t2 * t12 - t9 * t11) - (bob_wx * t12 + bob_wz * t11);
-        let t14 = t10 * (k(0.5) - t9 * (t9 - k(16.91) * t1));
-        let t15 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t13 = T::fused(
+            t10,
+            T::fused(-t9, t11, t2 * t12),
+            -T::fused(bob_wz, t11, bob_wx * t12),
+        );
+        let t14 = t10 * T::fused(-t2, T::fused(k(16.91), t8, t2), k(0.5));
+        let t15 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
         let t16 = k(2.0) * t15;
-        let t17 = k(0.05) * bob_wy - k(7.848) * (t16 * (t9 + k(0.15) * t1))
-            - k(0.04) * (t10 * t14);
-        let t18 = k(0.0032) * (bob_wy * (k(25.0) * t14 - bob_wy * (t9 - k(8.125) * t1)));
-        let t19 = bob_e0 * bob_e1;
-        let t20 = bob_e2 * bob_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = turn0.cos();
-        let t23 = turn0.sin();
-        let t24 = (t21 * t22 + t16 * t23).atan2(t21 * t23 - t16 * t22);
-        let t25 = k(0.3) - k(0.7848) * t15 - k(1.5) * (turn0 + t24)
-            - k(0.5886) * (t21 * (t9 - k(26.666666666666668) * t1));
-        let t26 = k(0.026) * t8 + k(0.0064) * t1;
+        let t17 = T::fused(
+            k(0.04),
+            t10 * t14,
+            T::fused(
+                -k(0.5886),
+                t16 * T::fused(k(26.666666666666668), t8, t2),
+                k(0.05) * bob_wy,
+            ),
+        );
+        let t18 = bob_e0 * bob_e1;
+        let t19 = bob_e2 * bob_e3;
+        let t20 = k(2.0) * (t19 + t18);
+        let t21 = turn0.cos();
+        let t22 = turn0.sin();
+        let t23 = T::fused(t16, t22, t20 * t21).atan2(T::fused(-t16, t21, t20 * t22));
+        let t24 = T::fused(
+            k(7.848),
+            t20 * T::fused(-k(0.15), t8, t2),
+            T::fused(-k(1.5), turn0 + t23, T::fused(-k(0.7848), t15, k(0.3))),
+        );
+        let t25 = T::fused(
+            k(0.013),
+            bob_wy
+                * T::fused(
+                    -bob_wy,
+                    T::fused(-k(0.49230769230769234), t8, t2),
+                    k(6.153846153846154) * t14,
+                ),
+            t24,
+        );
+        let t26 = T::fused(k(0.0064), t1, k(0.026) * t8);
         let t27 = k(2.6191723415400734) * t26;
-        let t28 = t26 * t27
-            - (k(0.3708) - k(0.3382) * (t9 * (t9 + k(0.23654642223536368) * t1)));
-        let t29 = (t27 * t17 - (t25 - t18)) / t28;
-        let t30 = t27 * t29 - k(2.6191723415400734) * t17 + t13;
-        let t31 = t10 * (t2 * bob_wy) - (bob_wx * bob_wy + bob_wy * t11) - t9 * t29;
-        let t32 = k(0.03) * bob_wz + k(0.4) * bob_wx;
-        let t33 = k(0.02) * bob_wx + k(0.03) * bob_wy;
-        let t34 = bob_wy * t33 + bob_wz * t32 + (k(0.02) * t31 + k(0.4) * t30);
-        let t35 = t10 * (t9 * bob_wy) + (bob_wy * bob_wz - bob_wy * t12) + t2 * t29;
-        let t36 = k(0.4) * bob_wy - k(0.02) * bob_wz;
-        let t37 = bob_wz * t36 - bob_wx * t33 + (k(0.03) * t31 + k(0.4) * t35);
-        let t38 = bob_wx * t32 + bob_wy * t36 - (k(0.03) * t30 - k(0.02) * t35);
-        let t39 = k(2.0) * (t20 - t19) * t38 + (t16 * t37 - k(2.0) * (t4 + t3) * t34);
-        let t40 = k(2.0) * (k(0.5) - (t0 + bob_e3 * bob_e3)) * t38
-            + (t21 * t37 + k(2.0) * (t7 - t6) * t34);
-        *out = [t9 * t38 - (t5 * t37 - t2 * t34), t39, -t40, -t35, t30, -t31];
+        let t28 = T::fused(
+            t26,
+            t27,
+            -T::fused(
+                k(0.3382),
+                t2 * T::fused(-k(0.23654642223536368), t8, t2),
+                k(0.0326),
+            ),
+        );
+        let t29 = T::fused(t27, t17, -t25) / t28;
+        let t30 = T::fused(-k(2.6191723415400734), t17, t27 * t29) + t13;
+        let t31 = T::fused(
+            -t9,
+            t29,
+            T::fused(t10, t2 * bob_wy, -T::fused(bob_wy, t11, bob_wx * bob_wy)),
+        );
+        let t32 = T::fused(k(0.4), bob_wx, k(0.03) * bob_wz);
+        let t33 = T::fused(k(0.03), bob_wy, k(0.02) * bob_wx);
+        let t34 = T::fused(bob_wz, t32, bob_wy * t33)
+            + T::fused(k(0.4), t30, k(0.02) * t31);
+        let t35 = T::fused(
+            t2,
+            t29,
+            T::fused(t10, t9 * bob_wy, T::fused(-bob_wy, t12, bob_wy * bob_wz)),
+        );
+        let t36 = T::fused(-k(0.02), bob_wz, k(0.4) * bob_wy);
+        let t37 = T::fused(-bob_wx, t33, bob_wz * t36)
+            + T::fused(k(0.4), t35, k(0.03) * t31);
+        let t38 = T::fused(bob_wy, t36, bob_wx * t32)
+            - T::fused(-k(0.02), t35, k(0.03) * t30);
+        let t39 = T::fused(
+            k(2.0) * (t19 - t18),
+            t38,
+            T::fused(-(k(2.0) * (t4 + t3)), t34, t16 * t37),
+        );
+        let t40 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(bob_e3, bob_e3, t0)),
+            t38,
+            T::fused(k(2.0) * (t7 - t6), t34, t20 * t37),
+        );
+        *out = [
+            T::fused(t9, t38, -T::fused(-t2, t34, t5 * t37)),
+            t39,
+            -t40,
+            -t35,
+            t30,
+            -t31,
+        ];
     }
     /// Writes λ: 110 operations (46 ±, 64 ×, 0 ÷) and 3 functions.
     fn corrected_multipliers(
@@ -1091,44 +1378,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let bob_dwz = accelerations[5];
         let t0 = k(2.0) * bob_dsx;
         let t1 = k(2.0) * bob_dsy;
-        let t2 = k(19.62) + k(2.0) * bob_dsz;
+        let t2 = T::fused(k(2.0), bob_dsz, k(19.62));
         let t3 = turn0.cos();
         let t4 = bob_e0 * bob_e0;
-        let t5 = k(0.5) - (t4 + bob_e2 * bob_e2);
+        let t5 = k(0.5) - T::fused(bob_e2, bob_e2, t4);
         let t6 = k(2.0) * t5;
         let t7 = turn0.sin();
         let t8 = bob_e0 * bob_e1;
         let t9 = bob_e2 * bob_e3;
         let t10 = t9 + t8;
         let t11 = k(2.0) * t10;
-        let t12 = (t11 * t3 + t6 * t7).atan2(t11 * t7 - t6 * t3);
+        let t12 = T::fused(t6, t7, t11 * t3).atan2(T::fused(-t6, t3, t11 * t7));
         let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(0.5) - (t4 + bob_e1 * bob_e1);
+        let t14 = k(0.5) - T::fused(bob_e1, bob_e1, t4);
         let t15 = k(2.0) * t14;
         let t16 = bob_wy * bob_wy;
         let t17 = k(0.004) * bob_wy;
-        let t18 = bob_wx * (t17 + k(0.002) * bob_wz)
-            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (bob_wz * bob_wz - t16));
-        let t19 = k(0.05) * bob_dwx + k(0.002) * bob_dwy - k(0.004) * bob_dwz
-            - (t18 - t15 * t13);
+        let t18 = T::fused(
+            bob_wx,
+            T::fused(k(0.002), bob_wz, t17),
+            T::fused(
+                k(0.003),
+                T::fused(bob_wz, bob_wz, -t16),
+                k(0.03) * (bob_wy * bob_wz),
+            ),
+        );
+        let t19 = T::fused(
+            -k(0.004),
+            bob_dwz,
+            T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
+        ) - T::fused(-t15, t13, t18);
         let t20 = bob_e0 * bob_e3;
         let t21 = bob_e1 * bob_e2;
         let t22 = t21 - t20;
         let t23 = bob_e0 * bob_e2;
         let t24 = bob_e1 * bob_e3;
         let t25 = t24 + t23;
-        let t26 = t1 * (k(0.04) * (t9 - t8) + k(0.8) * t5)
-            + t0 * (k(0.04) * t25 - k(0.8) * t22);
-        let t27 = t2 * (k(0.04) * (k(0.5) - (t4 + bob_e3 * bob_e3)) + k(0.8) * t10);
+        let t26 = T::fused(
+            t0,
+            T::fused(-k(0.8), t22, k(0.04) * t25),
+            t1 * T::fused(k(0.8), t5, k(0.04) * (t9 - t8)),
+        );
+        let t27 = T::fused(
+            t2,
+            T::fused(k(0.8), t10, k(0.04) * (k(0.5) - T::fused(bob_e3, bob_e3, t4))),
+            -t26,
+        );
         let t28 = k(2.0) * t25;
-        let t29 = bob_wz * (t17 + k(0.003) * bob_wx)
-            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t16 - bob_wx * bob_wx));
-        let t30 = k(0.004) * bob_dwx - k(0.003) * bob_dwy - k(0.03) * bob_dwz
-            - (t29 - t28 * t13);
-        let t31 = t1 * (k(0.06) * t5 - k(0.04) * (t21 + t20))
-            + t0 * (k(0.04) * t14 - k(0.06) * t22);
-        let t32 = t2 * (k(0.06) * t10 + k(0.04) * (t24 - t23)) - t31 - t30;
-        *lambda = [-t0, -t1, -t2, -(t15 * t32 + t28 * (t27 - t26 + t19))];
+        let t29 = T::fused(
+            bob_wz,
+            T::fused(k(0.003), bob_wx, t17),
+            T::fused(
+                -k(0.002),
+                T::fused(-bob_wx, bob_wx, t16),
+                k(0.01) * (bob_wx * bob_wy),
+            ),
+        );
+        let t30 = T::fused(
+            -k(0.03),
+            bob_dwz,
+            T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
+        ) - T::fused(-t28, t13, t29);
+        let t31 = T::fused(
+            t0,
+            T::fused(-k(0.06), t22, k(0.04) * t14),
+            t1 * T::fused(-k(0.04), t21 + t20, k(0.06) * t5),
+        );
+        let t32 = T::fused(t2, T::fused(k(0.04), t24 - t23, k(0.06) * t10), -t31) - t30;
+        *lambda = [-t0, -t1, -t2, -T::fused(t28, t27 + t19, t15 * t32)];
     }
     /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 237 operations (94 ±, 142 ×, 1 ÷) and 3 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
@@ -1142,7 +1459,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let bob_wz = y[12];
         let turn0 = y[14];
         let t0 = bob_e0 * bob_e0;
-        let t1 = k(0.5) - (t0 + bob_e1 * bob_e1);
+        let t1 = k(0.5) - T::fused(bob_e1, bob_e1, t0);
         let t2 = k(2.0) * t1;
         let t3 = bob_e0 * bob_e3;
         let t4 = bob_e1 * bob_e2;
@@ -1152,70 +1469,126 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Universal<T> {
         let t8 = bob_e1 * bob_e3;
         let t9 = t8 + t7;
         let t10 = k(2.0) * t9;
-        let t11 = t10 * bob_wz + (t6 * bob_wy - t2 * bob_wx);
+        let t11 = T::fused(t10, bob_wz, T::fused(-t2, bob_wx, t6 * bob_wy));
         let t12 = t2 * t11;
         let t13 = t10 * t11;
-        let t14 = t11 * (t2 * t13 - t10 * t12) - (bob_wx * t13 + bob_wz * t12);
-        let t15 = t11 * (k(0.5) - t10 * (t10 - k(16.91) * t1));
-        let t16 = k(0.5) - (t0 + bob_e2 * bob_e2);
+        let t14 = T::fused(
+            t11,
+            T::fused(-t10, t12, t2 * t13),
+            -T::fused(bob_wz, t12, bob_wx * t13),
+        );
+        let t15 = t11 * T::fused(-t2, T::fused(k(16.91), t9, t2), k(0.5));
+        let t16 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
         let t17 = k(2.0) * t16;
-        let t18 = k(0.05) * bob_wy - k(7.848) * (t17 * (t10 + k(0.15) * t1))
-            - k(0.04) * (t11 * t15);
-        let t19 = k(0.0032)
-            * (bob_wy * (k(25.0) * t15 - bob_wy * (t10 - k(8.125) * t1)));
-        let t20 = bob_e0 * bob_e1;
-        let t21 = bob_e2 * bob_e3;
-        let t22 = t21 + t20;
-        let t23 = k(2.0) * t22;
-        let t24 = turn0.cos();
-        let t25 = turn0.sin();
-        let t26 = (t23 * t24 + t17 * t25).atan2(t23 * t25 - t17 * t24);
-        let t27 = turn0 + t26;
-        let t28 = k(0.3) - k(0.7848) * t16 - k(1.5) * t27
-            - k(0.5886) * (t23 * (t10 - k(26.666666666666668) * t1));
-        let t29 = k(0.026) * t9 + k(0.0064) * t1;
+        let t18 = T::fused(
+            k(0.04),
+            t11 * t15,
+            T::fused(
+                -k(0.5886),
+                t17 * T::fused(k(26.666666666666668), t9, t2),
+                k(0.05) * bob_wy,
+            ),
+        );
+        let t19 = bob_e0 * bob_e1;
+        let t20 = bob_e2 * bob_e3;
+        let t21 = t20 + t19;
+        let t22 = k(2.0) * t21;
+        let t23 = turn0.cos();
+        let t24 = turn0.sin();
+        let t25 = T::fused(t17, t24, t22 * t23).atan2(T::fused(-t17, t23, t22 * t24));
+        let t26 = turn0 + t25;
+        let t27 = T::fused(
+            k(7.848),
+            t22 * T::fused(-k(0.15), t9, t2),
+            T::fused(-k(1.5), t26, T::fused(-k(0.7848), t16, k(0.3))),
+        );
+        let t28 = T::fused(
+            k(0.013),
+            bob_wy
+                * T::fused(
+                    -bob_wy,
+                    T::fused(-k(0.49230769230769234), t9, t2),
+                    k(6.153846153846154) * t15,
+                ),
+            t27,
+        );
+        let t29 = T::fused(k(0.0064), t1, k(0.026) * t9);
         let t30 = k(2.6191723415400734) * t29;
-        let t31 = t29 * t30
-            - (k(0.3708) - k(0.3382) * (t10 * (t10 + k(0.23654642223536368) * t1)));
-        let t32 = (t30 * t18 - (t28 - t19)) / t31;
-        let t33 = t30 * t32 - k(2.6191723415400734) * t18 + t14;
+        let t31 = T::fused(
+            t29,
+            t30,
+            -T::fused(
+                k(0.3382),
+                t2 * T::fused(-k(0.23654642223536368), t9, t2),
+                k(0.0326),
+            ),
+        );
+        let t32 = T::fused(t30, t18, -t28) / t31;
+        let t33 = T::fused(-k(2.6191723415400734), t18, t30 * t32) + t14;
         let t34 = bob_wx * bob_wy;
-        let t35 = t11 * (t2 * bob_wy) - (t34 + bob_wy * t12) - t10 * t32;
-        let t36 = k(0.03) * bob_wz + k(0.4) * bob_wx;
-        let t37 = k(0.02) * bob_wx + k(0.03) * bob_wy;
-        let t38 = bob_wy * t37 + bob_wz * t36 + (k(0.02) * t35 + k(0.4) * t33);
+        let t35 = T::fused(
+            -t10,
+            t32,
+            T::fused(t11, t2 * bob_wy, -T::fused(bob_wy, t12, t34)),
+        );
+        let t36 = T::fused(k(0.4), bob_wx, k(0.03) * bob_wz);
+        let t37 = T::fused(k(0.03), bob_wy, k(0.02) * bob_wx);
+        let t38 = T::fused(bob_wz, t36, bob_wy * t37)
+            + T::fused(k(0.4), t33, k(0.02) * t35);
         let t39 = bob_wy * bob_wz;
-        let t40 = t11 * (t10 * bob_wy) + (t39 - bob_wy * t13) + t2 * t32;
+        let t40 = T::fused(
+            t2,
+            t32,
+            T::fused(t11, t10 * bob_wy, T::fused(-bob_wy, t13, t39)),
+        );
         let t41 = k(0.03) * t35;
-        let t42 = k(0.4) * bob_wy - k(0.02) * bob_wz;
-        let t43 = bob_wz * t42 - bob_wx * t37 + (t41 + k(0.4) * t40);
-        let t44 = bob_wx * t36 + bob_wy * t42 - (k(0.03) * t33 - k(0.02) * t40);
-        let t45 = t10 * t44 - (t6 * t43 - t2 * t38);
+        let t42 = T::fused(-k(0.02), bob_wz, k(0.4) * bob_wy);
+        let t43 = T::fused(-bob_wx, t37, bob_wz * t42) + T::fused(k(0.4), t40, t41);
+        let t44 = T::fused(bob_wy, t42, bob_wx * t36)
+            - T::fused(-k(0.02), t40, k(0.03) * t33);
+        let t45 = T::fused(t10, t44, -T::fused(-t2, t38, t6 * t43));
         let t46 = t4 + t3;
-        let t47 = t21 - t20;
-        let t48 = k(2.0) * t47 * t44 + (t17 * t43 - k(2.0) * t46 * t38);
+        let t47 = t20 - t19;
+        let t48 = T::fused(k(2.0) * t47, t44, T::fused(-(k(2.0) * t46), t38, t17 * t43));
         let t49 = t8 - t7;
-        let t50 = k(0.5) - (t0 + bob_e3 * bob_e3);
-        let t51 = k(2.0) * t50 * t44 + (t23 * t43 + k(2.0) * t49 * t38);
+        let t50 = k(0.5) - T::fused(bob_e3, bob_e3, t0);
+        let t51 = T::fused(k(2.0) * t50, t44, T::fused(k(2.0) * t49, t38, t22 * t43));
         let t52 = k(2.0) * t45;
         let t53 = k(2.0) * t48;
-        let t54 = k(19.62) - k(2.0) * t51;
-        let t55 = (k(0.04) * t1 - k(0.06) * t5) * t52
-            + (k(0.06) * t16 - k(0.04) * t46) * t53;
-        let t56 = k(1.5) * (k(0.2) - t27);
+        let t54 = T::fused(-k(2.0), t51, k(19.62));
+        let t55 = T::fused(
+            T::fused(-k(0.04), t46, k(0.06) * t16),
+            t53,
+            T::fused(-k(0.06), t5, k(0.04) * t1) * t52,
+        );
+        let t56 = k(1.5) * (k(0.2) - t26);
         let t57 = bob_wy * bob_wy;
         let t58 = k(0.004) * bob_wy;
-        let t59 = bob_wz * (t58 + k(0.003) * bob_wx)
-            + (k(0.01) * t34 - k(0.002) * (t57 - bob_wx * bob_wx));
-        let t60 = t59 - t10 * t56 - (t41 - (k(0.003) * t33 + k(0.004) * t40));
-        let t61 = t2 * (t60 - (t55 - (k(0.06) * t22 + k(0.04) * t49) * t54));
-        let t62 = (k(0.04) * t9 - k(0.8) * t5) * t52
-            + (k(0.04) * t47 + k(0.8) * t16) * t53;
-        let t63 = bob_wx * (t58 + k(0.002) * bob_wz)
-            + (k(0.03) * t39 + k(0.003) * (bob_wz * bob_wz - t57));
-        let t64 = t63 - t2 * t56 - (k(0.004) * t35 + (k(0.002) * t33 - k(0.05) * t40));
-        let t65 = t10 * (t64 + (t62 - (k(0.04) * t50 + k(0.8) * t22) * t54));
-        *out = [t45, t48, -t51, -t40, t33, -t35, -t52, -t53, -t54, t65 - t61];
+        let t59 = T::fused(
+            bob_wz,
+            T::fused(k(0.003), bob_wx, t58),
+            T::fused(-k(0.002), T::fused(-bob_wx, bob_wx, t57), k(0.01) * t34),
+        );
+        let t60 = T::fused(-t10, t56, t59)
+            - (t41 - T::fused(k(0.004), t40, k(0.003) * t33));
+        let t61 = T::fused(
+            T::fused(k(0.8), t16, k(0.04) * t47),
+            t53,
+            T::fused(-k(0.8), t5, k(0.04) * t9) * t52,
+        );
+        let t62 = T::fused(
+            bob_wx,
+            T::fused(k(0.002), bob_wz, t58),
+            T::fused(k(0.003), T::fused(bob_wz, bob_wz, -t57), k(0.03) * t39),
+        );
+        let t63 = T::fused(-t2, t56, t62)
+            - T::fused(k(0.004), t35, T::fused(-k(0.05), t40, k(0.002) * t33));
+        let t64 = T::fused(
+            -t2,
+            t60 - T::fused(-T::fused(k(0.04), t49, k(0.06) * t21), t54, t55),
+            t10 * (t63 + T::fused(-T::fused(k(0.8), t21, k(0.04) * t50), t54, t61)),
+        );
+        *out = [t45, t48, -t51, -t40, t33, -t35, -t52, -t53, -t54, t64];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
@@ -1246,27 +1619,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
         let bob_dwy = accelerations[4];
         let bob_dwz = accelerations[5];
         let t0 = k(2.0) * bob_dsy;
-        let t1 = k(19.62) + k(2.0) * bob_dsz;
+        let t1 = T::fused(k(2.0), bob_dsz, k(19.62));
         let t2 = k(2.0) * bob_dsx;
         let t3 = turn0.cos();
         let t4 = bob_e0 * bob_e0;
-        let t5 = k(0.5) - (t4 + bob_e2 * bob_e2);
+        let t5 = k(0.5) - T::fused(bob_e2, bob_e2, t4);
         let t6 = k(2.0) * t5;
         let t7 = turn0.sin();
         let t8 = bob_e0 * bob_e1;
         let t9 = bob_e2 * bob_e3;
         let t10 = t9 + t8;
         let t11 = k(2.0) * t10;
-        let t12 = (t11 * t3 + t6 * t7).atan2(t11 * t7 - t6 * t3);
+        let t12 = T::fused(t6, t7, t11 * t3).atan2(T::fused(-t6, t3, t11 * t7));
         let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(0.5) - (t4 + bob_e1 * bob_e1);
+        let t14 = k(0.5) - T::fused(bob_e1, bob_e1, t4);
         let t15 = k(2.0) * t14;
         let t16 = bob_wy * bob_wy;
         let t17 = k(0.004) * bob_wy;
-        let t18 = bob_wx * (t17 + k(0.002) * bob_wz)
-            + (k(0.03) * (bob_wy * bob_wz) + k(0.003) * (bob_wz * bob_wz - t16));
-        let t19 = k(0.05) * bob_dwx + k(0.002) * bob_dwy - k(0.004) * bob_dwz
-            - (t18 - t15 * t13);
+        let t18 = T::fused(
+            bob_wx,
+            T::fused(k(0.002), bob_wz, t17),
+            T::fused(
+                k(0.003),
+                T::fused(bob_wz, bob_wz, -t16),
+                k(0.03) * (bob_wy * bob_wz),
+            ),
+        );
+        let t19 = T::fused(
+            -k(0.004),
+            bob_dwz,
+            T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
+        ) - T::fused(-t15, t13, t18);
         let t20 = bob_e0 * bob_e3;
         let t21 = bob_e1 * bob_e2;
         let t22 = t21 - t20;
@@ -1274,39 +1657,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
         let t24 = bob_e1 * bob_e3;
         let t25 = t24 + t23;
         let t26 = t9 - t8;
-        let t27 = t0 * (k(0.04) * t26 + k(0.8) * t5)
-            + t2 * (k(0.04) * t25 - k(0.8) * t22);
-        let t28 = k(0.5) - (t4 + bob_e3 * bob_e3);
-        let t29 = t1 * (k(0.04) * t28 + k(0.8) * t10) - t27;
+        let t27 = T::fused(
+            t2,
+            T::fused(-k(0.8), t22, k(0.04) * t25),
+            t0 * T::fused(k(0.8), t5, k(0.04) * t26),
+        );
+        let t28 = k(0.5) - T::fused(bob_e3, bob_e3, t4);
+        let t29 = T::fused(t1, T::fused(k(0.8), t10, k(0.04) * t28), -t27);
         let t30 = k(2.0) * t25;
-        let t31 = k(1.0) / (t15 * t15 + t30 * t30);
-        let t32 = bob_wz * (t17 + k(0.003) * bob_wx)
-            + (k(0.01) * (bob_wx * bob_wy) - k(0.002) * (t16 - bob_wx * bob_wx));
-        let t33 = k(0.004) * bob_dwx - k(0.003) * bob_dwy - k(0.03) * bob_dwz
-            - (t32 - t30 * t13);
+        let t31 = k(1.0) / T::fused(t30, t30, t15 * t15);
+        let t32 = T::fused(
+            bob_wz,
+            T::fused(k(0.003), bob_wx, t17),
+            T::fused(
+                -k(0.002),
+                T::fused(-bob_wx, bob_wx, t16),
+                k(0.01) * (bob_wx * bob_wy),
+            ),
+        );
+        let t33 = T::fused(
+            -k(0.03),
+            bob_dwz,
+            T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
+        ) - T::fused(-t30, t13, t32);
         let t34 = t21 + t20;
-        let t35 = t0 * (k(0.06) * t5 - k(0.04) * t34)
-            + t2 * (k(0.04) * t14 - k(0.06) * t22);
+        let t35 = T::fused(
+            t2,
+            T::fused(-k(0.06), t22, k(0.04) * t14),
+            t0 * T::fused(-k(0.04), t34, k(0.06) * t5),
+        );
         let t36 = t24 - t23;
-        let t37 = t1 * (k(0.06) * t10 + k(0.04) * t36) - t35;
-        let t38 = t15 * t31 * (t37 - t33) + t30 * t31 * (t29 + t19);
-        let t39 = t29 - t30 * t38;
-        let t40 = t0 * (k(0.06) * t26 + k(0.8) * t34)
-            + t2 * (k(0.06) * t25 - k(0.8) * t14);
-        let t41 = t1 * (k(0.06) * t28 - k(0.8) * t36) - t40;
-        let t42 = t37 - t15 * t38;
-        let t43 = k(2.0) * t26 * t42 - (t6 * t41 - k(2.0) * t34 * t39);
-        let t44 = bob_rz - (bob_rz - (k(0.8) * t28 - (k(0.04) * t10 - k(0.06) * t36)));
-        let t45 = bob_rx - (bob_rx + (k(0.8) * t25 + (k(0.04) * t22 + k(0.06) * t14)));
-        let t46 = k(2.0) * t28 * t42 - (t11 * t41 + k(2.0) * t36 * t39);
-        let t47 = bob_ry - (bob_ry + (k(0.8) * t26 - (k(0.04) * t5 + k(0.06) * t34)));
-        let t48 = t0 * t44 - t1 * t47 + (t30 * t42 + (k(2.0) * t22 * t41 - t15 * t39));
+        let t37 = T::fused(t1, T::fused(k(0.04), t36, k(0.06) * t10), -t35);
+        let t38 = T::fused(t30 * t31, t29 + t19, t15 * t31 * (t37 - t33));
+        let t39 = T::fused(-t30, t38, t29);
+        let t40 = T::fused(
+            t2,
+            T::fused(-k(0.8), t14, k(0.06) * t25),
+            t0 * T::fused(k(0.8), t34, k(0.06) * t26),
+        );
+        let t41 = T::fused(t1, T::fused(-k(0.8), t36, k(0.06) * t28), -t40);
+        let t42 = T::fused(-t15, t38, t37);
+        let t43 = T::fused(k(2.0) * t26, t42, -T::fused(-(k(2.0) * t34), t39, t6 * t41));
+        let t44 = bob_rz
+            - (bob_rz - T::fused(k(0.8), t28, -T::fused(-k(0.06), t36, k(0.04) * t10)));
+        let t45 = bob_rx
+            - (bob_rx + T::fused(k(0.8), t25, T::fused(k(0.06), t14, k(0.04) * t22)));
+        let t46 = T::fused(k(2.0) * t28, t42, -T::fused(k(2.0) * t36, t39, t11 * t41));
+        let t47 = bob_ry
+            - (bob_ry + T::fused(k(0.8), t26, -T::fused(k(0.06), t34, k(0.04) * t5)));
+        let t48 = T::fused(-t1, t47, t0 * t44)
+            + T::fused(t30, t42, T::fused(-t15, t39, k(2.0) * t22 * t41));
         *out = [
             t0,
             t1,
             t2,
-            -(t1 * t45 - t2 * t44 + t43),
-            t46 - (t2 * t47 - t0 * t45),
+            -(T::fused(-t2, t44, t1 * t45) + t43),
+            t46 - T::fused(-t0, t45, t2 * t47),
             -t48,
         ];
     }

@@ -150,20 +150,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Weld<T> {
             inner_sy,
             inner_sz,
             -(k(0.5)
-                * (inner_e1 * inner_wx + inner_e2 * inner_wy + inner_e3 * inner_wz)),
-            k(0.5) * (inner_e0 * inner_wx - inner_e3 * inner_wy + inner_e2 * inner_wz),
-            k(0.5) * (inner_e3 * inner_wx + inner_e0 * inner_wy - inner_e1 * inner_wz),
+                * T::fused(
+                    inner_e3,
+                    inner_wz,
+                    T::fused(inner_e2, inner_wy, inner_e1 * inner_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_e2,
+                    inner_wz,
+                    T::fused(-inner_e3, inner_wy, inner_e0 * inner_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_e1,
+                    inner_wz,
+                    T::fused(inner_e0, inner_wy, inner_e3 * inner_wx),
+                ),
             -(k(0.5)
-                * (inner_e2 * inner_wx - inner_e1 * inner_wy - inner_e0 * inner_wz)),
+                * T::fused(
+                    -inner_e0,
+                    inner_wz,
+                    T::fused(-inner_e1, inner_wy, inner_e2 * inner_wx),
+                )),
             outer_sx,
             outer_sy,
             outer_sz,
             -(k(0.5)
-                * (outer_e1 * outer_wx + outer_e2 * outer_wy + outer_e3 * outer_wz)),
-            k(0.5) * (outer_e0 * outer_wx - outer_e3 * outer_wy + outer_e2 * outer_wz),
-            k(0.5) * (outer_e3 * outer_wx + outer_e0 * outer_wy - outer_e1 * outer_wz),
+                * T::fused(
+                    outer_e3,
+                    outer_wz,
+                    T::fused(outer_e2, outer_wy, outer_e1 * outer_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_e2,
+                    outer_wz,
+                    T::fused(-outer_e3, outer_wy, outer_e0 * outer_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_e1,
+                    outer_wz,
+                    T::fused(outer_e0, outer_wy, outer_e3 * outer_wx),
+                ),
             -(k(0.5)
-                * (outer_e2 * outer_wx - outer_e1 * outer_wy - outer_e0 * outer_wz)),
+                * T::fused(
+                    -outer_e0,
+                    outer_wz,
+                    T::fused(-outer_e1, outer_wy, outer_e2 * outer_wx),
+                )),
             accelerations[0],
             accelerations[1],
             accelerations[2],
@@ -192,6 +228,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 3]
     }
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 48 operations (16 ±, 32 ×, 0 ÷).
+    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        let mut accelerations = gyro_sim::Equations::velocities(self);
+        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e1 = y[4];
+        let inner_e2 = y[5];
+        let inner_e3 = y[6];
+        let outer_e0 = y[10];
+        let outer_e1 = y[11];
+        let outer_e2 = y[12];
+        let outer_e3 = y[13];
+        let inner_sx = y[14];
+        let inner_sy = y[15];
+        let inner_sz = y[16];
+        let outer_sx = y[20];
+        let outer_sy = y[21];
+        let outer_sz = y[22];
+        let inner_wx = y[17];
+        let inner_wy = y[18];
+        let inner_wz = y[19];
+        let outer_wx = y[23];
+        let outer_wy = y[24];
+        let outer_wz = y[25];
+        *dy = [
+            inner_sx,
+            inner_sy,
+            inner_sz,
+            -(k(0.5)
+                * T::fused(
+                    inner_e3,
+                    inner_wz,
+                    T::fused(inner_e2, inner_wy, inner_e1 * inner_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    inner_e2,
+                    inner_wz,
+                    T::fused(-inner_e3, inner_wy, inner_e0 * inner_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -inner_e1,
+                    inner_wz,
+                    T::fused(inner_e0, inner_wy, inner_e3 * inner_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -inner_e0,
+                    inner_wz,
+                    T::fused(-inner_e1, inner_wy, inner_e2 * inner_wx),
+                )),
+            outer_sx,
+            outer_sy,
+            outer_sz,
+            -(k(0.5)
+                * T::fused(
+                    outer_e3,
+                    outer_wz,
+                    T::fused(outer_e2, outer_wy, outer_e1 * outer_wx),
+                )),
+            k(0.5)
+                * T::fused(
+                    outer_e2,
+                    outer_wz,
+                    T::fused(-outer_e3, outer_wy, outer_e0 * outer_wx),
+                ),
+            k(0.5)
+                * T::fused(
+                    -outer_e1,
+                    outer_wz,
+                    T::fused(outer_e0, outer_wy, outer_e3 * outer_wx),
+                ),
+            -(k(0.5)
+                * T::fused(
+                    -outer_e0,
+                    outer_wz,
+                    T::fused(-outer_e1, outer_wy, outer_e2 * outer_wx),
+                )),
+            accelerations[0],
+            accelerations[1],
+            accelerations[2],
+            accelerations[3],
+            accelerations[4],
+            accelerations[5],
+            accelerations[6],
+            accelerations[7],
+            accelerations[8],
+            accelerations[9],
+            accelerations[10],
+            accelerations[11],
+        ];
+    }
     /// Writes Φ: 95 operations (46 ±, 49 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
@@ -210,7 +340,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let outer_e2 = y[12];
         let outer_e3 = y[13];
         let t0 = inner_e0 * inner_e0;
-        let t1 = t0 + inner_e1 * inner_e1;
+        let t1 = T::fused(inner_e1, inner_e1, t0);
         let t2 = k(0.5) - t1;
         let t3 = k(0.5) * t2;
         let t4 = inner_e0 * inner_e3;
@@ -239,22 +369,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let t27 = k(2.0) * (t17 + t16);
         let t28 = k(2.0) * t10;
         let t29 = inner_e2 * inner_e2;
-        let t30 = k(2.0) * (k(0.5) - (t0 + t29)) * t25 + k(2.0) * (t5 - t4) * t22;
-        let t31 = t19 + outer_e1 * outer_e1;
-        let t32 = t26 * (k(2.0) * (t21 + t20)) + t23 * (k(2.0) * (k(0.5) - t31));
+        let t30 = T::fused(
+            k(2.0) * (t5 - t4),
+            t22,
+            k(2.0) * (k(0.5) - (t0 + t29)) * t25,
+        );
+        let t31 = T::fused(outer_e1, outer_e1, t19);
+        let t32 = T::fused(t23, k(2.0) * (k(0.5) - t31), t26 * (k(2.0) * (t21 + t20)));
         *out = [
             inner_rx + t3,
             inner_ry - t7,
             inner_rz - t11,
             -(k(2.0) * (t13 - t12)),
             k(2.0) * (t9 + t8),
-            outer_rx - k(0.5) * (t15 + t14) - (inner_rx - t3),
-            outer_ry - k(0.5) * (t17 - t16) - (inner_ry + t7),
-            outer_rz + k(0.5) * (k(0.5) - (t19 + t18)) - (inner_rz + t11),
-            t28 * t27 - (t26 * t25 + t23 * t22),
-            k(2.0) * (t13 + t12) * t27 + t30,
-            t28 * (k(2.0) * (t15 - t14)) + t32,
-            inner_e3 * inner_e3 + (t1 + t29) - k(1.0),
+            T::fused(-k(0.5), t15 + t14, outer_rx) - (inner_rx - t3),
+            T::fused(-k(0.5), t17 - t16, outer_ry) - (inner_ry + t7),
+            T::fused(k(0.5), k(0.5) - (t19 + t18), outer_rz) - (inner_rz + t11),
+            T::fused(t28, t27, -T::fused(t23, t22, t26 * t25)),
+            T::fused(k(2.0) * (t13 + t12), t27, t30),
+            T::fused(t28, k(2.0) * (t15 - t14), t32),
+            T::fused(inner_e3, inner_e3, t1 + t29) - k(1.0),
             t18 + (t31 + t24) - k(1.0),
         ];
     }
@@ -287,29 +421,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let t3 = inner_e0 * inner_e3;
         let t4 = inner_e1 * inner_e2;
         let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(0.25) * (t5 * inner_wz - t2 * inner_wy);
+        let t6 = k(0.25) * T::fused(-t2, inner_wy, t5 * inner_wz);
         let t7 = inner_e0 * inner_e1;
         let t8 = inner_e2 * inner_e3;
         let t9 = k(2.0) * (t8 - t7);
         let t10 = inner_e0 * inner_e0;
-        let t11 = k(2.0) * (k(0.5) - (t10 + inner_e2 * inner_e2));
-        let t12 = k(0.25) * (t11 * inner_wz + t9 * inner_wy);
-        let t13 = k(2.0) * (k(0.5) - (t10 + inner_e3 * inner_e3));
+        let t11 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t10));
+        let t12 = k(0.25) * T::fused(t9, inner_wy, t11 * inner_wz);
+        let t13 = k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t10));
         let t14 = k(2.0) * (t8 + t7);
-        let t15 = k(0.25) * (t14 * inner_wz + t13 * inner_wy);
+        let t15 = k(0.25) * T::fused(t13, inner_wy, t14 * inner_wz);
         let t16 = k(2.0) * (t4 + t3);
-        let t17 = k(2.0) * (k(0.5) - (t10 + inner_e1 * inner_e1));
+        let t17 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t10));
         let t18 = outer_e0 * outer_e0;
-        let t19 = k(2.0) * (k(0.5) - (t18 + outer_e1 * outer_e1));
+        let t19 = k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t18));
         let t20 = outer_e0 * outer_e3;
         let t21 = outer_e1 * outer_e2;
         let t22 = k(2.0) * (t21 - t20);
         let t23 = inner_sx + t6
-            - (outer_sx + k(0.25) * (t22 * outer_wx + t19 * outer_wy));
+            - T::fused(k(0.25), T::fused(t19, outer_wy, t22 * outer_wx), outer_sx);
         let t24 = k(2.0) * (t21 + t20);
-        let t25 = k(2.0) * (k(0.5) - (t18 + outer_e2 * outer_e2));
+        let t25 = k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t18));
         let t26 = inner_sy - t12
-            - (outer_sy - k(0.25) * (t25 * outer_wx + t24 * outer_wy));
+            - T::fused(-k(0.25), T::fused(t24, outer_wy, t25 * outer_wx), outer_sy);
         let t27 = outer_e0 * outer_e2;
         let t28 = outer_e1 * outer_e3;
         let t29 = k(2.0) * (t28 - t27);
@@ -317,31 +451,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let t31 = outer_e2 * outer_e3;
         let t32 = k(2.0) * (t31 + t30);
         let t33 = inner_sz + t15
-            - (outer_sz + k(0.25) * (t32 * outer_wx - t29 * outer_wy));
-        let t34 = t13 * t32 + (t9 * t25 - t2 * t22);
-        let t35 = inner_wz * (t14 * t32 + (t11 * t25 + t5 * t22)) + inner_wy * t34;
+            - T::fused(k(0.25), T::fused(-t29, outer_wy, t32 * outer_wx), outer_sz);
+        let t34 = T::fused(t13, t32, T::fused(-t2, t22, t9 * t25));
+        let t35 = T::fused(
+            inner_wy,
+            t34,
+            inner_wz * T::fused(t14, t32, T::fused(t5, t22, t11 * t25)),
+        );
         let t36 = k(2.0) * (t1 - t0);
         let t37 = k(2.0) * (t28 + t27);
         let t38 = k(2.0) * (t31 - t30);
-        let t39 = k(2.0) * (k(0.5) - (t18 + outer_e3 * outer_e3));
-        let t40 = t36 * t39 - (t16 * t38 - t17 * t37);
-        let t41 = outer_wx * t40 + outer_wz * (t36 * t29 + (t16 * t24 + t17 * t19));
-        let t42 = t36 * t32 - (t16 * t25 + t17 * t22);
-        let t43 = t14 * t29 - (t11 * t24 + t5 * t19);
-        let t44 = outer_wx * (t14 * t39 + (t11 * t38 - t5 * t37)) + outer_wz * t43;
-        let t45 = inner_wz * t43 + inner_wy * (t13 * t29 - (t9 * t24 - t2 * t19));
+        let t39 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t18));
+        let t40 = T::fused(t36, t39, -T::fused(-t17, t37, t16 * t38));
+        let t41 = T::fused(
+            outer_wz,
+            T::fused(t36, t29, T::fused(t17, t19, t16 * t24)),
+            outer_wx * t40,
+        );
+        let t42 = T::fused(t36, t32, -T::fused(t17, t22, t16 * t25));
+        let t43 = T::fused(t14, t29, -T::fused(t5, t19, t11 * t24));
+        let t44 = T::fused(
+            outer_wz,
+            t43,
+            outer_wx * T::fused(t14, t39, T::fused(-t5, t37, t11 * t38)),
+        );
+        let t45 = T::fused(
+            inner_wy,
+            T::fused(t13, t29, -T::fused(-t2, t19, t9 * t24)),
+            inner_wz * t43,
+        );
         *out = [
             inner_sx - t6,
             inner_sy + t12,
             inner_sz - t15,
-            -(t11 * inner_wx + t16 * inner_wy),
-            -(t5 * inner_wx + t17 * inner_wy),
+            -T::fused(t16, inner_wy, t11 * inner_wx),
+            -T::fused(t17, inner_wy, t5 * inner_wx),
             -t23,
             -t26,
             -t33,
             t35 - t41,
-            -(t44 + (inner_wz * t42 + inner_wx * t34)),
-            outer_wy * t40 + outer_wz * t42 + t45,
+            -(t44 + T::fused(inner_wx, t34, inner_wz * t42)),
+            T::fused(outer_wz, t42, outer_wy * t40) + t45,
         ];
     }
     /// Kinetic and potential energy: 34 operations (12 ±, 22 ×, 0 ÷).
@@ -361,14 +511,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let outer_wx = y[23];
         let outer_wy = y[24];
         let outer_wz = y[25];
-        let t0 = outer_wx * (k(0.0125) * outer_wx) + outer_wy * (k(0.0125) * outer_wy)
-            + outer_wz * (k(5e-5) * outer_wz);
-        let t1 = t0
-            + k(0.6) * (outer_sx * outer_sx + outer_sy * outer_sy + outer_sz * outer_sz);
-        let t2 = inner_wx * (k(5e-5) * inner_wx) + inner_wy * (k(0.0125) * inner_wy)
-            + inner_wz * (k(0.0125) * inner_wz);
-        let t3 = t2
-            + k(0.6) * (inner_sx * inner_sx + inner_sy * inner_sy + inner_sz * inner_sz);
+        let t0 = T::fused(
+            outer_wz,
+            k(5e-5) * outer_wz,
+            T::fused(outer_wy, k(0.0125) * outer_wy, outer_wx * (k(0.0125) * outer_wx)),
+        );
+        let t1 = T::fused(
+            k(0.6),
+            T::fused(
+                outer_sz,
+                outer_sz,
+                T::fused(outer_sy, outer_sy, outer_sx * outer_sx),
+            ),
+            t0,
+        );
+        let t2 = T::fused(
+            inner_wz,
+            k(0.0125) * inner_wz,
+            T::fused(inner_wy, k(0.0125) * inner_wy, inner_wx * (k(5e-5) * inner_wx)),
+        );
+        let t3 = T::fused(
+            k(0.6),
+            T::fused(
+                inner_sz,
+                inner_sz,
+                T::fused(inner_sy, inner_sy, inner_sx * inner_sx),
+            ),
+            t2,
+        );
         gyro_sim::Energy {
             kinetic: k(0.5) * (t3 + t1),
             potential: k(5.886) * (inner_ry + outer_ry),
@@ -382,10 +552,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         let inner_e2 = y[5];
         let inner_e3 = y[6];
         let inner_wz = y[19];
-        let t0 = inner_e0 * inner_e0 + inner_e1 * inner_e1;
-        let t1 = k(2.0) * (k(0.5) - t0)
-            - (k(1.0) - (inner_e3 * inner_e3 + (t0 + inner_e2 * inner_e2)));
-        *out = [-t1, -(k(2.0) * (inner_e1 * inner_e2 + inner_e0 * inner_e3)), inner_wz];
+        let t0 = T::fused(inner_e1, inner_e1, inner_e0 * inner_e0);
+        let t1 = T::fused(
+            k(2.0),
+            k(0.5) - t0,
+            -(k(1.0) - T::fused(inner_e3, inner_e3, T::fused(inner_e2, inner_e2, t0))),
+        );
+        *out = [
+            -t1,
+            -(k(2.0) * T::fused(inner_e0, inner_e3, inner_e1 * inner_e2)),
+            inner_wz,
+        ];
     }
     fn n_bodies(&self) -> usize {
         2
@@ -485,32 +662,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Weld<T> {
         T::constant(0.0)
     }
 }
-impl<T: gyro_sim::Scalar> Weld<T> {
+impl<T: gyro_sim::Scalar> gyro_sim::Charted for Weld<T> {
+    type Vectors = [[T; 4]; 1];
     /// The four-vectors whose largest components are the special Euler parameters: 0 operations (0 ±, 0 ×, 0 ÷).
-    fn chart_vectors(&self, y: &[T; 26]) -> [[T; 4]; 1] {
+    fn chart_vectors(&self, y: &Self::State) -> Self::Vectors {
         let inner_e0 = y[3];
         let inner_e1 = y[4];
         let inner_e2 = y[5];
         let inner_e3 = y[6];
         [[-inner_e3, inner_e2, -inner_e1, inner_e0]]
     }
-}
-impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
-    type Independent = gyro_sim::charts::Charts<1>;
-    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
-        gyro_sim::charts::best(&self.chart_vectors(y))
-    }
-    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
-        gyro_sim::charts::follow(&self.chart_vectors(y), choice)
-    }
     /// One Newton step of the dependent positions: 296 operations (107 ±, 187 ×, 2 ÷).
-    fn newton_step(
-        &self,
-        _t: T,
-        choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
-        let charts = gyro_sim::charts::one_hot::<T, _>(choice);
+    fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let inner_e0 = y[3];
         let inner_e1 = y[4];
@@ -524,8 +687,15 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         let chart0_1 = charts[0][1];
         let chart0_2 = charts[0][2];
         let chart0_3 = charts[0][3];
-        let t0 = inner_e3 * inner_e3
-            + (inner_e0 * inner_e0 + inner_e1 * inner_e1 + inner_e2 * inner_e2);
+        let t0 = T::fused(
+            inner_e3,
+            inner_e3,
+            T::fused(
+                inner_e2,
+                inner_e2,
+                T::fused(inner_e1, inner_e1, inner_e0 * inner_e0),
+            ),
+        );
         let t1 = k(0.5) * (t0 - k(3.0));
         let t2 = inner_e2 * t1;
         let t3 = inner_e1 * t1;
@@ -536,36 +706,62 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         let t8 = k(2.0) * (t7 - t4);
         let t9 = k(2.0) * (t7 + t4);
         let t10 = t6 * t6;
-        let t11 = k(2.0) * (k(0.5) - (t10 + t3 * t3));
-        let t12 = k(2.0) * (k(0.5) - (t2 * t2 + t10));
-        let t13 = t12 * t11 + t9 * t8;
-        let t14 = chart0_0 * (inner_e0 + t6) + chart0_1 * (inner_e1 + t3)
-            + chart0_2 * (inner_e2 + t2);
-        let t15 = chart0_0 * t2 + chart0_1 * t5 - chart0_2 * t6 - chart0_3 * t3;
+        let t11 = k(2.0) * (k(0.5) - T::fused(t3, t3, t10));
+        let t12 = k(2.0) * (k(0.5) - T::fused(t2, t2, t10));
+        let t13 = T::fused(t9, t8, t12 * t11);
+        let t14 = T::fused(
+            chart0_2,
+            inner_e2 + t2,
+            T::fused(chart0_1, inner_e1 + t3, chart0_0 * (inner_e0 + t6)),
+        );
+        let t15 = T::fused(
+            -chart0_3,
+            t3,
+            T::fused(-chart0_2, t6, T::fused(chart0_1, t5, chart0_0 * t2)),
+        );
         let t16 = k(0.5) * t15;
-        let t17 = chart0_0 * t3 - chart0_1 * t6 - chart0_2 * t5 + chart0_3 * t2;
+        let t17 = T::fused(
+            chart0_3,
+            t2,
+            T::fused(-chart0_2, t5, T::fused(-chart0_1, t6, chart0_0 * t3)),
+        );
         let t18 = k(0.5) * t17;
-        let t19 = k(2.0) * (t6 * t2 + t3 * t5);
-        let t20 = k(2.0) * (t6 * t3 - t2 * t5);
-        let t21 = t20 * (t8 * t16 + t11 * t18) - t19 * (t9 * t18 - t12 * t16);
-        let t22 = chart0_0 * t5 - chart0_1 * t2 + chart0_2 * t3 - chart0_3 * t6;
+        let t19 = k(2.0) * T::fused(t3, t5, t6 * t2);
+        let t20 = k(2.0) * T::fused(-t2, t5, t6 * t3);
+        let t21 = T::fused(
+            -t19,
+            T::fused(-t12, t16, t9 * t18),
+            t20 * T::fused(t11, t18, t8 * t16),
+        );
+        let t22 = T::fused(
+            -chart0_3,
+            t6,
+            T::fused(chart0_2, t3, T::fused(-chart0_1, t2, chart0_0 * t5)),
+        );
         let t23 = k(0.5) * t22;
         let t24 = k(1.0) / (t23 * t13);
-        let t25 = t24 * (t21 - (t14 + chart0_3 * (inner_e3 + t5)) * t13);
-        let t26 = t24 * (t20 * (t8 * t23) + t19 * (t12 * t23));
-        let t27 = t24 * (t20 * (t11 * t23) - t19 * (t9 * t23));
-        let t28 = t6 - k(0.5) * (t3 * t27 + t2 * t26 - t5 * t25);
+        let t25 = t24 * T::fused(-T::fused(chart0_3, inner_e3 + t5, t14), t13, t21);
+        let t26 = t24 * T::fused(t19, t12 * t23, t20 * (t8 * t23));
+        let t27 = t24 * T::fused(-t19, t9 * t23, t20 * (t11 * t23));
+        let t28 = T::fused(-k(0.5), T::fused(-t5, t25, T::fused(t2, t26, t3 * t27)), t6);
         let t29 = t28 * t28;
-        let t30 = t3 + k(0.5) * (t6 * t27 - t5 * t26 - t2 * t25);
-        let t31 = k(0.5) - (t30 * t30 + t29);
-        let t32 = t2 + k(0.5) * (t5 * t27 + t6 * t26 + t3 * t25);
+        let t30 = T::fused(k(0.5), T::fused(-t2, t25, T::fused(-t5, t26, t6 * t27)), t3);
+        let t31 = k(0.5) - T::fused(t30, t30, t29);
+        let t32 = T::fused(k(0.5), T::fused(t3, t25, T::fused(t6, t26, t5 * t27)), t2);
         let t33 = t30 * t32;
-        let t34 = t5 - k(0.5) * (t2 * t27 - t3 * t26 + t6 * t25);
+        let t34 = T::fused(-k(0.5), T::fused(t6, t25, T::fused(-t3, t26, t2 * t27)), t5);
         let t35 = t28 * t34;
         let t36 = t35 + t33;
-        let t37 = t28 * t32 - t30 * t34;
-        let t38 = outer_e3 * outer_e3
-            + (outer_e0 * outer_e0 + outer_e1 * outer_e1 + outer_e2 * outer_e2);
+        let t37 = T::fused(-t30, t34, t28 * t32);
+        let t38 = T::fused(
+            outer_e3,
+            outer_e3,
+            T::fused(
+                outer_e2,
+                outer_e2,
+                T::fused(outer_e1, outer_e1, outer_e0 * outer_e0),
+            ),
+        );
         let t39 = k(0.5) * (t38 - k(3.0));
         let t40 = outer_e3 * t39;
         let t41 = outer_e1 * t39;
@@ -580,35 +776,51 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         let t50 = k(2.0) * (t49 - t48);
         let t51 = k(2.0) * t36;
         let t52 = t44 * t44;
-        let t53 = k(2.0) * (k(0.5) - (t40 * t40 + t52));
+        let t53 = k(2.0) * (k(0.5) - T::fused(t40, t40, t52));
         let t54 = k(2.0) * t37;
-        let t55 = t54 * t53 - (t51 * t50 + t47 * t46);
+        let t55 = T::fused(t54, t53, -T::fused(t47, t46, t51 * t50));
         let t56 = k(2.0) * (t35 - t33);
         let t57 = t41 * t43;
         let t58 = t44 * t40;
         let t59 = k(2.0) * (t58 - t57);
-        let t60 = k(2.0) * (k(0.5) - (t29 + t32 * t32));
-        let t61 = k(2.0) * (k(0.5) - (t52 + t43 * t43));
-        let t62 = k(2.0) * (t28 * t30 + t32 * t34);
+        let t60 = k(2.0) * (k(0.5) - T::fused(t32, t32, t29));
+        let t61 = k(2.0) * (k(0.5) - T::fused(t43, t43, t52));
+        let t62 = k(2.0) * T::fused(t32, t34, t28 * t30);
         let t63 = k(2.0) * (t49 + t48);
-        let t64 = t63 * t62 + (t61 * t60 + t59 * t56);
-        let t65 = t53 * t62 - (t50 * t60 - t46 * t56);
-        let t66 = t54 * t63 + (t51 * t61 - t47 * t59);
-        let t67 = k(2.0) * (k(0.5) - (t52 + t41 * t41));
+        let t64 = T::fused(t63, t62, T::fused(t59, t56, t61 * t60));
+        let t65 = T::fused(t53, t62, -T::fused(-t46, t56, t50 * t60));
+        let t66 = T::fused(t54, t63, T::fused(-t47, t59, t51 * t61));
+        let t67 = k(2.0) * (k(0.5) - T::fused(t41, t41, t52));
         let t68 = k(2.0) * (t58 + t57);
         let t69 = k(2.0) * (t45 - t42);
-        let t70 = t54 * t69 + (t51 * t68 + t47 * t67);
-        let t71 = t55 * (t69 * t62 + (t68 * t60 - t67 * t56));
-        let t72 = t71 - t70 * t65;
+        let t70 = T::fused(t54, t69, T::fused(t47, t67, t51 * t68));
+        let t71 = t55 * T::fused(t69, t62, T::fused(-t67, t56, t68 * t60));
+        let t72 = T::fused(-t70, t65, t71);
         let t73 = k(1.0) / (t55 * t72);
-        let t74 = t73 * (t66 * (t55 * t65) - t64 * (t55 * t55));
-        let t75 = t66 * (t66 * t65) - t64 * (t55 * t66) - t70 * t72;
+        let t74 = t73 * T::fused(-t64, t55 * t55, t66 * (t55 * t65));
+        let t75 = T::fused(-t70, t72, T::fused(-t64, t55 * t66, t66 * (t66 * t65)));
         let t76 = t73 * t75;
-        let t77 = t73 * (t66 * t71 - t64 * (t55 * t70));
-        let t78 = t40 - k(0.5) * (t43 * t77 + t41 * t76 - t44 * t74);
-        let t79 = t41 + k(0.5) * (t44 * t77 + t40 * t76 + t43 * t74);
-        let t80 = t43 + k(0.5) * (t40 * t77 - t44 * t76 - t41 * t74);
-        let t81 = t44 - k(0.5) * (t41 * t77 - t43 * t76 + t40 * t74);
+        let t77 = t73 * T::fused(-t64, t55 * t70, t66 * t71);
+        let t78 = T::fused(
+            -k(0.5),
+            T::fused(-t44, t74, T::fused(t41, t76, t43 * t77)),
+            t40,
+        );
+        let t79 = T::fused(
+            k(0.5),
+            T::fused(t43, t74, T::fused(t40, t76, t44 * t77)),
+            t41,
+        );
+        let t80 = T::fused(
+            k(0.5),
+            T::fused(-t41, t74, T::fused(-t44, t76, t40 * t77)),
+            t43,
+        );
+        let t81 = T::fused(
+            -k(0.5),
+            T::fused(t40, t74, T::fused(-t43, t76, t41 * t77)),
+            t44,
+        );
         y[0] = -(k(0.5) * t31);
         y[1] = k(0.5) * t36;
         y[2] = -(k(0.5) * t37);
@@ -616,22 +828,16 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         y[4] = -t30;
         y[5] = -t32;
         y[6] = -t34;
-        y[7] = k(0.5) * (t81 * t80 + t79 * t78) - t31;
-        y[8] = t36 - k(0.5) * (t81 * t79 - t80 * t78);
-        y[9] = -(t37 + k(0.5) * (k(0.5) - (t78 * t78 + t81 * t81)));
+        y[7] = T::fused(k(0.5), T::fused(t79, t78, t81 * t80), -t31);
+        y[8] = T::fused(-k(0.5), T::fused(-t80, t78, t81 * t79), t36);
+        y[9] = -T::fused(k(0.5), k(0.5) - T::fused(t81, t81, t78 * t78), t37);
         y[10] = -t81;
         y[11] = -t79;
         y[12] = -t80;
         y[13] = -t78;
-        Ok(())
     }
     /// Solves eq. (19) for the dependent velocities: 206 operations (73 ±, 131 ×, 2 ÷).
-    fn solve_velocities(
-        &self,
-        _t: T,
-        _choice: &Self::Independent,
-        y: &mut Self::State,
-    ) -> ::core::result::Result<(), gyro_sim::Error> {
+    fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let inner_e0 = y[3];
         let inner_e1 = y[4];
@@ -651,129 +857,128 @@ impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
         let t1 = inner_e1 * inner_e2;
         let t2 = k(2.0) * (t1 - t0);
         let t3 = inner_e0 * inner_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_e2 * inner_e2));
-        let t5 = k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3));
         let t6 = k(2.0) * (t1 + t0);
-        let t7 = k(1.0) / (t2 * t6 - t5 * t4);
-        let t8 = t2 * inner_wx + t5 * inner_wy;
-        let t9 = t4 * inner_wx + t6 * inner_wy;
-        let t10 = inner_wy - t9 * (t2 * t7) + t8 * (t4 * t7);
+        let t7 = k(1.0) / T::fused(-t5, t4, t2 * t6);
+        let t8 = T::fused(t5, inner_wy, t2 * inner_wx);
+        let t9 = T::fused(t6, inner_wy, t4 * inner_wx);
+        let t10 = T::fused(t8, t4 * t7, T::fused(-t9, t2 * t7, inner_wy));
         let t11 = inner_e0 * inner_e2;
         let t12 = inner_e1 * inner_e3;
         let t13 = k(2.0) * (t12 + t11);
-        let t14 = t13 * t10 - t2 * inner_wz;
+        let t14 = T::fused(-t2, inner_wz, t13 * t10);
         let t15 = inner_e0 * inner_e1;
         let t16 = inner_e2 * inner_e3;
         let t17 = k(2.0) * (t16 - t15);
-        let t18 = t17 * t10 + t4 * inner_wz;
+        let t18 = T::fused(t4, inner_wz, t17 * t10);
         let t19 = k(2.0) * (t16 + t15);
-        let t20 = k(2.0) * (k(0.5) - (t3 + inner_e3 * inner_e3));
-        let t21 = t20 * t10 + t19 * inner_wz;
-        let t22 = inner_wx + t9 * (t5 * t7) - t8 * (t6 * t7);
+        let t20 = k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t3));
+        let t21 = T::fused(t19, inner_wz, t20 * t10);
+        let t22 = T::fused(-t8, t6 * t7, T::fused(t9, t5 * t7, inner_wx));
         let t23 = outer_e0 * outer_e0;
-        let t24 = k(2.0) * (k(0.5) - (t23 + outer_e1 * outer_e1));
+        let t24 = k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t23));
         let t25 = outer_e0 * outer_e3;
         let t26 = outer_e1 * outer_e2;
         let t27 = k(2.0) * (t26 + t25);
         let t28 = outer_e0 * outer_e2;
         let t29 = outer_e1 * outer_e3;
         let t30 = k(2.0) * (t29 - t28);
-        let t31 = t19 * t30 - (t4 * t27 + t2 * t24);
+        let t31 = T::fused(t19, t30, -T::fused(t2, t24, t4 * t27));
         let t32 = k(2.0) * (t29 + t28);
         let t33 = outer_e0 * outer_e1;
         let t34 = outer_e2 * outer_e3;
         let t35 = k(2.0) * (t34 - t33);
-        let t36 = k(2.0) * (k(0.5) - (t23 + outer_e3 * outer_e3));
+        let t36 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t23));
         let t37 = k(2.0) * (t12 - t11);
-        let t38 = t37 * t36 - (t6 * t35 - t5 * t32);
+        let t38 = T::fused(t37, t36, -T::fused(-t5, t32, t6 * t35));
         let t39 = t38 * t31;
-        let t40 = t19 * t36 + (t4 * t35 - t2 * t32);
-        let t41 = t37 * t30 + (t6 * t27 + t5 * t24);
-        let t42 = t41 * t40 - t39;
+        let t40 = T::fused(t19, t36, T::fused(-t2, t32, t4 * t35));
+        let t41 = T::fused(t37, t30, T::fused(t5, t24, t6 * t27));
+        let t42 = T::fused(t41, t40, -t39);
         let t43 = k(1.0) / (t38 * t42);
         let t44 = k(2.0) * (t26 - t25);
-        let t45 = k(2.0) * (k(0.5) - (t23 + outer_e2 * outer_e2));
+        let t45 = k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t23));
         let t46 = k(2.0) * (t34 + t33);
-        let t47 = t37 * t46 - (t6 * t45 + t5 * t44);
-        let t48 = t10 * (t20 * t30 - (t17 * t27 - t13 * t24)) + inner_wz * t31;
-        let t49 = t20 * t46 + (t17 * t45 - t13 * t44);
-        let t50 = t22 * t49 + inner_wz * t47 + (outer_wx * t40 + outer_wz * t31);
-        let t51 = t10 * t49 + inner_wz * (t19 * t46 + (t4 * t45 + t2 * t44));
-        let t52 = t51 - (outer_wx * t38 + outer_wz * t41);
-        let t53 = outer_wy - t52 * (t43 * (t40 * t47)) - t50 * (t43 * (t38 * t47));
-        let t54 = t53 - (t48 + (outer_wy * t38 + outer_wz * t47)) * (t42 * t43);
-        let t55 = outer_wx - t52 * (t39 * t43) - t50 * (t43 * (t38 * t41));
-        let t56 = outer_wz + t52 * (t43 * (t38 * t40)) + t50 * (t43 * (t38 * t38));
+        let t47 = T::fused(t37, t46, -T::fused(t5, t44, t6 * t45));
+        let t48 = T::fused(
+            inner_wz,
+            t31,
+            t10 * T::fused(t20, t30, -T::fused(-t13, t24, t17 * t27)),
+        );
+        let t49 = T::fused(t20, t46, T::fused(-t13, t44, t17 * t45));
+        let t50 = T::fused(inner_wz, t47, t22 * t49)
+            + T::fused(outer_wz, t31, outer_wx * t40);
+        let t51 = T::fused(
+            inner_wz,
+            T::fused(t19, t46, T::fused(t2, t44, t4 * t45)),
+            t10 * t49,
+        );
+        let t52 = t51 - T::fused(outer_wz, t41, outer_wx * t38);
+        let t53 = T::fused(
+            -t50,
+            t43 * (t38 * t47),
+            T::fused(-t52, t43 * (t40 * t47), outer_wy),
+        );
+        let t54 = T::fused(
+            -(t48 + T::fused(outer_wz, t47, outer_wy * t38)),
+            t42 * t43,
+            t53,
+        );
+        let t55 = T::fused(-t50, t43 * (t38 * t41), T::fused(-t52, t39 * t43, outer_wx));
+        let t56 = T::fused(
+            t50,
+            t43 * (t38 * t38),
+            T::fused(t52, t43 * (t38 * t40), outer_wz),
+        );
         y[14] = -(k(0.25) * t14);
         y[15] = -(k(0.25) * t18);
         y[16] = k(0.25) * t21;
         y[17] = t22;
         y[18] = t10;
-        y[20] = -(k(0.5) * t14 + k(0.25) * (t44 * t55 + t24 * t54));
-        y[21] = k(0.25) * (t45 * t55 + t27 * t54) - k(0.5) * t18;
-        y[22] = k(0.5) * t21 - k(0.25) * (t46 * t55 - t30 * t54);
+        y[20] = -T::fused(k(0.25), T::fused(t24, t54, t44 * t55), k(0.5) * t14);
+        y[21] = T::fused(-k(0.5), t18, k(0.25) * T::fused(t27, t54, t45 * t55));
+        y[22] = T::fused(-k(0.25), T::fused(-t30, t54, t46 * t55), k(0.5) * t21);
         y[23] = t55;
         y[24] = t54;
         y[25] = t56;
+    }
+}
+impl<T: gyro_sim::Real> gyro_sim::Partition for Weld<T> {
+    type Independent = gyro_sim::charts::Charts<1>;
+    fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {
+        gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
+    }
+    fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {
+        gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
+    }
+    fn newton_step(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::newton_step_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
         Ok(())
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 48 operations (16 ±, 32 ×, 0 ÷).
-    fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        let mut accelerations = gyro_sim::Equations::velocities(self);
-        gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
-        let k = T::constant;
-        let inner_e0 = y[3];
-        let inner_e1 = y[4];
-        let inner_e2 = y[5];
-        let inner_e3 = y[6];
-        let outer_e0 = y[10];
-        let outer_e1 = y[11];
-        let outer_e2 = y[12];
-        let outer_e3 = y[13];
-        let inner_sx = y[14];
-        let inner_sy = y[15];
-        let inner_sz = y[16];
-        let outer_sx = y[20];
-        let outer_sy = y[21];
-        let outer_sz = y[22];
-        let inner_wx = y[17];
-        let inner_wy = y[18];
-        let inner_wz = y[19];
-        let outer_wx = y[23];
-        let outer_wy = y[24];
-        let outer_wz = y[25];
-        *dy = [
-            inner_sx,
-            inner_sy,
-            inner_sz,
-            -(k(0.5)
-                * (inner_e1 * inner_wx + inner_e2 * inner_wy + inner_e3 * inner_wz)),
-            k(0.5) * (inner_e0 * inner_wx - inner_e3 * inner_wy + inner_e2 * inner_wz),
-            k(0.5) * (inner_e3 * inner_wx + inner_e0 * inner_wy - inner_e1 * inner_wz),
-            -(k(0.5)
-                * (inner_e2 * inner_wx - inner_e1 * inner_wy - inner_e0 * inner_wz)),
-            outer_sx,
-            outer_sy,
-            outer_sz,
-            -(k(0.5)
-                * (outer_e1 * outer_wx + outer_e2 * outer_wy + outer_e3 * outer_wz)),
-            k(0.5) * (outer_e0 * outer_wx - outer_e3 * outer_wy + outer_e2 * outer_wz),
-            k(0.5) * (outer_e3 * outer_wx + outer_e0 * outer_wy - outer_e1 * outer_wz),
-            -(k(0.5)
-                * (outer_e2 * outer_wx - outer_e1 * outer_wy - outer_e0 * outer_wz)),
-            accelerations[0],
-            accelerations[1],
-            accelerations[2],
-            accelerations[3],
-            accelerations[4],
-            accelerations[5],
-            accelerations[6],
-            accelerations[7],
-            accelerations[8],
-            accelerations[9],
-            accelerations[10],
-            accelerations[11],
-        ];
+    fn solve_velocities(
+        &self,
+        t: T,
+        choice: &Self::Independent,
+        y: &mut Self::State,
+    ) -> ::core::result::Result<(), gyro_sim::Error> {
+        gyro_sim::Charted::solve_velocities_on(
+            self,
+            t,
+            &gyro_sim::charts::one_hot(choice),
+            y,
+        );
+        Ok(())
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
@@ -947,10 +1152,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t9 = k(0.5) * outer_e3;
         let t10 = k(0.5) * outer_e0;
         let t11 = k(0.5) * outer_e1;
-        let t12 = k(2.0) * (outer_e2 * outer_e3 + outer_e0 * outer_e1);
+        let t12 = k(2.0) * T::fused(outer_e0, outer_e1, outer_e2 * outer_e3);
         let t13 = t12 * t7;
         let t14 = outer_e0 * outer_e0;
-        let t15 = k(2.0) * (k(0.5) - (t14 + outer_e2 * outer_e2));
+        let t15 = k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t14));
         let t16 = k(4.0) * inner_e0;
         let t17 = outer_e0 * outer_e3;
         let t18 = outer_e1 * outer_e2;
@@ -960,7 +1165,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t22 = t12 * t5;
         let t23 = t12 * t4;
         let t24 = k(2.0) * outer_e1;
-        let t25 = k(2.0) * (inner_e1 * inner_e3 - inner_e0 * inner_e2);
+        let t25 = k(2.0) * T::fused(-inner_e0, inner_e2, inner_e1 * inner_e3);
         let t26 = t25 * t24;
         let t27 = k(4.0) * outer_e0;
         let t28 = inner_e0 * inner_e3;
@@ -968,19 +1173,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t30 = k(2.0) * (t29 + t28);
         let t31 = k(2.0) * outer_e3;
         let t32 = inner_e0 * inner_e0;
-        let t33 = k(2.0) * (k(0.5) - (t32 + inner_e1 * inner_e1));
+        let t33 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t32));
         let t34 = k(2.0) * outer_e0;
         let t35 = t25 * t34;
         let t36 = k(2.0) * outer_e2;
         let t37 = t25 * t31;
         let t38 = k(4.0) * outer_e2;
         let t39 = t25 * t36;
-        let t40 = k(2.0) * (inner_e2 * inner_e3 + inner_e0 * inner_e1);
-        let t41 = k(2.0) * (k(0.5) - (t32 + inner_e2 * inner_e2));
+        let t40 = k(2.0) * T::fused(inner_e0, inner_e1, inner_e2 * inner_e3);
+        let t41 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t32));
         let t42 = k(2.0) * (t29 - t28);
-        let t43 = k(2.0) * (outer_e1 * outer_e3 - outer_e0 * outer_e2);
+        let t43 = k(2.0) * T::fused(-outer_e0, outer_e2, outer_e1 * outer_e3);
         let t44 = k(2.0) * (t18 + t17);
-        let t45 = k(2.0) * (k(0.5) - (t14 + outer_e1 * outer_e1));
+        let t45 = k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t14));
         *out = [
             k(1.0),
             -inner_e0,
@@ -1029,30 +1234,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
             k(1.0),
             -outer_e0,
             -outer_e3,
-            t19 * t16 - t15 * t6 - t13,
-            t19 * t21 - t15 * t7 + t20,
-            -(t15 * t4 + t22),
-            t23 - t15 * t5,
-            t33 * t31 + t30 * t27 + t26,
-            t35 - t33 * t36,
-            t37 - (t33 * t24 - t30 * t38),
-            t33 * t34 + t39,
-            t23 - (t19 * t6 + t15 * t16),
-            t22 + t19 * t7,
-            t20 + (t19 * t4 - t15 * (k(4.0) * inner_e2)),
-            t13 - t19 * t5,
-            t40 * t24 - (t42 * t31 + t41 * t27),
-            t42 * t36 + t40 * t34,
-            t42 * t24 - t41 * t38 + t40 * t31,
-            t40 * t36 - t42 * t34,
-            -(t45 * t16 - t44 * t6 + t43 * t7),
-            t43 * t6 - (t45 * t21 - t44 * t7),
-            t44 * t4 - t43 * t5,
-            t44 * t5 + t43 * t4,
-            -(t39 + (t33 * t27 - t30 * t31)),
-            t37 - (t33 * (k(4.0) * outer_e1) - t30 * t36),
-            t30 * t24 - t35,
-            t26 + t30 * t34,
+            T::fused(-t15, t6, t19 * t16) - t13,
+            T::fused(-t15, t7, t19 * t21) + t20,
+            -T::fused(t15, t4, t22),
+            T::fused(-t15, t5, t23),
+            T::fused(t30, t27, t33 * t31) + t26,
+            T::fused(-t33, t36, t35),
+            t37 - T::fused(-t30, t38, t33 * t24),
+            T::fused(t33, t34, t39),
+            t23 - T::fused(t15, t16, t19 * t6),
+            T::fused(t19, t7, t22),
+            t20 + T::fused(-t15, k(4.0) * inner_e2, t19 * t4),
+            T::fused(-t19, t5, t13),
+            T::fused(t40, t24, -T::fused(t41, t27, t42 * t31)),
+            T::fused(t40, t34, t42 * t36),
+            T::fused(t40, t31, T::fused(-t41, t38, t42 * t24)),
+            T::fused(-t42, t34, t40 * t36),
+            -T::fused(t43, t7, T::fused(-t44, t6, t45 * t16)),
+            T::fused(t43, t6, -T::fused(-t44, t7, t45 * t21)),
+            T::fused(-t43, t5, t44 * t4),
+            T::fused(t43, t4, t44 * t5),
+            -(t39 + T::fused(-t30, t31, t33 * t27)),
+            t37 - T::fused(-t30, t36, t33 * (k(4.0) * outer_e1)),
+            T::fused(t30, t24, -t35),
+            T::fused(t30, t34, t26),
             t5,
             t4,
             t7,
@@ -1087,22 +1292,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t10 = t9 - t8;
         let t11 = k(0.5) * t10;
         let t12 = inner_e0 * inner_e0;
-        let t13 = k(0.5) - (t12 + inner_e2 * inner_e2);
+        let t13 = k(0.5) - T::fused(inner_e2, inner_e2, t12);
         let t14 = k(0.5) * t13;
-        let t15 = k(0.5) - (t12 + inner_e3 * inner_e3);
+        let t15 = k(0.5) - T::fused(inner_e3, inner_e3, t12);
         let t16 = k(0.5) * t15;
         let t17 = t9 + t8;
         let t18 = k(0.5) * t17;
         let t19 = k(2.0) * t13;
         let t20 = k(2.0) * (t5 + t4);
         let t21 = k(2.0) * t6;
-        let t22 = k(2.0) * (k(0.5) - (t12 + inner_e1 * inner_e1));
+        let t22 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t12));
         let t23 = outer_e0 * outer_e3;
         let t24 = outer_e1 * outer_e2;
         let t25 = t24 - t23;
         let t26 = outer_e0 * outer_e0;
-        let t27 = k(0.5) - (t26 + outer_e1 * outer_e1);
-        let t28 = k(0.5) - (t26 + outer_e2 * outer_e2);
+        let t27 = k(0.5) - T::fused(outer_e1, outer_e1, t26);
+        let t28 = k(0.5) - T::fused(outer_e2, outer_e2, t26);
         let t29 = t24 + t23;
         let t30 = outer_e0 * outer_e1;
         let t31 = outer_e2 * outer_e3;
@@ -1116,18 +1321,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t39 = k(2.0) * t10;
         let t40 = k(2.0) * t32;
         let t41 = k(2.0) * t15;
-        let t42 = t41 * t40 + (t39 * t38 - t37 * t36);
+        let t42 = T::fused(t41, t40, T::fused(-t37, t36, t39 * t38));
         let t43 = k(2.0) * t17;
         let t44 = k(2.0) * (t34 + t33);
         let t45 = k(2.0) * (t31 - t30);
-        let t46 = k(2.0) * (k(0.5) - (t26 + outer_e3 * outer_e3));
+        let t46 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t26));
         let t47 = k(2.0) * (t1 - t0);
-        let t48 = t47 * t46 - (t20 * t45 - t22 * t44);
+        let t48 = T::fused(t47, t46, -T::fused(-t22, t44, t20 * t45));
         let t49 = k(2.0) * t27;
         let t50 = k(2.0) * t29;
         let t51 = k(2.0) * t35;
-        let t52 = t47 * t40 - (t20 * t38 + t22 * t36);
-        let t53 = t43 * t51 - (t19 * t50 + t21 * t49);
+        let t52 = T::fused(t47, t40, -T::fused(t22, t36, t20 * t38));
+        let t53 = T::fused(t43, t51, -T::fused(t21, t49, t19 * t50));
         *out = [
             k(1.0),
             t3,
@@ -1161,14 +1366,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
             k(0.5) * t32,
             -(k(0.5) * t35),
             t42,
-            t43 * t40 + (t19 * t38 + t21 * t36),
+            T::fused(t43, t40, T::fused(t21, t36, t19 * t38)),
             -t48,
-            -(t47 * t51 + (t20 * t50 + t22 * t49)),
+            -T::fused(t47, t51, T::fused(t22, t49, t20 * t50)),
             -t42,
             -t52,
-            -(t43 * t46 + (t19 * t45 - t21 * t44)),
+            -T::fused(t43, t46, T::fused(-t21, t44, t19 * t45)),
             -t53,
-            t41 * t51 - (t39 * t50 - t37 * t49),
+            T::fused(t41, t51, -T::fused(-t37, t49, t39 * t50)),
             t53,
             t48,
             t52,
@@ -1212,7 +1417,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t1 = inner_wz * inner_wz;
         let t2 = t1 + t0;
         let t3 = inner_e0 * inner_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3));
         let t5 = inner_wx * inner_wy;
         let t6 = inner_e0 * inner_e3;
         let t7 = inner_e1 * inner_e2;
@@ -1221,23 +1426,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t10 = inner_e0 * inner_e2;
         let t11 = inner_e1 * inner_e3;
         let t12 = k(2.0) * (t11 + t10);
-        let t13 = t12 * t9 + (t8 * t5 + t4 * t2);
+        let t13 = T::fused(t12, t9, T::fused(t4, t2, t8 * t5));
         let t14 = k(2.0) * (t7 + t6);
-        let t15 = k(2.0) * (k(0.5) - (t3 + inner_e2 * inner_e2));
+        let t15 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3));
         let t16 = inner_e0 * inner_e1;
         let t17 = inner_e2 * inner_e3;
         let t18 = k(2.0) * (t17 - t16);
-        let t19 = t18 * t9 - (t15 * t5 + t14 * t2);
+        let t19 = T::fused(t18, t9, -T::fused(t14, t2, t15 * t5));
         let t20 = k(2.0) * (t11 - t10);
         let t21 = k(2.0) * (t17 + t16);
-        let t22 = k(2.0) * (k(0.5) - (t3 + inner_e3 * inner_e3));
-        let t23 = t22 * t9 - (t21 * t5 - t20 * t2);
+        let t22 = k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t3));
+        let t23 = T::fused(t22, t9, -T::fused(-t20, t2, t21 * t5));
         let t24 = inner_wy * inner_wz;
         let t25 = inner_wx * inner_wx;
         let t26 = t0 + t25;
         let t27 = outer_wx * outer_wz;
         let t28 = outer_e0 * outer_e0;
-        let t29 = k(2.0) * (k(0.5) - (t28 + outer_e1 * outer_e1));
+        let t29 = k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t28));
         let t30 = outer_wy * outer_wz;
         let t31 = outer_e0 * outer_e3;
         let t32 = outer_e1 * outer_e2;
@@ -1248,53 +1453,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t37 = outer_e0 * outer_e2;
         let t38 = outer_e1 * outer_e3;
         let t39 = k(2.0) * (t38 + t37);
-        let t40 = k(0.25) * (t13 - (t39 * t36 - (t33 * t30 - t29 * t27)));
+        let t40 = k(0.25) * (t13 - T::fused(t39, t36, -T::fused(-t29, t27, t33 * t30)));
         let t41 = k(2.0) * (t32 + t31);
-        let t42 = k(2.0) * (k(0.5) - (t28 + outer_e2 * outer_e2));
+        let t42 = k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t28));
         let t43 = outer_e0 * outer_e1;
         let t44 = outer_e2 * outer_e3;
         let t45 = k(2.0) * (t44 - t43);
-        let t46 = k(0.25) * (t19 - (t45 * t36 + (t42 * t30 - t41 * t27)));
+        let t46 = k(0.25) * (t19 - T::fused(t45, t36, T::fused(-t41, t27, t42 * t30)));
         let t47 = k(2.0) * (t38 - t37);
         let t48 = k(2.0) * (t44 + t43);
-        let t49 = k(2.0) * (k(0.5) - (t28 + outer_e3 * outer_e3));
-        let t50 = k(0.25) * (t23 - (t49 * t36 + (t48 * t30 + t47 * t27)));
-        let t51 = t20 * t48 - (t14 * t42 + t4 * t33);
-        let t52 = t21 * t48 + (t15 * t42 + t8 * t33);
-        let t53 = t22 * t48 + (t18 * t42 - t12 * t33);
-        let t54 = t21 * t47 - (t15 * t41 + t8 * t29);
-        let t55 = t21 * t49 + (t15 * t45 - t8 * t39);
-        let t56 = t22 * t47 - (t18 * t41 - t12 * t29);
-        let t57 = t22 * t49 + (t18 * t45 + t12 * t39);
-        let t58 = outer_wx * t57 + outer_wz * t56;
-        let t59 = k(2.0)
-            * (inner_wy * t58 + inner_wz * (outer_wx * t55 + outer_wz * t54));
-        let t60 = t20 * t47 + (t14 * t41 + t4 * t29);
-        let t61 = outer_wx * outer_wy;
-        let t62 = outer_wz * outer_wz;
-        let t63 = t62 + t34;
-        let t64 = t20 * t49 - (t14 * t45 - t4 * t39);
-        let t65 = t30 * t64 + (t63 * t51 - t61 * t60) + t59
-            + (t9 * t53 - (t5 * t52 - t2 * t51));
-        let t66 = k(2.0)
-            * (inner_wx * t58 + inner_wz * (outer_wx * t64 + outer_wz * t60));
-        let t67 = t30 * t55 + (t63 * t52 - t61 * t54) - t66
-            + (t24 * t53 + ((t1 + t25) * t52 - t5 * t51));
-        let t68 = inner_wy * (outer_wy * t57 + outer_wz * t53)
-            + inner_wz * (outer_wy * t55 + outer_wz * t52);
-        let t69 = t27 * t64 - (t61 * t51 - (t62 + t35) * t60) - k(2.0) * t68;
+        let t49 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t28));
+        let t50 = k(0.25) * (t23 - T::fused(t49, t36, T::fused(t47, t27, t48 * t30)));
+        let t51 = T::fused(t20, t48, -T::fused(t4, t33, t14 * t42));
+        let t52 = T::fused(t21, t48, T::fused(t8, t33, t15 * t42));
+        let t53 = T::fused(t22, t48, T::fused(-t12, t33, t18 * t42));
+        let t54 = T::fused(t21, t47, -T::fused(t8, t29, t15 * t41));
+        let t55 = T::fused(t21, t49, T::fused(-t8, t39, t15 * t45));
+        let t56 = T::fused(t22, t47, -T::fused(-t12, t29, t18 * t41));
+        let t57 = T::fused(t22, t49, T::fused(t12, t39, t18 * t45));
+        let t58 = T::fused(outer_wz, t56, outer_wx * t57);
+        let t59 = T::fused(t20, t47, T::fused(t4, t29, t14 * t41));
+        let t60 = outer_wx * outer_wy;
+        let t61 = outer_wz * outer_wz;
+        let t62 = t61 + t34;
+        let t63 = T::fused(t20, t49, -T::fused(-t4, t39, t14 * t45));
+        let t64 = T::fused(
+            k(2.0),
+            T::fused(inner_wz, T::fused(outer_wz, t54, outer_wx * t55), inner_wy * t58),
+            T::fused(t30, t63, T::fused(-t60, t59, t62 * t51)),
+        );
+        let t65 = T::fused(
+            -k(2.0),
+            T::fused(inner_wz, T::fused(outer_wz, t59, outer_wx * t63), inner_wx * t58),
+            T::fused(t30, t55, T::fused(-t60, t54, t62 * t52)),
+        );
+        let t66 = t65 + T::fused(t24, t53, T::fused(-t5, t51, (t1 + t25) * t52));
+        let t67 = T::fused(
+            inner_wz,
+            T::fused(outer_wz, t52, outer_wy * t55),
+            inner_wy * T::fused(outer_wz, t53, outer_wy * t57),
+        );
+        let t68 = T::fused(
+            -k(2.0),
+            t67,
+            T::fused(t27, t63, -T::fused(-(t61 + t35), t59, t60 * t51)),
+        );
         *out = [
             k(0.25) * t13,
             k(0.25) * t19,
             -(k(0.25) * t23),
-            -(t18 * t26 + (t15 * t24 - t14 * t9)),
-            t12 * t26 - (t8 * t24 - t4 * t9),
+            -T::fused(t18, t26, T::fused(-t14, t9, t15 * t24)),
+            T::fused(t12, t26, -T::fused(-t4, t9, t8 * t24)),
             t40,
             t46,
             -t50,
-            t65,
-            t67,
-            t69 + (t9 * t56 - (t5 * t54 - t2 * t60)),
+            t64 + T::fused(t9, t53, -T::fused(-t2, t51, t5 * t52)),
+            t66,
+            t68 + T::fused(t9, t56, -T::fused(-t2, t59, t5 * t54)),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 8 operations (0 ±, 8 ×, 0 ÷).
@@ -1342,7 +1557,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t1 = inner_wz * inner_wz;
         let t2 = t1 + t0;
         let t3 = inner_e0 * inner_e0;
-        let t4 = k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1));
+        let t4 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3));
         let t5 = inner_wx * inner_wy;
         let t6 = inner_e0 * inner_e3;
         let t7 = inner_e1 * inner_e2;
@@ -1351,142 +1566,193 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t10 = inner_e0 * inner_e2;
         let t11 = inner_e1 * inner_e3;
         let t12 = k(2.0) * (t11 + t10);
-        let t13 = t12 * t9 + (t8 * t5 + t4 * t2);
+        let t13 = T::fused(t12, t9, T::fused(t4, t2, t8 * t5));
         let t14 = k(0.25) * t13;
         let t15 = k(2.0) * (t7 + t6);
-        let t16 = k(0.5) - (t3 + inner_e2 * inner_e2);
+        let t16 = k(0.5) - T::fused(inner_e2, inner_e2, t3);
         let t17 = k(2.0) * t16;
         let t18 = inner_e0 * inner_e1;
         let t19 = inner_e2 * inner_e3;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = t20 * t9 - (t17 * t5 + t15 * t2);
+        let t21 = T::fused(t20, t9, -T::fused(t15, t2, t17 * t5));
         let t22 = k(0.25) * t21;
         let t23 = k(2.0) * (t11 - t10);
         let t24 = k(2.0) * (t19 + t18);
-        let t25 = k(0.5) - (t3 + inner_e3 * inner_e3);
+        let t25 = k(0.5) - T::fused(inner_e3, inner_e3, t3);
         let t26 = k(2.0) * t25;
-        let t27 = t26 * t9 - (t24 * t5 - t23 * t2);
+        let t27 = T::fused(t26, t9, -T::fused(-t23, t2, t24 * t5));
         let t28 = k(0.25) * t27;
-        let t29 = t23 * t28 - (t15 * t22 - t4 * t14);
+        let t29 = T::fused(t23, t28, -T::fused(-t4, t14, t15 * t22));
         let t30 = outer_e0 * outer_e3;
         let t31 = outer_e1 * outer_e2;
         let t32 = k(2.0) * (t31 - t30);
         let t33 = outer_e0 * outer_e0;
-        let t34 = k(0.5) - (t33 + outer_e2 * outer_e2);
+        let t34 = k(0.5) - T::fused(outer_e2, outer_e2, t33);
         let t35 = k(2.0) * t34;
         let t36 = outer_e0 * outer_e1;
         let t37 = outer_e2 * outer_e3;
         let t38 = k(2.0) * (t37 + t36);
-        let t39 = t24 * t38 + (t17 * t35 + t8 * t32);
+        let t39 = T::fused(t24, t38, T::fused(t8, t32, t17 * t35));
         let t40 = k(0.15) * t39;
-        let t41 = k(2.0) * (k(0.5) - (t33 + outer_e1 * outer_e1));
+        let t41 = k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t33));
         let t42 = t31 + t30;
         let t43 = k(2.0) * t42;
         let t44 = outer_e0 * outer_e2;
         let t45 = outer_e1 * outer_e3;
         let t46 = k(2.0) * (t45 - t44);
-        let t47 = t26 * t46 - (t20 * t43 - t12 * t41);
-        let t48 = t24 * t46 - (t17 * t43 + t8 * t41);
+        let t47 = T::fused(t26, t46, -T::fused(-t12, t41, t20 * t43));
+        let t48 = T::fused(t24, t46, -T::fused(t8, t41, t17 * t43));
         let t49 = k(0.15) * t48;
-        let t50 = t26 * t38 + (t20 * t35 - t12 * t32);
-        let t51 = t50 * t49 - t47 * t40;
+        let t50 = T::fused(t26, t38, T::fused(-t12, t32, t20 * t35));
+        let t51 = T::fused(-t47, t40, t50 * t49);
         let t52 = k(0.15) - t51;
         let t53 = k(2.0) * (t45 + t44);
         let t54 = t37 - t36;
         let t55 = k(2.0) * t54;
-        let t56 = k(2.0) * (k(0.5) - (t33 + outer_e3 * outer_e3));
-        let t57 = t26 * t56 + (t20 * t55 + t12 * t53);
-        let t58 = t57 * (k(5e-5) * t57)
-            + (t50 * (k(0.05) * t50) + t47 * (k(0.05) * t47));
-        let t59 = k(0.075) + (k(0.0125) - (k(0.5) * t51 - (k(0.0375) + t58)))
-            + k(0.5) * t52;
-        let t60 = t23 * t38 - (t15 * t35 + t4 * t32);
-        let t61 = t24 * t56 + (t17 * t55 - t8 * t53);
-        let t62 = outer_wx * t57 + outer_wz * t47;
-        let t63 = k(2.0)
-            * (inner_wy * t62 + inner_wz * (outer_wx * t61 + outer_wz * t48));
-        let t64 = t23 * t46 + (t15 * t43 + t4 * t41);
-        let t65 = outer_wx * outer_wy;
-        let t66 = outer_wx * outer_wx;
-        let t67 = outer_wz * outer_wz;
-        let t68 = t67 + t66;
-        let t69 = t23 * t56 - (t15 * t55 - t4 * t53);
-        let t70 = outer_wy * outer_wz;
-        let t71 = t70 * t69 + (t68 * t60 - t65 * t64) + t63
-            + (t9 * t50 - (t5 * t39 - t2 * t60));
-        let t72 = t69 * t48;
-        let t73 = t64 * t61 - t72;
-        let t74 = k(1.0) / (t69 * t73);
+        let t56 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t33));
+        let t57 = T::fused(t26, t56, T::fused(t12, t53, t20 * t55));
+        let t58 = T::fused(
+            t57,
+            k(5e-5) * t57,
+            T::fused(t47, k(0.05) * t47, t50 * (k(0.05) * t50)),
+        );
+        let t59 = T::fused(
+            k(0.5),
+            t52,
+            k(0.075) + (k(0.0125) - T::fused(k(0.5), t51, -(k(0.0375) + t58))),
+        );
+        let t60 = T::fused(t23, t38, -T::fused(t4, t32, t15 * t35));
+        let t61 = T::fused(t24, t56, T::fused(-t8, t53, t17 * t55));
+        let t62 = T::fused(outer_wz, t47, outer_wx * t57);
+        let t63 = T::fused(t23, t46, T::fused(t4, t41, t15 * t43));
+        let t64 = outer_wx * outer_wy;
+        let t65 = outer_wx * outer_wx;
+        let t66 = outer_wz * outer_wz;
+        let t67 = t66 + t65;
+        let t68 = T::fused(t23, t56, -T::fused(-t4, t53, t15 * t55));
+        let t69 = outer_wy * outer_wz;
+        let t70 = T::fused(
+            k(2.0),
+            T::fused(inner_wz, T::fused(outer_wz, t48, outer_wx * t61), inner_wy * t62),
+            T::fused(t69, t68, T::fused(-t64, t63, t67 * t60)),
+        );
+        let t71 = t70 + T::fused(t9, t50, -T::fused(-t2, t60, t5 * t39));
+        let t72 = t68 * t48;
+        let t73 = T::fused(t63, t61, -t72);
+        let t74 = k(1.0) / (t68 * t73);
         let t75 = inner_wx * inner_wx;
         let t76 = inner_wy * inner_wz;
-        let t77 = k(2.0)
-            * (inner_wx * t62 + inner_wz * (outer_wx * t69 + outer_wz * t64));
-        let t78 = t70 * t61 + (t68 * t39 - t65 * t48) - t77
-            + (t76 * t50 + ((t1 + t75) * t39 - t5 * t60));
-        let t79 = t74 * (t69 * t69) * t78 - t74 * (t69 * t61) * t71;
-        let t80 = t74 * (t69 * t64) * t78 - t72 * t74 * t71;
+        let t77 = T::fused(
+            -k(2.0),
+            T::fused(inner_wz, T::fused(outer_wz, t63, outer_wx * t68), inner_wx * t62),
+            T::fused(t69, t61, T::fused(-t64, t48, t67 * t39)),
+        );
+        let t78 = t77 + T::fused(t76, t50, T::fused(-t5, t60, (t1 + t75) * t39));
+        let t79 = T::fused(-(t74 * (t68 * t61)), t71, t74 * (t68 * t68) * t78);
+        let t80 = T::fused(-(t72 * t74), t71, t74 * (t68 * t63) * t78);
         let t81 = outer_wx * outer_wz;
         let t82 = outer_wy * outer_wy;
-        let t83 = t82 + t66;
-        let t84 = k(0.25) * (t13 - (t53 * t83 - (t32 * t70 - t41 * t81)));
-        let t85 = k(0.25) * (t21 - (t55 * t83 + (t35 * t70 - t43 * t81)));
-        let t86 = k(0.25) * (t27 - (t56 * t83 + (t38 * t70 + t46 * t81)));
-        let t87 = t38 * t86 + (t35 * t85 - t32 * t84);
-        let t88 = k(0.15) * t87 - k(0.05) * t80 - (k(0.01245) * t70 - k(2.943) * t34);
-        let t89 = inner_wy * (outer_wy * t57 + outer_wz * t50)
-            + inner_wz * (outer_wy * t61 + outer_wz * t39);
-        let t90 = t81 * t69 - (t65 * t60 - (t67 + t82) * t64) - k(2.0) * t89;
-        let t91 = t73 * t74 * (t90 + (t9 * t47 - (t5 * t48 - t2 * t64)));
-        let t92 = t74 * (t69 * t60) * t78 - t74 * (t61 * t60) * t71;
-        let t93 = t92 - t91;
-        let t94 = t46 * t86 - (t43 * t85 - t41 * t84);
-        let t95 = k(0.15) * t94 + k(0.05) * t93 - (k(0.01245) * t81 + k(2.943) * t42);
-        let t96 = t39 * (k(0.15) * t80 - k(0.6) * t87 - k(11.772) * t34)
-            - t48 * (k(0.15) * t93 + k(0.6) * t94 - k(11.772) * t42);
-        let t97 = t56 * t86 + (t55 * t85 + t53 * t84);
-        let t98 = t61 * (k(0.6) * t97 + k(11.772) * t54) - t96;
-        let t99 = k(0.25) * t98 - (t50 * t95 - t47 * t88 + t57 * (k(5e-5) * t79));
-        let t100 = t24 * t28 + (t17 * t22 - t8 * t14);
-        let t101 = (k(0.3) + t52) * t100
-            - (t50 * (k(0.15) * t64) - t47 * (k(0.15) * t60)) * t29;
-        let t102 = t50 * (k(0.15) * t47) - t47 * (k(0.15) * t50);
-        let t103 = t26 * t28 + (t20 * t22 + t12 * t14);
-        let t104 = (t0 + t75) * (k(0.5) / t25);
-        let t105 = t76 - t24 * t104;
-        let t106 = t57 * (k(5e-5) * t69)
-            + (t50 * (k(0.05) * t60) + t47 * (k(0.05) * t64));
-        let t107 = k(0.25) * (t60 * t49 - t64 * t40);
-        let t108 = k(5e-5) * t61 * t57 + (t50 * (k(0.05) * t39) + t47 * (k(0.05) * t48));
-        let t109 = k(0.25) * (t102 - (t39 * t49 - t48 * t40));
-        let t110 = t9 - t23 * t104;
-        let t111 = t110 * (t109 + (t109 + t108)) + (t107 + (t107 - t106)) * t105;
-        let t112 = t111 + (t103 * t102 - t101)
-            - (k(0.25) * (t98 + k(11.772) * t16) - (k(0.01245) * t5 - t99));
-        let t113 = t112 / t59;
-        let t114 = k(0.25) * t113;
-        let t115 = t100 + t114;
-        let t116 = k(0.25) * t110;
-        let t117 = t116 + t103;
-        let t118 = t114 + t115;
-        let t119 = t116 + t117;
-        let t120 = t93 - (t50 * t113 - (t39 * t110 - t60 * t105));
-        let t121 = k(0.25) * t120 + (t94 + (t47 * t119 + (t48 * t118 + t64 * t29)));
-        let t122 = t80 - (t47 * t113 - (t48 * t110 - t64 * t105));
-        let t123 = k(0.25) * t122 - (t87 + (t50 * t119 + (t39 * t118 + t60 * t29)));
-        let t124 = t97 + (t57 * t119 + (t61 * t118 + t69 * t29));
+        let t83 = t82 + t65;
+        let t84 = k(0.25) * (t13 - T::fused(t53, t83, -T::fused(-t41, t81, t32 * t69)));
+        let t85 = k(0.25) * (t21 - T::fused(t55, t83, T::fused(-t43, t81, t35 * t69)));
+        let t86 = k(0.25) * (t27 - T::fused(t56, t83, T::fused(t46, t81, t38 * t69)));
+        let t87 = T::fused(t38, t86, T::fused(-t32, t84, t35 * t85));
+        let t88 = T::fused(-k(0.05), t80, k(0.15) * t87)
+            - T::fused(-k(2.943), t34, k(0.01245) * t69);
+        let t89 = T::fused(
+            inner_wz,
+            T::fused(outer_wz, t39, outer_wy * t61),
+            inner_wy * T::fused(outer_wz, t50, outer_wy * t57),
+        );
+        let t90 = T::fused(
+            -k(2.0),
+            t89,
+            T::fused(t81, t68, -T::fused(-(t66 + t82), t63, t64 * t60)),
+        );
+        let t91 = T::fused(-(t74 * (t61 * t60)), t71, t74 * (t68 * t60) * t78);
+        let t92 = T::fused(
+            -(t73 * t74),
+            t90 + T::fused(t9, t47, -T::fused(-t2, t63, t5 * t48)),
+            t91,
+        );
+        let t93 = T::fused(t46, t86, -T::fused(-t41, t84, t43 * t85));
+        let t94 = T::fused(k(0.05), t92, k(0.15) * t93)
+            - T::fused(k(2.943), t42, k(0.01245) * t81);
+        let t95 = T::fused(
+            -t48,
+            T::fused(-k(11.772), t42, T::fused(k(0.6), t93, k(0.15) * t92)),
+            t39 * T::fused(-k(11.772), t34, T::fused(-k(0.6), t87, k(0.15) * t80)),
+        );
+        let t96 = T::fused(t56, t86, T::fused(t53, t84, t55 * t85));
+        let t97 = T::fused(t61, T::fused(k(11.772), t54, k(0.6) * t96), -t95);
+        let t98 = T::fused(
+            k(0.25),
+            t97,
+            -T::fused(t57, k(5e-5) * t79, T::fused(-t47, t88, t50 * t94)),
+        );
+        let t99 = T::fused(t24, t28, T::fused(-t8, t14, t17 * t22));
+        let t100 = T::fused(
+            -T::fused(-t47, k(0.15) * t60, t50 * (k(0.15) * t63)),
+            t29,
+            (k(0.3) + t52) * t99,
+        );
+        let t101 = T::fused(-t47, k(0.15) * t50, t50 * (k(0.15) * t47));
+        let t102 = T::fused(t26, t28, T::fused(t12, t14, t20 * t22));
+        let t103 = (t0 + t75) * (k(0.5) / t25);
+        let t104 = T::fused(-t24, t103, t76);
+        let t105 = T::fused(
+            t57,
+            k(5e-5) * t68,
+            T::fused(t47, k(0.05) * t63, t50 * (k(0.05) * t60)),
+        );
+        let t106 = k(0.25) * T::fused(-t63, t40, t60 * t49);
+        let t107 = T::fused(
+            k(5e-5) * t61,
+            t57,
+            T::fused(t47, k(0.05) * t48, t50 * (k(0.05) * t39)),
+        );
+        let t108 = k(0.25) * (t101 - T::fused(-t48, t40, t39 * t49));
+        let t109 = T::fused(-t23, t103, t9);
+        let t110 = T::fused(t106 + (t106 - t105), t104, t109 * (t108 + (t108 + t107)));
+        let t111 = t110 + T::fused(t102, t101, -t100)
+            - T::fused(
+                k(0.25),
+                T::fused(k(11.772), t16, t97),
+                -T::fused(k(0.01245), t5, -t98),
+            );
+        let t112 = t111 / t59;
+        let t113 = k(0.25) * t112;
+        let t114 = t99 + t113;
+        let t115 = k(0.25) * t109;
+        let t116 = t115 + t102;
+        let t117 = t113 + t114;
+        let t118 = t115 + t116;
+        let t119 = t92 - T::fused(t50, t112, -T::fused(-t60, t104, t39 * t109));
+        let t120 = T::fused(
+            k(0.25),
+            t119,
+            t93 + T::fused(t47, t118, T::fused(t63, t29, t48 * t117)),
+        );
+        let t121 = t80 - T::fused(t47, t112, -T::fused(-t63, t104, t48 * t109));
+        let t122 = T::fused(
+            k(0.25),
+            t121,
+            -(t87 + T::fused(t50, t118, T::fused(t60, t29, t39 * t117))),
+        );
+        let t123 = t96 + T::fused(t57, t118, T::fused(t68, t29, t61 * t117));
         *out = [
-            t12 * t117 - (t8 * t115 - t4 * t29),
-            t20 * t117 + (t17 * t115 - t15 * t29),
-            -(t26 * t117 + (t24 * t115 + t23 * t29)),
-            t105,
-            -t110,
-            -t113,
-            t53 * t124 + (t32 * t123 + t41 * t121),
-            t55 * t124 - (t35 * t123 + t43 * t121),
-            t38 * t123 - t46 * t121 - t56 * t124,
-            -t122,
-            -t120,
-            t79 - (t57 * t113 - (t61 * t110 - t69 * t105)),
+            T::fused(t12, t116, -T::fused(-t4, t29, t8 * t114)),
+            T::fused(t20, t116, T::fused(-t15, t29, t17 * t114)),
+            -T::fused(t26, t116, T::fused(t23, t29, t24 * t114)),
+            t104,
+            -t109,
+            -t112,
+            T::fused(t53, t123, T::fused(t41, t120, t32 * t122)),
+            T::fused(t55, t123, -T::fused(t43, t120, t35 * t122)),
+            T::fused(-t56, t123, T::fused(-t46, t120, t38 * t122)),
+            -t121,
+            -t119,
+            t79 - T::fused(t57, t112, -T::fused(-t68, t104, t61 * t109)),
         ];
     }
     /// Writes λ: 201 operations (70 ±, 129 ×, 2 ÷).
@@ -1523,25 +1789,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let outer_dwy = accelerations[10];
         let outer_dwz = accelerations[11];
         let t0 = k(0.6) * (inner_dsx + outer_dsx);
-        let t1 = k(5.886) + k(0.6) * outer_dsy;
-        let t2 = k(5.886) + k(0.6) * inner_dsy + t1;
+        let t1 = T::fused(k(0.6), outer_dsy, k(5.886));
+        let t2 = T::fused(k(0.6), inner_dsy, k(5.886)) + t1;
         let t3 = k(0.6) * (inner_dsz + outer_dsz);
         let t4 = outer_e0 * outer_e3;
         let t5 = outer_e1 * outer_e2;
         let t6 = t5 - t4;
         let t7 = k(0.6) * outer_dsx;
         let t8 = outer_e0 * outer_e0;
-        let t9 = k(0.5) - (t8 + outer_e2 * outer_e2);
+        let t9 = k(0.5) - T::fused(outer_e2, outer_e2, t8);
         let t10 = outer_e0 * outer_e1;
         let t11 = outer_e2 * outer_e3;
         let t12 = t11 + t10;
         let t13 = k(0.6) * outer_dsz;
-        let t14 = t13 * (k(0.5) * t12) - (t1 * (k(0.5) * t9) - t7 * (k(0.5) * t6));
-        let t15 = k(0.01245) * (outer_wy * outer_wz) - k(0.0125) * outer_dwx + t14;
-        let t16 = k(0.5) - (t8 + outer_e1 * outer_e1);
+        let t14 = T::fused(
+            t13,
+            k(0.5) * t12,
+            -T::fused(-t7, k(0.5) * t6, t1 * (k(0.5) * t9)),
+        );
+        let t15 = T::fused(-k(0.0125), outer_dwx, k(0.01245) * (outer_wy * outer_wz))
+            + t14;
+        let t16 = k(0.5) - T::fused(outer_e1, outer_e1, t8);
         let t17 = k(2.0) * t16;
         let t18 = inner_e0 * inner_e0;
-        let t19 = k(2.0) * (k(0.5) - (t18 + inner_e1 * inner_e1));
+        let t19 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t18));
         let t20 = t5 + t4;
         let t21 = k(2.0) * t20;
         let t22 = inner_e0 * inner_e3;
@@ -1554,51 +1825,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         let t29 = inner_e0 * inner_e2;
         let t30 = inner_e1 * inner_e3;
         let t31 = k(2.0) * (t30 - t29);
-        let t32 = t31 * t28 + (t24 * t21 + t19 * t17);
-        let t33 = t13 * (k(0.5) * t27) + (t1 * (k(0.5) * t20) - t7 * (k(0.5) * t16));
-        let t34 = k(0.01245) * (outer_wx * outer_wz) + k(0.0125) * outer_dwy + t33;
+        let t32 = T::fused(t31, t28, T::fused(t19, t17, t24 * t21));
+        let t33 = T::fused(
+            t13,
+            k(0.5) * t27,
+            T::fused(-t7, k(0.5) * t16, t1 * (k(0.5) * t20)),
+        );
+        let t34 = T::fused(k(0.0125), outer_dwy, k(0.01245) * (outer_wx * outer_wz))
+            + t33;
         let t35 = k(2.0) * t6;
         let t36 = k(2.0) * t9;
         let t37 = k(2.0) * t12;
-        let t38 = t31 * t37 - (t24 * t36 + t19 * t35);
+        let t38 = T::fused(t31, t37, -T::fused(t19, t35, t24 * t36));
         let t39 = k(2.0) * (t26 + t25);
         let t40 = k(2.0) * (t11 - t10);
-        let t41 = k(2.0) * (k(0.5) - (t8 + outer_e3 * outer_e3));
-        let t42 = t31 * t41 - (t24 * t40 - t19 * t39);
+        let t41 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t8));
+        let t42 = T::fused(t31, t41, -T::fused(-t19, t39, t24 * t40));
         let t43 = k(5e-5) * outer_dwz;
-        let t44 = k(5e-5) * inner_dwx - (t43 * t42 - (t38 * t34 - t32 * t15));
-        let t45 = k(2.0) * (k(0.5) - (t18 + inner_e2 * inner_e2));
+        let t44 = T::fused(
+            k(5e-5),
+            inner_dwx,
+            -T::fused(t43, t42, -T::fused(-t32, t15, t38 * t34)),
+        );
+        let t45 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t18));
         let t46 = k(2.0) * (t23 - t22);
-        let t47 = k(1.0) / (t46 * t24 - t19 * t45);
+        let t47 = k(1.0) / T::fused(-t19, t45, t46 * t24);
         let t48 = inner_e0 * inner_e1;
         let t49 = inner_e2 * inner_e3;
         let t50 = k(2.0) * (t49 + t48);
-        let t51 = t50 * t28 - (t45 * t21 + t46 * t17);
-        let t52 = (t50 * t37 + (t45 * t36 + t46 * t35)) * t34 - t51 * t15;
-        let t53 = t50 * t41 + (t45 * t40 - t46 * t39);
+        let t51 = T::fused(t50, t28, -T::fused(t46, t17, t45 * t21));
+        let t52 = T::fused(
+            -t51,
+            t15,
+            T::fused(t50, t37, T::fused(t46, t35, t45 * t36)) * t34,
+        );
+        let t53 = T::fused(t50, t41, T::fused(-t46, t39, t45 * t40));
         let t54 = k(0.5) * (t30 + t29);
         let t55 = k(0.5) * (t49 - t48);
-        let t56 = k(0.5) * (k(0.5) - (t18 + inner_e3 * inner_e3));
-        let t57 = t13 * t56 - (t1 * t55 + t7 * t54) - (t43 * t53 - t52);
-        let t58 = t3 * t56 - (t2 * t55 + t0 * t54)
-            - (k(0.01245) * (inner_wx * inner_wz) - k(0.0125) * inner_dwy - t57);
+        let t56 = k(0.5) * (k(0.5) - T::fused(inner_e3, inner_e3, t18));
+        let t57 = T::fused(t13, t56, -T::fused(t7, t54, t1 * t55))
+            - T::fused(t43, t53, -t52);
+        let t58 = T::fused(t3, t56, -T::fused(t0, t54, t2 * t55))
+            - (T::fused(-k(0.0125), inner_dwy, k(0.01245) * (inner_wx * inner_wz))
+                - t57);
         let t59 = t42 * t51;
-        let t60 = t32 * t53 - t59;
+        let t60 = T::fused(t32, t53, -t59);
         let t61 = k(1.0) / (t42 * t60);
-        let t62 = t43 * (t61 * (t42 * t53))
-            - (t61 * (t53 * t38) * t34 - t59 * t61 * t15);
-        let t63 = t61 * (t42 * t38) * t34 - t61 * (t42 * t32) * t15;
+        let t62 = T::fused(
+            t43,
+            t61 * (t42 * t53),
+            -T::fused(-(t59 * t61), t15, t61 * (t53 * t38) * t34),
+        );
+        let t63 = T::fused(-(t61 * (t42 * t32)), t15, t61 * (t42 * t38) * t34);
         *lambda = [
             -t0,
             -t2,
             -t3,
-            t46 * t47 * t58 - t19 * t47 * t44,
-            t24 * t47 * t44 - t45 * t47 * t58,
+            T::fused(-(t19 * t47), t44, t46 * t47 * t58),
+            T::fused(-(t45 * t47), t58, t24 * t47 * t44),
             -t7,
             -t1,
             -t13,
             t62,
-            t63 - t43 * (t61 * (t42 * t42)),
+            T::fused(-t43, t61 * (t42 * t42), t63),
             -(t60 * t61 * t34),
         ];
     }
@@ -1640,7 +1929,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let t2 = t0.sin();
         let t3 = t2 + t1;
         let t4 = k(0.7071067811865476) * t3;
-        let t5 = k(0.5) - t4 * t4;
+        let t5 = T::fused(-t4, t4, k(0.5));
         let t6 = t2 - t1;
         let t7 = k(0.7071067811865476) * t6;
         let t8 = t4 * t7;
@@ -1661,7 +1950,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
             k(0.0),
             -t7,
             t11 - t5,
-            t8 - k(0.5) * (t13 - t12),
+            T::fused(-k(0.5), t13 - t12, t8),
             -(k(0.5) * (k(0.5) - (t13 + t12))),
             -t10,
             -t10,
@@ -1673,8 +1962,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
             k(0.0),
             k(0.0),
             u0,
-            -(t14 * (k(2.0) * (k(0.5) - k(2.0) * t13)) + k(2.0) * t15),
-            t14 * (k(4.0) * t11) - k(2.0) * t16,
+            -T::fused(k(2.0), t15, t14 * (k(2.0) * T::fused(-k(2.0), t13, k(0.5)))),
+            T::fused(-k(2.0), t16, t14 * (k(4.0) * t11)),
             k(0.0),
             k(0.0),
             u0,
@@ -1691,12 +1980,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let inner_wz = y[19];
         let x0 = x[0];
         let t0 = x0.sin();
-        let t1 = inner_e0 * inner_e0 + inner_e1 * inner_e1;
-        let t2 = k(2.0) * (k(0.5) - t1)
-            - (k(1.0) - (inner_e3 * inner_e3 + (t1 + inner_e2 * inner_e2)));
+        let t1 = T::fused(inner_e1, inner_e1, inner_e0 * inner_e0);
+        let t2 = T::fused(
+            k(2.0),
+            k(0.5) - t1,
+            -(k(1.0) - T::fused(inner_e3, inner_e3, T::fused(inner_e2, inner_e2, t1))),
+        );
         let t3 = x0.cos();
-        let t4 = k(2.0) * (inner_e1 * inner_e2 + inner_e0 * inner_e3);
-        let t5 = (t4 * t0 - t2 * t3).atan2(-(t4 * t3 + t2 * t0));
+        let t4 = k(2.0) * T::fused(inner_e0, inner_e3, inner_e1 * inner_e2);
+        let t5 = T::fused(-t2, t3, t4 * t0).atan2(-T::fused(t2, t0, t4 * t3));
         x[0] = x0 + t5;
         x[1] = inner_wz;
     }
@@ -1731,7 +2023,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let outer_wz = y[25];
         let t0 = k(0.25) * inner_wz;
         let t1 = k(0.25) * inner_wy;
-        let t2 = inner_wy * t1 + inner_wz * t0;
+        let t2 = T::fused(inner_wz, t0, inner_wy * t1);
         let t3 = inner_e0 * inner_e0;
         let t4 = (inner_e0 + inner_e3) * (inner_e0 - inner_e3);
         let t5 = k(3.67875) * t4;
@@ -1739,48 +2031,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let t7 = t6 - t5;
         let t8 = inner_e0 * inner_e3;
         let t9 = inner_e1 * inner_e2;
-        let t10 = k(2.0) * (t9 - t8) * t7
-            + k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1)) * t2;
+        let t10 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3)),
+            t2,
+            k(2.0) * (t9 - t8) * t7,
+        );
         let t11 = inner_wx * inner_wz;
         let t12 = k(0.25) * t11;
         let t13 = inner_wx * t0;
         let t14 = t13 + t12;
         let t15 = inner_e0 * inner_e2;
         let t16 = inner_e1 * inner_e3;
-        let t17 = k(2.0) * (k(0.5) - (t3 + inner_e2 * inner_e2)) * t7
-            + k(2.0) * (t9 + t8) * t2;
+        let t17 = T::fused(
+            k(2.0) * (t9 + t8),
+            t2,
+            k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3)) * t7,
+        );
         let t18 = inner_e0 * inner_e1;
         let t19 = inner_e2 * inner_e3;
-        let t20 = k(2.0) * (t19 + t18) * t7 - k(2.0) * (t16 - t15) * t2;
+        let t20 = T::fused(-(k(2.0) * (t16 - t15)), t2, k(2.0) * (t19 + t18) * t7);
         let t21 = inner_wy * inner_wz;
         let t22 = k(14.715) * t4;
         let t23 = k(0.25) * outer_wx;
-        let t24 = t5 - (t6 + outer_wz * t23 - (t5 - t7));
+        let t24 = t5 - (T::fused(outer_wz, t23, t6) - (t5 - t7));
         let t25 = outer_e0 * outer_e0;
         let t26 = k(0.25) * outer_wy;
-        let t27 = t12 + (t13 + outer_wz * t26 + (t12 + t14));
+        let t27 = t12 + (T::fused(outer_wz, t26, t13) + (t12 + t14));
         let t28 = outer_e0 * outer_e3;
         let t29 = outer_e1 * outer_e2;
-        let t30 = k(2.0) * (t29 - t28) * t27
-            + k(2.0) * (k(0.5) - (t25 + outer_e1 * outer_e1)) * t24;
-        let t31 = t2 + (t2 + (outer_wx * t23 + outer_wy * t26));
+        let t30 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t25)),
+            t24,
+            k(2.0) * (t29 - t28) * t27,
+        );
+        let t31 = t2 + (t2 + T::fused(outer_wy, t26, outer_wx * t23));
         let t32 = outer_e0 * outer_e2;
         let t33 = outer_e1 * outer_e3;
-        let t34 = k(2.0) * (k(0.5) - (t25 + outer_e2 * outer_e2)) * t27
-            + k(2.0) * (t29 + t28) * t24;
+        let t34 = T::fused(
+            k(2.0) * (t29 + t28),
+            t24,
+            k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t25)) * t27,
+        );
         let t35 = outer_e0 * outer_e1;
         let t36 = outer_e2 * outer_e3;
-        let t37 = k(2.0) * (t36 + t35) * t27 - k(2.0) * (t33 - t32) * t24;
+        let t37 = T::fused(-(k(2.0) * (t33 - t32)), t24, k(2.0) * (t36 + t35) * t27);
         *out = [
-            k(2.0) * (t16 + t15) * t14 + t10,
-            k(2.0) * (t19 - t18) * t14 - t17,
-            t20 - k(2.0) * (k(0.5) - (t3 + inner_e3 * inner_e3)) * t14,
+            T::fused(k(2.0) * (t16 + t15), t14, t10),
+            T::fused(k(2.0) * (t19 - t18), t14, -t17),
+            T::fused(-(k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t3))), t14, t20),
             t21,
             -t11,
             -t22,
-            t30 - k(2.0) * (t33 + t32) * t31,
-            -(k(2.0) * (t36 - t35) * t31 + t34),
-            k(2.0) * (k(0.5) - (t25 + outer_e3 * outer_e3)) * t31 + t37,
+            T::fused(-(k(2.0) * (t33 + t32)), t31, t30),
+            -T::fused(k(2.0) * (t36 - t35), t31, t34),
+            T::fused(k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t25)), t31, t37),
             -t11,
             -t22,
             t21,
@@ -1820,38 +2124,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let outer_dwy = accelerations[10];
         let outer_dwz = accelerations[11];
         let t0 = k(0.6) * (inner_dsx + outer_dsx);
-        let t1 = k(5.886) + k(0.6) * outer_dsy;
-        let t2 = k(5.886) + k(0.6) * inner_dsy + t1;
+        let t1 = T::fused(k(0.6), outer_dsy, k(5.886));
+        let t2 = T::fused(k(0.6), inner_dsy, k(5.886)) + t1;
         let t3 = k(0.6) * (inner_dsz + outer_dsz);
         let t4 = k(5e-5) * (inner_dwx + outer_dwz);
         let t5 = inner_e0 + inner_e3;
         let t6 = t5 * (inner_e0 - inner_e3);
-        let t7 = k(0.5) * (inner_e1 * inner_e3 + inner_e0 * inner_e2);
-        let t8 = k(0.5) * (inner_e2 * inner_e3 - inner_e0 * inner_e1);
-        let t9 = k(0.5) * (k(0.5) - (inner_e0 * inner_e0 + inner_e3 * inner_e3));
+        let t7 = k(0.5) * T::fused(inner_e0, inner_e2, inner_e1 * inner_e3);
+        let t8 = k(0.5) * T::fused(-inner_e0, inner_e1, inner_e2 * inner_e3);
+        let t9 = k(0.5) * (k(0.5) - T::fused(inner_e3, inner_e3, inner_e0 * inner_e0));
         let t10 = outer_e0 * outer_e3;
         let t11 = outer_e1 * outer_e2;
         let t12 = k(0.6) * outer_dsx;
         let t13 = outer_e0 * outer_e0;
-        let t14 = t1 * (k(0.5) * (k(0.5) - (t13 + outer_e2 * outer_e2)))
-            - t12 * (k(0.5) * (t11 - t10));
+        let t14 = T::fused(
+            -t12,
+            k(0.5) * (t11 - t10),
+            t1 * (k(0.5) * (k(0.5) - T::fused(outer_e2, outer_e2, t13))),
+        );
         let t15 = k(0.6) * outer_dsz;
-        let t16 = k(0.01245) * (outer_wy * outer_wz) - k(0.0125) * outer_dwx
-            + (t15 * (k(0.5) * (outer_e2 * outer_e3 + outer_e0 * outer_e1)) - t14);
-        let t17 = k(0.01245) * (inner_wx * inner_wz) - k(0.0125) * inner_dwy
-            - (t15 * t9 - (t1 * t8 + t12 * t7) - t16);
-        let t18 = t17 - (t3 * t9 - (t2 * t8 + t0 * t7));
-        let t19 = k(1.0) - t5 * t5;
-        let t20 = t1 * (k(0.5) * (t11 + t10))
-            - t12 * (k(0.5) * (k(0.5) - (t13 + outer_e1 * outer_e1)));
-        let t21 = k(0.01245) * (outer_wx * outer_wz) + k(0.0125) * outer_dwy
-            + (t15 * (k(0.5) * (outer_e1 * outer_e3 - outer_e0 * outer_e2)) + t20);
+        let t16 = T::fused(-k(0.0125), outer_dwx, k(0.01245) * (outer_wy * outer_wz))
+            + T::fused(
+                t15,
+                k(0.5) * T::fused(outer_e0, outer_e1, outer_e2 * outer_e3),
+                -t14,
+            );
+        let t17 = T::fused(-k(0.0125), inner_dwy, k(0.01245) * (inner_wx * inner_wz))
+            - (T::fused(t15, t9, -T::fused(t12, t7, t1 * t8)) - t16);
+        let t18 = t17 - T::fused(t3, t9, -T::fused(t0, t7, t2 * t8));
+        let t19 = T::fused(-t5, t5, k(1.0));
+        let t20 = T::fused(
+            -t12,
+            k(0.5) * (k(0.5) - T::fused(outer_e1, outer_e1, t13)),
+            t1 * (k(0.5) * (t11 + t10)),
+        );
+        let t21 = T::fused(k(0.0125), outer_dwy, k(0.01245) * (outer_wx * outer_wz))
+            + T::fused(
+                t15,
+                k(0.5) * T::fused(-outer_e0, outer_e2, outer_e1 * outer_e3),
+                t20,
+            );
         *lambda = [
             -t0,
             -t2,
             -t3,
-            t19 * t18 - t6 * t4,
-            t6 * t18 + t19 * t4,
+            T::fused(-t6, t4, t19 * t18),
+            T::fused(t19, t4, t6 * t18),
             -t12,
             -t1,
             -t15,
@@ -1879,7 +2197,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let outer_wz = y[25];
         let t0 = k(0.25) * inner_wz;
         let t1 = k(0.25) * inner_wy;
-        let t2 = inner_wy * t1 + inner_wz * t0;
+        let t2 = T::fused(inner_wz, t0, inner_wy * t1);
         let t3 = inner_e0 * inner_e0;
         let t4 = inner_e0 + inner_e3;
         let t5 = t4 * (inner_e0 - inner_e3);
@@ -1888,8 +2206,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let t8 = t7 - t6;
         let t9 = inner_e0 * inner_e3;
         let t10 = inner_e1 * inner_e2;
-        let t11 = k(2.0) * (t10 - t9) * t8
-            + k(2.0) * (k(0.5) - (t3 + inner_e1 * inner_e1)) * t2;
+        let t11 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3)),
+            t2,
+            k(2.0) * (t10 - t9) * t8,
+        );
         let t12 = inner_wx * inner_wz;
         let t13 = k(0.25) * t12;
         let t14 = inner_wx * t0;
@@ -1897,56 +2218,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
         let t16 = inner_e0 * inner_e2;
         let t17 = inner_e1 * inner_e3;
         let t18 = t17 + t16;
-        let t19 = k(2.0) * t18 * t15 + t11;
-        let t20 = k(2.0) * (k(0.5) - (t3 + inner_e2 * inner_e2)) * t8
-            + k(2.0) * (t10 + t9) * t2;
+        let t19 = T::fused(k(2.0) * t18, t15, t11);
+        let t20 = T::fused(
+            k(2.0) * (t10 + t9),
+            t2,
+            k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3)) * t8,
+        );
         let t21 = inner_e0 * inner_e1;
         let t22 = inner_e2 * inner_e3;
         let t23 = t22 - t21;
-        let t24 = k(2.0) * t23 * t15 - t20;
-        let t25 = k(2.0) * (t22 + t21) * t8 - k(2.0) * (t17 - t16) * t2;
-        let t26 = k(0.5) - (t3 + inner_e3 * inner_e3);
-        let t27 = k(2.0) * t26 * t15 - t25;
+        let t24 = T::fused(k(2.0) * t23, t15, -t20);
+        let t25 = T::fused(-(k(2.0) * (t17 - t16)), t2, k(2.0) * (t22 + t21) * t8);
+        let t26 = k(0.5) - T::fused(inner_e3, inner_e3, t3);
+        let t27 = T::fused(k(2.0) * t26, t15, -t25);
         let t28 = inner_wy * inner_wz;
         let t29 = k(14.715) * t5;
         let t30 = k(0.25) * outer_wx;
-        let t31 = t6 - (t7 + outer_wz * t30 - (t6 - t8));
+        let t31 = t6 - (T::fused(outer_wz, t30, t7) - (t6 - t8));
         let t32 = outer_e0 * outer_e0;
-        let t33 = k(0.5) - (t32 + outer_e1 * outer_e1);
+        let t33 = k(0.5) - T::fused(outer_e1, outer_e1, t32);
         let t34 = k(0.25) * outer_wy;
-        let t35 = t13 + (t14 + outer_wz * t34 + (t13 + t15));
+        let t35 = t13 + (T::fused(outer_wz, t34, t14) + (t13 + t15));
         let t36 = outer_e0 * outer_e3;
         let t37 = outer_e1 * outer_e2;
         let t38 = t37 - t36;
-        let t39 = t2 + (t2 + (outer_wx * t30 + outer_wy * t34));
+        let t39 = t2 + (t2 + T::fused(outer_wy, t34, outer_wx * t30));
         let t40 = outer_e0 * outer_e2;
         let t41 = outer_e1 * outer_e3;
-        let t42 = k(2.0) * (t41 + t40) * t39 - (k(2.0) * t38 * t35 + k(2.0) * t33 * t31);
+        let t42 = T::fused(
+            k(2.0) * (t41 + t40),
+            t39,
+            -T::fused(k(2.0) * t33, t31, k(2.0) * t38 * t35),
+        );
         let t43 = t37 + t36;
-        let t44 = k(0.5) - (t32 + outer_e2 * outer_e2);
+        let t44 = k(0.5) - T::fused(outer_e2, outer_e2, t32);
         let t45 = outer_e0 * outer_e1;
         let t46 = outer_e2 * outer_e3;
-        let t47 = k(2.0) * (t46 - t45) * t39 + (k(2.0) * t44 * t35 + k(2.0) * t43 * t31);
+        let t47 = T::fused(
+            k(2.0) * (t46 - t45),
+            t39,
+            T::fused(k(2.0) * t43, t31, k(2.0) * t44 * t35),
+        );
         let t48 = t41 - t40;
         let t49 = t46 + t45;
-        let t50 = k(2.0) * (k(0.5) - (t32 + outer_e3 * outer_e3)) * t39
-            + (k(2.0) * t49 * t35 - k(2.0) * t48 * t31);
+        let t50 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t32)),
+            t39,
+            T::fused(-(k(2.0) * t48), t31, k(2.0) * t49 * t35),
+        );
         let t51 = k(0.6) * (t19 - t42);
-        let t52 = k(5.886) - k(0.6) * t47;
-        let t53 = t52 + (k(5.886) + k(0.6) * t24);
+        let t52 = T::fused(-k(0.6), t47, k(5.886));
+        let t53 = t52 + T::fused(k(0.6), t24, k(5.886));
         let t54 = k(0.6) * (t27 - t50);
         let t55 = k(0.6) * t50;
         let t56 = k(0.5) * t26;
         let t57 = k(0.5) * t23;
         let t58 = k(0.6) * t42;
         let t59 = k(0.5) * t18;
-        let t60 = k(0.5) * t38 * t58 + k(0.5) * t44 * t52 - k(0.5) * t49 * t55;
-        let t61 = t60 - (k(0.01245) * (outer_wy * outer_wz) + k(0.0125) * t12);
-        let t62 = t61 + (t59 * t58 - t57 * t52 + t56 * t55) - k(0.02495) * t12;
-        let t63 = t59 * t51 + t57 * t53 + t56 * t54 - t62;
-        let t64 = k(1.0) - t4 * t4;
+        let t60 = T::fused(
+            -(k(0.5) * t49),
+            t55,
+            T::fused(k(0.5) * t44, t52, k(0.5) * t38 * t58),
+        );
+        let t61 = t60 - T::fused(k(0.0125), t12, k(0.01245) * (outer_wy * outer_wz));
+        let t62 = T::fused(
+            -k(0.02495),
+            t12,
+            t61 + T::fused(t56, t55, T::fused(-t57, t52, t59 * t58)),
+        );
+        let t63 = T::fused(t56, t54, T::fused(t57, t53, t59 * t51)) - t62;
+        let t64 = T::fused(-t4, t4, k(1.0));
         let t65 = k(0.0001) * t28;
-        let t66 = k(0.5) * t33 * t58 + k(0.5) * t43 * t52 + k(0.5) * t48 * t55;
+        let t66 = T::fused(
+            k(0.5) * t48,
+            t55,
+            T::fused(k(0.5) * t43, t52, k(0.5) * t33 * t58),
+        );
         *out = [
             t19,
             t24,
@@ -1963,14 +2310,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
             -t51,
             -t53,
             t54,
-            t64 * t63 - t5 * t65,
-            t64 * t65 + t5 * t63,
+            T::fused(-t5, t65, t64 * t63),
+            T::fused(t5, t63, t64 * t65),
             t58,
             -t52,
             -t55,
             -t61,
             k(5e-5) * t28,
-            t66 + (k(0.01245) * (outer_wx * outer_wz) - k(0.1839375) * t5),
+            t66 + T::fused(-k(0.1839375), t5, k(0.01245) * (outer_wx * outer_wz)),
         ];
     }
 }
@@ -2006,8 +2353,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Weld<T> {
         let outer_dwz = accelerations[11];
         let t0 = k(0.6) * outer_dsx;
         let t1 = inner_e0 * inner_e0;
-        let t2 = k(2.0) * (k(0.5) - (t1 + inner_e1 * inner_e1));
-        let t3 = k(5.886) + k(0.6) * outer_dsy;
+        let t2 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t1));
+        let t3 = T::fused(k(0.6), outer_dsy, k(5.886));
         let t4 = inner_e0 * inner_e3;
         let t5 = inner_e1 * inner_e2;
         let t6 = k(2.0) * (t5 + t4);
@@ -2016,24 +2363,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Weld<T> {
         let t9 = inner_e1 * inner_e3;
         let t10 = k(2.0) * (t9 - t8);
         let t11 = k(2.0) * (t5 - t4);
-        let t12 = k(2.0) * (k(0.5) - (t1 + inner_e2 * inner_e2));
+        let t12 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t1));
         let t13 = inner_e0 * inner_e1;
         let t14 = inner_e2 * inner_e3;
         let t15 = k(2.0) * (t14 + t13);
         let t16 = k(2.0) * (t9 + t8);
         let t17 = k(2.0) * (t14 - t13);
-        let t18 = k(2.0) * (k(0.5) - (t1 + inner_e3 * inner_e3));
+        let t18 = k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t1));
         let t19 = outer_e0 * outer_e3;
         let t20 = outer_e1 * outer_e2;
         let t21 = t20 - t19;
         let t22 = outer_e0 * outer_e0;
-        let t23 = k(0.5) - (t22 + outer_e2 * outer_e2);
+        let t23 = k(0.5) - T::fused(outer_e2, outer_e2, t22);
         let t24 = outer_e0 * outer_e1;
         let t25 = outer_e2 * outer_e3;
         let t26 = t25 + t24;
-        let t27 = t7 * (k(0.5) * t26) - (t3 * (k(0.5) * t23) - t0 * (k(0.5) * t21));
-        let t28 = k(0.01245) * (outer_wy * outer_wz) - k(0.0125) * outer_dwx + t27;
-        let t29 = k(0.5) - (t22 + outer_e1 * outer_e1);
+        let t27 = T::fused(
+            t7,
+            k(0.5) * t26,
+            -T::fused(-t0, k(0.5) * t21, t3 * (k(0.5) * t23)),
+        );
+        let t28 = T::fused(-k(0.0125), outer_dwx, k(0.01245) * (outer_wy * outer_wz))
+            + t27;
+        let t29 = k(0.5) - T::fused(outer_e1, outer_e1, t22);
         let t30 = k(2.0) * t29;
         let t31 = t20 + t19;
         let t32 = k(2.0) * t31;
@@ -2041,47 +2393,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Weld<T> {
         let t34 = outer_e1 * outer_e3;
         let t35 = t34 - t33;
         let t36 = k(2.0) * t35;
-        let t37 = t15 * t36 - (t12 * t32 + t11 * t30);
+        let t37 = T::fused(t15, t36, -T::fused(t11, t30, t12 * t32));
         let t38 = t34 + t33;
         let t39 = k(2.0) * t38;
         let t40 = t25 - t24;
         let t41 = k(2.0) * t40;
-        let t42 = k(0.5) - (t22 + outer_e3 * outer_e3);
+        let t42 = k(0.5) - T::fused(outer_e3, outer_e3, t22);
         let t43 = k(2.0) * t42;
-        let t44 = t10 * t43 - (t6 * t41 - t2 * t39);
+        let t44 = T::fused(t10, t43, -T::fused(-t2, t39, t6 * t41));
         let t45 = t44 * t37;
-        let t46 = t15 * t43 + (t12 * t41 - t11 * t39);
-        let t47 = t10 * t36 + (t6 * t32 + t2 * t30);
-        let t48 = t47 * t46 - t45;
+        let t46 = T::fused(t15, t43, T::fused(-t11, t39, t12 * t41));
+        let t47 = T::fused(t10, t36, T::fused(t2, t30, t6 * t32));
+        let t48 = T::fused(t47, t46, -t45);
         let t49 = k(1.0) / (t44 * t48);
-        let t50 = t7 * (k(0.5) * t35) + (t3 * (k(0.5) * t31) - t0 * (k(0.5) * t29));
-        let t51 = k(0.01245) * (outer_wx * outer_wz) + k(0.0125) * outer_dwy + t50;
+        let t50 = T::fused(
+            t7,
+            k(0.5) * t35,
+            T::fused(-t0, k(0.5) * t29, t3 * (k(0.5) * t31)),
+        );
+        let t51 = T::fused(k(0.0125), outer_dwy, k(0.01245) * (outer_wx * outer_wz))
+            + t50;
         let t52 = k(2.0) * t21;
         let t53 = k(2.0) * t23;
         let t54 = k(2.0) * t26;
-        let t55 = t10 * t54 - (t6 * t53 + t2 * t52);
+        let t55 = T::fused(t10, t54, -T::fused(t2, t52, t6 * t53));
         let t56 = k(5e-5) * outer_dwz;
-        let t57 = t56 * (t49 * (t44 * t46))
-            - (t49 * (t46 * t55) * t51 - t45 * t49 * t28);
-        let t58 = t49 * (t44 * t55) * t51 - t49 * (t44 * t47) * t28;
-        let t59 = t56 * (t49 * (t44 * t44)) - t58;
-        let t60 = t46 * t59 - (t27 + t44 * t57);
+        let t57 = T::fused(
+            t56,
+            t49 * (t44 * t46),
+            -T::fused(-(t45 * t49), t28, t49 * (t46 * t55) * t51),
+        );
+        let t58 = T::fused(-(t49 * (t44 * t47)), t28, t49 * (t44 * t55) * t51);
+        let t59 = T::fused(t56, t49 * (t44 * t44), -t58);
+        let t60 = T::fused(t46, t59, -T::fused(t44, t57, t27));
         let t61 = t48 * t49 * t51;
-        let t62 = t50 - t44 * t61;
-        let t63 = t55 * t61 - (t37 * t59 - t47 * t57);
-        let t64 = outer_ry - (outer_ry - k(0.5) * t40);
-        let t65 = outer_rz - (outer_rz + k(0.5) * t42);
-        let t66 = t3 * t65 - t7 * t64 - (t39 * t63 - (t52 * t62 - t30 * t60));
-        let t67 = outer_rx - (outer_rx - k(0.5) * t38);
-        let t68 = t7 * t67 - t0 * t65 - (t41 * t63 + (t53 * t62 - t32 * t60));
-        let t69 = t0 * t64 - t3 * t67 + (t43 * t63 + (t54 * t62 + t36 * t60));
+        let t62 = T::fused(-t44, t61, t50);
+        let t63 = T::fused(t55, t61, -T::fused(-t47, t57, t37 * t59));
+        let t64 = outer_ry - T::fused(-k(0.5), t40, outer_ry);
+        let t65 = outer_rz - T::fused(k(0.5), t42, outer_rz);
+        let t66 = T::fused(-t7, t64, t3 * t65)
+            - T::fused(t39, t63, -T::fused(-t30, t60, t52 * t62));
+        let t67 = outer_rx - T::fused(-k(0.5), t38, outer_rx);
+        let t68 = T::fused(-t0, t65, t7 * t67)
+            - T::fused(t41, t63, T::fused(-t32, t60, t53 * t62));
+        let t69 = T::fused(-t3, t67, t0 * t64)
+            + T::fused(t43, t63, T::fused(t36, t60, t54 * t62));
         *out = [
-            t10 * t7 + (t6 * t3 - t2 * t0),
-            t15 * t7 - (t12 * t3 - t11 * t0),
-            t17 * t3 + t16 * t0 - t18 * t7,
-            -(t10 * t69 + (t6 * t68 - t2 * t66)),
-            t12 * t68 - t11 * t66 - t15 * t69,
-            t18 * t69 - (t17 * t68 + t16 * t66),
+            T::fused(t10, t7, T::fused(-t2, t0, t6 * t3)),
+            T::fused(t15, t7, -T::fused(-t11, t0, t12 * t3)),
+            T::fused(-t18, t7, T::fused(t16, t0, t17 * t3)),
+            -T::fused(t10, t69, T::fused(-t2, t66, t6 * t68)),
+            T::fused(-t15, t69, T::fused(-t11, t66, t12 * t68)),
+            T::fused(t18, t69, -T::fused(t16, t66, t17 * t68)),
         ];
     }
     fn n_outputs(&self) -> usize {

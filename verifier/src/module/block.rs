@@ -25,9 +25,7 @@ pub enum Known {
     Accelerations,
     /// The argument x.
     Joints,
-    /// The argument `choice`.
-    Choice,
-    /// The charts as unit vectors.
+    /// The argument `charts`: unit vectors.
     Charts,
     /// A table's curve, evaluated.
     Curve { table: usize, time: Id },
@@ -54,7 +52,7 @@ pub enum Form {
     Vectors,
     /// `gyro_sim::Energy { kinetic: ..., potential: ... }`
     Energy,
-    /// `y[3] = ...; Ok(())`
+    /// `y[3] = ...;`
     Stores,
     /// `x[0] = ...; x[1] = ...;`, all of them.
     Joints,
@@ -105,7 +103,7 @@ impl<'a> Reader<'a> {
             "y" => Known::State,
             "x" => Known::Joints,
             "accelerations" => Known::Accelerations,
-            "choice" => Known::Choice,
+            "charts" => Known::Charts,
             "out" => Known::Target,
             _ => return,
         };
@@ -198,10 +196,6 @@ impl<'a> Reader<'a> {
             return Ok(Known::Literals);
         }
         match expression {
-            Expr::Call(call) if text(&call.func) == "gyro_sim :: charts :: one_hot :: < T , _ >" => {
-                let is_choice = call.args.len() == 1 && self.known(&call.args[0])? == Known::Choice;
-                if is_choice { Ok(Known::Charts) } else { Err(refused(expression)) }
-            }
             Expr::MethodCall(call) if call.method == "spline" => {
                 let time = self.expression(&call.receiver)?;
                 let table = (0..self.sizes.tables).find(|k| {
@@ -313,7 +307,7 @@ impl<'a> Reader<'a> {
                 }
                 energy.fields.iter().try_for_each(|field| self.result(&field.expr))
             }
-            (Form::Stores, [stores @ .., Stmt::Expr(end, None)]) if text(end) == "Ok (())" => {
+            (Form::Stores, stores) => {
                 stores.iter().try_for_each(|store| self.store(store, "y", Known::State))
             }
             (Form::Joints, stores) => {

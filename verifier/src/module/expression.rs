@@ -23,6 +23,7 @@ impl Reader<'_> {
                 Known::Time => Ok(self.push(Node::Read(Source::Time), expression.span())),
                 _ => Err(refused(expression)),
             },
+            Expr::Call(call) if text(&call.func) == "T :: fused" => self.fused(call),
             Expr::Call(call) => self.literal(call),
             Expr::MethodCall(call) => self.call(call),
             Expr::Index(index) => self.element(index),
@@ -45,6 +46,17 @@ impl Reader<'_> {
             other => return Err(Refusal::at(other.span(), format!("`{}`: no such operation", text(&other)))),
         };
         Ok(self.push(node, binary.op.span()))
+    }
+
+    /// `T::fused(a, b, c)`: `a b + c`, one product and one sum.
+    fn fused(&mut self, call: &ExprCall) -> Result<Id, Refusal> {
+        if call.args.len() != 3 {
+            return Err(refused(call));
+        }
+        let [a, b, c] = [0, 1, 2].map(|place| self.expression(&call.args[place]));
+        let (a, b, c) = (a?, b?, c?);
+        let product = self.push(Node::Mul(a, b), call.func.span());
+        Ok(self.push(Node::Add(product, c), call.func.span()))
     }
 
     /// `k(0.5)`.

@@ -28,8 +28,8 @@ pub fn text(
         constants(tables),
         definition(model, type_name),
         ode(model, type_name),
-        mechanism(model, type_name),
-        partition(model, type_name, choice, joints.is_some()),
+        mechanism(model, type_name, joints.is_some()),
+        partition(model, type_name, choice),
         equations(model, type_name),
         joints.map(|joints| joint_space(model, type_name, joints)).unwrap_or_default(),
         ports(model, type_name),
@@ -194,7 +194,11 @@ pub fn n_readings(model: &Model) -> usize {
     model.joints.iter().map(|joint| of_joint(joint.kind)).sum()
 }
 
-fn mechanism(model: &Model, name: &str) -> String {
+fn mechanism(model: &Model, name: &str, is_tree: bool) -> String {
+    let corrected = "fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
+        HOLE_corrected_derivative
+    }";
+    let corrected = if is_tree { corrected } else { "" };
     let (n, n_rows) = (model.coordinate_bodies().len(), model.rows().len());
     let [rows, constraints, readings] = [n_rows, n_rows + n, n_readings(model)].map(|n| n.to_string());
     format!(
@@ -203,6 +207,7 @@ fn mechanism(model: &Model, name: &str) -> String {
             type Constraints = [T; {constraints}];
             type Readings = [T; {readings}];
             {}
+            {corrected}
             {}
             fn energy(&self, ANY_t: T, ANY_y: &Self::State) -> gyro_sim::Energy<T> {{ HOLE_energy }}
             {}
@@ -268,47 +273,50 @@ fn descriptions(model: &Model) -> String {
     )
 }
 
-fn partition(model: &Model, name: &str, choice: Choice, is_tree: bool) -> String {
-    let corrected = "fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
-        HOLE_corrected_derivative
-    }";
-    let corrected = if is_tree { corrected } else { "" };
+fn partition(model: &Model, name: &str, choice: Choice) -> String {
     match choice {
-        Choice::Charts => by_charts(model, name, corrected),
-        Choice::Pivoting => by_pivoting(model, name, corrected),
+        Choice::Charts => by_charts(name),
+        Choice::Pivoting => by_pivoting(model, name),
     }
 }
 
 const SOLVED: &str = "::core::result::Result<(), gyro_sim::Error>";
 
-fn by_charts(model: &Model, name: &str, corrected: &str) -> String {
-    let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
+fn by_charts(name: &str) -> String {
+    let solves = ["newton_step", "solve_velocities"];
+    let unrolled = lines(solves.map(|solve| {
         format!(
-            "fn {solve}(&self, ANY_t: T, ANY_choice: &Self::Independent, ANY_y: &mut Self::State) -> {SOLVED} {{
-                HOLE_{solve}
+            "fn {solve}_on(&self, ANY_t: T, ANY_charts: &Self::Vectors, ANY_y: &mut Self::State) {{ HOLE_{solve} }}"
+        )
+    }));
+    let chosen = lines(solves.map(|solve| {
+        format!(
+            "fn {solve}(&self, t: T, choice: &Self::Independent, y: &mut Self::State) -> {SOLVED} {{
+                gyro_sim::Charted::{solve}_on(self, t, &gyro_sim::charts::one_hot(choice), y);
+                Ok(())
             }}"
         )
     }));
     format!(
-        "impl<T: gyro_sim::Scalar> {name}<T> {{
-            fn chart_vectors(&self, ANY_y: &[T; {}]) -> [[T; 4]; INT_charts] {{ HOLE_chart_vectors }}
+        "impl<T: gyro_sim::Scalar> gyro_sim::Charted for {name}<T> {{
+            type Vectors = [[T; 4]; INT_charts];
+            fn chart_vectors(&self, ANY_y: &Self::State) -> Self::Vectors {{ HOLE_chart_vectors }}
+            {unrolled}
         }}
         impl<T: gyro_sim::Real> gyro_sim::Partition for {name}<T> {{
             type Independent = gyro_sim::charts::Charts<INT_charts>;
             fn independent(&self, _t: T, y: &Self::State) -> Self::Independent {{
-                gyro_sim::charts::best(&self.chart_vectors(y))
+                gyro_sim::charts::best(&gyro_sim::Charted::chart_vectors(self, y))
             }}
             fn follow(&self, _t: T, y: &Self::State, choice: &mut Self::Independent) -> u32 {{
-                gyro_sim::charts::follow(&self.chart_vectors(y), choice)
+                gyro_sim::charts::follow(&gyro_sim::Charted::chart_vectors(self, y), choice)
             }}
-            {solves}
-            {corrected}
-        }}",
-        n_state(model)
+            {chosen}
+        }}"
     )
 }
 
-fn by_pivoting(model: &Model, name: &str, corrected: &str) -> String {
+fn by_pivoting(model: &Model, name: &str) -> String {
     let n = model.coordinate_bodies().len();
     let solves = lines(["newton_step", "solve_velocities"].map(|solve| {
         format!(
@@ -327,7 +335,6 @@ fn by_pivoting(model: &Model, name: &str, corrected: &str) -> String {
                 gyro_sim::pivoting::follow(self, t, y, choice)
             }}
             {solves}
-            {corrected}
         }}",
         model.rows().len() + n,
         7 * n

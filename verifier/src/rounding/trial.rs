@@ -24,8 +24,8 @@ pub const KERNELS: [&str; 5] = [
 pub struct Trial<'c> {
     /// The maximal state in `f64`.
     pub state: Vec<f64>,
-    /// Relative error of each kernel in `f64`, in the order of [`KERNELS`]: the largest error of a result in terms of the largest
-    /// result.
+    /// Error of each kernel in `f64`, in the order of [`KERNELS`]: the largest error of a result in terms of the largest result. Of u̇ in
+    /// terms of the largest of u̇ and v̇: in gimbal lock u̇ may vanish while all else accelerates.
     pub errors: [f64; KERNELS.len()],
     /// (s̈, ẇ') in 384 bits.
     pub accelerations: Vec<Real<'c>>,
@@ -66,8 +66,12 @@ pub fn trial<'c>(
         let given = Given { point, accelerations: &[], charts: &[], joints: &short_joints };
         interpreter::run(module, module.programs.get(function)?, &short_constants, &Elementary, &given).ok()
     };
-    let short = |state: &[Real<'_>]| numeric::point(model, (), &rounded(state), 0.0, |x| x);
-    let (short_corrected, short_violated) = (short(&corrected.state), short(&violated.state));
+    // Both are told the same state, the one that is rounded: what is left is the kernel's own error.
+    let states = [rounded(&corrected.state), rounded(&violated.state)];
+    let [corrected, violated] =
+        states.each_ref().map(|state| numeric::point(model, precision, state, 0.0, exactly));
+    let [short_corrected, short_violated] = states.map(|state| numeric::point(model, (), &state, 0.0, |x| x));
+    let accelerations = run("accelerations", &violated)?;
     let mut errors = [0.0; KERNELS.len()];
     for (error, kernel) in errors.iter_mut().zip(KERNELS) {
         let (exact, rounded) = if is_on_constraints(kernel) {
@@ -75,15 +79,15 @@ pub fn trial<'c>(
         } else {
             (run(kernel, &violated)?, run_short(kernel, &short_violated))
         };
-        *error = rounded.map_or(f64::INFINITY, |rounded| relative_error(&exact, &rounded));
+        let scale = if kernel.starts_with("joint") { &accelerations[..] } else { &[] };
+        *error = rounded.map_or(f64::INFINITY, |rounded| relative_error(&exact, &rounded, scale));
     }
-    let accelerations = run("accelerations", &violated)?;
     Some(Trial { state: short_violated.state, errors, accelerations })
 }
 
-/// The largest error in terms of the largest number; infinite where something is not a number.
-pub fn relative_error(exact: &[Real<'_>], computed: &[f64]) -> f64 {
-    let largest = exact.iter().map(|x| x.to_f64().abs()).fold(0.0, f64::max);
+/// The largest error in terms of the largest number, also among those of `scale`; infinite where something is not a number.
+pub fn relative_error(exact: &[Real<'_>], computed: &[f64], scale: &[Real<'_>]) -> f64 {
+    let largest = exact.iter().chain(scale).map(|x| x.to_f64().abs()).fold(0.0, f64::max);
     let error = exact
         .iter()
         .zip(computed)

@@ -1,0 +1,6 @@
+/* What the example needs of a machine with an operating system. */
+#include <stdio.h>
+
+void print(const char *text) {
+    fputs(text, stdout);
+}

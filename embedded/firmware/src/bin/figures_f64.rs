@@ -1,0 +1,10 @@
+//! What everything costs, in `f64`.
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+
+#[entry]
+fn main() -> ! {
+    firmware::figures::run::<f64>()
+}

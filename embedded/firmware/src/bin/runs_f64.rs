@@ -1,0 +1,10 @@
+//! The runs whose bits are compared, in `f64`.
+#![no_std]
+#![no_main]
+
+use cortex_m_rt::entry;
+
+#[entry]
+fn main() -> ! {
+    firmware::runs::run::<f64>()
+}

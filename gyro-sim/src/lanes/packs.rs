@@ -1,0 +1,91 @@
+//! The packs of `wide` as scalars.
+
+use super::{Lanes, sine};
+use crate::Scalar;
+use crate::fused::IS_FUSED;
+use wide::{f32x8, f64x4, f64x8};
+
+/// A function that is left to libm, lane after lane.
+fn each<T: Lanes>(x: T, function: impl Fn(T::Lane) -> T::Lane) -> T {
+    T::from_lanes(|lane| function(x.lane(lane)))
+}
+
+macro_rules! pack {
+    ($pack:ty, $lane:ty, $count:literal, $sin:expr, $cos:expr) => {
+        impl Scalar for $pack {
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                Self::splat(Scalar::constant(value))
+            }
+            #[inline(always)]
+            fn fused(a: Self, b: Self, c: Self) -> Self {
+                if IS_FUSED { a.mul_add(b, c) } else { a * b + c }
+            }
+            #[inline]
+            fn sqrt(self) -> Self {
+                Self::sqrt(self)
+            }
+            #[inline(always)]
+            fn sin(self) -> Self {
+                $sin(self)
+            }
+            #[inline(always)]
+            fn cos(self) -> Self {
+                $cos(self)
+            }
+            fn tanh(self) -> Self {
+                each(self, Scalar::tanh)
+            }
+            fn atan2(self, x: Self) -> Self {
+                Self::from_lanes(|lane| Scalar::atan2(self.lane(lane), x.lane(lane)))
+            }
+            fn spline(self, knots: &[f64], pieces: &[[f64; 4]]) -> [Self; 3] {
+                let lanes = self.to_array().map(|t| Scalar::spline(t, knots, pieces));
+                [0, 1, 2].map(|order| Self::from_lanes(|lane| lanes[lane][order]))
+            }
+        }
+
+        impl Lanes for $pack {
+            type Lane = $lane;
+            type Mask = Self;
+            const COUNT: usize = $count;
+
+            #[inline]
+            fn from_lanes(lane: impl FnMut(usize) -> $lane) -> Self {
+                Self::new(core::array::from_fn(lane))
+            }
+            #[inline]
+            fn lane(&self, index: usize) -> $lane {
+                self.as_array()[index]
+            }
+            #[inline]
+            fn abs(self) -> Self {
+                Self::abs(self)
+            }
+            #[inline]
+            fn greater(self, other: Self) -> Self {
+                self.simd_gt(other)
+            }
+            #[inline]
+            fn at_most(self, other: Self) -> Self {
+                self.simd_le(other)
+            }
+            #[inline]
+            fn is_finite(self) -> Self {
+                Self::is_finite(self)
+            }
+            #[inline]
+            fn select(mask: Self, one: Self, other: Self) -> Self {
+                mask.select(one, other)
+            }
+            #[inline]
+            fn bits(mask: Self) -> u32 {
+                mask.to_bitmask()
+            }
+        }
+    };
+}
+
+pack!(f64x4, f64, 4, sine::sin, sine::cos);
+pack!(f64x8, f64, 8, sine::sin, sine::cos);
+pack!(f32x8, f32, 8, sine::sin_of_singles, sine::cos_of_singles);
