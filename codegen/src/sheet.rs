@@ -194,15 +194,15 @@ impl Function {
         )
     }
 
-    /// Which form was taken, and what it was compared with.
+    /// Which form was taken, and the next one, if several were compared.
     fn choices(&self) -> Option<String> {
         let taken = self.forms.iter().find(|form| form.is_taken)?;
-        let others = self.forms.iter().filter(|form| !form.is_taken);
-        let others: Vec<_> =
-            others.map(|form| format!("{} {}", form.name, form.operations.total())).collect();
-        let others =
-            if others.is_empty() { "alone".to_owned() } else { format!("not {}", others.join(", ")) };
-        Some(format!("* {}: by {}, {} operations, {others}", self.name, taken.name, taken.operations.total()))
+        let others: Vec<&Form> = self.forms.iter().filter(|form| !form.is_taken).collect();
+        let next = others.iter().min_by_key(|form| form.operations.total())?;
+        let more = if others.len() > 1 { format!(" or {} others", others.len() - 1) } else { String::new() };
+        let (taken, next) =
+            [taken, next].map(|form| format!("{}, {}", form.name, form.operations.total())).into();
+        Some(format!("* {}: by {taken} operations, not {next}{more}", self.name))
     }
 }
 

@@ -147,7 +147,7 @@ mod tests {
         for what in [
             "without gravity",
             "without the friction of `alpha`",
-            "without the offset of `beta` on `inner_ring`",
+            "without the offset of `phi` on `inner_ring`",
             "with free masses and inertias",
             "with a free geometry",
         ] {

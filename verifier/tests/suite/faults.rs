@@ -169,7 +169,7 @@ fn change_node(program: &mut Program, fault: &Fault) -> Option<()> {
 
 fn other(source: Source) -> Option<Source> {
     Some(match source {
-        Source::State(k) => Source::State(if k % 7 == 0 { k + 1 } else { k - 1 }),
+        Source::State(k) => Source::State(if k == 0 { 1 } else { k - 1 }),
         Source::Acceleration(0) => return None,
         Source::Acceleration(k) => Source::Acceleration(k - 1),
         Source::Joint(0) => return None,
