@@ -199,10 +199,11 @@ impl Function {
         let taken = self.forms.iter().find(|form| form.is_taken)?;
         let others: Vec<&Form> = self.forms.iter().filter(|form| !form.is_taken).collect();
         let next = others.iter().min_by_key(|form| form.operations.total())?;
-        let more = if others.len() > 1 { format!(" or {} others", others.len() - 1) } else { String::new() };
-        let (taken, next) =
-            [taken, next].map(|form| format!("{}, {}", form.name, form.operations.total())).into();
-        Some(format!("* {}: by {taken} operations, not {next}{more}", self.name))
+        let more =
+            if others.len() > 1 { format!("; {} more compared", others.len() - 1) } else { String::new() };
+        let [taken, next] =
+            [taken, next].map(|form| format!("{} operations by {}", form.operations.total(), form.name));
+        Some(format!("* {}: {taken}; {next}{more}", self.name))
     }
 }
 

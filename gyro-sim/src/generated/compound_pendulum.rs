@@ -11,10 +11,10 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 88 operations, not relative Euler parameters 88
-//! * joint_accelerations: by recursion, 1 operations, not normal form 1
-//! * joint_accelerations_at: by recursion, 4 operations, not normal form 4, recursion on the bodies' spins 12
-//! * corrected_accelerations: by recursion in the bodies' frames, 63 operations, not recursion in the global frame 71, normal form in the bodies' frames 63, normal form in the global frame 71, recursion on the bodies' spins in the bodies' frames 69, recursion on the bodies' spins in the global frame 77, elimination in maximal coordinates 88
+//! * accelerations: 88 operations by rotations of the bodies; 88 operations by relative Euler parameters
+//! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
+//! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
+//! * corrected_accelerations: 63 operations by recursion in the bodies' frames; 63 operations by normal form in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

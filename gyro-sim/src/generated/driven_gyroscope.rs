@@ -11,10 +11,10 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 485 operations, not rotations of the bodies 486
-//! * joint_accelerations: by normal form, 68 operations, not recursion 84
-//! * joint_accelerations_at: by recursion on the bodies' spins, 105 operations, not recursion 115, normal form 99
-//! * corrected_accelerations: by elimination in maximal coordinates, 486 operations, not recursion in the bodies' frames 227, recursion in the global frame 229, normal form in the bodies' frames 214, normal form in the global frame 216, recursion on the bodies' spins in the bodies' frames 203, recursion on the bodies' spins in the global frame 205
+//! * accelerations: 485 operations by relative Euler parameters; 486 operations by rotations of the bodies
+//! * joint_accelerations: 68 operations by normal form; 84 operations by recursion
+//! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 1 more compared
+//! * corrected_accelerations: 486 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

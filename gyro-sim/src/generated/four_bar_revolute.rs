@@ -16,7 +16,7 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 740 operations, not relative Euler parameters 755
+//! * accelerations: 740 operations by rotations of the bodies; 755 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,10 +11,9 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 4 operations, not relative Euler parameters 4
-//! * joint_accelerations: by recursion, 4 operations, alone
-//! * joint_accelerations_at: by recursion, 4 operations, not recursion on the bodies' spins 4
-//! * corrected_accelerations: by recursion in the bodies' frames, 4 operations, not recursion in the global frame 4, recursion on the bodies' spins in the bodies' frames 4, recursion on the bodies' spins in the global frame 4, elimination in maximal coordinates 4
+//! * accelerations: 4 operations by rotations of the bodies; 4 operations by relative Euler parameters
+//! * joint_accelerations_at: 4 operations by recursion; 4 operations by recursion on the bodies' spins
+//! * corrected_accelerations: 4 operations by recursion in the bodies' frames; 4 operations by recursion in the global frame; 3 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -12,10 +12,10 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 436 operations, not rotations of the bodies 456
-//! * joint_accelerations: by normal form, 20 operations, not recursion 39
-//! * joint_accelerations_at: by normal form, 40 operations, not recursion 59, recursion on the bodies' spins 77
-//! * corrected_accelerations: by normal form in the bodies' frames, 150 operations, not recursion in the bodies' frames 169, recursion in the global frame 171, normal form in the global frame 152, recursion on the bodies' spins in the bodies' frames 175, recursion on the bodies' spins in the global frame 177, elimination in maximal coordinates 456
+//! * accelerations: 436 operations by relative Euler parameters; 456 operations by rotations of the bodies
+//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
+//! * joint_accelerations_at: 40 operations by normal form; 59 operations by recursion; 1 more compared
+//! * corrected_accelerations: 150 operations by normal form in the bodies' frames; 152 operations by normal form in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,10 +11,10 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 785 operations, not rotations of the bodies 805
-//! * joint_accelerations: by normal form, 138 operations, not recursion 366
-//! * joint_accelerations_at: by normal form, 176 operations, not recursion 404, recursion on the bodies' spins 415
-//! * corrected_accelerations: by normal form in the bodies' frames, 321 operations, not recursion in the bodies' frames 547, recursion in the global frame 647, normal form in the global frame 421, recursion on the bodies' spins in the bodies' frames 493, recursion on the bodies' spins in the global frame 608, elimination in maximal coordinates 805
+//! * accelerations: 785 operations by relative Euler parameters; 805 operations by rotations of the bodies
+//! * joint_accelerations: 138 operations by normal form; 366 operations by recursion
+//! * joint_accelerations_at: 176 operations by normal form; 404 operations by recursion; 1 more compared
+//! * corrected_accelerations: 321 operations by normal form in the bodies' frames; 421 operations by normal form in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

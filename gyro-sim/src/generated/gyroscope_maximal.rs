@@ -11,10 +11,10 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 616 operations, not rotations of the bodies 664
-//! * joint_accelerations: by normal form, 20 operations, not recursion 39
-//! * joint_accelerations_at: by normal form, 41 operations, not recursion 60, recursion on the bodies' spins 78
-//! * corrected_accelerations: by normal form in the bodies' frames, 151 operations, not recursion in the bodies' frames 170, recursion in the global frame 172, normal form in the global frame 153, recursion on the bodies' spins in the bodies' frames 176, recursion on the bodies' spins in the global frame 178, elimination in maximal coordinates 664
+//! * accelerations: 616 operations by relative Euler parameters; 664 operations by rotations of the bodies
+//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
+//! * joint_accelerations_at: 41 operations by normal form; 60 operations by recursion; 1 more compared
+//! * corrected_accelerations: 151 operations by normal form in the bodies' frames; 153 operations by normal form in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

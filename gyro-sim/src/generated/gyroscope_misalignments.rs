@@ -10,10 +10,10 @@
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 838 operations, not rotations of the bodies 858
-//! * joint_accelerations: by normal form, 191 operations, not recursion 441
-//! * joint_accelerations_at: by normal form, 229 operations, not recursion 479, recursion on the bodies' spins 490
-//! * corrected_accelerations: by normal form in the bodies' frames, 366 operations, not recursion in the bodies' frames 614, recursion in the global frame 706, normal form in the global frame 458, recursion on the bodies' spins in the bodies' frames 564, recursion on the bodies' spins in the global frame 671, elimination in maximal coordinates 858
+//! * accelerations: 838 operations by relative Euler parameters; 858 operations by rotations of the bodies
+//! * joint_accelerations: 191 operations by normal form; 441 operations by recursion
+//! * joint_accelerations_at: 229 operations by normal form; 479 operations by recursion; 1 more compared
+//! * corrected_accelerations: 366 operations by normal form in the bodies' frames; 458 operations by normal form in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,10 +11,10 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 440 operations, not rotations of the bodies 460
-//! * joint_accelerations: by normal form, 32 operations, not recursion 54
-//! * joint_accelerations_at: by normal form, 52 operations, not recursion 74, recursion on the bodies' spins 88
-//! * corrected_accelerations: by normal form in the bodies' frames, 162 operations, not recursion in the bodies' frames 184, recursion in the global frame 186, normal form in the global frame 164, recursion on the bodies' spins in the bodies' frames 186, recursion on the bodies' spins in the global frame 188, elimination in maximal coordinates 460
+//! * accelerations: 440 operations by relative Euler parameters; 460 operations by rotations of the bodies
+//! * joint_accelerations: 32 operations by normal form; 54 operations by recursion
+//! * joint_accelerations_at: 52 operations by normal form; 74 operations by recursion; 1 more compared
+//! * corrected_accelerations: 162 operations by normal form in the bodies' frames; 164 operations by normal form in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

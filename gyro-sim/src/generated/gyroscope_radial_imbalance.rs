@@ -11,10 +11,10 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 413 operations, not rotations of the bodies 433
-//! * joint_accelerations: by normal form, 61 operations, not recursion 91
-//! * joint_accelerations_at: by normal form, 99 operations, not recursion 129, recursion on the bodies' spins 142
-//! * corrected_accelerations: by normal form in the bodies' frames, 179 operations, not recursion in the bodies' frames 208, recursion in the global frame 222, normal form in the global frame 193, recursion on the bodies' spins in the bodies' frames 205, recursion on the bodies' spins in the global frame 219, elimination in maximal coordinates 433
+//! * accelerations: 413 operations by relative Euler parameters; 433 operations by rotations of the bodies
+//! * joint_accelerations: 61 operations by normal form; 91 operations by recursion
+//! * joint_accelerations_at: 99 operations by normal form; 129 operations by recursion; 1 more compared
+//! * corrected_accelerations: 179 operations by normal form in the bodies' frames; 193 operations by normal form in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

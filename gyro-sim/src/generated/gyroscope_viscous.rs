@@ -11,10 +11,10 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 442 operations, not rotations of the bodies 462
-//! * joint_accelerations: by normal form, 28 operations, not recursion 50
-//! * joint_accelerations_at: by normal form, 48 operations, not recursion 70, recursion on the bodies' spins 84
-//! * corrected_accelerations: by normal form in the bodies' frames, 158 operations, not recursion in the bodies' frames 180, recursion in the global frame 182, normal form in the global frame 160, recursion on the bodies' spins in the bodies' frames 183, recursion on the bodies' spins in the global frame 185, elimination in maximal coordinates 462
+//! * accelerations: 442 operations by relative Euler parameters; 462 operations by rotations of the bodies
+//! * joint_accelerations: 28 operations by normal form; 50 operations by recursion
+//! * joint_accelerations_at: 48 operations by normal form; 70 operations by recursion; 1 more compared
+//! * corrected_accelerations: 158 operations by normal form in the bodies' frames; 160 operations by normal form in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

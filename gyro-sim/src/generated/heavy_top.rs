@@ -11,10 +11,10 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 98 operations, not relative Euler parameters 98
-//! * joint_accelerations: by normal form, 13 operations, not recursion 24
-//! * joint_accelerations_at: by normal form, 13 operations, not recursion 24, recursion on the bodies' spins 24
-//! * corrected_accelerations: by normal form in the bodies' frames, 64 operations, not recursion in the bodies' frames 71, recursion in the global frame 85, normal form in the global frame 78, recursion on the bodies' spins in the bodies' frames 71, recursion on the bodies' spins in the global frame 85, elimination in maximal coordinates 98
+//! * accelerations: 98 operations by rotations of the bodies; 98 operations by relative Euler parameters
+//! * joint_accelerations: 13 operations by normal form; 24 operations by recursion
+//! * joint_accelerations_at: 13 operations by normal form; 24 operations by recursion; 1 more compared
+//! * corrected_accelerations: 64 operations by normal form in the bodies' frames; 71 operations by recursion in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,10 +11,10 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by relative Euler parameters, 553 operations, not rotations of the bodies 554
-//! * joint_accelerations: by recursion, 115 operations, not normal form 124
-//! * joint_accelerations_at: by recursion on the bodies' spins, 145 operations, not recursion 160, normal form 169
-//! * corrected_accelerations: by elimination in maximal coordinates, 554 operations, not recursion in the bodies' frames 274, recursion in the global frame 276, normal form in the bodies' frames 283, normal form in the global frame 285, recursion on the bodies' spins in the bodies' frames 248, recursion on the bodies' spins in the global frame 250
+//! * accelerations: 553 operations by relative Euler parameters; 554 operations by rotations of the bodies
+//! * joint_accelerations: 115 operations by recursion; 124 operations by normal form
+//! * joint_accelerations_at: 145 operations by recursion on the bodies' spins; 160 operations by recursion; 1 more compared
+//! * corrected_accelerations: 554 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,10 +11,10 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 89 operations, not relative Euler parameters 89
-//! * joint_accelerations: by normal form, 14 operations, not recursion 21
-//! * joint_accelerations_at: by normal form, 14 operations, not recursion 21, recursion on the bodies' spins 21
-//! * corrected_accelerations: by normal form in the bodies' frames, 62 operations, not recursion in the bodies' frames 65, recursion in the global frame 75, normal form in the global frame 72, recursion on the bodies' spins in the bodies' frames 65, recursion on the bodies' spins in the global frame 75, elimination in maximal coordinates 89
+//! * accelerations: 89 operations by rotations of the bodies; 89 operations by relative Euler parameters
+//! * joint_accelerations: 14 operations by normal form; 21 operations by recursion
+//! * joint_accelerations_at: 14 operations by normal form; 21 operations by recursion; 1 more compared
+//! * corrected_accelerations: 62 operations by normal form in the bodies' frames; 65 operations by recursion in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -10,7 +10,7 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
-//! * accelerations: by rotations of the bodies, 10380 operations, not relative Euler parameters 10431
+//! * accelerations: 10380 operations by rotations of the bodies; 10431 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,7 +11,7 @@
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: by rotations of the bodies, 168 operations, not relative Euler parameters 168
+//! * accelerations: 168 operations by rotations of the bodies; 168 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -13,7 +13,7 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 211 operations, not relative Euler parameters 211
+//! * accelerations: 211 operations by rotations of the bodies; 211 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

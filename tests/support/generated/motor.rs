@@ -12,10 +12,10 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 26 operations, not relative Euler parameters 26
-//! * joint_accelerations: by recursion, 3 operations, not normal form 3
-//! * joint_accelerations_at: by recursion, 3 operations, not normal form 3, recursion on the bodies' spins 3
-//! * corrected_accelerations: by recursion in the bodies' frames, 5 operations, not recursion in the global frame 5, normal form in the bodies' frames 5, normal form in the global frame 5, recursion on the bodies' spins in the bodies' frames 5, recursion on the bodies' spins in the global frame 5, elimination in maximal coordinates 26
+//! * accelerations: 26 operations by rotations of the bodies; 26 operations by relative Euler parameters
+//! * joint_accelerations: 3 operations by recursion; 3 operations by normal form
+//! * joint_accelerations_at: 3 operations by recursion; 3 operations by normal form; 1 more compared
+//! * corrected_accelerations: 5 operations by recursion in the bodies' frames; 5 operations by recursion in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,10 +11,10 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: by rotations of the bodies, 6 operations, not relative Euler parameters 6
-//! * joint_accelerations: by normal form, 6 operations, not recursion 66
-//! * joint_accelerations_at: by normal form, 6 operations, not recursion 66, recursion on the bodies' spins 66
-//! * corrected_accelerations: by elimination in maximal coordinates, 6 operations, not recursion in the bodies' frames 93, recursion in the global frame 93, normal form in the bodies' frames 70, normal form in the global frame 70, recursion on the bodies' spins in the bodies' frames 93, recursion on the bodies' spins in the global frame 93
+//! * accelerations: 6 operations by rotations of the bodies; 6 operations by relative Euler parameters
+//! * joint_accelerations: 6 operations by normal form; 66 operations by recursion
+//! * joint_accelerations_at: 6 operations by normal form; 66 operations by recursion; 1 more compared
+//! * corrected_accelerations: 6 operations by elimination in maximal coordinates; 70 operations by normal form in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -11,10 +11,10 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: by rotations of the bodies, 267 operations, not relative Euler parameters 267
-//! * joint_accelerations: by normal form, 2 operations, not recursion 4
-//! * joint_accelerations_at: by normal form, 34 operations, not recursion 36, recursion on the bodies' spins 55
-//! * corrected_accelerations: by normal form in the bodies' frames, 85 operations, not recursion in the bodies' frames 86, recursion in the global frame 98, normal form in the global frame 96, recursion on the bodies' spins in the bodies' frames 90, recursion on the bodies' spins in the global frame 102, elimination in maximal coordinates 267
+//! * accelerations: 267 operations by rotations of the bodies; 267 operations by relative Euler parameters
+//! * joint_accelerations: 2 operations by normal form; 4 operations by recursion
+//! * joint_accelerations_at: 34 operations by normal form; 36 operations by recursion; 1 more compared
+//! * corrected_accelerations: 85 operations by normal form in the bodies' frames; 86 operations by recursion in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -10,10 +10,10 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: by rotations of the bodies, 209 operations, not relative Euler parameters 209
-//! * joint_accelerations: by normal form, 61 operations, not recursion 95
-//! * joint_accelerations_at: by normal form, 61 operations, not recursion 95, recursion on the bodies' spins 95
-//! * corrected_accelerations: by normal form in the bodies' frames, 129 operations, not recursion in the bodies' frames 143, recursion in the global frame 170, normal form in the global frame 156, recursion on the bodies' spins in the bodies' frames 143, recursion on the bodies' spins in the global frame 170, elimination in maximal coordinates 209
+//! * accelerations: 209 operations by rotations of the bodies; 209 operations by relative Euler parameters
+//! * joint_accelerations: 61 operations by normal form; 95 operations by recursion
+//! * joint_accelerations_at: 61 operations by normal form; 95 operations by recursion; 1 more compared
+//! * corrected_accelerations: 129 operations by normal form in the bodies' frames; 143 operations by recursion in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -12,10 +12,10 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 150 operations, not relative Euler parameters 150
-//! * joint_accelerations: by recursion, 38 operations, not normal form 38
-//! * joint_accelerations_at: by recursion, 54 operations, not normal form 54, recursion on the bodies' spins 54
-//! * corrected_accelerations: by recursion in the bodies' frames, 72 operations, not recursion in the global frame 72, normal form in the bodies' frames 72, normal form in the global frame 72, recursion on the bodies' spins in the bodies' frames 72, recursion on the bodies' spins in the global frame 72, elimination in maximal coordinates 150
+//! * accelerations: 150 operations by rotations of the bodies; 150 operations by relative Euler parameters
+//! * joint_accelerations: 38 operations by recursion; 38 operations by normal form
+//! * joint_accelerations_at: 54 operations by recursion; 54 operations by normal form; 1 more compared
+//! * corrected_accelerations: 72 operations by recursion in the bodies' frames; 72 operations by recursion in the global frame; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -10,10 +10,9 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 31 operations, not relative Euler parameters 31
-//! * joint_accelerations: by recursion, 215 operations, alone
-//! * joint_accelerations_at: by recursion, 215 operations, not recursion on the bodies' spins 215
-//! * corrected_accelerations: by elimination in maximal coordinates, 31 operations, not recursion in the bodies' frames 239, recursion in the global frame 260, recursion on the bodies' spins in the bodies' frames 239, recursion on the bodies' spins in the global frame 260
+//! * accelerations: 31 operations by rotations of the bodies; 31 operations by relative Euler parameters
+//! * joint_accelerations_at: 215 operations by recursion; 215 operations by recursion on the bodies' spins
+//! * corrected_accelerations: 31 operations by elimination in maximal coordinates; 239 operations by recursion in the bodies' frames; 3 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -10,10 +10,10 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: by rotations of the bodies, 485 operations, not relative Euler parameters 499
-//! * joint_accelerations: by recursion, 1 operations, not normal form 1
-//! * joint_accelerations_at: by recursion, 4 operations, not normal form 4, recursion on the bodies' spins 22
-//! * corrected_accelerations: by recursion in the bodies' frames, 126 operations, not recursion in the global frame 157, normal form in the bodies' frames 126, normal form in the global frame 157, recursion on the bodies' spins in the bodies' frames 139, recursion on the bodies' spins in the global frame 171, elimination in maximal coordinates 485
+//! * accelerations: 485 operations by rotations of the bodies; 499 operations by relative Euler parameters
+//! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
+//! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
+//! * corrected_accelerations: 126 operations by recursion in the bodies' frames; 126 operations by normal form in the bodies' frames; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

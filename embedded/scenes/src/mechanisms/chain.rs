@@ -11,10 +11,9 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: by rotations of the bodies, 2651 operations, not relative Euler parameters 2726
-//! * joint_accelerations: by recursion, 1108 operations, alone
-//! * joint_accelerations_at: by recursion, 1207 operations, not recursion on the bodies' spins 1244
-//! * corrected_accelerations: by recursion on the bodies' spins in the bodies' frames, 1625 operations, not recursion in the bodies' frames 1699, recursion in the global frame 1731, recursion on the bodies' spins in the global frame 1708, elimination in maximal coordinates 2651
+//! * accelerations: 2651 operations by rotations of the bodies; 2726 operations by relative Euler parameters
+//! * joint_accelerations_at: 1207 operations by recursion; 1244 operations by recursion on the bodies' spins
+//! * corrected_accelerations: 1625 operations by recursion on the bodies' spins in the bodies' frames; 1699 operations by recursion in the bodies' frames; 3 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
