@@ -249,7 +249,7 @@ impl Column {
         Self {
             median: at(errors.len() / 2),
             worst: at(errors.len().saturating_sub(1)),
-            failures: errors.iter().filter(|error| !(**error <= FAILURE)).count(),
+            failures: errors.iter().filter(|error| error.is_nan() || **error > FAILURE).count(),
         }
     }
 }

@@ -177,7 +177,8 @@ fn the_gyroscope_is_what_one_finds_by_hand() {
         check(&g, &roots, &form);
         let (before, after) = (operations(&g, &roots), operations(&g, &form));
         println!("gyroscope: {before} -> {after}");
-        assert!(after <= 22, "{before} -> {after}");
+        // With sin² for cos² it were 22, and digits were lost in gimbal lock where the rings are light.
+        assert!(after <= 25, "{before} -> {after}");
         check_exactly(&mut g, &roots, &form);
     }
 }
@@ -247,7 +248,7 @@ fn values_are_kept() {
         check(&g, &roots, &form);
         // And whether it is cheaper or not.
         let relations = relations(&mut g, &[], &roots);
-        if let Some(found) = search(&g, &relations, &roots) {
+        if let Some(found) = search(&g, &relations, (&roots, &[])) {
             let form = found.system.build(&mut g);
             assert_eq!(operations(&g, &form), found.cost, "seed {seed}");
             check(&g, &roots, &form);
@@ -402,7 +403,8 @@ fn chain(g: &mut Graph, n: usize) -> Vec<ExprId> {
 fn horner(g: &mut Graph, roots: &[ExprId]) -> usize {
     let relations = relations(g, &[], roots);
     let choice = vec![0; relations.len()];
-    let (system, _) = expand(g, &relations, &choice, roots, &mut 100_000).expect("small enough");
+    let Expanded { system, .. } =
+        expand(g, &relations, &choice, (roots, &[]), &mut 100_000).expect("small enough");
     let mut out = Graph::new();
     let variables: Vec<_> = (0..system.literals.len()).map(|k| variable(&mut out, k)).collect();
     let built: Vec<_> = system.sums[..system.roots]
