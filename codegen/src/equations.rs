@@ -184,6 +184,9 @@ fn position_rates(system: &mut System) -> Vec<ExprId> {
 /// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed anyhow.
 fn relative_rotations(system: &mut System) -> HashMap<Symbol, ExprId> {
     let mut values = HashMap::default();
+    if !closing_rows(system).is_empty() {
+        return values;
+    }
     for (joint, frames) in system.joints.clone().iter().enumerate() {
         let p = readings::relative_euler(system, frames);
         let rotation = system.graph.rotation(&p);

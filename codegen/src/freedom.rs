@@ -3,6 +3,7 @@
 //! Both are written down from the joint's axes, with no solve. They hold for every configuration, also off the constraint
 //! manifold: a dot-1 row with the vector h of one body is blind to rotations about h whatever the other vector is.
 
+use crate::closing::closing_rows;
 use crate::coordinate;
 use crate::differentiate::Derivative;
 use crate::graph::{ExprId, Graph};
@@ -134,7 +135,8 @@ impl Freedom {
         let sliding = restraint.sliding.into_iter().map(|t| Twist { t, rho: ZERO3 });
         let forced: Vec<_> = held.into_iter().chain(rotations).collect();
         let mut bias = accelerated(&mut system.graph, &kinematics.gamma[rows.clone()], &forced);
-        let steering = Steering::of(system, &joint, reversed);
+        let is_open = closing_rows(system).is_empty();
+        let steering = if is_open { Steering::of(system, &joint, reversed) } else { None };
         if let Some(steering) = &steering {
             let back = [0, 1, 2].map(|column| joint.relative.map(|row| row[column]));
             bias.rho = steering.angular_acceleration(&mut system.graph, &back, &UNIT3);

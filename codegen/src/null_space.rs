@@ -31,25 +31,34 @@ pub struct Solution {
 pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
     let links = system.tree.links.clone();
     let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
-    let in_global_frame = freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
-    let in_own_frames = freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
-    let trees = [
-        EliminatedTree::new(system, freedoms.clone(), Basis::Mixed),
-        EliminatedTree::new(system, in_global_frame, Basis::Global),
-        EliminatedTree::new(system, in_own_frames, Basis::Own),
-    ];
-    let solved = trees.map(|tree| {
-        let free = tree.accelerations(system, dynamics);
-        let (motions, closing) = closing::close(system, kinematics, &tree, free);
-        let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho));
-        (accelerations.collect::<Vec<_>>(), closing)
-    });
+    let mut trees = vec![EliminatedTree::new(system, freedoms.clone(), Basis::Mixed)];
+    // Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
+    if closing::closing_rows(system).is_empty() {
+        let in_global_frame = freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
+        let in_own_frames = freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
+        trees.push(EliminatedTree::new(system, in_global_frame, Basis::Global));
+        trees.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
+    }
+    let solved: Vec<_> = trees.iter().map(|tree| solved(system, kinematics, dynamics, tree)).collect();
     let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
         Operations::count(&system.graph, &[&accelerations[..], closing].concat()).total()
     };
-    let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("three of them");
+    let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("at least one");
     let lambda = multipliers::of(system, kinematics, dynamics, &freedoms);
     Solution { accelerations, closing, lambda }
+}
+
+/// (s̈, ẇ') of each slot, and the multipliers that close loops.
+fn solved(
+    system: &mut System,
+    kinematics: &Kinematics,
+    dynamics: &Dynamics,
+    tree: &EliminatedTree,
+) -> (Vec<ExprId>, Vec<ExprId>) {
+    let free = tree.accelerations(system, dynamics);
+    let (motions, closing) = closing::close(system, kinematics, tree, free);
+    let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho));
+    (accelerations.collect(), closing)
 }
 
 /// The frames in which an elimination works.

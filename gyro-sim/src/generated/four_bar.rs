@@ -13,7 +13,7 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 1156 operations by rotations of the bodies; 1170 operations by relative Euler parameters
+//! * accelerations: 1192 operations by rotations of the bodies; 1192 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -26,7 +26,7 @@
 //! | gamma | γ | 101 | 163 | 0 | 264 | 0 of 17 | 872 | 264 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 107 | 0 | 190 | 0 of 17 | 431 | 190 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 487 | 660 | 9 | 1156 | 0 of 21 | 1.4e10 | 1159 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 497 | 686 | 9 | 1192 | 0 of 21 | 1.4e10 | 1193 |
 //! | multipliers | λ, the accelerations being known | 104 | 165 | 3 | 272 | 0 of 17 | 1608 | 272 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
@@ -1624,7 +1624,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1156 operations (487 ±, 660 ×, 9 ÷).
+    /// Solves eq. (17): 1192 operations (497 ±, 686 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1659,53 +1659,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             t19,
             t20,
             t21,
+            t22,
             t23,
             t24,
             t25,
             t26,
             t27,
-            t37,
-            t42,
-            t44,
-            t51,
+            t28,
+            t29,
             t54,
-            t56,
-            t59,
+            t58,
             t60,
-            t63,
-            t64,
-            t65,
+            t62,
             t66,
-            t67,
-            t69,
+            t68,
             t71,
-            t74,
-            t84,
-            t85,
+            t72,
+            t75,
+            t76,
+            t77,
+            t78,
+            t79,
+            t81,
+            t83,
             t86,
-            t88,
             t91,
-            t97,
+            t92,
+            t93,
+            t95,
             t98,
-            t99,
             t101,
-            t104,
-            t109,
-            t110,
-            t111,
+            t102,
+            t103,
+            t105,
+            t108,
+            t112,
             t113,
+            t114,
+            t115,
+            t116,
+            t118,
+            t123,
+            t124,
+            t125,
+            t126,
             t130,
-            t144,
+            t133,
+            t134,
             t148,
             t152,
-            t165,
-            t187,
-            t188,
-            t190,
+            t156,
+            t169,
             t191,
-            t193,
+            t192,
             t194,
-            t196,
+            t195,
             t197,
             t198,
             t199,
@@ -1728,253 +1736,249 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             let t15 = rocker_wy * rocker_wy;
             let t16 = T::fused(rocker_wz, rocker_wz, t15);
             let t17 = rocker_e0 * rocker_e0;
-            let t18 = rocker_wx * rocker_wy;
-            let t19 = rocker_e0 * rocker_e3;
-            let t20 = rocker_e1 * rocker_e2;
-            let t21 = t20 - t19;
-            let t22 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17)),
-                t16,
-                k(2.0) * t21 * t18,
-            );
-            let t23 = rocker_wx * rocker_wz;
-            let t24 = rocker_e0 * rocker_e2;
-            let t25 = rocker_e1 * rocker_e3;
-            let t26 = t25 + t24;
-            let t27 = k(0.2) * T::fused(k(2.0) * t26, t23, t22);
-            let t28 = crank_e0 * crank_e0;
-            let t29 = k(0.5) - T::fused(crank_e3, crank_e3, t28);
-            let t30 = crank_wy * crank_wy;
-            let t31 = T::fused(crank_wx, crank_wx, t30);
-            let t32 = t31 * (k(0.5) / t29);
-            let t33 = crank_e0 * crank_e2;
-            let t34 = crank_e1 * crank_e3;
-            let t35 = k(2.0) * (t34 - t33);
-            let t36 = crank_wx * crank_wz;
-            let t37 = T::fused(-t35, t32, t36);
-            let t38 = t34 + t33;
-            let t39 = k(0.2) * t38;
-            let t40 = coupler_e0 * coupler_e1;
-            let t41 = coupler_e2 * coupler_e3;
-            let t42 = t41 - t40;
-            let t43 = T::fused(k(4.905), t42, k(0.02095) * t9);
-            let t44 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
-            let t45 = k(2.0) * t44;
-            let t46 = crank_e0 * crank_e1;
-            let t47 = crank_e2 * crank_e3;
-            let t48 = t47 - t46;
-            let t49 = k(2.0) * t48;
-            let t50 = k(2.0) * t38;
-            let t51 = t41 + t40;
+            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
+            let t19 = rocker_wx * rocker_wy;
+            let t20 = rocker_e0 * rocker_e3;
+            let t21 = rocker_e1 * rocker_e2;
+            let t22 = t21 - t20;
+            let t23 = k(2.0) * t22;
+            let t24 = rocker_wx * rocker_wz;
+            let t25 = rocker_e0 * rocker_e2;
+            let t26 = rocker_e1 * rocker_e3;
+            let t27 = t26 + t25;
+            let t28 = k(2.0) * t27;
+            let t29 = k(0.2) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
+            let t30 = crank_wx * crank_wz;
+            let t31 = crank_e0 * crank_e0;
+            let t32 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t31));
+            let t33 = crank_wy * crank_wz;
+            let t34 = crank_e0 * crank_e3;
+            let t35 = crank_e1 * crank_e2;
+            let t36 = t35 - t34;
+            let t37 = k(2.0) * t36;
+            let t38 = crank_wy * crank_wy;
+            let t39 = T::fused(crank_wx, crank_wx, t38);
+            let t40 = crank_e0 * crank_e2;
+            let t41 = crank_e1 * crank_e3;
+            let t42 = t41 + t40;
+            let t43 = k(2.0) * t42;
+            let t44 = T::fused(t43, t39, -T::fused(-t32, t30, t37 * t33));
+            let t45 = k(2.0) * (t35 + t34);
+            let t46 = k(0.5) - T::fused(crank_e2, crank_e2, t31);
+            let t47 = k(2.0) * t46;
+            let t48 = k(1.0) / T::fused(-t37, t45, t32 * t47);
+            let t49 = crank_e0 * crank_e1;
+            let t50 = crank_e2 * crank_e3;
+            let t51 = t50 - t49;
             let t52 = k(2.0) * t51;
-            let t53 = k(2.0) * t29;
-            let t54 = T::fused(t53, t52, -T::fused(-t49, t45, t50 * t8));
-            let t55 = T::fused(-k(4.905), t44, k(0.02095) * t4);
-            let t56 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
-            let t57 = k(2.0) * t56;
-            let t58 = k(2.0) * t42;
-            let t59 = T::fused(t53, t57, T::fused(t49, t58, t50 * t13));
-            let t60 = T::fused(t54, t43, t59 * t55);
-            let t61 = k(2.0) * (t6 + t5);
-            let t62 = k(2.0) * (t11 - t10);
-            let t63 = T::fused(t53, t62, -T::fused(-t50, t3, t49 * t61));
-            let t64 = k(5e-5) * t63;
-            let t65 = k(0.0835) * t54;
-            let t66 = k(0.0835) * t59;
-            let t67 = k(1.0) / T::fused(t59, t66, T::fused(t63, t64, t54 * t65));
-            let t68 = t67 * t60;
-            let t69 = T::fused(-t65, t68, t43);
-            let t70 = t65 * t67;
-            let t71 = k(1.0) / T::fused(-t65, t70, k(0.0835));
-            let t72 = t71 * t69;
-            let t73 = t64 * t67;
-            let t74 = t65 * t73;
-            let t75 = T::fused(crank_wz, crank_wz, t30);
-            let t76 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t28));
-            let t77 = crank_wx * crank_wy;
-            let t78 = crank_e0 * crank_e3;
-            let t79 = crank_e1 * crank_e2;
-            let t80 = t79 - t78;
-            let t81 = k(2.0) * t80;
-            let t82 = k(0.1) * T::fused(t50, t36, T::fused(t76, t75, t81 * t77));
-            let t83 = t82 + t14;
-            let t84 = k(0.5) * t12;
-            let t85 = k(0.5) * t7;
-            let t86 = T::fused(t84, t54, t85 * t59);
-            let t87 = t67 * t86;
-            let t88 = T::fused(-t65, t87, t84);
-            let t89 = t71 * t88;
-            let t90 = T::fused(-t64, t87, t74 * t89);
-            let t91 = k(0.25) * T::fused(t58, t9, -T::fused(t61, t1, t45 * t4));
-            let t92 = k(2.0) * (t79 + t78);
-            let t93 = k(0.5) - T::fused(crank_e2, crank_e2, t28);
-            let t94 = k(2.0) * t93;
-            let t95 = k(0.1) * T::fused(t49, t36, -T::fused(t92, t75, t94 * t77));
-            let t96 = t95 + t91;
-            let t97 = k(0.5) * t42;
-            let t98 = k(0.5) * t44;
-            let t99 = T::fused(-t97, t54, t98 * t59);
-            let t100 = t67 * t99;
-            let t101 = T::fused(t65, t100, t97);
-            let t102 = t71 * t101;
-            let t103 = T::fused(t64, t100, t74 * t102);
-            let t104 = k(0.25) * T::fused(t57, t9, -T::fused(-t62, t1, t52 * t4));
-            let t105 = t47 + t46;
-            let t106 = k(2.0) * t105;
-            let t107 = k(0.1) * T::fused(t53, t36, -T::fused(-t35, t75, t106 * t77));
-            let t108 = t107 + t104;
-            let t109 = k(0.5) * t56;
-            let t110 = k(0.5) * t51;
-            let t111 = T::fused(-t109, t54, t110 * t59);
-            let t112 = t67 * t111;
-            let t113 = T::fused(t65, t112, t109);
-            let t114 = t71 * t113;
-            let t115 = T::fused(t64, t112, t74 * t114);
-            let t116 = k(1.0) / T::fused(t59, t59, t63 * t63);
-            let t117 = crank_wy * crank_wz;
-            let t118 = T::fused(
-                t36,
-                T::fused(t35, t52, -T::fused(t76, t8, t92 * t45)),
-                t117 * T::fused(t106, t52, T::fused(t94, t45, t81 * t8)),
+            let t53 = T::fused(t52, t39, T::fused(-t45, t30, t47 * t33));
+            let t54 = T::fused(t47 * t48, t44, t37 * t48 * t53);
+            let t55 = k(0.2) * t42;
+            let t56 = coupler_e0 * coupler_e1;
+            let t57 = coupler_e2 * coupler_e3;
+            let t58 = t57 - t56;
+            let t59 = T::fused(k(4.905), t58, k(0.02095) * t9);
+            let t60 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
+            let t61 = k(2.0) * t60;
+            let t62 = t57 + t56;
+            let t63 = k(2.0) * t62;
+            let t64 = k(0.5) - T::fused(crank_e3, crank_e3, t31);
+            let t65 = k(2.0) * t64;
+            let t66 = T::fused(t65, t63, -T::fused(-t52, t61, t43 * t8));
+            let t67 = T::fused(-k(4.905), t60, k(0.02095) * t4);
+            let t68 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
+            let t69 = k(2.0) * t68;
+            let t70 = k(2.0) * t58;
+            let t71 = T::fused(t65, t69, T::fused(t52, t70, t43 * t13));
+            let t72 = T::fused(t66, t59, t71 * t67);
+            let t73 = k(2.0) * (t6 + t5);
+            let t74 = k(2.0) * (t11 - t10);
+            let t75 = T::fused(t65, t74, -T::fused(-t43, t3, t52 * t73));
+            let t76 = k(5e-5) * t75;
+            let t77 = k(0.0835) * t66;
+            let t78 = k(0.0835) * t71;
+            let t79 = k(1.0) / T::fused(t71, t78, T::fused(t75, t76, t66 * t77));
+            let t80 = t79 * t72;
+            let t81 = T::fused(-t77, t80, t59);
+            let t82 = t77 * t79;
+            let t83 = k(1.0) / T::fused(-t77, t82, k(0.0835));
+            let t84 = t83 * t81;
+            let t85 = t76 * t79;
+            let t86 = t77 * t85;
+            let t87 = T::fused(crank_wz, crank_wz, t38);
+            let t88 = crank_wx * crank_wy;
+            let t89 = k(0.1) * T::fused(t43, t30, T::fused(t32, t87, t37 * t88));
+            let t90 = t89 + t14;
+            let t91 = k(0.5) * t12;
+            let t92 = k(0.5) * t7;
+            let t93 = T::fused(t91, t66, t92 * t71);
+            let t94 = t79 * t93;
+            let t95 = T::fused(-t77, t94, t91);
+            let t96 = t83 * t95;
+            let t97 = T::fused(-t76, t94, t86 * t96);
+            let t98 = k(0.25) * T::fused(t70, t9, -T::fused(t73, t1, t61 * t4));
+            let t99 = k(0.1) * T::fused(t52, t30, -T::fused(t45, t87, t47 * t88));
+            let t100 = t99 + t98;
+            let t101 = k(0.5) * t58;
+            let t102 = k(0.5) * t60;
+            let t103 = T::fused(-t101, t66, t102 * t71);
+            let t104 = t79 * t103;
+            let t105 = T::fused(t77, t104, t101);
+            let t106 = t83 * t105;
+            let t107 = T::fused(t76, t104, t86 * t106);
+            let t108 = k(0.25) * T::fused(t69, t9, -T::fused(-t74, t1, t63 * t4));
+            let t109 = k(2.0) * (t41 - t40);
+            let t110 = t50 + t49;
+            let t111 = k(2.0) * t110;
+            let t112 = k(0.1) * T::fused(t65, t30, -T::fused(-t109, t87, t111 * t88));
+            let t113 = t112 + t108;
+            let t114 = k(0.5) * t68;
+            let t115 = k(0.5) * t62;
+            let t116 = T::fused(-t114, t66, t115 * t71);
+            let t117 = t79 * t116;
+            let t118 = T::fused(t77, t117, t114);
+            let t119 = t83 * t118;
+            let t120 = T::fused(t76, t117, t86 * t119);
+            let t121 = k(1.0) / T::fused(t71, t71, t75 * t75);
+            let t122 = T::fused(
+                t30,
+                T::fused(t109, t63, -T::fused(t32, t8, t45 * t61)),
+                t33 * T::fused(t111, t63, T::fused(t47, t61, t37 * t8)),
             );
-            let t119 = T::fused(t35, t62, T::fused(t76, t3, t92 * t61));
-            let t120 = T::fused(t35, t57, -T::fused(-t76, t13, t92 * t58));
-            let t121 = T::fused(t106, t62, -T::fused(t81, t3, t94 * t61));
-            let t122 = T::fused(t106, t57, -T::fused(-t94, t58, t81 * t13));
-            let t123 = T::fused(
+            let t123 = T::fused(t109, t74, T::fused(t32, t3, t45 * t73));
+            let t124 = T::fused(t109, t69, -T::fused(-t32, t13, t45 * t70));
+            let t125 = T::fused(t111, t74, -T::fused(t37, t3, t47 * t73));
+            let t126 = T::fused(t111, t69, -T::fused(-t47, t70, t37 * t13));
+            let t127 = T::fused(
                 -crank_wy,
-                T::fused(coupler_wz, t119, coupler_wx * t120),
-                crank_wx * T::fused(coupler_wz, t121, coupler_wx * t122),
+                T::fused(coupler_wz, t123, coupler_wx * t124),
+                crank_wx * T::fused(coupler_wz, t125, coupler_wx * t126),
             );
-            let t124 = T::fused(
+            let t128 = T::fused(
                 coupler_wy * coupler_wz,
-                t59,
-                T::fused(-t4, t63, T::fused(coupler_wx, coupler_wx, t0) * t54),
+                t71,
+                T::fused(-t4, t75, T::fused(coupler_wx, coupler_wx, t0) * t66),
             );
-            let t125 = T::fused(k(2.0), t123, t124) + T::fused(t31, t54, t118);
-            let t126 = t125 * (t59 * t116);
-            let t127 = t71 * t74;
-            let t128 = T::fused(t74, t127, -T::fused(-t64, t73, k(5e-5)));
-            let t129 = t63 * t116 * t125;
-            let t130 = t66 * t70;
-            let t131 = T::fused(t66, t73, t130 * t127);
-            let t132 = T::fused(-t128, t126, t131 * t129)
-                + T::fused(t115, t108, T::fused(t90, t83, t103 * t96));
-            let t133 = T::fused(t130, t89, T::fused(-t66, t87, t85));
-            let t134 = T::fused(t130, t102, -T::fused(-t66, t100, t98));
-            let t135 = T::fused(t130, t114, -T::fused(-t66, t112, t110));
-            let t136 = T::fused(t130, t71 * t130, -T::fused(-t66, t66 * t67, k(0.0835)));
-            let t137 = T::fused(-t131, t126, t136 * t129)
-                + T::fused(t135, t108, T::fused(t133, t83, t134 * t96));
-            let t138 = T::fused(
-                t63,
-                t132 + T::fused(-t64, t68, t74 * t72),
-                t59 * (t137 + T::fused(t130, t72, T::fused(-t66, t68, t55))),
+            let t129 = T::fused(k(2.0), t127, t128) + T::fused(t39, t66, t122);
+            let t130 = t129 * (t71 * t121);
+            let t131 = t83 * t86;
+            let t132 = T::fused(t86, t131, -T::fused(-t76, t85, k(5e-5)));
+            let t133 = t75 * t121 * t129;
+            let t134 = t78 * t82;
+            let t135 = T::fused(t78, t85, t134 * t131);
+            let t136 = T::fused(-t132, t130, t135 * t133)
+                + T::fused(t120, t113, T::fused(t97, t90, t107 * t100));
+            let t137 = T::fused(t134, t96, T::fused(-t78, t94, t92));
+            let t138 = T::fused(t134, t106, -T::fused(-t78, t104, t102));
+            let t139 = T::fused(t134, t119, -T::fused(-t78, t117, t115));
+            let t140 = T::fused(t134, t83 * t134, -T::fused(-t78, t78 * t79, k(0.0835)));
+            let t141 = T::fused(-t135, t130, t140 * t133)
+                + T::fused(t139, t113, T::fused(t137, t90, t138 * t100));
+            let t142 = T::fused(
+                t75,
+                t136 + T::fused(-t76, t80, t86 * t84),
+                t71 * (t141 + T::fused(t134, t84, T::fused(-t78, t80, t67))),
             );
-            let t139 = T::fused(-t99, t87, t101 * t89);
-            let t140 = T::fused(t99, t100, t101 * t102);
-            let t141 = T::fused(t111, t100, t113 * t102);
-            let t142 = T::fused(-t103, t126, t134 * t129)
-                - (t96 - T::fused(t141, t108, T::fused(t139, t83, t140 * t96)));
-            let t143 = t142 + T::fused(t101, t72, -T::fused(t99, t68, k(9.81)));
-            let t144 = k(0.2) * t93;
-            let t145 = T::fused(t86, t87, t88 * t89);
-            let t146 = T::fused(-t111, t87, t113 * t89);
-            let t147 = T::fused(-t90, t126, t133 * t129)
-                - (t83 - T::fused(t146, t108, T::fused(t145, t83, t139 * t96)));
-            let t148 = k(0.2) * t80;
-            let t149 = t148 * (t147 + T::fused(t86, t68, t88 * t72));
-            let t150 = T::fused(t111, t112, t113 * t114);
-            let t151 = T::fused(-t115, t126, t135 * t129)
-                - (t108 - T::fused(t150, t108, T::fused(t146, t83, t141 * t96)));
-            let t152 = k(0.2) * t105;
-            let t153 = t152 * (t151 + T::fused(-t111, t68, t113 * t72));
-            let t154 = T::fused(t144, k(3.924) - t143, t149) - t153
-                - T::fused(k(0.00133), t77, t153 - T::fused(-t144, t143, t149) + t138);
-            let t155 = T::fused(t152, t146, T::fused(-t148, t145, t144 * t139));
-            let t156 = T::fused(t63, t90, t59 * t133);
-            let t157 = t148 + t155 + t156;
-            let t158 = T::fused(t152, t141, T::fused(-t148, t139, t144 * t140));
-            let t159 = T::fused(t63, t103, t59 * t134);
-            let t160 = t144 - t158 - t159;
-            let t161 = T::fused(
-                -(t157 + T::fused(k(0.28), t80, t155)),
-                t82,
-                (t160 - T::fused(-k(0.28), t93, t158)) * t95,
+            let t143 = T::fused(-t103, t94, t105 * t96);
+            let t144 = T::fused(t103, t104, t105 * t106);
+            let t145 = T::fused(t116, t104, t118 * t106);
+            let t146 = T::fused(-t107, t130, t138 * t133)
+                - (t100 - T::fused(t145, t113, T::fused(t143, t90, t144 * t100)));
+            let t147 = t146 + T::fused(t105, t84, -T::fused(t103, t80, k(9.81)));
+            let t148 = k(0.2) * t46;
+            let t149 = T::fused(t93, t94, t95 * t96);
+            let t150 = T::fused(-t116, t94, t118 * t96);
+            let t151 = T::fused(-t97, t130, t137 * t133)
+                - (t90 - T::fused(t150, t113, T::fused(t149, t90, t143 * t100)));
+            let t152 = k(0.2) * t36;
+            let t153 = t152 * (t151 + T::fused(t93, t80, t95 * t84));
+            let t154 = T::fused(t116, t117, t118 * t119);
+            let t155 = T::fused(-t120, t130, t139 * t133)
+                - (t113 - T::fused(t154, t113, T::fused(t150, t90, t145 * t100)));
+            let t156 = k(0.2) * t110;
+            let t157 = t156 * (t155 + T::fused(-t116, t80, t118 * t84));
+            let t158 = T::fused(t148, k(3.924) - t147, t153) - t157
+                - T::fused(k(0.00133), t88, t157 - T::fused(-t148, t147, t153) + t142);
+            let t159 = T::fused(t156, t150, T::fused(-t152, t149, t148 * t143));
+            let t160 = T::fused(t75, t97, t71 * t137);
+            let t161 = t152 + t159 + t160;
+            let t162 = T::fused(t156, t145, T::fused(-t152, t143, t148 * t144));
+            let t163 = T::fused(t75, t107, t71 * t138);
+            let t164 = t148 - t162 - t163;
+            let t165 = T::fused(
+                -(t161 + T::fused(k(0.28), t36, t159)),
+                t89,
+                (t164 - T::fused(-k(0.28), t46, t162)) * t99,
             );
-            let t162 = T::fused(t152, t150, T::fused(-t148, t146, t144 * t141));
-            let t163 = T::fused(t63, t115, t59 * t135);
-            let t164 = t152 - t162 - t163;
-            let t165 = T::fused(-t106, t32, t117);
-            let t166 = T::fused(
-                t63,
-                T::fused(t128, t119, t131 * t120),
-                t59 * T::fused(t131, t119, t136 * t120),
+            let t166 = T::fused(t156, t154, T::fused(-t152, t150, t148 * t145));
+            let t167 = T::fused(t75, t120, t71 * t139);
+            let t168 = t156 - t166 - t167;
+            let t169 = T::fused(t44, t45 * t48, t53 * (t32 * t48));
+            let t170 = T::fused(
+                t75,
+                T::fused(t132, t123, t135 * t124),
+                t71 * T::fused(t135, t123, t140 * t124),
             );
-            let t167 = T::fused(
-                -t148,
-                T::fused(t90, t119, t133 * t120),
-                t144 * T::fused(t103, t119, t134 * t120),
+            let t171 = T::fused(
+                -t152,
+                T::fused(t97, t123, t137 * t124),
+                t148 * T::fused(t107, t123, t138 * t124),
             );
-            let t168 = T::fused(t152, T::fused(t115, t119, t135 * t120), t167);
-            let t169 = T::fused(
-                t63,
-                T::fused(t128, t121, t131 * t122),
-                t59 * T::fused(t131, t121, t136 * t122),
+            let t172 = T::fused(t156, T::fused(t120, t123, t139 * t124), t171);
+            let t173 = T::fused(
+                t75,
+                T::fused(t132, t125, t135 * t126),
+                t71 * T::fused(t135, t125, t140 * t126),
             );
-            let t170 = k(0.2) * t48;
-            let t171 = k(0.2) * t29;
-            let t172 = T::fused(t90, t121, t133 * t122);
-            let t173 = T::fused(t103, t121, t134 * t122);
-            let t174 = T::fused(t115, t121, t135 * t122);
-            let t175 = T::fused(t152, t174, T::fused(-t148, t172, t144 * t173))
-                - T::fused(t171, t163, T::fused(t39, t156, t170 * t159));
-            let t176 = T::fused(t171, t162, T::fused(t39, t155, t170 * t158));
-            let t177 = t39 - T::fused(t171, t146, T::fused(t39, t145, t170 * t139))
-                + t172;
-            let t178 = t170 - T::fused(t171, t141, T::fused(t39, t139, t170 * t140))
-                + t173;
-            let t179 = t171 - T::fused(t171, t150, T::fused(t39, t146, t170 * t141))
-                + t174;
-            let t180 = T::fused(t152, t179, T::fused(-t148, t177, t144 * t178))
-                + T::fused(t171, t164, T::fused(-t39, t157, t170 * t160));
-            let t181 = T::fused(
-                -(t168 + (t168 + t166)),
-                t165,
-                (t180 - t176 - (t176 - t175 - t169)) * t37,
-            );
-            let t182 = t181 + T::fused(t164 - T::fused(-k(0.28), t105, t162), t107, t161)
-                + t154;
-            let t183 = T::fused(
-                t63,
-                T::fused(t63, t128, t59 * t131),
-                t59 * T::fused(t63, t131, t59 * t136),
-            );
-            let t184 = T::fused(t152, t162, T::fused(-t148, t155, t144 * t158));
+            let t174 = k(0.2) * t51;
+            let t175 = k(0.2) * t64;
+            let t176 = T::fused(t97, t125, t137 * t126);
+            let t177 = T::fused(t107, t125, t138 * t126);
+            let t178 = T::fused(t120, t125, t139 * t126);
+            let t179 = T::fused(t156, t178, T::fused(-t152, t176, t148 * t177))
+                - T::fused(t175, t167, T::fused(t55, t160, t174 * t163));
+            let t180 = T::fused(t175, t166, T::fused(t55, t159, t174 * t162));
+            let t181 = t55 - T::fused(t175, t150, T::fused(t55, t149, t174 * t143))
+                + t176;
+            let t182 = t174 - T::fused(t175, t145, T::fused(t55, t143, t174 * t144))
+                + t177;
+            let t183 = t175 - T::fused(t175, t154, T::fused(t55, t150, t174 * t145))
+                + t178;
+            let t184 = T::fused(t156, t183, T::fused(-t152, t181, t148 * t182))
+                + T::fused(t175, t168, T::fused(-t55, t161, t174 * t164));
             let t185 = T::fused(
-                k(2.0),
-                T::fused(t152, t163, T::fused(-t148, t156, t144 * t159)),
-                t184,
+                -(t172 + (t172 + t170)),
+                t169,
+                (t184 - t180 - (t180 - t179 - t173)) * t54,
             );
-            let t186 = T::fused(
-                k(2.0),
-                T::fused(t152, t164, T::fused(t148, t157, t144 * t160)),
-                -t184,
+            let t186 = t185 + T::fused(t168 - T::fused(-k(0.28), t110, t166), t112, t165)
+                + t158;
+            let t187 = T::fused(
+                t75,
+                T::fused(t75, t132, t71 * t135),
+                t71 * T::fused(t75, t135, t71 * t140),
             );
-            let t187 = k(1.0)
-                / (t186 + (k(0.014) + (k(0.00135) - (t185 - (k(0.01) - t183)))));
-            let t188 = t187 * t182;
-            let t189 = T::fused(t39, t37, t148 * t188);
-            let t190 = t82 + t189;
-            let t191 = t83 + (t189 + t190);
-            let t192 = T::fused(-t170, t37, t144 * t188);
-            let t193 = t95 - t192;
-            let t194 = t96 - (t192 - t193);
-            let t195 = T::fused(-t171, t37, t152 * t188);
-            let t196 = t107 - t195;
-            let t197 = t108 - (t195 - t196);
-            let t198 = t126 + T::fused(t63, t188, T::fused(-t119, t165, t121 * t37));
-            let t199 = t129 - T::fused(t59, t188, T::fused(-t120, t165, t122 * t37));
+            let t188 = T::fused(t156, t166, T::fused(-t152, t159, t148 * t162));
+            let t189 = T::fused(
+                k(2.0),
+                T::fused(t156, t167, T::fused(-t152, t160, t148 * t163)),
+                t188,
+            );
+            let t190 = T::fused(
+                k(2.0),
+                T::fused(t156, t168, T::fused(t152, t161, t148 * t164)),
+                -t188,
+            );
+            let t191 = k(1.0)
+                / (t190 + (k(0.014) + (k(0.00135) - (t189 - (k(0.01) - t187)))));
+            let t192 = t191 * t186;
+            let t193 = T::fused(t55, t54, t152 * t192);
+            let t194 = t89 + t193;
+            let t195 = t90 + (t193 + t194);
+            let t196 = T::fused(-t174, t54, t148 * t192);
+            let t197 = t99 - t196;
+            let t198 = t100 - (t196 - t197);
+            let t199 = T::fused(-t175, t54, t156 * t192);
             (
                 t7,
                 t12,
@@ -1986,399 +1990,421 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
                 t19,
                 t20,
                 t21,
+                t22,
                 t23,
                 t24,
                 t25,
                 t26,
                 t27,
-                t37,
-                t42,
-                t44,
-                t51,
+                t28,
+                t29,
                 t54,
-                t56,
-                t59,
+                t58,
                 t60,
-                t63,
-                t64,
-                t65,
+                t62,
                 t66,
-                t67,
-                t69,
+                t68,
                 t71,
-                t74,
-                t84,
-                t85,
+                t72,
+                t75,
+                t76,
+                t77,
+                t78,
+                t79,
+                t81,
+                t83,
                 t86,
-                t88,
                 t91,
-                t97,
+                t92,
+                t93,
+                t95,
                 t98,
-                t99,
                 t101,
-                t104,
-                t109,
-                t110,
-                t111,
+                t102,
+                t103,
+                t105,
+                t108,
+                t112,
                 t113,
+                t114,
+                t115,
+                t116,
+                t118,
+                t123,
+                t124,
+                t125,
+                t126,
                 t130,
-                t144,
+                t133,
+                t134,
                 t148,
                 t152,
-                t165,
-                t187,
-                t188,
-                t190,
+                t156,
+                t169,
                 t191,
-                t193,
+                t192,
                 t194,
-                t196,
+                t195,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t204,
-            t205,
+            t200,
+            t208,
             t209,
-            t211,
-            t219,
-            t222,
-            t234,
-            t235,
-            t237,
-            t239,
-            t247,
+            t214,
+            t215,
+            t218,
+            t223,
+            t224,
+            t231,
+            t243,
+            t244,
+            t246,
             t248,
-            t251,
-            t272,
-            t273,
-            t275,
-            t277,
-            t285,
+            t256,
+            t257,
+            t260,
+            t281,
+            t282,
+            t284,
             t286,
-            t289,
-            t293,
-            t296,
+            t294,
+            t295,
             t298,
-            t299,
-            t304,
+            t302,
             t305,
-            t315,
-            t316,
-            t317,
-            t318,
-            t320,
-            t322,
+            t307,
+            t308,
+            t313,
+            t314,
+            t324,
+            t325,
+            t326,
             t327,
-            t328,
             t329,
             t331,
-            t332,
-            t333,
-            t335,
             t336,
             t337,
             t338,
-            t339,
             t340,
             t341,
             t342,
+            t344,
+            t345,
+            t346,
+            t347,
+            t348,
+            t349,
+            t350,
+            t351,
         ) = {
-            let t200 = T::fused(-t74, t198, t130 * t199)
-                + T::fused(t113, t197, T::fused(t88, t191, t101 * t194));
-            let t201 = t71 * (t69 + t200);
-            let t202 = T::fused(t66, t199, T::fused(-t64, t198, t65 * t201))
-                + T::fused(t111, t197, T::fused(-t86, t191, t99 * t194));
-            let t203 = t67 * (t60 - t202);
-            let t204 = T::fused(t54, t203, t201);
-            let t205 = T::fused(t59, t203, t199);
-            let t206 = T::fused(t84, t204, t85 * t205);
-            let t207 = t191 - t206;
-            let t208 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
-            let t209 = T::fused(rocker_wx, rocker_wx, t15) * (k(0.5) / t208);
-            let t210 = k(2.0) * (t25 - t24);
-            let t211 = T::fused(-t210, t209, t23);
-            let t212 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
-            let t213 = rocker_e0 * rocker_e1;
-            let t214 = rocker_e2 * rocker_e3;
-            let t215 = t214 - t213;
-            let t216 = T::fused(
-                k(2.0) * t215,
-                t23,
-                -T::fused(k(2.0) * (t20 + t19), t16, k(2.0) * t212 * t18),
+            let t200 = t112 - t199;
+            let t201 = t113 - (t199 - t200);
+            let t202 = t130 + T::fused(t75, t192, T::fused(-t123, t169, t125 * t54));
+            let t203 = t133 - T::fused(t71, t192, T::fused(-t124, t169, t126 * t54));
+            let t204 = T::fused(-t86, t202, t134 * t203)
+                + T::fused(t118, t201, T::fused(t95, t195, t105 * t198));
+            let t205 = t83 * (t81 + t204);
+            let t206 = T::fused(t78, t203, T::fused(-t76, t202, t77 * t205))
+                + T::fused(t116, t201, T::fused(-t93, t195, t103 * t198));
+            let t207 = t79 * (t72 - t206);
+            let t208 = T::fused(t66, t207, t205);
+            let t209 = T::fused(t71, t207, t203);
+            let t210 = T::fused(t91, t208, t92 * t209);
+            let t211 = t195 - t210;
+            let t212 = rocker_wy * rocker_wz;
+            let t213 = T::fused(rocker_wx, rocker_wx, t15);
+            let t214 = T::fused(t28, t213, -T::fused(-t18, t24, t23 * t212));
+            let t215 = k(2.0) * (t21 + t20);
+            let t216 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
+            let t217 = k(2.0) * t216;
+            let t218 = k(1.0) / T::fused(-t23, t215, t18 * t217);
+            let t219 = rocker_e0 * rocker_e1;
+            let t220 = rocker_e2 * rocker_e3;
+            let t221 = t220 - t219;
+            let t222 = k(2.0) * t221;
+            let t223 = T::fused(t222, t213, T::fused(-t215, t24, t217 * t212));
+            let t224 = T::fused(t217 * t218, t214, t23 * t218 * t223);
+            let t225 = k(0.2) * T::fused(t222, t24, -T::fused(t215, t16, t217 * t19));
+            let t226 = t220 + t219;
+            let t227 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
+            let t228 = T::fused(
+                k(2.0) * t227,
+                t24,
+                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t226 * t19),
             );
-            let t217 = k(0.2) * t216;
-            let t218 = t214 + t213;
-            let t219 = k(2.0) * t218;
-            let t220 = k(0.2)
-                * T::fused(k(2.0) * t208, t23, -T::fused(-t210, t16, t219 * t18));
-            let t221 = T::fused(
-                k(0.32) * t218,
-                t220,
-                T::fused(-(k(0.32) * t21), t27, k(0.32) * t212 * t217),
+            let t229 = k(0.2) * t228;
+            let t230 = T::fused(
+                k(0.32) * t226,
+                t229,
+                T::fused(-(k(0.32) * t22), t29, k(0.32) * t216 * t225),
             );
-            let t222 = k(23.364485981308412)
-                * (t221 - T::fused(-k(3.1392), t212, k(0.01076) * t18));
-            let t223 = k(0.4) * t21;
-            let t224 = T::fused(k(0.4) * t26, t211, t223 * t222);
-            let t225 = t27 + t224;
-            let t226 = t224 + t225 + (t206 - t207) + (t27 - t14);
-            let t227 = T::fused(t12, t54, t7 * t59);
-            let t228 = t227 * t67;
-            let t229 = T::fused(-t65, t228, t12);
-            let t230 = t229 * t71;
-            let t231 = T::fused(
-                t63,
-                T::fused(-t64, t228, t230 * t74),
-                t59 * T::fused(t230, t130, T::fused(-t66, t228, t7)),
+            let t231 = k(23.364485981308412)
+                * (t230 - T::fused(-k(3.1392), t216, k(0.01076) * t19));
+            let t232 = k(0.4) * t22;
+            let t233 = T::fused(k(0.4) * t27, t224, t232 * t231);
+            let t234 = t29 + t233;
+            let t235 = t233 + t234 + (t210 - t211) + (t29 - t14);
+            let t236 = T::fused(t12, t66, t7 * t71);
+            let t237 = t236 * t79;
+            let t238 = T::fused(-t77, t237, t12);
+            let t239 = t238 * t83;
+            let t240 = T::fused(
+                t75,
+                T::fused(-t76, t237, t239 * t86),
+                t71 * T::fused(t239, t134, T::fused(-t78, t237, t7)),
             );
-            let t232 = T::fused(
-                -t148,
-                T::fused(t230, t88, -T::fused(-t228, t86, k(1.0))),
-                t144 * T::fused(-t228, t99, t230 * t101),
+            let t241 = T::fused(
+                -t152,
+                T::fused(t239, t95, -T::fused(-t237, t93, k(1.0))),
+                t148 * T::fused(-t237, t103, t239 * t105),
             );
-            let t233 = T::fused(t152, T::fused(-t228, t111, t230 * t113), t232);
-            let t234 = (t233 + (t233 + t231)) * t187;
-            let t235 = t148 * t234;
-            let t236 = k(2.0) * t235;
-            let t237 = t144 * t234;
-            let t238 = k(2.0) * t237;
-            let t239 = t152 * t234;
-            let t240 = k(2.0) * t239;
-            let t241 = t63 * t234;
-            let t242 = t59 * t234;
-            let t243 = T::fused(t74, t241, t130 * t242)
-                + T::fused(t113, t240, T::fused(-t88, t236, t101 * t238));
-            let t244 = t71 * (t229 + t243);
-            let t245 = T::fused(t66, t242, T::fused(t64, t241, t65 * t244))
-                + T::fused(t111, t240, T::fused(t86, t236, t99 * t238));
-            let t246 = t67 * (t227 - t245);
-            let t247 = T::fused(t54, t246, t244);
-            let t248 = T::fused(t59, t246, t242);
-            let t249 = T::fused(t84, t247, t85 * t248);
-            let t250 = t236 + t249;
-            let t251 = k(18.69158878504673) * t21;
-            let t252 = t223 * t251;
-            let t253 = k(1.0) / T::fused(k(2.0), t252, t249 + t250);
-            let t254 = T::fused(-t97, t204, t98 * t205);
-            let t255 = t194 + t254;
-            let t256 = k(0.4) * t212;
-            let t257 = T::fused(-(k(0.4) * t215), t211, t256 * t222);
-            let t258 = t217 - t257;
-            let t259 = T::fused(-t97, t247, t98 * t248);
-            let t260 = t238 + t259;
-            let t261 = t256 * t251;
-            let t262 = T::fused(k(2.0), t261, t259 + t260);
-            let t263 = t253 * t262;
-            let t264 = T::fused(
-                t263,
-                t226,
-                -(t257 - t258 + (t254 + t255) - (t217 - t91)),
-            );
-            let t265 = T::fused(-t42, t54, t44 * t59);
-            let t266 = t67 * t265;
-            let t267 = T::fused(t65, t266, t42);
-            let t268 = t71 * t267;
-            let t269 = T::fused(
-                t63,
-                T::fused(t64, t266, t74 * t268),
-                t59 * T::fused(t130, t268, -T::fused(-t66, t266, t44)),
-            );
-            let t270 = T::fused(
-                -t148,
-                T::fused(-t86, t266, t88 * t268),
-                t144 * T::fused(t101, t268, -T::fused(-t99, t266, k(1.0))),
-            );
-            let t271 = T::fused(t152, T::fused(t111, t266, t113 * t268), t270);
-            let t272 = t187 * (t271 + (t271 + t269));
-            let t273 = t148 * t272;
-            let t274 = k(2.0) * t273;
-            let t275 = t144 * t272;
-            let t276 = k(2.0) * t275;
-            let t277 = t152 * t272;
-            let t278 = k(2.0) * t277;
-            let t279 = t63 * t272;
-            let t280 = t59 * t272;
-            let t281 = T::fused(t74, t279, t130 * t280)
-                + T::fused(t113, t278, T::fused(-t88, t274, t101 * t276));
-            let t282 = t71 * (t267 + t281);
-            let t283 = T::fused(t66, t280, T::fused(t64, t279, t65 * t282))
-                + T::fused(t111, t278, T::fused(t86, t274, t99 * t276));
-            let t284 = t67 * (t265 + t283);
-            let t285 = T::fused(-t54, t284, t282);
-            let t286 = T::fused(-t59, t284, t280);
-            let t287 = T::fused(-t97, t285, t98 * t286);
-            let t288 = t276 + t287;
-            let t289 = k(18.69158878504673) * t212;
-            let t290 = t256 * t289;
-            let t291 = k(1.0)
-                / T::fused(t262, t263, -T::fused(k(2.0), t290, -(t287 + t288)));
-            let t292 = T::fused(-t109, t204, t110 * t205);
-            let t293 = t197 + t292;
-            let t294 = k(0.4) * t218;
-            let t295 = T::fused(-(k(0.4) * t208), t211, t294 * t222);
-            let t296 = t220 - t295;
-            let t297 = T::fused(-t109, t247, t110 * t248);
-            let t298 = t240 + t297;
-            let t299 = t294 * t251;
-            let t300 = T::fused(k(2.0), t299, t297 + t298);
-            let t301 = t253 * t300;
-            let t302 = T::fused(
-                t301,
-                t226,
-                -(t295 - t296 + (t292 + t293) - (t220 - t104)),
-            );
-            let t303 = T::fused(-t109, t285, t110 * t286);
-            let t304 = t278 + t303;
-            let t305 = t294 * t289;
-            let t306 = T::fused(t262, t301, -T::fused(k(2.0), t305, -(t303 + t304)));
-            let t307 = t291 * t306;
-            let t308 = T::fused(-t56, t54, t51 * t59);
-            let t309 = t67 * t308;
-            let t310 = T::fused(t65, t309, t56);
-            let t311 = t71 * t310;
-            let t312 = T::fused(
-                t63,
-                T::fused(t64, t309, t74 * t311),
-                t59 * T::fused(t130, t311, -T::fused(-t66, t309, t51)),
-            );
-            let t313 = T::fused(
-                -t148,
-                T::fused(-t86, t309, t88 * t311),
-                t144 * T::fused(t99, t309, t101 * t311),
-            );
-            let t314 = T::fused(
-                t152,
-                T::fused(t113, t311, -T::fused(-t111, t309, k(1.0))),
-                t313,
-            );
-            let t315 = t187 * (t314 + (t314 + t312));
-            let t316 = t148 * t315;
-            let t317 = k(2.0) * t316;
-            let t318 = t144 * t315;
-            let t319 = k(2.0) * t318;
-            let t320 = t152 * t315;
-            let t321 = k(2.0) * t320;
-            let t322 = t63 * t315;
-            let t323 = t59 * t315;
-            let t324 = T::fused(t74, t322, t130 * t323)
-                + T::fused(t113, t321, T::fused(-t88, t317, t101 * t319));
-            let t325 = t71 * (t310 + t324);
-            let t326 = T::fused(t66, t323, T::fused(t64, t322, t65 * t325))
-                + T::fused(t111, t321, T::fused(t86, t317, t99 * t319));
-            let t327 = t67 * (t308 + t326);
-            let t328 = T::fused(-t54, t327, t325);
-            let t329 = T::fused(-t59, t327, t323);
-            let t330 = T::fused(-t109, t328, t110 * t329);
-            let t331 = t321 + t330;
-            let t332 = k(18.69158878504673) * t218;
-            let t333 = t294 * t332;
-            let t334 = T::fused(
-                t306,
-                t307,
-                -T::fused(t300, t301, -T::fused(k(2.0), t333, -(t330 + t331))),
-            );
-            let t335 = T::fused(t307, t264, -t302) / t334;
-            let t336 = T::fused(-t291, t264, t307 * t335);
-            let t337 = T::fused(t301, t335, -T::fused(t253, t226, t263 * t336));
-            let t338 = T::fused(
-                t336,
-                t274 + T::fused(t84, t285, t85 * t286),
-                T::fused(-t250, t337, t207),
-            );
-            let t339 = T::fused(
-                t335,
-                t319 + T::fused(-t97, t328, t98 * t329),
-                -T::fused(t288, t336, -T::fused(t260, t337, t255)),
-            );
-            let t340 = T::fused(
-                t336,
-                T::fused(-t63, t284, t279),
-                -T::fused(t337, T::fused(t63, t246, t241), -T::fused(-t63, t203, t198)),
-            );
-            let t341 = T::fused(
-                t335,
-                t223 * t332,
-                -T::fused(t336, t223 * t289, T::fused(t252, t337, t225)),
-            );
-            let t342 = T::fused(
-                t335,
-                t256 * t332,
-                -T::fused(t290, t336, -T::fused(-t261, t337, t258)),
-            );
-            (
-                t204,
-                t205,
-                t209,
-                t211,
-                t219,
-                t222,
-                t234,
-                t235,
-                t237,
-                t239,
-                t247,
-                t248,
-                t251,
+            let t242 = T::fused(t156, T::fused(-t237, t116, t239 * t118), t241);
+            let t243 = (t242 + (t242 + t240)) * t191;
+            let t244 = t152 * t243;
+            let t245 = k(2.0) * t244;
+            let t246 = t148 * t243;
+            let t247 = k(2.0) * t246;
+            let t248 = t156 * t243;
+            let t249 = k(2.0) * t248;
+            let t250 = t75 * t243;
+            let t251 = t71 * t243;
+            let t252 = T::fused(t86, t250, t134 * t251)
+                + T::fused(t118, t249, T::fused(-t95, t245, t105 * t247));
+            let t253 = t83 * (t238 + t252);
+            let t254 = T::fused(t78, t251, T::fused(t76, t250, t77 * t253))
+                + T::fused(t116, t249, T::fused(t93, t245, t103 * t247));
+            let t255 = t79 * (t236 - t254);
+            let t256 = T::fused(t66, t255, t253);
+            let t257 = T::fused(t71, t255, t251);
+            let t258 = T::fused(t91, t256, t92 * t257);
+            let t259 = t245 + t258;
+            let t260 = k(18.69158878504673) * t22;
+            let t261 = t232 * t260;
+            let t262 = k(1.0) / T::fused(k(2.0), t261, t258 + t259);
+            let t263 = T::fused(-t101, t208, t102 * t209);
+            let t264 = t198 + t263;
+            let t265 = k(0.4) * t216;
+            let t266 = T::fused(-(k(0.4) * t221), t224, t265 * t231);
+            let t267 = t225 - t266;
+            let t268 = T::fused(-t101, t256, t102 * t257);
+            let t269 = t247 + t268;
+            let t270 = t265 * t260;
+            let t271 = T::fused(k(2.0), t270, t268 + t269);
+            let t272 = t262 * t271;
+            let t273 = T::fused(
                 t272,
-                t273,
-                t275,
-                t277,
-                t285,
-                t286,
-                t289,
-                t293,
-                t296,
-                t298,
-                t299,
-                t304,
-                t305,
+                t235,
+                -(t266 - t267 + (t263 + t264) - (t225 - t98)),
+            );
+            let t274 = T::fused(-t58, t66, t60 * t71);
+            let t275 = t79 * t274;
+            let t276 = T::fused(t77, t275, t58);
+            let t277 = t83 * t276;
+            let t278 = T::fused(
+                t75,
+                T::fused(t76, t275, t86 * t277),
+                t71 * T::fused(t134, t277, -T::fused(-t78, t275, t60)),
+            );
+            let t279 = T::fused(
+                -t152,
+                T::fused(-t93, t275, t95 * t277),
+                t148 * T::fused(t105, t277, -T::fused(-t103, t275, k(1.0))),
+            );
+            let t280 = T::fused(t156, T::fused(t116, t275, t118 * t277), t279);
+            let t281 = t191 * (t280 + (t280 + t278));
+            let t282 = t152 * t281;
+            let t283 = k(2.0) * t282;
+            let t284 = t148 * t281;
+            let t285 = k(2.0) * t284;
+            let t286 = t156 * t281;
+            let t287 = k(2.0) * t286;
+            let t288 = t75 * t281;
+            let t289 = t71 * t281;
+            let t290 = T::fused(t86, t288, t134 * t289)
+                + T::fused(t118, t287, T::fused(-t95, t283, t105 * t285));
+            let t291 = t83 * (t276 + t290);
+            let t292 = T::fused(t78, t289, T::fused(t76, t288, t77 * t291))
+                + T::fused(t116, t287, T::fused(t93, t283, t103 * t285));
+            let t293 = t79 * (t274 + t292);
+            let t294 = T::fused(-t66, t293, t291);
+            let t295 = T::fused(-t71, t293, t289);
+            let t296 = T::fused(-t101, t294, t102 * t295);
+            let t297 = t285 + t296;
+            let t298 = k(18.69158878504673) * t216;
+            let t299 = t265 * t298;
+            let t300 = k(1.0)
+                / T::fused(t271, t272, -T::fused(k(2.0), t299, -(t296 + t297)));
+            let t301 = T::fused(-t114, t208, t115 * t209);
+            let t302 = t201 + t301;
+            let t303 = k(0.4) * t226;
+            let t304 = T::fused(-(k(0.4) * t227), t224, t303 * t231);
+            let t305 = t229 - t304;
+            let t306 = T::fused(-t114, t256, t115 * t257);
+            let t307 = t249 + t306;
+            let t308 = t303 * t260;
+            let t309 = T::fused(k(2.0), t308, t306 + t307);
+            let t310 = t262 * t309;
+            let t311 = T::fused(
+                t310,
+                t235,
+                -(t304 - t305 + (t301 + t302) - (t229 - t108)),
+            );
+            let t312 = T::fused(-t114, t294, t115 * t295);
+            let t313 = t287 + t312;
+            let t314 = t303 * t298;
+            let t315 = T::fused(t271, t310, -T::fused(k(2.0), t314, -(t312 + t313)));
+            let t316 = t300 * t315;
+            let t317 = T::fused(-t68, t66, t62 * t71);
+            let t318 = t79 * t317;
+            let t319 = T::fused(t77, t318, t68);
+            let t320 = t83 * t319;
+            let t321 = T::fused(
+                t75,
+                T::fused(t76, t318, t86 * t320),
+                t71 * T::fused(t134, t320, -T::fused(-t78, t318, t62)),
+            );
+            let t322 = T::fused(
+                -t152,
+                T::fused(-t93, t318, t95 * t320),
+                t148 * T::fused(t103, t318, t105 * t320),
+            );
+            let t323 = T::fused(
+                t156,
+                T::fused(t118, t320, -T::fused(-t116, t318, k(1.0))),
+                t322,
+            );
+            let t324 = t191 * (t323 + (t323 + t321));
+            let t325 = t152 * t324;
+            let t326 = k(2.0) * t325;
+            let t327 = t148 * t324;
+            let t328 = k(2.0) * t327;
+            let t329 = t156 * t324;
+            let t330 = k(2.0) * t329;
+            let t331 = t75 * t324;
+            let t332 = t71 * t324;
+            let t333 = T::fused(t86, t331, t134 * t332)
+                + T::fused(t118, t330, T::fused(-t95, t326, t105 * t328));
+            let t334 = t83 * (t319 + t333);
+            let t335 = T::fused(t78, t332, T::fused(t76, t331, t77 * t334))
+                + T::fused(t116, t330, T::fused(t93, t326, t103 * t328));
+            let t336 = t79 * (t317 + t335);
+            let t337 = T::fused(-t66, t336, t334);
+            let t338 = T::fused(-t71, t336, t332);
+            let t339 = T::fused(-t114, t337, t115 * t338);
+            let t340 = t330 + t339;
+            let t341 = k(18.69158878504673) * t226;
+            let t342 = t303 * t341;
+            let t343 = T::fused(
                 t315,
                 t316,
-                t317,
-                t318,
-                t320,
-                t322,
+                -T::fused(t309, t310, -T::fused(k(2.0), t342, -(t339 + t340))),
+            );
+            let t344 = T::fused(t316, t273, -t311) / t343;
+            let t345 = T::fused(-t300, t273, t316 * t344);
+            let t346 = T::fused(t310, t344, -T::fused(t262, t235, t272 * t345));
+            let t347 = T::fused(
+                t345,
+                t283 + T::fused(t91, t294, t92 * t295),
+                T::fused(-t259, t346, t211),
+            );
+            let t348 = T::fused(
+                t344,
+                t328 + T::fused(-t101, t337, t102 * t338),
+                -T::fused(t297, t345, -T::fused(t269, t346, t264)),
+            );
+            let t349 = T::fused(
+                t345,
+                T::fused(-t75, t293, t288),
+                -T::fused(t346, T::fused(t75, t255, t250), -T::fused(-t75, t207, t202)),
+            );
+            let t350 = T::fused(
+                t344,
+                t232 * t341,
+                -T::fused(t345, t232 * t298, T::fused(t261, t346, t234)),
+            );
+            let t351 = T::fused(
+                t344,
+                t265 * t341,
+                -T::fused(t299, t345, -T::fused(-t270, t346, t267)),
+            );
+            (
+                t200,
+                t208,
+                t209,
+                t214,
+                t215,
+                t218,
+                t223,
+                t224,
+                t231,
+                t243,
+                t244,
+                t246,
+                t248,
+                t256,
+                t257,
+                t260,
+                t281,
+                t282,
+                t284,
+                t286,
+                t294,
+                t295,
+                t298,
+                t302,
+                t305,
+                t307,
+                t308,
+                t313,
+                t314,
+                t324,
+                t325,
+                t326,
                 t327,
-                t328,
                 t329,
                 t331,
-                t332,
-                t333,
-                t335,
                 t336,
                 t337,
                 t338,
-                t339,
                 t340,
                 t341,
                 t342,
+                t344,
+                t345,
+                t346,
+                t347,
+                t348,
+                t349,
+                t350,
+                t351,
             )
         };
         *out = [
-            T::fused(-t316, t335, T::fused(t273, t336, T::fused(-t235, t337, t190))),
-            T::fused(t318, t335, -T::fused(t275, t336, -T::fused(t237, t337, t193))),
-            T::fused(-t320, t335, T::fused(t277, t336, -T::fused(t239, t337, t196))),
-            t165,
-            -t37,
-            T::fused(-t315, t335, T::fused(t272, t336, T::fused(-t234, t337, t188))),
-            T::fused(-t335, t317 + T::fused(t84, t328, t85 * t329), t338),
-            t339,
-            T::fused(-t331, t335, T::fused(t304, t336, -T::fused(t298, t337, t293))),
-            T::fused(t335, T::fused(-t63, t327, t322), -t340),
-            T::fused(t328, t335, -T::fused(t285, t336, -T::fused(t247, t337, t204))),
-            T::fused(-t329, t335, T::fused(t286, t336, -T::fused(t248, t337, t205))),
-            -t341,
-            t342,
-            T::fused(-t333, t335, T::fused(t305, t336, -T::fused(-t299, t337, t296))),
-            T::fused(-t219, t209, rocker_wy * rocker_wz),
-            -t211,
-            T::fused(-t332, t335, T::fused(t289, t336, T::fused(t251, t337, t222))),
-            -t337,
-            t336,
-            t335,
+            T::fused(-t325, t344, T::fused(t282, t345, T::fused(-t244, t346, t194))),
+            T::fused(t327, t344, -T::fused(t284, t345, -T::fused(t246, t346, t197))),
+            T::fused(-t329, t344, T::fused(t286, t345, -T::fused(t248, t346, t200))),
+            t169,
+            -t54,
+            T::fused(-t324, t344, T::fused(t281, t345, T::fused(-t243, t346, t192))),
+            T::fused(-t344, t326 + T::fused(t91, t337, t92 * t338), t347),
+            t348,
+            T::fused(-t340, t344, T::fused(t313, t345, -T::fused(t307, t346, t302))),
+            T::fused(t344, T::fused(-t75, t336, t331), -t349),
+            T::fused(t337, t344, -T::fused(t294, t345, -T::fused(t256, t346, t208))),
+            T::fused(-t338, t344, T::fused(t295, t345, -T::fused(t257, t346, t209))),
+            -t350,
+            t351,
+            T::fused(-t342, t344, T::fused(t314, t345, -T::fused(-t308, t346, t305))),
+            T::fused(t214, t215 * t218, t223 * (t18 * t218)),
+            -t224,
+            T::fused(-t341, t344, T::fused(t298, t345, T::fused(t260, t346, t231))),
+            -t346,
+            t345,
+            t344,
         ];
     }
     /// Writes λ: 272 operations (104 ±, 165 ×, 3 ÷).
@@ -2434,97 +2460,97 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = coupler_dsz - closing2;
         let t5 = T::fused(k(0.4), crank_dsz, t4);
-        let t6 = crank_e0 * crank_e3;
-        let t7 = crank_e1 * crank_e2;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = k(2.0) * (t7 - t6);
-        let t10 = crank_e0 * crank_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t10));
-        let t13 = k(1.0) / T::fused(-t9, t8, t12 * t11);
-        let t14 = coupler_e0 * coupler_e0;
-        let t15 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t14));
-        let t16 = coupler_e0 * coupler_e3;
-        let t17 = coupler_e1 * coupler_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = coupler_e0 * coupler_e2;
-        let t20 = coupler_e1 * coupler_e3;
+        let t6 = coupler_e0 * coupler_e0;
+        let t7 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t6));
+        let t8 = crank_e0 * crank_e0;
+        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
+        let t10 = coupler_e0 * coupler_e3;
+        let t11 = coupler_e1 * coupler_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = crank_e0 * crank_e3;
+        let t14 = crank_e1 * crank_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = coupler_e0 * coupler_e2;
+        let t17 = coupler_e1 * coupler_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = crank_e0 * crank_e2;
+        let t20 = crank_e1 * crank_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = crank_e0 * crank_e2;
-        let t23 = crank_e1 * crank_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = k(5e-5) * coupler_dwx;
-        let t26 = t20 + t19;
-        let t27 = k(0.5) * t26;
-        let t28 = coupler_e0 * coupler_e1;
-        let t29 = coupler_e2 * coupler_e3;
-        let t30 = t29 - t28;
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(
+        let t22 = k(5e-5) * coupler_dwx;
+        let t23 = t17 + t16;
+        let t24 = k(0.5) * t23;
+        let t25 = coupler_e0 * coupler_e1;
+        let t26 = coupler_e2 * coupler_e3;
+        let t27 = t26 - t25;
+        let t28 = k(0.5) * t27;
+        let t29 = T::fused(
             closing1,
-            t31,
+            t28,
             -T::fused(
                 -closing0,
-                t27,
+                t24,
                 T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
             ),
         );
-        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t14);
-        let t34 = k(0.5) * t33;
-        let t35 = T::fused(t4, t34, -T::fused(t0, t27, t2 * t31))
-            - T::fused(closing2, t34, -t32);
-        let t36 = t17 - t16;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - T::fused(coupler_e2, coupler_e2, t14);
-        let t39 = k(2.0) * t38;
-        let t40 = t29 + t28;
-        let t41 = k(2.0) * t40;
-        let t42 = T::fused(
-            t25,
-            T::fused(t24, t21, T::fused(t12, t15, t8 * t18)),
-            T::fused(t24, t41, -T::fused(t12, t37, t8 * t39)) * t35,
+        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t6);
+        let t31 = k(0.5) * t30;
+        let t32 = T::fused(t4, t31, -T::fused(t0, t24, t2 * t28))
+            - T::fused(closing2, t31, -t29);
+        let t33 = t11 - t10;
+        let t34 = k(2.0) * t33;
+        let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t6);
+        let t36 = k(2.0) * t35;
+        let t37 = t26 + t25;
+        let t38 = k(2.0) * t37;
+        let t39 = T::fused(
+            t22,
+            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
+            T::fused(t21, t38, -T::fused(t9, t34, t15 * t36)) * t32,
         );
-        let t43 = k(0.5) * t36;
-        let t44 = k(0.5) * t38;
-        let t45 = T::fused(
+        let t40 = k(0.5) * t33;
+        let t41 = k(0.5) * t35;
+        let t42 = T::fused(
             closing1,
-            t44,
+            t41,
             T::fused(
                 -closing0,
-                t43,
+                t40,
                 T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
             ),
         );
-        let t46 = k(0.5) * t40;
-        let t47 = T::fused(t4, t46, -T::fused(-t0, t43, t2 * t44))
-            - T::fused(closing2, t46, -t45);
-        let t48 = k(2.0) * t26;
-        let t49 = k(2.0) * t30;
-        let t50 = k(2.0) * t33;
-        let t51 = T::fused(
-            T::fused(t24, t50, -T::fused(-t12, t48, t8 * t49)),
-            t47,
-            -t42,
+        let t43 = k(0.5) * t37;
+        let t44 = T::fused(t4, t43, -T::fused(-t0, t40, t2 * t41))
+            - T::fused(closing2, t43, -t42);
+        let t45 = k(2.0) * t23;
+        let t46 = k(2.0) * t27;
+        let t47 = k(2.0) * t30;
+        let t48 = T::fused(
+            T::fused(t21, t47, -T::fused(-t9, t45, t15 * t46)),
+            t44,
+            -t39,
         );
-        let t52 = T::fused(k(2e-5), crank_dwx, -t51);
+        let t49 = T::fused(k(2e-5), crank_dwx, -t48);
+        let t50 = k(2.0) * (t14 - t13);
+        let t51 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
+        let t52 = k(1.0) / T::fused(-t50, t15, t9 * t51);
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = k(2.0) * (t54 + t53);
         let t56 = T::fused(
-            t25,
-            T::fused(t55, t21, -T::fused(t9, t15, t11 * t18)),
-            T::fused(t55, t41, T::fused(t11, t39, t9 * t37)) * t35,
+            t22,
+            T::fused(t55, t18, -T::fused(t50, t7, t51 * t12)),
+            T::fused(t55, t38, T::fused(t51, t36, t50 * t34)) * t32,
         );
         let t57 = T::fused(
-            T::fused(t55, t50, -T::fused(-t11, t49, t9 * t48)),
-            t47,
+            T::fused(t55, t47, -T::fused(-t51, t46, t50 * t45)),
+            t44,
             -t56,
         );
-        let t58 = t23 + t22;
+        let t58 = t20 + t19;
         let t59 = k(0.2) * t58;
         let t60 = t54 - t53;
         let t61 = k(0.2) * t60;
-        let t62 = k(0.5) - T::fused(crank_e3, crank_e3, t10);
+        let t62 = k(0.5) - T::fused(crank_e3, crank_e3, t8);
         let t63 = k(0.2) * t62;
         let t64 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
             - (T::fused(t4, t63, -T::fused(t0, t59, t2 * t61)) - t57);
@@ -2558,24 +2584,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t83 = k(2.0) * t62;
         let t84 = k(2.0) * t60;
         let t85 = k(2.0) * t58;
-        let t86 = T::fused(t83, t50, T::fused(t84, t49, t85 * t48));
-        let t87 = T::fused(t83, t21, -T::fused(-t85, t15, t84 * t18));
+        let t86 = T::fused(t83, t47, T::fused(t84, t46, t85 * t45));
+        let t87 = T::fused(t83, t18, -T::fused(-t85, t7, t84 * t12));
         let t88 = k(1.0) / T::fused(t86, t86, t87 * t87);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            T::fused(-t52, t8 * t13, t65 * (t11 * t13)),
-            T::fused(-t52, t12 * t13, t65 * (t9 * t13)),
+            T::fused(-(t15 * t52), t49, t51 * t52 * t65),
+            T::fused(-(t9 * t52), t49, t50 * t52 * t65),
             -t66,
             -t67,
             -t68,
-            T::fused(-t77, t71 * t76, t82 * (t74 * t76)),
-            T::fused(-t77, t75 * t76, t82 * (t72 * t76)),
+            T::fused(-t77, t71 * t76, t74 * t76 * t82),
+            T::fused(-t77, t75 * t76, t72 * t76 * t82),
             -t0,
             -t2,
             -t4,
-            -T::fused(t25, t86 * t88, t87 * t88 * t47),
+            -T::fused(t22, t86 * t88, t87 * t88 * t44),
             closing0,
             closing1,
             closing2,

@@ -16,7 +16,7 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 740 operations by rotations of the bodies; 755 operations by relative Euler parameters
+//! * accelerations: 811 operations by rotations of the bodies; 811 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,7 +29,7 @@
 //! | gamma | γ | 109 | 174 | 0 | 283 | 0 of 17 | 1165 | 283 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 89 | 120 | 0 | 209 | 0 of 17 | 533 | 209 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 293 | 441 | 6 | 740 | 0 of 20 | 8.1e6 | 744 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 330 | 475 | 6 | 811 | 0 of 20 | 1.9e7 | 812 |
 //! | multipliers | λ, the accelerations being known | 96 | 157 | 3 | 256 | 0 of 17 | 1879 | 256 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
@@ -44,7 +44,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-146.
+//! All of it holds but with a probability below 1e-145.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `four_bar_revolute`.
@@ -1552,7 +1552,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 740 operations (293 ±, 441 ×, 6 ÷).
+    /// Solves eq. (17): 811 operations (330 ±, 475 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1577,557 +1577,545 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t3,
             t7,
-            t11,
-            t13,
-            t15,
+            t12,
             t18,
-            t20,
-            t21,
-            t23,
-            t25,
-            t29,
-            t33,
-            t35,
-            t37,
-            t44,
-            t45,
-            t46,
-            t47,
-            t49,
-            t50,
-            t53,
+            t22,
             t55,
             t56,
-            t57,
-            t58,
-            t59,
-            t63,
+            t64,
+            t70,
+            t71,
+            t73,
+            t85,
+            t86,
+            t94,
             t97,
-            t103,
-            t109,
-            t111,
-            t113,
+            t98,
+            t101,
+            t104,
+            t110,
             t115,
-            t116,
-            t126,
-            t136,
-            t139,
-            t140,
-            t141,
-            t142,
-            t144,
-            t147,
-            t148,
-            t154,
-            t155,
-            t157,
-            t159,
+            t119,
+            t120,
+            t124,
+            t128,
+            t161,
             t162,
             t163,
-            t164,
             t165,
-            t166,
-            t167,
-            t170,
+            t168,
+            t169,
+            t171,
             t172,
+            t173,
             t175,
-            t176,
-            t177,
             t178,
             t179,
             t180,
-            t181,
             t182,
-            t184,
             t185,
-            t186,
             t187,
             t188,
             t189,
             t190,
             t191,
-            t192,
             t193,
-            t194,
             t195,
-            t197,
+            t196,
             t198,
             t199,
         ) = {
-            let t0 = crank_wy * crank_wy;
-            let t1 = T::fused(crank_wz, crank_wz, t0);
-            let t2 = crank_e0 * crank_e0;
-            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
-            let t4 = crank_wx * crank_wy;
-            let t5 = crank_e0 * crank_e3;
-            let t6 = crank_e1 * crank_e2;
-            let t7 = k(2.0) * (t6 - t5);
-            let t8 = crank_wx * crank_wz;
-            let t9 = crank_e0 * crank_e2;
-            let t10 = crank_e1 * crank_e3;
-            let t11 = k(2.0) * (t10 + t9);
-            let t12 = k(0.1) * T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
-            let t13 = k(2.0) * (t6 + t5);
-            let t14 = k(0.5) - T::fused(crank_e2, crank_e2, t2);
-            let t15 = k(2.0) * t14;
-            let t16 = crank_e0 * crank_e1;
-            let t17 = crank_e2 * crank_e3;
-            let t18 = k(2.0) * (t17 - t16);
-            let t19 = k(0.1) * T::fused(t18, t8, -T::fused(t13, t1, t15 * t4));
-            let t20 = k(2.0) * (t10 - t9);
-            let t21 = k(2.0) * (t17 + t16);
-            let t22 = k(0.5) - T::fused(crank_e3, crank_e3, t2);
+            let t0 = coupler_wy * coupler_wy;
+            let t1 = T::fused(coupler_wz, coupler_wz, t0);
+            let t2 = coupler_e0 * coupler_e0;
+            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
+            let t4 = coupler_wx * coupler_wy;
+            let t5 = coupler_e0 * coupler_e3;
+            let t6 = coupler_e1 * coupler_e2;
+            let t7 = t6 - t5;
+            let t8 = k(2.0) * t7;
+            let t9 = coupler_wx * coupler_wz;
+            let t10 = coupler_e0 * coupler_e2;
+            let t11 = coupler_e1 * coupler_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
+            let t15 = rocker_wy * rocker_wy;
+            let t16 = T::fused(rocker_wz, rocker_wz, t15);
+            let t17 = rocker_e0 * rocker_e0;
+            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
+            let t19 = rocker_wx * rocker_wy;
+            let t20 = rocker_e0 * rocker_e3;
+            let t21 = rocker_e1 * rocker_e2;
+            let t22 = t21 - t20;
             let t23 = k(2.0) * t22;
-            let t24 = k(0.1) * T::fused(t23, t8, -T::fused(-t20, t1, t21 * t4));
-            let t25 = T::fused(t20, t24, -T::fused(-t3, t12, t13 * t19));
-            let t26 = coupler_e0 * coupler_e2;
-            let t27 = coupler_e1 * coupler_e3;
-            let t28 = t27 + t26;
-            let t29 = k(2.0) * t28;
-            let t30 = coupler_e0 * coupler_e1;
-            let t31 = coupler_e2 * coupler_e3;
-            let t32 = t31 - t30;
-            let t33 = k(2.0) * t32;
-            let t34 = coupler_e0 * coupler_e0;
-            let t35 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t34));
-            let t36 = T::fused(t20, t35, -T::fused(-t3, t29, t13 * t33));
-            let t37 = T::fused(t21, t35, -T::fused(-t15, t33, t7 * t29));
-            let t38 = T::fused(t23, t35, T::fused(t18, t33, t11 * t29));
-            let t39 = T::fused(crank_wz, t38, -T::fused(crank_wx, t36, crank_wy * t37));
-            let t40 = coupler_wz - t39;
-            let t41 = coupler_e0 * coupler_e3;
-            let t42 = coupler_e1 * coupler_e2;
-            let t43 = t42 - t41;
-            let t44 = k(2.0) * t43;
-            let t45 = k(0.5) - T::fused(coupler_e2, coupler_e2, t34);
-            let t46 = k(2.0) * t45;
-            let t47 = k(2.0) * (t31 + t30);
-            let t48 = T::fused(t20, t47, -T::fused(t3, t44, t13 * t46));
-            let t49 = T::fused(t21, t47, T::fused(t15, t46, t7 * t44));
-            let t50 = T::fused(t23, t47, -T::fused(-t18, t46, t11 * t44));
-            let t51 = T::fused(crank_wz, t50, -T::fused(crank_wx, t48, crank_wy * t49));
-            let t52 = coupler_wy + t51;
-            let t53 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t34));
-            let t54 = t42 + t41;
-            let t55 = k(2.0) * t54;
-            let t56 = k(2.0) * (t27 - t26);
-            let t57 = T::fused(t20, t56, T::fused(t3, t53, t13 * t55));
-            let t58 = T::fused(t21, t56, -T::fused(t7, t53, t15 * t55));
-            let t59 = T::fused(t23, t56, -T::fused(-t11, t53, t18 * t55));
-            let t60 = T::fused(crank_wz, t59, -T::fused(crank_wx, t57, crank_wy * t58));
-            let t61 = coupler_wx + t60;
-            let t62 = T::fused(t52, t52, t61 * t61) / t38;
-            let t63 = T::fused(coupler_wz, t51, coupler_wy * t39)
-                + T::fused(-t52, t40, t50 * t62);
-            let t64 = coupler_wx * coupler_wz;
-            let t65 = T::fused(coupler_wx, t39, coupler_wz * t60)
-                + T::fused(-t61, t40, t59 * t62);
-            let t66 = k(0.1) * crank_wz;
-            let t67 = k(0.1) * crank_wy;
-            let t68 = T::fused(crank_wz, t66, crank_wy * t67);
-            let t69 = crank_wx * t67;
-            let t70 = crank_wx * t66;
-            let t71 = k(0.25) * coupler_wz;
-            let t72 = T::fused(
-                coupler_wx,
-                t71,
-                T::fused(t70, t38, -T::fused(-t68, t36, t69 * t37)),
-            );
-            let t73 = T::fused(-k(0.0835), t65, k(0.25) * t72)
-                + T::fused(k(4.905), t32, k(0.02095) * t64);
-            let t74 = k(0.25) * coupler_wy;
-            let t75 = T::fused(coupler_wz, t71, coupler_wy * t74)
-                + T::fused(t70, t59, -T::fused(-t68, t57, t69 * t58));
-            let t76 = coupler_wx * coupler_wy;
-            let t77 = T::fused(-k(4.905), t45, k(0.02095) * t76);
-            let t78 = T::fused(
-                coupler_wx,
-                t74,
-                -T::fused(t70, t50, -T::fused(-t68, t48, t69 * t49)),
-            );
-            let t79 = T::fused(
-                t58,
-                T::fused(k(19.62), t54, -t75),
-                t49
-                    * T::fused(
-                        k(0.25149700598802394),
-                        t78,
-                        -T::fused(k(19.62), t45, k(2.9940119760479043) * t77),
-                    ),
-            );
-            let t80 = T::fused(
-                t37,
-                T::fused(-k(19.62), t32, T::fused(k(0.25), t65, -t72)),
-                t79,
-            );
-            let t81 = T::fused(
-                k(0.00133),
-                t4,
-                T::fused(k(0.1), t80, T::fused(t59, k(5e-5) * t63, t50 * t73)),
-            );
-            let t82 = k(0.1) * (t49 * (k(0.7485029940119761) * t48));
-            let t83 = T::fused(t21, t24, T::fused(-t7, t12, t15 * t19));
-            let t84 = k(0.7485029940119761) * t49;
-            let t85 = t49 * t84;
-            let t86 = k(0.1) * t85;
-            let t87 = k(0.25) * t37;
-            let t88 = t50 * t87;
-            let t89 = k(0.1) - t86 - t88;
+            let t24 = rocker_wx * rocker_wz;
+            let t25 = rocker_e0 * rocker_e2;
+            let t26 = rocker_e1 * rocker_e3;
+            let t27 = t26 + t25;
+            let t28 = k(2.0) * t27;
+            let t29 = k(0.2) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
+            let t30 = crank_e0 * crank_e3;
+            let t31 = crank_e1 * crank_e2;
+            let t32 = k(2.0) * (t31 + t30);
+            let t33 = t31 - t30;
+            let t34 = k(2.0) * t33;
+            let t35 = crank_e0 * crank_e0;
+            let t36 = k(0.5) - T::fused(crank_e2, crank_e2, t35);
+            let t37 = k(2.0) * t36;
+            let t38 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t35));
+            let t39 = k(1.0) / T::fused(-t34, t32, t38 * t37);
+            let t40 = crank_wx * crank_wz;
+            let t41 = crank_wy * crank_wz;
+            let t42 = crank_wx * crank_wx;
+            let t43 = crank_wy * crank_wy;
+            let t44 = t43 + t42;
+            let t45 = crank_e0 * crank_e2;
+            let t46 = crank_e1 * crank_e3;
+            let t47 = t46 + t45;
+            let t48 = k(2.0) * t47;
+            let t49 = T::fused(t48, t44, -T::fused(-t38, t40, t34 * t41));
+            let t50 = crank_e0 * crank_e1;
+            let t51 = crank_e2 * crank_e3;
+            let t52 = t51 - t50;
+            let t53 = k(2.0) * t52;
+            let t54 = T::fused(t53, t44, T::fused(-t32, t40, t37 * t41));
+            let t55 = T::fused(t49, t32 * t39, t54 * (t38 * t39));
+            let t56 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
+            let t57 = k(2.0) * t56;
+            let t58 = coupler_e0 * coupler_e1;
+            let t59 = coupler_e2 * coupler_e3;
+            let t60 = t59 + t58;
+            let t61 = k(2.0) * t60;
+            let t62 = k(2.0) * (t46 - t45);
+            let t63 = T::fused(t62, t61, -T::fused(t38, t8, t32 * t57));
+            let t64 = T::fused(t37 * t39, t49, t34 * t39 * t54);
+            let t65 = t51 + t50;
+            let t66 = k(2.0) * t65;
+            let t67 = T::fused(t66, t61, T::fused(t37, t57, t34 * t8));
+            let t68 = k(2.0) * (t6 + t5);
+            let t69 = k(2.0) * (t11 - t10);
+            let t70 = T::fused(t66, t69, -T::fused(t34, t3, t37 * t68));
+            let t71 = T::fused(t62, t69, T::fused(t38, t3, t32 * t68));
+            let t72 = k(1.0) / T::fused(-t63, t70, t71 * t67);
+            let t73 = t59 - t58;
+            let t74 = k(2.0) * t73;
+            let t75 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
+            let t76 = k(2.0) * t75;
+            let t77 = T::fused(t62, t76, -T::fused(-t38, t13, t32 * t74));
+            let t78 = crank_wz * crank_wz;
+            let t79 = t78 + t43;
+            let t80 = T::fused(t66, t76, -T::fused(-t37, t74, t34 * t13));
+            let t81 = crank_wx * crank_wy;
+            let t82 = k(0.5) - T::fused(crank_e3, crank_e3, t35);
+            let t83 = k(2.0) * t82;
+            let t84 = T::fused(t83, t76, T::fused(t53, t74, t48 * t13));
+            let t85 = T::fused(t83, t69, -T::fused(-t48, t3, t53 * t68));
+            let t86 = T::fused(t83, t61, -T::fused(-t53, t57, t48 * t8));
+            let t87 = T::fused(-coupler_wy, t85, coupler_wx * t86);
+            let t88 = coupler_wy * coupler_wz;
+            let t89 = T::fused(coupler_wx, coupler_wx, t0);
             let t90 = T::fused(
-                -(t82 + T::fused(t50, k(0.25) * t36, t82)),
-                t25,
-                (t89 + (k(0.14) - t86)) * t83,
+                -k(2.0),
+                T::fused(
+                    crank_wz,
+                    T::fused(-coupler_wy, t70, coupler_wx * t67),
+                    crank_wy * t87,
+                ),
+                T::fused(t89, t77, T::fused(t9, t71, t88 * t63)),
             );
-            let t91 = t50 * (k(0.25) * t38);
-            let t92 = t50 * t84;
-            let t93 = k(0.1) * t92;
-            let t94 = t93 + t91;
-            let t95 = T::fused(t23, t24, T::fused(t11, t12, t18 * t19));
-            let t96 = T::fused(crank_wx, crank_wx, t0) * (k(0.5) / t22);
-            let t97 = T::fused(-t21, t96, crank_wy * crank_wz);
-            let t98 = k(0.1) * (t48 * t87);
-            let t99 = t98
-                + (t98 - T::fused(t59, k(5e-5) * t57, t50 * (k(0.0835) * t48)));
-            let t100 = t49 * t87;
-            let t101 = k(0.01) * t92;
-            let t102 = T::fused(k(0.1), t91 - t100, t101)
-                + T::fused(t59, k(5e-5) * t58, t50 * (k(0.0835) * t49));
-            let t103 = T::fused(-t20, t96, t8);
-            let t104 = T::fused(
-                t99,
-                t97,
-                t103 * (T::fused(k(0.1), t94 + (t93 - t100), t101) + t102),
+            let t91 = t90 + T::fused(t40, t84, -T::fused(-t79, t77, t81 * t80));
+            let t92 = T::fused(
+                k(2.0),
+                T::fused(
+                    crank_wz,
+                    T::fused(-coupler_wy, t71, coupler_wx * t63),
+                    crank_wx * t87,
+                ),
+                T::fused(t89, t80, T::fused(t9, t70, t88 * t67)),
             );
-            let t105 = t104 + T::fused(t95, t93 + t94, -t90)
-                + T::fused(k(0.1), T::fused(-k(7.848), t14, t80), t81);
-            let t106 = k(0.01) * t85;
-            let t107 = T::fused(k(0.2), t88, t106)
-                - (k(0.01) + T::fused(t59, k(5e-5) * t59, t50 * (k(0.0835) * t50)));
-            let t108 = k(1.0)
-                / (T::fused(k(0.2), t89, -t106) + (k(0.014) + (k(0.00135) - t107)));
-            let t109 = t108 * t105;
-            let t110 = k(0.1) * t109;
-            let t111 = t83 + t110;
-            let t112 = k(0.1) * t103;
-            let t113 = t112 + t95;
-            let t114 = k(0.1)
-                * T::fused(
-                    t29,
-                    t37,
-                    T::fused(t53, t58, t49 * (k(0.9940119760479041) * t43)),
-                );
-            let t115 = (t114 + T::fused(-t28, t50, t114)) * t108;
-            let t116 = k(0.1) * t115;
-            let t117 = T::fused(coupler_wy, coupler_wy, coupler_wz * coupler_wz);
-            let t118 = rocker_wy * rocker_wy;
-            let t119 = T::fused(rocker_wz, rocker_wz, t118);
-            let t120 = rocker_e0 * rocker_e0;
-            let t121 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t120));
-            let t122 = rocker_wx * rocker_wy;
-            let t123 = rocker_e0 * rocker_e3;
-            let t124 = rocker_e1 * rocker_e2;
-            let t125 = t124 - t123;
-            let t126 = k(2.0) * t125;
-            let t127 = rocker_wx * rocker_wz;
-            let t128 = rocker_e0 * rocker_e2;
-            let t129 = rocker_e1 * rocker_e3;
-            let t130 = t129 + t128;
-            let t131 = k(2.0) * t130;
-            let t132 = k(0.2) * T::fused(t131, t127, T::fused(t121, t119, t126 * t122));
-            let t133 = T::fused(
-                -k(0.25),
-                T::fused(t29, t64, T::fused(t53, t117, t44 * t76)),
-                t132,
-            );
-            let t134 = t110 + t111;
-            let t135 = t112 + t113;
-            let t136 = t75 + T::fused(t59, t135, T::fused(t57, t25, t58 * t134));
-            let t137 = t78 - T::fused(t50, t135, T::fused(t48, t25, t49 * t134));
-            let t138 = T::fused(k(0.25), t137, t77);
-            let t139 = T::fused(-k(2.9940119760479043), t138, t137);
-            let t140 = t65 + T::fused(t50, t109, -T::fused(-t48, t97, t49 * t103));
-            let t141 = T::fused(
+            let t93 = t92 + T::fused(t41, t84, T::fused(-t81, t77, (t78 + t42) * t80));
+            let t94 = T::fused(-t91, t70 * t72, t93 * (t71 * t72));
+            let t95 = k(0.1) * T::fused(t48, t40, T::fused(t38, t79, t34 * t81));
+            let t96 = t95 + t14;
+            let t97 = k(0.5) * t12;
+            let t98 = k(0.25) * T::fused(t74, t9, -T::fused(t68, t1, t57 * t4));
+            let t99 = k(0.1) * T::fused(t53, t40, -T::fused(t32, t79, t37 * t81));
+            let t100 = t99 + t98;
+            let t101 = k(0.5) * t73;
+            let t102 = k(0.1) * T::fused(t83, t40, -T::fused(-t62, t79, t66 * t81));
+            let t103 = T::fused(
                 k(0.25),
-                t140,
-                -(t72 + T::fused(t38, t135, T::fused(t36, t25, t37 * t134))),
+                T::fused(t76, t9, -T::fused(-t69, t1, t61 * t4)),
+                t102,
             );
-            let t142 = T::fused(t29, t141, -T::fused(t53, t136, t44 * t139));
-            let t143 = k(0.5) * t28;
-            let t144 = k(11.976047904191617) * t138;
-            let t145 = k(0.5) * t43;
-            let t146 = k(2.0) * (t124 + t123);
-            let t147 = k(0.5) - T::fused(rocker_e2, rocker_e2, t120);
-            let t148 = k(2.0) * t147;
-            let t149 = rocker_e0 * rocker_e1;
-            let t150 = rocker_e2 * rocker_e3;
-            let t151 = t150 - t149;
-            let t152 = k(2.0) * t151;
-            let t153 = k(0.2) * T::fused(t152, t127, -T::fused(t146, t119, t148 * t122));
-            let t154 = k(2.0) * (t129 - t128);
-            let t155 = k(2.0) * (t150 + t149);
-            let t156 = k(0.5) - T::fused(rocker_e3, rocker_e3, t120);
-            let t157 = k(2.0) * t156;
-            let t158 = k(0.2)
-                * T::fused(t157, t127, -T::fused(-t154, t119, t155 * t122));
-            let t159 = T::fused(t154, t158, -T::fused(-t121, t132, t146 * t153));
-            let t160 = T::fused(t155, t158, T::fused(-t126, t132, t148 * t153));
-            let t161 = T::fused(
-                k(0.16),
-                t160,
-                -T::fused(-k(3.1392), t147, k(0.01076) * t122),
+            let t104 = k(0.5) * t75;
+            let t105 = T::fused(-(t67 * t72), t91, t63 * t72 * t93);
+            let t106 = T::fused(
+                k(0.0835),
+                t105,
+                -T::fused(t104, t103, T::fused(t97, t96, t101 * t100)),
             );
-            let t162 = T::fused(-k(4.672897196261682), t161, t160);
-            let t163 = T::fused(rocker_wx, rocker_wx, t118) * (k(0.5) / t156);
-            let t164 = T::fused(-t154, t163, t127);
-            let t165 = T::fused(
-                k(0.2),
-                t164,
-                T::fused(t157, t158, T::fused(t131, t132, t152 * t153)),
+            let t107 = T::fused(
+                t85,
+                k(5e-5) * t94,
+                t86 * (t106 - T::fused(k(4.905), t73, k(0.02095) * t9)),
             );
-            let t166 = T::fused(t131, t165, -T::fused(-t121, t159, t126 * t162));
-            let t167 = k(23.364485981308412) * t161;
-            let t168 = k(0.4) * t125;
-            let t169 = T::fused(k(0.4) * t130, t164, t168 * t167) + t166
-                + (T::fused(t143, t140, t145 * t144) + t142);
-            let t170 = t169 + t133;
-            let t171 = k(0.2) * t115;
-            let t172 = t58 * t171;
-            let t173 = t49 * t171;
-            let t174 = T::fused(k(0.25), t173, t43);
-            let t175 = T::fused(-k(2.9940119760479043), t174, t173);
-            let t176 = t50 * t115;
-            let t177 = T::fused(-t37, t171, k(0.25) * t176);
-            let t178 = T::fused(t29, t177, T::fused(-t53, t172, t44 * t175));
-            let t179 = k(11.976047904191617) * t174;
-            let t180 = k(18.69158878504673) * t125;
-            let t181 = k(3.7383177570093458) * t125;
-            let t182 = t126 * t181;
-            let t183 = T::fused(t168, t180, t182)
-                + (T::fused(-t143, t176, t145 * t179) - t178);
-            let t184 = k(1.0) / t183;
-            let t185 = T::fused(
-                -k(0.25),
-                T::fused(t33, t64, -T::fused(t55, t117, t46 * t76)),
-                t153,
+            let t108 = T::fused(-k(4.905), t56, k(0.02095) * t4);
+            let t109 = k(11.976047904191617) * t108;
+            let t110 = k(0.5) * t56;
+            let t111 = k(5.9880239520958085) * t7;
+            let t112 = t110 * t111;
+            let t113 = k(5.9880239520958085) * t56;
+            let t114 = t110 * t113;
+            let t115 = k(0.5) * t60;
+            let t116 = t115 * t113;
+            let t117 = T::fused(
+                t101,
+                t105,
+                -(t100 - T::fused(t116, t103, T::fused(-t112, t96, t114 * t100))),
             );
-            let t186 = T::fused(t33, t141, T::fused(t55, t136, t46 * t139));
-            let t187 = k(0.5) * t32;
-            let t188 = k(0.5) * t45;
-            let t189 = T::fused(t152, t165, T::fused(-t146, t159, t148 * t162));
-            let t190 = k(0.4) * t147;
-            let t191 = T::fused(-(k(0.4) * t151), t164, t190 * t167) - t189
-                + (T::fused(-t187, t140, t188 * t144) - t186);
-            let t192 = T::fused(t33, t177, -T::fused(-t55, t172, t46 * t175));
-            let t193 = t148 * t181;
-            let t194 = T::fused(t190, t180, t193)
-                + (T::fused(t187, t176, t188 * t179) + t192);
-            let t195 = t184 * t194;
-            let t196 = k(0.1)
-                * T::fused(
-                    t33,
-                    t37,
-                    -T::fused(t55, t58, t49 * (k(0.9940119760479041) * t45)),
-                );
-            let t197 = t108 * (t196 + T::fused(-t32, t50, t196));
-            let t198 = k(0.2) * t197;
-            let t199 = t58 * t198;
+            let t118 = t117 - T::fused(t110, t109, k(9.81));
+            let t119 = k(0.2) * t36;
+            let t120 = k(0.5) * t7;
+            let t121 = t120 * t111;
+            let t122 = t115 * t111;
+            let t123 = T::fused(
+                t97,
+                t105,
+                -(t96 + T::fused(t122, t103, T::fused(-t121, t96, t112 * t100))),
+            );
+            let t124 = k(0.2) * t33;
+            let t125 = t124 * T::fused(t120, t109, t123);
+            let t126 = t115 * (k(5.9880239520958085) * t60);
+            let t127 = T::fused(
+                t104,
+                t105,
+                -(t103 - T::fused(t126, t103, T::fused(-t122, t96, t116 * t100))),
+            );
+            let t128 = k(0.2) * t65;
+            let t129 = t128 * T::fused(-t115, t109, t127);
+            let t130 = T::fused(t119, k(3.924) - t118, t125) - t129
+                - T::fused(k(0.00133), t81, t129 - T::fused(-t119, t118, t125) - t107);
+            let t131 = T::fused(t128, t122, T::fused(t124, t121, t119 * t112));
+            let t132 = t97 * t86;
+            let t133 = t124 - t131 + t132;
+            let t134 = T::fused(t128, t116, T::fused(t124, t112, t119 * t114));
+            let t135 = t101 * t86;
+            let t136 = t119 - t134 - t135;
+            let t137 = T::fused(
+                -(t133 - T::fused(-k(0.28), t33, t131)),
+                t95,
+                (t136 - T::fused(-k(0.28), t36, t134)) * t99,
+            );
+            let t138 = T::fused(t128, t126, T::fused(t124, t122, t119 * t116));
+            let t139 = t104 * t86;
+            let t140 = t128 - t138 - t139;
+            let t141 = T::fused(
+                t128,
+                t104 * t63,
+                T::fused(-t124, t97 * t63, t119 * (t101 * t63)),
+            );
+            let t142 = t141
+                + (t141 - T::fused(t85, k(5e-5) * t71, t86 * (k(0.0835) * t63)));
+            let t143 = k(0.2) * t47;
+            let t144 = k(0.2) * t52;
+            let t145 = k(0.2) * t82;
+            let t146 = t97 * t67;
+            let t147 = t101 * t67;
+            let t148 = t104 * t67;
+            let t149 = T::fused(t128, t148, T::fused(-t124, t146, t119 * t147))
+                - T::fused(t145, t139, T::fused(t143, t132, t144 * t135));
+            let t150 = T::fused(t145, t138, T::fused(-t143, t131, t144 * t134));
+            let t151 = t150 - t149
+                + T::fused(t85, k(5e-5) * t70, t86 * (k(0.0835) * t67));
+            let t152 = t143 + T::fused(t145, t122, T::fused(-t143, t121, t144 * t112))
+                + t146;
+            let t153 = t144 - T::fused(t145, t116, T::fused(-t143, t112, t144 * t114))
+                + t147;
+            let t154 = t145 - T::fused(t145, t126, T::fused(-t143, t122, t144 * t116))
+                + t148;
+            let t155 = T::fused(t128, t154, T::fused(-t124, t152, t119 * t153))
+                + T::fused(t145, t140, T::fused(-t143, t133, t144 * t136));
+            let t156 = T::fused(-t142, t55, (t155 - t150 - t151) * t64)
+                + T::fused(t140 - T::fused(-k(0.28), t65, t138), t102, t137);
+            let t157 = T::fused(t128, t138, T::fused(t124, t131, t119 * t134));
+            let t158 = T::fused(
+                k(2.0),
+                T::fused(t128, t139, T::fused(-t124, t132, t119 * t135)),
+                t157,
+            );
+            let t159 = t158
+                - (k(0.01) + T::fused(t85, k(5e-5) * t85, t86 * (k(0.0835) * t86)));
+            let t160 = T::fused(
+                k(2.0),
+                T::fused(t128, t140, T::fused(t124, t133, t119 * t136)),
+                -t157,
+            );
+            let t161 = k(1.0) / (t160 + (k(0.014) + (k(0.00135) - t159)));
+            let t162 = t161 * (t156 + t130);
+            let t163 = t105 - T::fused(t86, t162, T::fused(-t63, t55, t67 * t64));
+            let t164 = T::fused(t143, t64, t124 * t162);
+            let t165 = t95 + t164;
+            let t166 = t96 + (t164 + t165);
+            let t167 = T::fused(-t144, t64, t119 * t162);
+            let t168 = t99 - t167;
+            let t169 = t100 - (t167 - t168);
+            let t170 = T::fused(-t145, t64, t128 * t162);
+            let t171 = t102 - t170;
+            let t172 = t103 - (t170 - t171);
+            let t173 = k(11.976047904191617)
+                * (t108 - T::fused(t115, t172, T::fused(-t120, t166, t110 * t169)));
+            let t174 = T::fused(t97, t163, t120 * t173);
+            let t175 = t166 - t174;
+            let t176 = rocker_wy * rocker_wz;
+            let t177 = T::fused(rocker_wx, rocker_wx, t15);
+            let t178 = T::fused(t28, t177, -T::fused(-t18, t24, t23 * t176));
+            let t179 = k(2.0) * (t21 + t20);
+            let t180 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
+            let t181 = k(2.0) * t180;
+            let t182 = k(1.0) / T::fused(-t23, t179, t18 * t181);
+            let t183 = rocker_e0 * rocker_e1;
+            let t184 = rocker_e2 * rocker_e3;
+            let t185 = t184 - t183;
+            let t186 = k(2.0) * t185;
+            let t187 = T::fused(t186, t177, T::fused(-t179, t24, t181 * t176));
+            let t188 = T::fused(t181 * t182, t178, t23 * t182 * t187);
+            let t189 = k(0.2) * T::fused(t186, t24, -T::fused(t179, t16, t181 * t19));
+            let t190 = t184 + t183;
+            let t191 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
+            let t192 = T::fused(
+                k(2.0) * t191,
+                t24,
+                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t190 * t19),
+            );
+            let t193 = k(0.2) * t192;
+            let t194 = T::fused(
+                k(0.32) * t190,
+                t193,
+                T::fused(-(k(0.32) * t22), t29, k(0.32) * t180 * t189),
+            );
+            let t195 = k(23.364485981308412)
+                * (t194 - T::fused(-k(3.1392), t180, k(0.01076) * t19));
+            let t196 = k(0.4) * t22;
+            let t197 = T::fused(k(0.4) * t27, t188, t196 * t195);
+            let t198 = t29 + t197;
+            let t199 = t197 + t198 + (t174 - t175) + (t29 - t14);
             (
-                t3,
                 t7,
-                t11,
-                t13,
-                t15,
+                t12,
                 t18,
-                t20,
-                t21,
-                t23,
-                t25,
-                t29,
-                t33,
-                t35,
-                t37,
-                t44,
-                t45,
-                t46,
-                t47,
-                t49,
-                t50,
-                t53,
+                t22,
                 t55,
                 t56,
-                t57,
-                t58,
-                t59,
-                t63,
+                t64,
+                t70,
+                t71,
+                t73,
+                t85,
+                t86,
+                t94,
                 t97,
-                t103,
-                t109,
-                t111,
-                t113,
+                t98,
+                t101,
+                t104,
+                t110,
                 t115,
-                t116,
-                t126,
-                t136,
-                t139,
-                t140,
-                t141,
-                t142,
-                t144,
-                t147,
-                t148,
-                t154,
-                t155,
-                t157,
-                t159,
+                t119,
+                t120,
+                t124,
+                t128,
+                t161,
                 t162,
                 t163,
-                t164,
                 t165,
-                t166,
-                t167,
-                t170,
+                t168,
+                t169,
+                t171,
                 t172,
+                t173,
                 t175,
-                t176,
-                t177,
                 t178,
                 t179,
                 t180,
-                t181,
                 t182,
-                t184,
                 t185,
-                t186,
                 t187,
                 t188,
                 t189,
                 t190,
                 t191,
-                t192,
                 t193,
-                t194,
                 t195,
-                t197,
+                t196,
                 t198,
                 t199,
             )
         };
         let (
+            t202,
             t203,
-            t205,
+            t204,
             t206,
-            t207,
             t208,
-            t209,
-            t211,
-            t212,
+            t210,
             t213,
             t214,
-            t215,
-            t216,
             t217,
-            t219,
             t220,
-            t221,
+            t222,
+            t223,
+            t229,
+            t230,
+            t231,
+            t233,
+            t235,
+            t236,
+            t237,
+            t239,
+            t240,
+            t241,
+            t242,
+            t243,
+            t244,
+            t245,
+            t246,
+            t247,
+            t248,
         ) = {
-            let t200 = t49 * t198;
-            let t201 = T::fused(-k(0.25), t200, t45);
-            let t202 = T::fused(k(2.9940119760479043), t201, t200);
-            let t203 = t50 * t197;
-            let t204 = T::fused(-t37, t198, k(0.25) * t203);
-            let t205 = T::fused(t33, t204, -T::fused(-t55, t199, t46 * t202));
-            let t206 = k(11.976047904191617) * t201;
-            let t207 = k(18.69158878504673) * t147;
-            let t208 = k(3.7383177570093458) * t147;
-            let t209 = t148 * t208;
-            let t210 = T::fused(t190, t207, t209)
-                + (T::fused(-t187, t203, t188 * t206) - t205);
-            let t211 = T::fused(t195, t170, -(t191 - t185))
-                / T::fused(t194, t195, -t210);
-            let t212 = T::fused(-t184, t170, t195 * t211);
-            let t213 = T::fused(
-                t212,
-                t7 * t116,
-                T::fused(t11, t113, -T::fused(-t3, t25, t7 * t111)),
+            let t200 = k(11.976047904191617) * t7;
+            let t201 = T::fused(
+                t128,
+                t115 * t200,
+                T::fused(-t124, T::fused(-t120, t200, k(1.0)), t119 * (t110 * t200)),
             );
-            let t214 = k(0.1) * t197;
-            let t215 = T::fused(
-                t212,
-                t15 * t116,
-                -T::fused(t18, t113, T::fused(-t13, t25, t15 * t111)),
+            let t202 = (t201 + T::fused(-t12, t86, t201)) * t161;
+            let t203 = t86 * t202;
+            let t204 = t124 * t202;
+            let t205 = k(2.0) * t204;
+            let t206 = t119 * t202;
+            let t207 = k(2.0) * t206;
+            let t208 = t128 * t202;
+            let t209 = k(2.0) * t208;
+            let t210 = k(11.976047904191617)
+                * (t7 + T::fused(t115, t209, T::fused(t120, t205, t110 * t207)));
+            let t211 = T::fused(-t97, t203, t120 * t210);
+            let t212 = t205 - t211;
+            let t213 = k(18.69158878504673) * t22;
+            let t214 = t196 * t213;
+            let t215 = k(1.0) / T::fused(k(2.0), t214, t211 - t212);
+            let t216 = T::fused(-t101, t163, t110 * t173);
+            let t217 = t169 + t216;
+            let t218 = k(0.4) * t180;
+            let t219 = T::fused(-(k(0.4) * t185), t188, t218 * t195);
+            let t220 = t189 - t219;
+            let t221 = T::fused(t101, t203, t110 * t210);
+            let t222 = t207 - t221;
+            let t223 = t218 * t213;
+            let t224 = T::fused(k(2.0), t223, t221 - t222);
+            let t225 = t215 * t224;
+            let t226 = T::fused(
+                t225,
+                t199,
+                -(t219 - t220 + (t216 + t217) - (t189 - t98)),
             );
-            let t216 = T::fused(
-                t212,
-                t21 * t116,
-                -T::fused(t23, t113, T::fused(t20, t25, t21 * t111)),
+            let t227 = k(11.976047904191617) * t56;
+            let t228 = T::fused(
+                t128,
+                t115 * t227,
+                -T::fused(-t124, t120 * t227, t119 * T::fused(-t110, t227, k(1.0))),
             );
-            let t217 = T::fused(
-                t211,
-                T::fused(t29, t204, T::fused(-t53, t199, t44 * t202)),
-                -T::fused(-t178, t212, t142),
+            let t229 = t161 * (t228 + T::fused(t73, t86, t228));
+            let t230 = t86 * t229;
+            let t231 = t124 * t229;
+            let t232 = k(2.0) * t231;
+            let t233 = t119 * t229;
+            let t234 = k(2.0) * t233;
+            let t235 = t128 * t229;
+            let t236 = k(2.0) * t235;
+            let t237 = k(11.976047904191617)
+                * (t56 + T::fused(t115, t236, T::fused(t120, t232, t110 * t234)));
+            let t238 = T::fused(t101, t230, t110 * t237);
+            let t239 = t234 - t238;
+            let t240 = k(18.69158878504673) * t180;
+            let t241 = t218 * t240;
+            let t242 = t226 / T::fused(t224, t225, -T::fused(k(2.0), t241, t238 - t239));
+            let t243 = T::fused(-t215, t199, t225 * t242);
+            let t244 = T::fused(
+                t242,
+                t232 - T::fused(-t97, t230, t120 * t237),
+                -T::fused(t212, t243, t175),
             );
-            let t218 = T::fused(
-                t212,
-                T::fused(t35, t177, -T::fused(t56, t172, t47 * t175)),
-                -T::fused(t35, t141, T::fused(-t56, t136, t47 * t139)),
+            let t245 = T::fused(
+                t243,
+                t209 - T::fused(t104, t203, t115 * t210),
+                -(t172 + T::fused(-t104, t163, t115 * t173)),
             );
-            let t219 = T::fused(
-                t211,
-                T::fused(t35, t204, -T::fused(t56, t199, t47 * t202)),
-                t218,
+            let t246 = T::fused(
+                t243,
+                t85 * t202,
+                -(t94 - T::fused(t85, t162, T::fused(-t71, t55, t70 * t64))),
             );
-            let t220 = T::fused(
-                t212,
-                t59 * t115,
-                t63 - T::fused(t59, t109, -T::fused(-t57, t97, t58 * t103)),
-            );
-            let t221 = T::fused(
-                t212,
-                t155 * t181,
-                -T::fused(t157, t165, T::fused(t154, t159, t155 * t162)),
+            let t247 = k(0.4) * t190;
+            let t248 = T::fused(
+                t243,
+                t247 * t213,
+                -(t193 - T::fused(-(k(0.4) * t191), t188, t247 * t195)),
             );
             (
+                t202,
                 t203,
-                t205,
+                t204,
                 t206,
-                t207,
                 t208,
-                t209,
-                t211,
-                t212,
+                t210,
                 t213,
                 t214,
-                t215,
-                t216,
                 t217,
-                t219,
                 t220,
-                t221,
+                t222,
+                t223,
+                t229,
+                t230,
+                t231,
+                t233,
+                t235,
+                t236,
+                t237,
+                t239,
+                t240,
+                t241,
+                t242,
+                t243,
+                t244,
+                t245,
+                t246,
+                t247,
+                t248,
             )
         };
         *out = [
-            T::fused(t211, t7 * t214, t213),
-            -T::fused(t211, t15 * t214, t215),
-            T::fused(t211, t21 * t214, t216),
-            t97,
-            -t103,
-            T::fused(t197, t211, -T::fused(-t115, t212, t109)),
-            t217,
-            T::fused(t205, t211, -T::fused(-t192, t212, t186)),
-            -t219,
-            -T::fused(t211, t59 * t197, t220),
-            T::fused(-t203, t211, T::fused(-t176, t212, t140)),
-            T::fused(t206, t211, -T::fused(t179, t212, t144)),
-            T::fused(-t211, t126 * t208, T::fused(t182, t212, t166)),
-            T::fused(t209, t211, T::fused(-t193, t212, t189)),
-            T::fused(-t211, t155 * t208, t221),
-            T::fused(-t155, t163, rocker_wy * rocker_wz),
-            -t164,
-            T::fused(-t207, t211, T::fused(t180, t212, t167)),
-            -t212,
-            -t211,
+            T::fused(-t231, t242, T::fused(t204, t243, t165)),
+            T::fused(t233, t242, T::fused(-t206, t243, t168)),
+            -T::fused(t235, t242, T::fused(-t208, t243, t171)),
+            t55,
+            -t64,
+            T::fused(-t229, t242, T::fused(t202, t243, t162)),
+            -t244,
+            T::fused(t239, t242, T::fused(-t222, t243, t217)),
+            T::fused(-t242, t236 - T::fused(t104, t230, t115 * t237), t245),
+            T::fused(t242, t85 * t229, -t246),
+            T::fused(t230, t242, T::fused(-t203, t243, t163)),
+            T::fused(t237, t242, -T::fused(t210, t243, t173)),
+            T::fused(-t242, t196 * t240, T::fused(t214, t243, t198)),
+            T::fused(t241, t242, T::fused(-t223, t243, t220)),
+            T::fused(-t242, t247 * t240, t248),
+            T::fused(t178, t179 * t182, t187 * (t18 * t182)),
+            -t188,
+            T::fused(-t240, t242, T::fused(t213, t243, t195)),
+            -t243,
+            -t242,
         ];
     }
     /// Writes λ: 256 operations (96 ±, 157 ×, 3 ÷).
@@ -2181,87 +2169,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t2 = k(9.81) + coupler_dsy - closing1;
         let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = T::fused(k(0.4), crank_dsz, coupler_dsz);
-        let t5 = crank_e0 * crank_e3;
-        let t6 = crank_e1 * crank_e2;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = k(2.0) * (t6 - t5);
-        let t9 = crank_e0 * crank_e0;
-        let t10 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t9));
-        let t11 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t9));
-        let t12 = k(1.0) / T::fused(-t8, t7, t11 * t10);
-        let t13 = coupler_e0 * coupler_e0;
-        let t14 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t13));
-        let t15 = coupler_e0 * coupler_e3;
-        let t16 = coupler_e1 * coupler_e2;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = coupler_e0 * coupler_e2;
-        let t19 = coupler_e1 * coupler_e3;
+        let t5 = coupler_e0 * coupler_e0;
+        let t6 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t5));
+        let t7 = crank_e0 * crank_e0;
+        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
+        let t9 = coupler_e0 * coupler_e3;
+        let t10 = coupler_e1 * coupler_e2;
+        let t11 = k(2.0) * (t10 + t9);
+        let t12 = crank_e0 * crank_e3;
+        let t13 = crank_e1 * crank_e2;
+        let t14 = k(2.0) * (t13 + t12);
+        let t15 = coupler_e0 * coupler_e2;
+        let t16 = coupler_e1 * coupler_e3;
+        let t17 = k(2.0) * (t16 - t15);
+        let t18 = crank_e0 * crank_e2;
+        let t19 = crank_e1 * crank_e3;
         let t20 = k(2.0) * (t19 - t18);
-        let t21 = crank_e0 * crank_e2;
-        let t22 = crank_e1 * crank_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = T::fused(t23, t20, T::fused(t11, t14, t7 * t17));
-        let t25 = k(5e-5) * coupler_dwx;
-        let t26 = t19 + t18;
-        let t27 = k(0.5) * t26;
-        let t28 = coupler_e0 * coupler_e1;
-        let t29 = coupler_e2 * coupler_e3;
-        let t30 = t29 - t28;
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(
+        let t21 = T::fused(t20, t17, T::fused(t8, t6, t14 * t11));
+        let t22 = k(5e-5) * coupler_dwx;
+        let t23 = t16 + t15;
+        let t24 = k(0.5) * t23;
+        let t25 = coupler_e0 * coupler_e1;
+        let t26 = coupler_e2 * coupler_e3;
+        let t27 = t26 - t25;
+        let t28 = k(0.5) * t27;
+        let t29 = T::fused(
             closing1,
-            t31,
+            t28,
             -T::fused(
                 -closing0,
-                t27,
+                t24,
                 T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
             ),
         );
-        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t13);
-        let t34 = T::fused(coupler_dsz, k(0.5) * t33, -T::fused(t0, t27, t2 * t31))
-            + t32;
-        let t35 = t16 - t15;
-        let t36 = k(2.0) * t35;
-        let t37 = k(0.5) - T::fused(coupler_e2, coupler_e2, t13);
-        let t38 = k(2.0) * t37;
-        let t39 = t29 + t28;
-        let t40 = k(2.0) * t39;
-        let t41 = T::fused(t23, t40, -T::fused(t11, t36, t7 * t38));
-        let t42 = k(0.5) * t35;
-        let t43 = k(0.5) * t37;
-        let t44 = T::fused(
+        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t5);
+        let t31 = T::fused(coupler_dsz, k(0.5) * t30, -T::fused(t0, t24, t2 * t28))
+            + t29;
+        let t32 = t10 - t9;
+        let t33 = k(2.0) * t32;
+        let t34 = k(0.5) - T::fused(coupler_e2, coupler_e2, t5);
+        let t35 = k(2.0) * t34;
+        let t36 = t26 + t25;
+        let t37 = k(2.0) * t36;
+        let t38 = T::fused(t20, t37, -T::fused(t8, t33, t14 * t35));
+        let t39 = k(0.5) * t32;
+        let t40 = k(0.5) * t34;
+        let t41 = T::fused(
             closing1,
-            t43,
+            t40,
             T::fused(
                 -closing0,
-                t42,
+                t39,
                 T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
             ),
         );
-        let t45 = T::fused(coupler_dsz, k(0.5) * t39, -T::fused(-t0, t42, t2 * t43))
-            + t44;
-        let t46 = k(2.0) * t26;
-        let t47 = k(2.0) * t30;
-        let t48 = k(2.0) * t33;
-        let t49 = T::fused(
-            T::fused(t23, t48, -T::fused(-t11, t46, t7 * t47)),
-            t45,
-            -T::fused(t25, t24, t41 * t34),
+        let t42 = T::fused(coupler_dsz, k(0.5) * t36, -T::fused(-t0, t39, t2 * t40))
+            + t41;
+        let t43 = k(2.0) * t23;
+        let t44 = k(2.0) * t27;
+        let t45 = k(2.0) * t30;
+        let t46 = T::fused(
+            T::fused(t20, t45, -T::fused(-t8, t43, t14 * t44)),
+            t42,
+            -T::fused(t22, t21, t38 * t31),
         );
-        let t50 = T::fused(k(2e-5), crank_dwx, -t49);
+        let t47 = T::fused(k(2e-5), crank_dwx, -t46);
+        let t48 = k(2.0) * (t13 - t12);
+        let t49 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
+        let t50 = k(1.0) / T::fused(-t48, t14, t8 * t49);
         let t51 = crank_e0 * crank_e1;
         let t52 = crank_e2 * crank_e3;
         let t53 = k(2.0) * (t52 + t51);
-        let t54 = T::fused(t53, t20, -T::fused(t8, t14, t10 * t17));
-        let t55 = T::fused(t53, t40, T::fused(t10, t38, t8 * t36));
+        let t54 = T::fused(t53, t17, -T::fused(t48, t6, t49 * t11));
+        let t55 = T::fused(t53, t37, T::fused(t49, t35, t48 * t33));
         let t56 = T::fused(
-            T::fused(t53, t48, -T::fused(-t10, t47, t8 * t46)),
-            t45,
-            -T::fused(t25, t54, t55 * t34),
+            T::fused(t53, t45, -T::fused(-t49, t44, t48 * t43)),
+            t42,
+            -T::fused(t22, t54, t55 * t31),
         );
-        let t57 = k(0.2) * (t22 + t21);
+        let t57 = k(0.2) * (t19 + t18);
         let t58 = k(0.2) * (t52 - t51);
-        let t59 = k(0.2) * (k(0.5) - T::fused(crank_e3, crank_e3, t9));
+        let t59 = k(0.2) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
         let t60 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
             - (T::fused(coupler_dsz, t59, -T::fused(t0, t57, t2 * t58)) - t56);
         let t61 = T::fused(t4, t59, -T::fused(t1, t57, t3 * t58)) - t60;
@@ -2294,23 +2282,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -T::fused(t62, t74, t63 * t75),
         );
         let t78 = t77 - t76;
-        let t79 = k(1.0) / T::fused(-t41, t54, t24 * t55);
+        let t79 = k(1.0) / T::fused(-t38, t54, t21 * t55);
         *lambda = [
             -t1,
             -t3,
             -t4,
-            T::fused(-t50, t7 * t12, t61 * (t10 * t12)),
-            T::fused(-t50, t11 * t12, t61 * (t8 * t12)),
+            T::fused(-(t14 * t50), t47, t49 * t50 * t61),
+            T::fused(-(t8 * t50), t47, t48 * t50 * t61),
             -t62,
             -t63,
             -t64,
-            T::fused(-t73, t67 * t72, t78 * (t70 * t72)),
-            T::fused(-t73, t71 * t72, t78 * (t68 * t72)),
+            T::fused(-t73, t67 * t72, t70 * t72 * t78),
+            T::fused(-t73, t71 * t72, t68 * t72 * t78),
             -t0,
             -t2,
             -coupler_dsz,
-            -T::fused(t25, t54 * t79, t34 * (t55 * t79)),
-            T::fused(t25, t24 * t79, t34 * (t41 * t79)),
+            -T::fused(t22, t54 * t79, t55 * t79 * t31),
+            T::fused(t22, t21 * t79, t38 * t79 * t31),
             closing0,
             closing1,
         ];

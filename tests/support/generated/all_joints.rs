@@ -10,7 +10,7 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
-//! * accelerations: 10380 operations by rotations of the bodies; 10431 operations by relative Euler parameters
+//! * accelerations: 10476 operations by rotations of the bodies; 10476 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -23,7 +23,7 @@
 //! | gamma | γ | 1092 | 1437 | 4 | 2533 | 0 of 40 | 61885 | 2534 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 679 | 854 | 4 | 1537 | 0 of 40 | 16847 | 1541 |
 //! | applied_force | (f, n' − w̃'J'w') | 304 | 425 | 2 | 731 | 6 of 42 | 35531 | 732 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 4627 | 5724 | 29 | 10380 | 0 of 51 | 1.1e18 | 10384 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 4664 | 5783 | 29 | 10476 | 0 of 51 | 1.1e18 | 10478 |
 //! | multipliers | λ, the accelerations being known | 1187 | 1646 | 12 | 2845 | 0 of 40 | 735403 | 2846 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 275 | 405 | 2 | 682 | 0 of 54 | 4196 | 683 |
 //! | energy | T and V | 109 | 169 | 0 | 278 | 0 of 2 | 1371 | 278 |
@@ -795,9 +795,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for AllJoints<T> {
                 k(0.6666666666666666),
                 carrier_wz,
                 T::fused(
-                    k(0.3333333333333333),
-                    carrier_wx,
-                    k(0.6666666666666666) * carrier_wy,
+                    k(0.6666666666666666),
+                    carrier_wy,
+                    k(0.3333333333333333) * carrier_wx,
                 ),
             ),
             shaft_wx + t138,
@@ -4228,9 +4228,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for AllJoints<T> {
                 k(0.6666666666666666),
                 carrier_wz,
                 T::fused(
-                    k(0.3333333333333333),
-                    carrier_wx,
-                    k(0.6666666666666666) * carrier_wy,
+                    k(0.6666666666666666),
+                    carrier_wy,
+                    k(0.3333333333333333) * carrier_wx,
                 ),
             ),
             -t48,
@@ -11227,16 +11227,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t42 = t0 + t17;
             let t43 = T::fused(t15, t42, -T::fused(-t5, t11, t10 * t19));
             let t44 = k(0.6666666666666666) * t43;
-            let t45 = t44
-                - T::fused(k(0.3333333333333333), t16, k(0.6666666666666666) * t20);
+            let t45 = T::fused(k(0.3333333333333333), t16, k(0.6666666666666666) * t20)
+                - t44;
             let t46 = T::fused(t29, t42, T::fused(-t23, t11, t25 * t19));
             let t47 = k(0.6666666666666666) * t46;
-            let t48 = t47
-                - T::fused(k(0.3333333333333333), t30, k(0.6666666666666666) * t31);
+            let t48 = T::fused(k(0.3333333333333333), t30, k(0.6666666666666666) * t31)
+                - t47;
             let t49 = T::fused(t38, t42, T::fused(t34, t11, t36 * t19));
             let t50 = k(0.6666666666666666) * t49;
-            let t51 = t50
-                - T::fused(k(0.3333333333333333), t39, k(0.6666666666666666) * t40);
+            let t51 = T::fused(k(0.3333333333333333), t39, k(0.6666666666666666) * t40)
+                - t50;
             let t52 = shaft_wy * shaft_wy;
             let t53 = shaft_wz * shaft_wz;
             let t54 = t53 + t52;
@@ -12838,12 +12838,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 k(0.3333333333333333) * t587,
             );
             let t591 = k(1.0) / T::fused(t588, t588, t590 * t590);
-            let t592 = T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20)
-                + t44;
-            let t593 = T::fused(k(0.6666666666666666), t30, k(0.3333333333333333) * t31)
-                + t47;
-            let t594 = T::fused(k(0.6666666666666666), t39, k(0.3333333333333333) * t40)
-                + t50;
+            let t592 = t44
+                + T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20);
+            let t593 = t47
+                + T::fused(k(0.6666666666666666), t30, k(0.3333333333333333) * t31);
+            let t594 = t50
+                + T::fused(k(0.6666666666666666), t39, k(0.3333333333333333) * t40);
             let t595 = t589 * t584;
             let t596 = T::fused(
                 t590,
@@ -12916,15 +12916,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             k(0.1) * t21,
             k(0.1) * t32,
             -(k(0.1) * t41),
-            T::fused(
+            -T::fused(
                 k(0.6666666666666666),
                 t51,
                 T::fused(k(0.6666666666666666), t45, k(0.3333333333333333) * t48),
             ),
-            T::fused(k(0.6666666666666666), t48 - t45, k(0.3333333333333333) * t51),
-            T::fused(k(0.1), t21 - t43, t69),
-            T::fused(k(0.1), t32 - t46, t79),
-            -T::fused(k(0.1), t41 - t49, t87),
+            -T::fused(k(0.6666666666666666), t48 - t45, k(0.3333333333333333) * t51),
+            T::fused(-k(0.1), t43 - t21, t69),
+            T::fused(-k(0.1), t46 - t32, t79),
+            T::fused(k(0.1), t49 - t41, -t87),
             -t98,
             -(t178 + (t158 - t136)),
             t187 + t186 + (t184 - t183 + (t181 - t180)),
@@ -13571,7 +13571,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             ),
         ];
     }
-    /// Solves eq. (17): 10380 operations (4627 ±, 5724 ×, 29 ÷) and 7 functions.
+    /// Solves eq. (17): 10476 operations (4664 ±, 5783 ×, 29 ÷) and 7 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let carrier_rx = y[0];
@@ -13805,19 +13805,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t218,
             t222,
             t224,
-            t229,
+            t230,
             t233,
-            t235,
+            t236,
             t240,
             t242,
             t245,
             t246,
-            t247,
+            t248,
             t252,
             t254,
             t257,
             t258,
-            t259,
+            t260,
             t264,
             t266,
             t270,
@@ -13840,46 +13840,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t361,
             t373,
             t374,
-            t375,
+            t376,
             t377,
-            t378,
             t379,
-            t381,
-            t382,
+            t380,
             t383,
-            t427,
-            t429,
-            t431,
-            t432,
-            t434,
-            t437,
-            t440,
-            t448,
+            t385,
+            t387,
+            t398,
+            t400,
+            t402,
+            t442,
+            t444,
+            t446,
+            t447,
             t449,
-            t450,
-            t451,
             t452,
-            t453,
-            t454,
             t455,
-            t456,
-            t458,
-            t460,
             t463,
+            t464,
+            t465,
             t466,
+            t467,
             t468,
             t469,
             t470,
             t471,
-            t472,
             t473,
-            t474,
             t475,
-            t476,
-            t477,
             t478,
             t481,
-            t482,
             t483,
             t484,
             t485,
@@ -14259,19 +14249,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t222 = k(1.0) / T::fused(-t215, t221, k(0.001));
             let t223 = t222 * t220;
             let t224 = T::fused(t216, t221, k(0.0002));
-            let t225 = carrier_wx * carrier_wz;
-            let t226 = carrier_wx * carrier_wx;
-            let t227 = carrier_wy * carrier_wy;
-            let t228 = t227 + t226;
-            let t229 = T::fused(t145, t228, -T::fused(-t160, t225, t132 * t166));
-            let t230 = carrier_wz * carrier_wz;
-            let t231 = t230 + t227;
-            let t232 = carrier_wx * carrier_wy;
-            let t233 = T::fused(t145, t225, T::fused(t160, t231, t132 * t232));
-            let t234 = t230 + t226;
-            let t235 = T::fused(t145, t166, -T::fused(t160, t232, t132 * t234));
-            let t236 = t235 + t233;
-            let t237 = T::fused(k(0.1), t236 - t229, t42);
+            let t225 = carrier_wy * carrier_wy;
+            let t226 = carrier_wz * carrier_wz;
+            let t227 = t226 + t225;
+            let t228 = carrier_wx * carrier_wy;
+            let t229 = carrier_wx * carrier_wz;
+            let t230 = T::fused(t145, t229, T::fused(t160, t227, t132 * t228));
+            let t231 = carrier_wx * carrier_wx;
+            let t232 = t226 + t231;
+            let t233 = T::fused(t145, t166, -T::fused(t160, t228, t132 * t232));
+            let t234 = t233 + t230;
+            let t235 = t225 + t231;
+            let t236 = T::fused(t145, t235, -T::fused(-t160, t229, t132 * t166));
+            let t237 = T::fused(-k(0.1), t236 - t234, t42);
             let t238 = k(0.2) * t14;
             let t239 = k(0.2) * t9;
             let t240 = T::fused(-t206, t238, t213 * t239);
@@ -14279,11 +14269,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t242 = t215 * t241;
             let t243 = t222 * t242;
             let t244 = T::fused(t224, t243, T::fused(t216, t241, t238));
-            let t245 = T::fused(t141, t228, T::fused(-t162, t225, t128 * t166));
-            let t246 = T::fused(t141, t225, -T::fused(t162, t231, t128 * t232));
-            let t247 = T::fused(t141, t166, T::fused(t162, t232, t128 * t234));
-            let t248 = t247 + t246;
-            let t249 = T::fused(k(0.1), t248 - t245, t87);
+            let t245 = T::fused(t141, t229, -T::fused(t162, t227, t128 * t228));
+            let t246 = T::fused(t141, t166, T::fused(t162, t228, t128 * t232));
+            let t247 = t246 + t245;
+            let t248 = T::fused(t141, t235, T::fused(-t162, t229, t128 * t166));
+            let t249 = T::fused(-k(0.1), t248 - t247, t87);
             let t250 = k(0.2) * t65;
             let t251 = k(0.2) * t61;
             let t252 = T::fused(t206, t250, t213 * t251);
@@ -14291,11 +14281,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t254 = t215 * t253;
             let t255 = t222 * t254;
             let t256 = T::fused(t224, t255, -T::fused(-t216, t253, t250));
-            let t257 = T::fused(t147, t228, T::fused(t164, t225, t136 * t166));
-            let t258 = T::fused(t147, t225, -T::fused(-t164, t231, t136 * t232));
-            let t259 = T::fused(t147, t166, T::fused(-t164, t232, t136 * t234));
-            let t260 = t259 + t258;
-            let t261 = T::fused(k(0.1), t260 - t257, t118);
+            let t257 = T::fused(t147, t229, -T::fused(-t164, t227, t136 * t228));
+            let t258 = T::fused(t147, t166, T::fused(-t164, t228, t136 * t232));
+            let t259 = t258 + t257;
+            let t260 = T::fused(t147, t235, T::fused(t164, t229, t136 * t166));
+            let t261 = T::fused(-k(0.1), t260 - t259, t118);
             let t262 = k(0.2) * t99;
             let t263 = k(0.2) * t97;
             let t264 = T::fused(t206, t262, t213 * t263);
@@ -14327,8 +14317,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             );
             let t275 = T::fused(
                 -k(0.6),
-                t273 + T::fused(t166, t188, T::fused(-t232, t165, t234 * t187)),
-                k(0.8) * (t274 + T::fused(t228, t188, T::fused(t225, t165, t166 * t187))),
+                t273 + T::fused(t166, t188, T::fused(-t228, t165, t232 * t187)),
+                k(0.8) * (t274 + T::fused(t235, t188, T::fused(t229, t165, t166 * t187))),
             );
             let t276 = t275 * (t213 * t269);
             let t277 = t216 * t218;
@@ -14403,7 +14393,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 -k(0.3333333333333333),
                 t314 - (t309 - T::fused(-t165, t158, k(0.005) * t166)),
                 k(0.6666666666666666)
-                    * (t314 - (t321 + T::fused(-t187, t158, k(0.005) * t225))),
+                    * (t314 - (t321 + T::fused(-t187, t158, k(0.005) * t229))),
             );
             let t323 = t163 - t135;
             let t324 = k(0.2) * t323;
@@ -14413,8 +14403,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t328 = k(0.2) * t327;
             let t329 = T::fused(t326, t295, t328 * t301);
             let t330 = T::fused(-t324, t306, t329) - T::fused(t148, t284, t149 * t290)
-                - T::fused(-t188, t158, k(0.01) * t232);
-            let t331 = k(0.1) * t236;
+                - T::fused(-t188, t158, k(0.01) * t228);
+            let t331 = k(0.1) * t234;
             let t332 = T::fused(t313, t293, T::fused(-t310, t291, t311 * t292));
             let t333 = k(0.4) * t144;
             let t334 = t333 + t332;
@@ -14436,7 +14426,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     k(0.6666666666666666) * (t340 + t334),
                 ),
             );
-            let t345 = k(0.1) * t248;
+            let t345 = k(0.1) * t247;
             let t346 = T::fused(t313, t299, T::fused(-t310, t292, t311 * t298));
             let t347 = k(0.4) * t140;
             let t348 = t347 - t346;
@@ -14458,7 +14448,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     k(0.6666666666666666) * (t354 - t348),
                 ),
             );
-            let t359 = k(0.1) * t260;
+            let t359 = k(0.1) * t259;
             let t360 = T::fused(t313, t304, T::fused(-t310, t293, t311 * t299));
             let t361 = k(0.4) * t146;
             let t362 = t361 - t360;
@@ -14480,224 +14470,257 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                     k(0.6666666666666666) * (t368 - t362),
                 ),
             );
-            let t373 = k(0.6666666666666666) * t144;
-            let t374 = k(1.3333333333333333) * t140;
-            let t375 = k(1.3333333333333333) * t146;
-            let t376 = t375 - (t374 + t373);
-            let t377 = k(1.3333333333333333) * t127;
-            let t378 = k(0.6666666666666666) * t131;
-            let t379 = k(1.3333333333333333) * t135;
-            let t380 = t379 + (t378 - t377);
-            let t381 = k(0.6666666666666666) * t159;
-            let t382 = k(1.3333333333333333) * t161;
-            let t383 = k(1.3333333333333333) * t163;
-            let t384 = t383 + (t382 - t381);
-            let t385 = k(0.6666666666666666) * carrier_wx;
-            let t386 = T::fused(-k(0.3333333333333333), carrier_wy, t385);
-            let t387 = T::fused(k(0.3333333333333333), carrier_wz, -t385);
-            let t388 = k(0.6666666666666666) * (carrier_wy - carrier_wz);
-            let t389 = T::fused(t386, t386, T::fused(t387, t387, t388 * t388))
-                / T::fused(
-                    k(0.6666666666666666),
-                    t376,
-                    -T::fused(k(0.3333333333333333), t384, k(0.6666666666666666) * t380),
-                );
-            let t390 = T::fused(
-                k(0.6666666666666666),
-                carrier_wz,
-                T::fused(
-                    k(0.3333333333333333),
-                    carrier_wx,
-                    k(0.6666666666666666) * carrier_wy,
-                ),
+            let t373 = k(0.6666666666666666) * t135;
+            let t374 = k(1.3333333333333333) * t163;
+            let t375 = t374 - t373;
+            let t376 = k(0.6666666666666666) * t127;
+            let t377 = k(1.3333333333333333) * t161;
+            let t378 = t377 + t376;
+            let t379 = k(1.3333333333333333) * t159;
+            let t380 = k(0.6666666666666666) * t131;
+            let t381 = t380 + t379;
+            let t382 = T::fused(
+                -k(0.3333333333333333),
+                t375,
+                k(0.6666666666666666) * (t381 + t378),
             );
+            let t383 = k(0.6666666666666666) * t146;
+            let t384 = t374 + t383;
+            let t385 = k(0.6666666666666666) * t140;
+            let t386 = t377 - t385;
+            let t387 = k(0.6666666666666666) * t144;
+            let t388 = t387 + t379;
+            let t389 = T::fused(
+                -k(0.3333333333333333),
+                t384,
+                k(0.6666666666666666) * (t388 + t386),
+            );
+            let t390 = k(0.6666666666666666) * (t389 + t382);
             let t391 = T::fused(
-                -t389,
-                k(0.6666666666666666) * (t380 + t376),
-                t388 * t390,
+                -k(0.8888888888888888),
+                t307,
+                T::fused(-k(0.4444444444444444), t302, k(0.8888888888888888) * t296),
             );
-            let t392 = T::fused(t270, t279, t271 * t282);
-            let t393 = T::fused(t270, t282, t271 * t288);
+            let t392 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.4444444444444444),
+                    t307,
+                    k(0.8888888888888888) * (t296 + t302),
+                );
+            let t393 = T::fused(k(0.3333333333333333), t382, t392);
             let t394 = T::fused(
+                k(0.6666666666666666),
+                t384,
+                T::fused(-k(0.3333333333333333), t386, k(0.6666666666666666) * t388),
+            );
+            let t395 = T::fused(k(0.3333333333333333), t389, -t392);
+            let t396 = T::fused(
+                k(0.6666666666666666),
+                t375,
+                T::fused(-k(0.3333333333333333), t378, k(0.6666666666666666) * t381),
+            );
+            let t397 = k(1.0)
+                / T::fused(t396, t395, -T::fused(-t391, t390, t394 * t393));
+            let t398 = k(0.6666666666666666) * t236;
+            let t399 = T::fused(
+                k(0.3333333333333333),
+                t230,
+                k(0.6666666666666666) * t233,
+            ) - t398;
+            let t400 = k(0.6666666666666666) * t248;
+            let t401 = T::fused(
+                k(0.3333333333333333),
+                t245,
+                k(0.6666666666666666) * t246,
+            ) - t400;
+            let t402 = k(0.6666666666666666) * t260;
+            let t403 = T::fused(
+                k(0.3333333333333333),
+                t257,
+                k(0.6666666666666666) * t258,
+            ) - t402;
+            let t404 = T::fused(
+                k(0.6666666666666666),
+                t403,
+                T::fused(k(0.6666666666666666), t399, k(0.3333333333333333) * t401),
+            );
+            let t405 = T::fused(
+                k(0.6666666666666666),
+                t401 - t399,
+                k(0.3333333333333333) * t403,
+            );
+            let t406 = T::fused(
+                t404,
+                t390 * t397,
+                t405 * (t397 * (k(0.6666666666666666) * (t394 + t396))),
+            );
+            let t407 = T::fused(t270, t279, t271 * t282);
+            let t408 = T::fused(t270, t282, t271 * t288);
+            let t409 = T::fused(
                 k(2.0),
                 T::fused(t308, t363, T::fused(t297, t335, t303 * t349)),
                 -T::fused(t308, t364, T::fused(t297, t336, t303 * t350)),
             );
-            let t395 = k(0.02)
-                + (k(0.02) + (t394 + (k(0.01) - T::fused(t270, t392, t271 * t393))));
-            let t396 = T::fused(t313, t365, T::fused(-t310, t337, t311 * t351));
-            let t397 = T::fused(t313, t360, T::fused(-t310, t332, t311 * t346));
-            let t398 = T::fused(t320, t363, -T::fused(t316, t335, t318 * t349))
+            let t410 = k(0.02)
+                + (k(0.02) + (t409 + (k(0.01) - T::fused(t270, t407, t271 * t408))));
+            let t411 = T::fused(t313, t365, T::fused(-t310, t337, t311 * t351));
+            let t412 = T::fused(t313, t360, T::fused(-t310, t332, t311 * t346));
+            let t413 = T::fused(t320, t363, -T::fused(t316, t335, t318 * t349))
                 - T::fused(t308, t366, T::fused(t297, t338, t303 * t352));
-            let t399 = t398 - T::fused(t308, t367, T::fused(t297, t339, t303 * t353))
-                + (k(0.005) + T::fused(t138, t392, t137 * t393));
-            let t400 = T::fused(t313, t368, T::fused(-t310, t340, t311 * t354));
-            let t401 = t397 + (t400 + t396) - (k(0.02) + t399);
-            let t402 = T::fused(t324, t363, -T::fused(t326, t335, t328 * t349))
+            let t414 = t413 - T::fused(t308, t367, T::fused(t297, t339, t303 * t353))
+                + (k(0.005) + T::fused(t138, t407, t137 * t408));
+            let t415 = T::fused(t313, t368, T::fused(-t310, t340, t311 * t354));
+            let t416 = t412 + (t415 + t411) - (k(0.02) + t414);
+            let t417 = T::fused(t324, t363, -T::fused(t326, t335, t328 * t349))
                 - T::fused(t308, t370, T::fused(t297, t342, t303 * t356));
-            let t403 = t402 - T::fused(t308, t369, T::fused(t297, t341, t303 * t355))
-                - (k(0.005) - T::fused(t148, t392, t149 * t393));
-            let t404 = T::fused(t313, t369, T::fused(-t310, t341, t311 * t355));
-            let t405 = T::fused(t313, t371, T::fused(-t310, t343, t311 * t357));
-            let t406 = T::fused(t324, t365, -T::fused(t326, t337, t328 * t351)) + t405
-                + t404;
-            let t407 = t406 - t403;
-            let t408 = T::fused(
+            let t418 = t417 - T::fused(t308, t369, T::fused(t297, t341, t303 * t355))
+                - (k(0.005) - T::fused(t148, t407, t149 * t408));
+            let t419 = T::fused(t313, t369, T::fused(-t310, t341, t311 * t355));
+            let t420 = T::fused(t313, t371, T::fused(-t310, t343, t311 * t357));
+            let t421 = T::fused(t324, t365, -T::fused(t326, t337, t328 * t351)) + t420
+                + t419;
+            let t422 = t421 - t418;
+            let t423 = T::fused(
                 k(0.6666666666666666),
-                t407,
+                t422,
                 -T::fused(
                     -k(0.3333333333333333),
-                    T::fused(k(2.0), t396, t397) - t395,
-                    k(0.6666666666666666) * t401,
+                    T::fused(k(2.0), t411, t412) - t410,
+                    k(0.6666666666666666) * t416,
                 ),
             );
-            let t409 = k(0.6666666666666666) * t384;
-            let t410 = T::fused(
-                t389,
-                T::fused(k(0.3333333333333333), t376, t409),
-                t387 * t390,
+            let t424 = k(0.6666666666666666) * t391;
+            let t425 = T::fused(
+                t404,
+                t393 * t397,
+                t405 * (t397 * T::fused(k(0.3333333333333333), t396, t424)),
             );
-            let t411 = T::fused(t138, t279, t137 * t282);
-            let t412 = T::fused(t138, t282, t137 * t288);
-            let t413 = T::fused(
+            let t426 = T::fused(t138, t279, t137 * t282);
+            let t427 = T::fused(t138, t282, t137 * t288);
+            let t428 = T::fused(
                 k(2.0),
                 T::fused(t320, t366, -T::fused(t316, t338, t318 * t352)),
                 T::fused(t320, t367, -T::fused(t316, t339, t318 * t353)),
             );
-            let t414 = k(0.02)
-                + (k(0.03) - (t413 - (k(0.01) - T::fused(t138, t411, t137 * t412))));
-            let t415 = T::fused(t324, t366, -T::fused(t326, t338, t328 * t352))
+            let t429 = k(0.02)
+                + (k(0.03) - (t428 - (k(0.01) - T::fused(t138, t426, t137 * t427))));
+            let t430 = T::fused(t324, t366, -T::fused(t326, t338, t328 * t352))
                 + T::fused(t320, t370, -T::fused(t316, t342, t318 * t356));
-            let t416 = t415 + T::fused(t320, t369, -T::fused(t316, t341, t318 * t355))
-                - (k(0.005) - T::fused(t148, t411, t149 * t412));
-            let t417 = t404
-                + (t405 + T::fused(t324, t368, -T::fused(t326, t340, t328 * t354)));
-            let t418 = k(0.6666666666666666) * (t417 + t416);
-            let t419 = t418
+            let t431 = t430 + T::fused(t320, t369, -T::fused(t316, t341, t318 * t355))
+                - (k(0.005) - T::fused(t148, t426, t149 * t427));
+            let t432 = t419
+                + (t420 + T::fused(t324, t368, -T::fused(t326, t340, t328 * t354)));
+            let t433 = k(0.6666666666666666) * (t432 + t431);
+            let t434 = t433
                 - T::fused(
                     -k(0.3333333333333333),
-                    t401,
-                    k(0.6666666666666666) * (T::fused(k(2.0), t400, t397) - t414),
+                    t416,
+                    k(0.6666666666666666) * (T::fused(k(2.0), t415, t412) - t429),
                 );
-            let t420 = T::fused(
-                T::fused(k(0.3333333333333333), t380, -t409),
-                t389,
-                t386 * t390,
+            let t435 = T::fused(
+                t395 * t397,
+                t404,
+                t397 * T::fused(k(0.3333333333333333), t394, -t424) * t405,
             );
-            let t421 = T::fused(
+            let t436 = T::fused(
                 t148,
                 T::fused(t148, t279, t149 * t282),
                 t149 * T::fused(t148, t282, t149 * t288),
             );
-            let t422 = T::fused(t324, t369, -T::fused(t326, t341, t328 * t355));
-            let t423 = T::fused(
+            let t437 = T::fused(t324, t369, -T::fused(t326, t341, t328 * t355));
+            let t438 = T::fused(
                 k(2.0),
                 T::fused(t324, t370, -T::fused(t326, t342, t328 * t356)),
-                t422,
+                t437,
             );
-            let t424 = T::fused(
+            let t439 = T::fused(
                 k(2.0),
                 T::fused(t324, t371, -T::fused(t326, t343, t328 * t357)),
-                t422,
+                t437,
             );
-            let t425 = T::fused(
+            let t440 = T::fused(
                 k(0.6666666666666666),
-                t424 - (k(0.04) + (k(0.025) - (t423 - (k(0.01) - t421)))),
-                T::fused(k(0.3333333333333333), t407, -t418),
+                t439 - (k(0.04) + (k(0.025) - (t438 - (k(0.01) - t436)))),
+                T::fused(k(0.3333333333333333), t422, -t433),
             );
-            let t426 = T::fused(t425, t420, -T::fused(-t408, t391, t419 * t410))
-                + T::fused(t372, t359, T::fused(-t344, t331, t358 * t345));
-            let t427 = k(1.0)
+            let t441 = T::fused(t440, t435, -T::fused(t423, t406, t434 * t425))
+                - T::fused(t372, t359, T::fused(-t344, t331, t358 * t345));
+            let t442 = k(1.0)
                 / T::fused(
                     k(0.6666666666666666),
-                    t425,
-                    -T::fused(-k(0.3333333333333333), t408, k(0.6666666666666666) * t419),
+                    t440,
+                    -T::fused(-k(0.3333333333333333), t423, k(0.6666666666666666) * t434),
                 );
-            let t428 = t427
-                * (t426
-                    + T::fused(
+            let t443 = t442
+                * (t441
+                    - T::fused(
                         k(0.6666666666666666),
                         T::fused(t324, t312, t329) + t330,
                         -t322,
                     ));
-            let t429 = T::fused(-k(0.3333333333333333), t428, t391);
-            let t430 = k(0.6666666666666666) * t428;
-            let t431 = t410 - t430;
-            let t432 = t420 - t430;
-            let t433 = t326 * t432;
-            let t434 = t331 + (t433 - T::fused(-t310, t429, t310 * t431));
-            let t435 = t237 - (T::fused(t297, t429, t316 * t431) - t433 - t434);
-            let t436 = t328 * t432;
-            let t437 = t345 - (t436 + T::fused(-t311, t429, t311 * t431));
-            let t438 = t249 + (T::fused(t303, t429, t318 * t431) - t436 + t437);
-            let t439 = t324 * t432;
-            let t440 = t359 + (t439 - T::fused(-t313, t429, t313 * t431));
-            let t441 = t261 - (T::fused(-t308, t429, t320 * t431) - t439 - t440);
-            let t442 = t276 - T::fused(t148, t432, -T::fused(t270, t429, t138 * t431));
-            let t443 = t280 - T::fused(t149, t432, -T::fused(t271, t429, t137 * t431));
-            let t444 = T::fused(t224, t442, t281 * t443)
-                - T::fused(t266, t441, T::fused(-t242, t435, t254 * t438));
-            let t445 = t222 * (t220 - t444);
-            let t446 = T::fused(t217, t443, -T::fused(-t215, t445, t216 * t442))
-                + T::fused(t264, t441, T::fused(-t240, t435, t252 * t438));
-            let t447 = t218 * (t214 - t446);
-            let t448 = T::fused(-t206, t447, t442);
-            let t449 = T::fused(t213, t447, t443);
-            let t450 = t435 - T::fused(t197, t448, t209 * t449);
-            let t451 = t438 + T::fused(-t201, t448, t210 * t449);
-            let t452 = t441 + T::fused(-t204, t448, t211 * t449);
-            let t453 = T::fused(t189, t447, t445);
-            let t454 = k(0.1) * t123;
-            let t455 = k(0.1) * t92;
-            let t456 = k(0.1) * t56;
-            let t457 = T::fused(t57, t456, k(1.4142135623730951) * (t9 - t14) * t30)
-                - T::fused(-t93, t455, k(1.4142135623730951) * (t61 + t65) * t76);
-            let t458 = t457
-                + T::fused(t124, t454, k(1.4142135623730951) * (t97 + t99) * t107);
-            let t459 = k(0.1) * t95;
-            let t460 = t204 - t459;
-            let t461 = t107 * (k(1.4142135623730951) * t95);
-            let t462 = k(0.1) * t59;
-            let t463 = t201 + t462;
-            let t464 = t76 * (k(1.4142135623730951) * t59);
-            let t465 = k(0.1) * t2;
-            let t466 = t197 - t465;
-            let t467 = t30 * (k(1.4142135623730951) * t2);
-            let t468 = T::fused(-t57, t466, t467) - T::fused(-t93, t463, t464)
-                - T::fused(-t124, t460, t461);
-            let t469 = t211 - t459;
-            let t470 = t210 + t462;
-            let t471 = t209 + t465;
-            let t472 = T::fused(-t57, t471, t467) - T::fused(t93, t470, t464)
-                - T::fused(t124, t469, t461);
-            let t473 = T::fused(t472, t449, T::fused(t458, t453, t468 * t448))
-                - T::fused(t124, t452, T::fused(-t57, t450, t93 * t451));
-            let t474 = puck_wx * puck_wz;
-            let t475 = puck_e0 * puck_e0;
-            let t476 = k(0.5) - T::fused(puck_e1, puck_e1, t475);
-            let t477 = k(2.0) * t476;
-            let t478 = puck_wy * puck_wz;
-            let t479 = puck_e0 * puck_e3;
-            let t480 = puck_e1 * puck_e2;
-            let t481 = t480 - t479;
-            let t482 = k(2.0) * t481;
-            let t483 = puck_wx * puck_wx;
-            let t484 = puck_wy * puck_wy;
-            let t485 = t484 + t483;
-            let t486 = puck_e0 * puck_e2;
-            let t487 = puck_e1 * puck_e3;
-            let t488 = t487 + t486;
-            let t489 = k(2.0) * t488;
-            let t490 = T::fused(t489, t485, -T::fused(-t477, t474, t482 * t478));
-            let t491 = t480 + t479;
+            let t444 = T::fused(k(0.3333333333333333), t443, t406);
+            let t445 = k(0.6666666666666666) * t443;
+            let t446 = t425 - t445;
+            let t447 = t435 - t445;
+            let t448 = t326 * t447;
+            let t449 = t331 - (t448 - T::fused(t310, t444, t310 * t446));
+            let t450 = t237 + (T::fused(-t297, t444, t316 * t446) - t448 + t449);
+            let t451 = t328 * t447;
+            let t452 = t345 + (t451 + T::fused(t311, t444, t311 * t446));
+            let t453 = t249 - (T::fused(-t303, t444, t318 * t446) - t451 - t452);
+            let t454 = t324 * t447;
+            let t455 = t359 - (t454 - T::fused(t313, t444, t313 * t446));
+            let t456 = t261 + (T::fused(t308, t444, t320 * t446) - t454 + t455);
+            let t457 = t276 + T::fused(t148, t447, -T::fused(-t270, t444, t138 * t446));
+            let t458 = t280 + T::fused(t149, t447, -T::fused(-t271, t444, t137 * t446));
+            let t459 = T::fused(t224, t457, t281 * t458)
+                - T::fused(t266, t456, T::fused(-t242, t450, t254 * t453));
+            let t460 = t222 * (t220 - t459);
+            let t461 = T::fused(t217, t458, -T::fused(-t215, t460, t216 * t457))
+                + T::fused(t264, t456, T::fused(-t240, t450, t252 * t453));
+            let t462 = t218 * (t214 - t461);
+            let t463 = T::fused(-t206, t462, t457);
+            let t464 = T::fused(t213, t462, t458);
+            let t465 = t450 - T::fused(t197, t463, t209 * t464);
+            let t466 = t453 + T::fused(-t201, t463, t210 * t464);
+            let t467 = t456 + T::fused(-t204, t463, t211 * t464);
+            let t468 = T::fused(t189, t462, t460);
+            let t469 = k(0.1) * t123;
+            let t470 = k(0.1) * t92;
+            let t471 = k(0.1) * t56;
+            let t472 = T::fused(t57, t471, k(1.4142135623730951) * (t9 - t14) * t30)
+                - T::fused(-t93, t470, k(1.4142135623730951) * (t61 + t65) * t76);
+            let t473 = t472
+                + T::fused(t124, t469, k(1.4142135623730951) * (t97 + t99) * t107);
+            let t474 = k(0.1) * t95;
+            let t475 = t204 - t474;
+            let t476 = t107 * (k(1.4142135623730951) * t95);
+            let t477 = k(0.1) * t59;
+            let t478 = t201 + t477;
+            let t479 = t76 * (k(1.4142135623730951) * t59);
+            let t480 = k(0.1) * t2;
+            let t481 = t197 - t480;
+            let t482 = t30 * (k(1.4142135623730951) * t2);
+            let t483 = T::fused(-t57, t481, t482) - T::fused(-t93, t478, t479)
+                - T::fused(-t124, t475, t476);
+            let t484 = t211 - t474;
+            let t485 = t210 + t477;
+            let t486 = t209 + t480;
+            let t487 = T::fused(-t57, t486, t482) - T::fused(t93, t485, t479)
+                - T::fused(t124, t484, t476);
+            let t488 = T::fused(t487, t464, T::fused(t473, t468, t483 * t463))
+                - T::fused(t124, t467, T::fused(-t57, t465, t93 * t466));
+            let t489 = puck_wx * puck_wz;
+            let t490 = puck_e0 * puck_e0;
+            let t491 = k(0.5) - T::fused(puck_e1, puck_e1, t490);
             let t492 = k(2.0) * t491;
-            let t493 = k(0.5) - T::fused(puck_e2, puck_e2, t475);
-            let t494 = k(2.0) * t493;
-            let t495 = puck_e0 * puck_e1;
-            let t496 = puck_e2 * puck_e3;
-            let t497 = t496 - t495;
-            let t498 = k(2.0) * t497;
-            let t499 = T::fused(t498, t485, T::fused(-t492, t474, t494 * t478));
+            let t493 = puck_wy * puck_wz;
+            let t494 = puck_e0 * puck_e3;
+            let t495 = puck_e1 * puck_e2;
+            let t496 = t495 - t494;
+            let t497 = k(2.0) * t496;
+            let t498 = puck_wx * puck_wx;
+            let t499 = puck_wy * puck_wy;
             (
                 t0,
                 t2,
@@ -14837,19 +14860,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t218,
                 t222,
                 t224,
-                t229,
+                t230,
                 t233,
-                t235,
+                t236,
                 t240,
                 t242,
                 t245,
                 t246,
-                t247,
+                t248,
                 t252,
                 t254,
                 t257,
                 t258,
-                t259,
+                t260,
                 t264,
                 t266,
                 t270,
@@ -14872,46 +14895,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t361,
                 t373,
                 t374,
-                t375,
+                t376,
                 t377,
-                t378,
                 t379,
-                t381,
-                t382,
+                t380,
                 t383,
-                t427,
-                t429,
-                t431,
-                t432,
-                t434,
-                t437,
-                t440,
-                t448,
+                t385,
+                t387,
+                t398,
+                t400,
+                t402,
+                t442,
+                t444,
+                t446,
+                t447,
                 t449,
-                t450,
-                t451,
                 t452,
-                t453,
-                t454,
                 t455,
-                t456,
-                t458,
-                t460,
                 t463,
+                t464,
+                t465,
                 t466,
+                t467,
                 t468,
                 t469,
                 t470,
                 t471,
-                t472,
                 t473,
-                t474,
                 t475,
-                t476,
-                t477,
                 t478,
                 t481,
-                t482,
                 t483,
                 t484,
                 t485,
@@ -14932,1259 +14945,1248 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             )
         });
         let (
-            t501,
             t503,
             t504,
-            t505,
-            t510,
+            t509,
             t512,
-            t515,
-            t517,
+            t513,
+            t518,
             t519,
             t520,
-            t522,
-            t523,
-            t526,
-            t528,
-            t529,
-            t531,
+            t525,
+            t527,
+            t530,
             t532,
             t534,
             t535,
+            t537,
+            t538,
             t541,
-            t580,
-            t582,
-            t584,
-            t590,
-            t591,
-            t592,
-            t600,
-            t601,
-            t611,
-            t612,
-            t615,
-            t616,
-            t619,
-            t620,
-            t635,
-            t639,
-            t647,
+            t543,
+            t544,
+            t546,
+            t547,
+            t549,
+            t550,
+            t556,
+            t594,
+            t596,
+            t598,
+            t604,
+            t605,
+            t606,
+            t625,
+            t626,
+            t629,
+            t630,
+            t633,
+            t634,
             t649,
-            t650,
-            t651,
-            t659,
-            t666,
-            t667,
-            t668,
-            t669,
-            t675,
+            t653,
+            t661,
+            t663,
+            t664,
+            t665,
+            t673,
+            t680,
             t681,
-            t724,
-            t727,
-            t728,
+            t682,
+            t683,
+            t689,
+            t695,
+            t723,
+            t725,
             t729,
-            t738,
-            t741,
-            t744,
-            t748,
-            t749,
-            t750,
-            t751,
-            t752,
-            t753,
-            t770,
-            t788,
-            t789,
-            t791,
-            t794,
-            t797,
-            t805,
-            t806,
-            t807,
-            t808,
-            t809,
-            t810,
+            t758,
+            t761,
+            t762,
+            t763,
+            t772,
+            t775,
+            t778,
+            t782,
+            t783,
+            t784,
+            t785,
+            t786,
+            t787,
+            t804,
+            t822,
+            t823,
+            t825,
+            t828,
             t831,
-            t832,
+            t839,
             t840,
+            t841,
+            t842,
             t843,
-            t846,
-            t850,
-            t851,
-            t852,
-            t853,
-            t854,
-            t855,
-            t857,
+            t844,
+            t865,
+            t866,
+            t874,
+            t877,
+            t880,
             t884,
             t885,
             t886,
-            t904,
-            t905,
-            t907,
-            t910,
+            t887,
+            t888,
+            t889,
+            t891,
+            t894,
+            t897,
+            t901,
+            t912,
             t913,
-            t921,
-            t922,
-            t923,
-            t924,
-            t925,
-            t926,
+            t914,
+            t918,
+            t919,
+            t920,
+            t938,
+            t939,
+            t941,
+            t944,
             t947,
-            t948,
+            t955,
             t956,
+            t957,
+            t958,
             t959,
+            t960,
+            t961,
             t962,
             t966,
-            t967,
-            t968,
-            t969,
-            t970,
-            t971,
-            t973,
-            t974,
-            t975,
-            t976,
-            t977,
-            t978,
-            t980,
             t981,
             t982,
-            t983,
-            t984,
-            t986,
-            t987,
-            t989,
+            t990,
             t991,
-            t992,
+            t993,
             t994,
-            t995,
             t996,
             t997,
             t998,
             t999,
         ) = gyro_sim::apart(move || {
-            let t500 = t487 - t486;
-            let t501 = k(2.0) * t500;
-            let t502 = t496 + t495;
-            let t503 = k(2.0) * t502;
-            let t504 = k(0.5) - T::fused(puck_e3, puck_e3, t475);
-            let t505 = k(2.0) * t504;
-            let t506 = T::fused(t505, t485, T::fused(t501, t474, t503 * t478));
-            let t507 = T::fused(
+            let t500 = t499 + t498;
+            let t501 = puck_e0 * puck_e2;
+            let t502 = puck_e1 * puck_e3;
+            let t503 = t502 + t501;
+            let t504 = k(2.0) * t503;
+            let t505 = T::fused(t504, t500, -T::fused(-t492, t489, t497 * t493));
+            let t506 = t495 + t494;
+            let t507 = k(2.0) * t506;
+            let t508 = k(0.5) - T::fused(puck_e2, puck_e2, t490);
+            let t509 = k(2.0) * t508;
+            let t510 = puck_e0 * puck_e1;
+            let t511 = puck_e2 * puck_e3;
+            let t512 = t511 - t510;
+            let t513 = k(2.0) * t512;
+            let t514 = T::fused(t513, t500, T::fused(-t507, t489, t509 * t493));
+            let t515 = t502 - t501;
+            let t516 = k(2.0) * t515;
+            let t517 = t511 + t510;
+            let t518 = k(2.0) * t517;
+            let t519 = k(0.5) - T::fused(puck_e3, puck_e3, t490);
+            let t520 = k(2.0) * t519;
+            let t521 = T::fused(t520, t500, T::fused(t516, t489, t518 * t493));
+            let t522 = T::fused(
                 -k(0.019245008972987525),
-                t499 + t490,
-                k(0.09622504486493763) * t506,
+                t514 + t505,
+                k(0.09622504486493763) * t521,
             );
-            let t508 = k(0.19245008972987526) * t507;
-            let t509 = k(8.0) * t28;
-            let t510 = k(0.16) * t28;
-            let t511 = k(4.2105263157894735) * t28;
-            let t512 = k(0.016) * t28;
-            let t513 = k(0.4) * t22;
-            let t514 = k(0.2) * t25;
-            let t515 = t514 + t513;
-            let t516 = k(16.0) * t515;
-            let t517 = k(0.4) * t515;
-            let t518 = T::fused(t517, t516, T::fused(t510, t509, t512 * t511));
-            let t519 = k(0.16) * t105;
-            let t520 = k(0.016) * t105;
-            let t521 = k(0.2) * t104;
-            let t522 = T::fused(-k(0.4), t103, t521);
-            let t523 = k(0.4) * t522;
-            let t524 = T::fused(t523, t516, -T::fused(t519, t509, t520 * t511));
-            let t525 = k(0.4) + self.puck_mass;
-            let t526 = T::fused(
-                k(0.9805806756909201),
-                t525,
-                T::fused(-k(0.9805806756909201), t518, k(0.19611613513818404) * t524),
-            );
-            let t527 = T::fused(
-                t523,
-                k(16.0) * t522,
-                T::fused(t519, k(8.0) * t105, t520 * (k(4.2105263157894735) * t105)),
-            );
-            let t528 = T::fused(
-                k(0.19611613513818404),
-                t525,
-                -T::fused(-k(0.9805806756909201), t524, k(0.19611613513818404) * t527),
-            );
-            let t529 = k(1.0)
-                / T::fused(k(0.9805806756909201), t526, k(0.19611613513818404) * t528);
-            let t530 = t526 * t529;
-            let t531 = k(0.16) * t74;
-            let t532 = k(0.016) * t74;
-            let t533 = k(0.2) * t71;
-            let t534 = T::fused(k(0.4), t69, t533);
-            let t535 = k(0.4) * t534;
-            let t536 = T::fused(t516, t535, -T::fused(t509, t531, t511 * t532));
-            let t537 = k(8.0) * t74;
-            let t538 = k(4.2105263157894735) * t74;
-            let t539 = k(16.0) * t534;
-            let t540 = T::fused(t523, t539, T::fused(t519, t537, t520 * t538));
+            let t523 = k(0.19245008972987526) * t522;
+            let t524 = k(8.0) * t28;
+            let t525 = k(0.16) * t28;
+            let t526 = k(4.2105263157894735) * t28;
+            let t527 = k(0.016) * t28;
+            let t528 = k(0.4) * t22;
+            let t529 = k(0.2) * t25;
+            let t530 = t529 + t528;
+            let t531 = k(16.0) * t530;
+            let t532 = k(0.4) * t530;
+            let t533 = T::fused(t532, t531, T::fused(t525, t524, t527 * t526));
+            let t534 = k(0.16) * t105;
+            let t535 = k(0.016) * t105;
+            let t536 = k(0.2) * t104;
+            let t537 = T::fused(-k(0.4), t103, t536);
+            let t538 = k(0.4) * t537;
+            let t539 = T::fused(t538, t531, -T::fused(t534, t524, t535 * t526));
+            let t540 = k(0.4) + self.puck_mass;
             let t541 = T::fused(
+                k(0.9805806756909201),
+                t540,
+                T::fused(-k(0.9805806756909201), t533, k(0.19611613513818404) * t539),
+            );
+            let t542 = T::fused(
+                t538,
+                k(16.0) * t537,
+                T::fused(t534, k(8.0) * t105, t535 * (k(4.2105263157894735) * t105)),
+            );
+            let t543 = T::fused(
+                k(0.19611613513818404),
+                t540,
+                -T::fused(-k(0.9805806756909201), t539, k(0.19611613513818404) * t542),
+            );
+            let t544 = k(1.0)
+                / T::fused(k(0.9805806756909201), t541, k(0.19611613513818404) * t543);
+            let t545 = t541 * t544;
+            let t546 = k(0.16) * t74;
+            let t547 = k(0.016) * t74;
+            let t548 = k(0.2) * t71;
+            let t549 = T::fused(k(0.4), t69, t548);
+            let t550 = k(0.4) * t549;
+            let t551 = T::fused(t531, t550, -T::fused(t524, t546, t526 * t547));
+            let t552 = k(8.0) * t74;
+            let t553 = k(4.2105263157894735) * t74;
+            let t554 = k(16.0) * t549;
+            let t555 = T::fused(t538, t554, T::fused(t534, t552, t535 * t553));
+            let t556 = T::fused(
                 -k(0.9805806756909201),
-                t536,
-                k(0.19611613513818404) * t540,
+                t551,
+                k(0.19611613513818404) * t555,
             );
-            let t542 = T::fused(t541, t530, t536);
-            let t543 = T::fused(-t528, t530, t524);
-            let t544 = T::fused(
+            let t557 = T::fused(t556, t545, t551);
+            let t558 = T::fused(-t543, t545, t539);
+            let t559 = T::fused(
                 k(0.1887128390240993),
-                t543,
+                t558,
                 T::fused(
                     k(0.03774256780481986),
-                    T::fused(t526, t530, t518),
-                    k(0.9813067629253163) * t542,
+                    T::fused(t541, t545, t533),
+                    k(0.9813067629253163) * t557,
                 ),
             );
-            let t545 = T::fused(k(0.03774256780481986), t525, -t544);
-            let t546 = T::fused(t539, t535, T::fused(t537, t531, t538 * t532));
-            let t547 = t529 * t541;
-            let t548 = T::fused(-t528, t547, t540);
-            let t549 = T::fused(
-                k(0.1887128390240993),
-                t548,
-                T::fused(
-                    k(0.03774256780481986),
-                    t542,
-                    k(0.9813067629253163) * T::fused(t541, t547, t546),
-                ),
-            );
-            let t550 = T::fused(k(0.9813067629253163), t525, -t549);
-            let t551 = k(0.9622504486493763) * t507;
-            let t552 = t528 * t529;
-            let t553 = T::fused(
-                k(0.1887128390240993),
-                T::fused(t528, t552, t527),
-                T::fused(k(0.03774256780481986), t543, k(0.9813067629253163) * t548),
-            );
-            let t554 = T::fused(k(0.1887128390240993), t525, -t553);
-            let t555 = k(0.1) * (puck_wy - puck_wz);
-            let t556 = k(0.1) * puck_wx;
-            let t557 = k(1.2) - T::fused(k(0.2), t481 + t488, puck_rx);
-            let t558 = k(1.0) - T::fused(-k(0.2), t493 - t497, puck_ry);
-            let t559 = k(1.0) - T::fused(k(0.2), t502 - t504, puck_rz);
-            let t560 = T::fused(t559, t559, T::fused(t557, t557, t558 * t558)).sqrt();
-            let t561 = k(1.0) / t560;
-            let t562 = t557 * t561;
-            let t563 = t558 * t561;
+            let t560 = T::fused(k(0.03774256780481986), t540, -t559);
+            let t561 = T::fused(t554, t550, T::fused(t552, t546, t553 * t547));
+            let t562 = t544 * t556;
+            let t563 = T::fused(-t543, t562, t555);
             let t564 = T::fused(
-                t562,
-                puck_sx + T::fused(t489, t556, -T::fused(t477, t555, t482 * t556)),
-                t563
-                    * (puck_sy + T::fused(t498, t556, T::fused(t492, t555, t494 * t556))),
+                k(0.1887128390240993),
+                t563,
+                T::fused(
+                    k(0.03774256780481986),
+                    t557,
+                    k(0.9813067629253163) * T::fused(t556, t562, t561),
+                ),
             );
-            let t565 = t559 * t561;
-            let t566 = T::fused(
-                t565,
-                puck_sz - T::fused(t505, t556, T::fused(-t501, t555, t503 * t556)),
-                t564,
+            let t565 = T::fused(k(0.9813067629253163), t540, -t564);
+            let t566 = k(0.9622504486493763) * t522;
+            let t567 = t543 * t544;
+            let t568 = T::fused(
+                k(0.1887128390240993),
+                T::fused(t543, t567, t542),
+                T::fused(k(0.03774256780481986), t558, k(0.9813067629253163) * t563),
             );
-            let t567 = T::fused(k(30.0), k(0.6) - t560, t566);
-            let t568 = t562 * t567;
-            let t569 = t563 * t567;
-            let t570 = t565 * t567;
-            let t571 = T::fused(t505, t570, -T::fused(t489, t568, t498 * t569))
-                + T::fused(t503, t570, -T::fused(-t482, t568, t494 * t569));
-            let t572 = T::fused(
-                k(0.9622504486493763),
-                puck_wz,
-                k(0.19245008972987526) * (puck_wx + puck_wy),
-            );
-            let t573 = (k(10.0) * t572).tanh();
-            let t574 = k(0.009622504486493762) * t573;
-            let t575 = T::fused(t112, t173, T::fused(t35, t177, t81 * t175));
-            let t576 = T::fused(t111, t173, T::fused(-t34, t177, t80 * t175));
-            let t577 = k(0.05) * (t576 - t575);
-            let t578 = T::fused(
-                t180,
+            let t569 = T::fused(k(0.1887128390240993), t540, -t568);
+            let t570 = k(0.1) * (puck_wy - puck_wz);
+            let t571 = k(0.1) * puck_wx;
+            let t572 = k(1.2) - T::fused(k(0.2), t496 + t503, puck_rx);
+            let t573 = k(1.0) - T::fused(-k(0.2), t508 - t512, puck_ry);
+            let t574 = k(1.0) - T::fused(k(0.2), t517 - t519, puck_rz);
+            let t575 = T::fused(t574, t574, T::fused(t572, t572, t573 * t573)).sqrt();
+            let t576 = k(1.0) / t575;
+            let t577 = t572 * t576;
+            let t578 = t573 * t576;
+            let t579 = T::fused(
                 t577,
-                T::fused(-k(0.02), t103, k(0.05) * T::fused(k(0.4), t25, t533)),
+                puck_sx + T::fused(t504, t571, -T::fused(t492, t570, t497 * t571)),
+                t578
+                    * (puck_sy + T::fused(t513, t571, T::fused(t507, t570, t509 * t571))),
             );
-            let t579 = t195 - (k(0.2) - t194);
-            let t580 = k(0.4) * t28;
-            let t581 = t199 + (k(0.1) + t198);
-            let t582 = k(0.4) * t74;
-            let t583 = T::fused(k(0.4), self.gravity, -t202);
-            let t584 = k(0.4) * t105;
-            let t585 = T::fused(t584, t583, -T::fused(t580, t579, t582 * t581))
-                + T::fused(k(0.002), t47, T::fused(t183, t577, t578));
-            let t586 = k(50.0) * t585;
-            let t587 = k(0.05) * T::fused(t110, t173, -T::fused(-t33, t177, t79 * t175));
-            let t588 = T::fused(-k(0.1), t575, t587);
-            let t589 = T::fused(
+            let t580 = t574 * t576;
+            let t581 = T::fused(
+                t580,
+                puck_sz - T::fused(t520, t571, T::fused(-t516, t570, t518 * t571)),
+                t579,
+            );
+            let t582 = T::fused(k(30.0), k(0.6) - t575, t581);
+            let t583 = t577 * t582;
+            let t584 = t578 * t582;
+            let t585 = t580 * t582;
+            let t586 = T::fused(t520, t585, -T::fused(t504, t583, t513 * t584))
+                + T::fused(t518, t585, -T::fused(-t497, t583, t509 * t584));
+            let t587 = (k(10.0)
+                * T::fused(
+                    k(0.9622504486493763),
+                    puck_wz,
+                    k(0.19245008972987526) * (puck_wx + puck_wy),
+                ))
+                .tanh();
+            let t588 = k(0.009622504486493762) * t587;
+            let t589 = T::fused(t112, t173, T::fused(t35, t177, t81 * t175));
+            let t590 = T::fused(t111, t173, T::fused(-t34, t177, t80 * t175));
+            let t591 = k(0.05) * (t590 - t589);
+            let t592 = T::fused(
+                t180,
+                t591,
+                T::fused(-k(0.02), t103, k(0.05) * T::fused(k(0.4), t25, t548)),
+            );
+            let t593 = t195 - (k(0.2) - t194);
+            let t594 = k(0.4) * t28;
+            let t595 = t199 + (k(0.1) + t198);
+            let t596 = k(0.4) * t74;
+            let t597 = T::fused(k(0.4), self.gravity, -t202);
+            let t598 = k(0.4) * t105;
+            let t599 = T::fused(t598, t597, -T::fused(t594, t593, t596 * t595))
+                + T::fused(k(0.002), t47, T::fused(t183, t591, t592));
+            let t600 = k(50.0) * t599;
+            let t601 = k(0.05) * T::fused(t110, t173, -T::fused(-t33, t177, t79 * t175));
+            let t602 = T::fused(-k(0.1), t589, t601);
+            let t603 = T::fused(
                 t183,
-                t588,
-                T::fused(t180, t588, -T::fused(-k(0.02), t104, k(0.05) * (t70 + t513))),
+                t602,
+                T::fused(t180, t602, -T::fused(-k(0.02), t104, k(0.05) * (t70 + t528))),
             );
-            let t590 = k(0.2) * t28;
-            let t591 = k(0.2) * t74;
-            let t592 = k(0.2) * t105;
-            let t593 = T::fused(t592, t583, -T::fused(t590, t579, t591 * t581))
-                + T::fused(k(0.001), t51, t589);
-            let t594 = T::fused(k(0.4), t585, -t593);
-            let t595 = k(263.1578947368421) * t594;
-            let t596 = T::fused(k(0.1), t576, -t587);
-            let t597 = T::fused(
+            let t604 = k(0.2) * t28;
+            let t605 = k(0.2) * t74;
+            let t606 = k(0.2) * t105;
+            let t607 = T::fused(t606, t597, -T::fused(t604, t593, t605 * t595))
+                + T::fused(k(0.001), t51, t603);
+            let t608 = T::fused(k(0.4), t599, -t607);
+            let t609 = k(263.1578947368421) * t608;
+            let t610 = T::fused(k(0.1), t590, -t601);
+            let t611 = T::fused(
                 k(0.001),
                 t43,
-                -T::fused(t183, t596, T::fused(k(0.02), t105, t180 * t596)),
+                -T::fused(t183, t610, T::fused(k(0.02), t105, t180 * t610)),
             );
-            let t598 = T::fused(t522, t583, -T::fused(-t515, t579, t534 * t581)) + t597;
-            let t599 = k(40.0) * t598;
-            let t600 = puck_wx * puck_wy;
-            let t601 = puck_wz * puck_wz;
-            let t602 = t601 + t483;
-            let t603 = T::fused(
-                k(0.1),
-                t490,
-                k(0.2) * T::fused(t489, t478, -T::fused(t477, t600, t482 * t602)),
-            );
-            let t604 = t603 + T::fused(k(0.2), t48, t52);
-            let t605 = T::fused(
-                k(0.1),
-                t499,
-                k(0.2) * T::fused(t498, t478, T::fused(t492, t600, t494 * t602)),
-            );
-            let t606 = t605 + T::fused(k(0.2), t88, t89);
-            let t607 = T::fused(
-                k(0.1),
-                t506,
-                k(0.2) * T::fused(t505, t478, T::fused(-t501, t600, t503 * t602)),
-            );
-            let t608 = t607 + T::fused(k(0.2), t119, t120);
-            let t609 = T::fused(
+            let t612 = T::fused(t537, t597, -T::fused(-t530, t593, t549 * t595)) + t611;
+            let t613 = k(40.0) * t612;
+            let t614 = puck_wx * puck_wy;
+            let t615 = puck_wz * puck_wz;
+            let t616 = t615 + t498;
+            let t617 = T::fused(t504, t493, -T::fused(t492, t614, t497 * t616));
+            let t618 = T::fused(k(0.1), t505, k(0.2) * t617)
+                + T::fused(k(0.2), t48, t52);
+            let t619 = T::fused(t513, t493, T::fused(t507, t614, t509 * t616));
+            let t620 = T::fused(k(0.1), t514, k(0.2) * t619)
+                + T::fused(k(0.2), t88, t89);
+            let t621 = T::fused(t520, t493, T::fused(-t516, t614, t518 * t616));
+            let t622 = T::fused(k(0.1), t521, k(0.2) * t621)
+                + T::fused(k(0.2), t119, t120);
+            let t623 = T::fused(
                 k(0.4),
-                t604,
-                T::fused(t524, t608, T::fused(-t518, t604, t536 * t606)),
+                t618,
+                T::fused(t539, t622, T::fused(-t533, t618, t551 * t620)),
             );
-            let t610 = t609
+            let t624 = t623
                 + T::fused(
-                    t517,
-                    t599,
-                    T::fused(t512, t595, -T::fused(t510, t586, t579)),
+                    t532,
+                    t613,
+                    T::fused(t527, t609, -T::fused(t525, t600, t593)),
                 );
-            let t611 = k(0.2) * t481;
-            let t612 = T::fused(k(0.4), t488, t611);
-            let t613 = T::fused(
+            let t625 = k(0.2) * t496;
+            let t626 = T::fused(k(0.4), t503, t625);
+            let t627 = T::fused(
                 -k(0.4),
-                t606,
-                T::fused(t540, t608, T::fused(-t536, t604, t546 * t606)),
+                t620,
+                T::fused(t555, t622, T::fused(-t551, t618, t561 * t620)),
             );
-            let t614 = t613
+            let t628 = t627
                 + T::fused(
-                    t535,
-                    t599,
-                    -T::fused(t532, t595, -T::fused(t531, t586, t581)),
+                    t550,
+                    t613,
+                    -T::fused(t547, t609, -T::fused(t546, t600, t595)),
                 );
-            let t615 = k(0.2) * t493;
-            let t616 = T::fused(k(0.4), t497, -t615);
-            let t617 = T::fused(
+            let t629 = k(0.2) * t508;
+            let t630 = T::fused(k(0.4), t512, -t629);
+            let t631 = T::fused(
                 -k(0.4),
-                t608,
-                T::fused(t527, t608, T::fused(-t524, t604, t540 * t606)),
-            );
-            let t618 = t617
-                + T::fused(
-                    t523,
-                    t599,
-                    -T::fused(t520, t595, T::fused(-t519, t586, t583)),
-                );
-            let t619 = k(0.2) * t502;
-            let t620 = T::fused(k(0.4), t504, -t619);
-            let t621 = T::fused(t620, t618, T::fused(-t612, t610, t616 * t614))
-                + T::fused(k(0.002), t478, -T::fused(-k(0.1), t571, t574));
-            let t622 = t610 - t568;
-            let t623 = t614 + t569;
-            let t624 = t618 - T::fused(self.gravity, self.puck_mass, t570);
-            let t625 = T::fused(
-                -k(0.9805806756909201),
                 t622,
-                k(0.19611613513818404) * t624,
+                T::fused(t542, t622, T::fused(-t539, t618, t555 * t620)),
             );
-            let t626 = t529 * t625;
-            let t627 = T::fused(t620, t524, T::fused(-t612, t518, t616 * t536));
-            let t628 = T::fused(k(0.4), t612, t627);
-            let t629 = T::fused(t619, t524, T::fused(t611, t518, t615 * t536));
-            let t630 = T::fused(-t525, t611, t629) - t628;
-            let t631 = T::fused(t620, t527, T::fused(-t612, t524, t616 * t540));
-            let t632 = T::fused(-k(0.4), t620, t631);
-            let t633 = T::fused(t619, t527, T::fused(t611, t524, t615 * t540));
-            let t634 = T::fused(-t525, t619, t633) - t632;
-            let t635 = T::fused(
+            let t632 = t631
+                + T::fused(
+                    t538,
+                    t613,
+                    -T::fused(t535, t609, T::fused(-t534, t600, t597)),
+                );
+            let t633 = k(0.2) * t517;
+            let t634 = T::fused(k(0.4), t519, -t633);
+            let t635 = T::fused(t634, t632, T::fused(-t626, t624, t630 * t628))
+                + T::fused(k(0.002), t493, -T::fused(-k(0.1), t586, t588));
+            let t636 = t624 - t583;
+            let t637 = t628 + t584;
+            let t638 = t632 - T::fused(self.gravity, self.puck_mass, t585);
+            let t639 = T::fused(
                 -k(0.9805806756909201),
-                t630,
-                k(0.19611613513818404) * t634,
+                t636,
+                k(0.19611613513818404) * t638,
             );
-            let t636 = T::fused(
-                t635,
-                t626,
-                T::fused(t619, t624, T::fused(t611, t622, t615 * t623)) - t621,
+            let t640 = t544 * t639;
+            let t641 = T::fused(t634, t539, T::fused(-t626, t533, t630 * t551));
+            let t642 = T::fused(k(0.4), t626, t641);
+            let t643 = T::fused(t633, t539, T::fused(t625, t533, t629 * t551));
+            let t644 = T::fused(-t540, t625, t643) - t642;
+            let t645 = T::fused(t634, t542, T::fused(-t626, t539, t630 * t555));
+            let t646 = T::fused(-k(0.4), t634, t645);
+            let t647 = T::fused(t633, t542, T::fused(t625, t539, t629 * t555));
+            let t648 = T::fused(-t540, t633, t647) - t646;
+            let t649 = T::fused(
+                -k(0.9805806756909201),
+                t644,
+                k(0.19611613513818404) * t648,
             );
-            let t637 = T::fused(
+            let t650 = T::fused(
+                t649,
+                t640,
+                T::fused(t633, t638, T::fused(t625, t636, t629 * t637)) - t635,
+            );
+            let t651 = T::fused(
                 k(0.03774256780481986),
-                T::fused(t526, t626, t622),
-                k(0.9813067629253163) * T::fused(t541, t626, t623),
+                T::fused(t541, t640, t636),
+                k(0.9813067629253163) * T::fused(t556, t640, t637),
             );
-            let t638 = T::fused(
+            let t652 = T::fused(
                 k(0.1887128390240993),
-                T::fused(-t528, t626, t624),
-                t637,
+                T::fused(-t543, t640, t638),
+                t651,
             );
-            let t639 = k(1.0)
+            let t653 = k(1.0)
                 / T::fused(
                     k(0.1887128390240993),
-                    t554,
-                    T::fused(k(0.03774256780481986), t545, k(0.9813067629253163) * t550),
+                    t569,
+                    T::fused(k(0.03774256780481986), t560, k(0.9813067629253163) * t565),
                 );
-            let t640 = t639 * t638;
-            let t641 = T::fused(t530, t635, t630);
-            let t642 = T::fused(t620, t540, T::fused(-t612, t536, t616 * t546));
-            let t643 = T::fused(-k(0.4), t616, t642);
-            let t644 = T::fused(t619, t540, T::fused(t611, t536, t615 * t546));
-            let t645 = T::fused(t547, t635, T::fused(-t525, t615, t644) - t643);
-            let t646 = T::fused(-t552, t635, t634);
-            let t647 = T::fused(
+            let t654 = t653 * t652;
+            let t655 = T::fused(t545, t649, t644);
+            let t656 = T::fused(t634, t555, T::fused(-t626, t551, t630 * t561));
+            let t657 = T::fused(-k(0.4), t630, t656);
+            let t658 = T::fused(t633, t555, T::fused(t625, t551, t629 * t561));
+            let t659 = T::fused(t562, t649, T::fused(-t540, t629, t658) - t657);
+            let t660 = T::fused(-t567, t649, t648);
+            let t661 = T::fused(
                 k(0.1887128390240993),
-                t646,
-                T::fused(k(0.03774256780481986), t641, k(0.9813067629253163) * t645),
+                t660,
+                T::fused(k(0.03774256780481986), t655, k(0.9813067629253163) * t659),
             );
-            let t648 = k(0.1) * T::fused(t501, t570, T::fused(-t477, t568, t492 * t569));
-            let t649 = k(0.2) * t476;
-            let t650 = k(0.2) * t491;
-            let t651 = k(0.2) * t500;
-            let t652 = T::fused(t651, t618, -T::fused(t649, t610, t650 * t614))
-                - T::fused(k(0.001), t474, t574 + t648);
-            let t653 = T::fused(t651, t524, -T::fused(t649, t518, t650 * t536));
-            let t654 = T::fused(k(0.08), t476, t653);
-            let t655 = T::fused(t525, t649, t653) + t654;
-            let t656 = T::fused(t651, t527, -T::fused(t649, t524, t650 * t540));
-            let t657 = T::fused(-k(0.08), t500, t656);
-            let t658 = T::fused(t525, t651, -t656) - t657;
-            let t659 = T::fused(
+            let t662 = k(0.1) * T::fused(t516, t585, T::fused(-t492, t583, t507 * t584));
+            let t663 = k(0.2) * t491;
+            let t664 = k(0.2) * t506;
+            let t665 = k(0.2) * t515;
+            let t666 = T::fused(t665, t632, -T::fused(t663, t624, t664 * t628))
+                - T::fused(k(0.001), t489, t588 + t662);
+            let t667 = T::fused(t665, t539, -T::fused(t663, t533, t664 * t551));
+            let t668 = T::fused(k(0.08), t491, t667);
+            let t669 = T::fused(t540, t663, t667) + t668;
+            let t670 = T::fused(t665, t542, -T::fused(t663, t539, t664 * t555));
+            let t671 = T::fused(-k(0.08), t515, t670);
+            let t672 = T::fused(t540, t665, -t670) - t671;
+            let t673 = T::fused(
                 k(0.9805806756909201),
-                t655,
-                k(0.19611613513818404) * t658,
+                t669,
+                k(0.19611613513818404) * t672,
             );
-            let t660 = T::fused(
-                t659,
-                t626,
-                -(T::fused(t651, t624, -T::fused(t649, t622, t650 * t623)) + t652),
+            let t674 = T::fused(
+                t673,
+                t640,
+                -(T::fused(t665, t638, -T::fused(t663, t636, t664 * t637)) + t666),
             );
-            let t661 = T::fused(-t530, t659, t655);
-            let t662 = T::fused(t651, t540, -T::fused(t649, t536, t650 * t546));
-            let t663 = T::fused(k(0.08), t491, t662);
-            let t664 = T::fused(t547, t659, -(T::fused(t525, t650, t662) + t663));
-            let t665 = T::fused(-t552, t659, t658);
-            let t666 = T::fused(
+            let t675 = T::fused(-t545, t673, t669);
+            let t676 = T::fused(t665, t555, -T::fused(t663, t551, t664 * t561));
+            let t677 = T::fused(k(0.08), t506, t676);
+            let t678 = T::fused(t562, t673, -(T::fused(t540, t664, t676) + t677));
+            let t679 = T::fused(-t567, t673, t672);
+            let t680 = T::fused(
                 k(0.1887128390240993),
-                t665,
-                T::fused(-k(0.03774256780481986), t661, k(0.9813067629253163) * t664),
+                t679,
+                T::fused(-k(0.03774256780481986), t675, k(0.9813067629253163) * t678),
             );
-            let t667 = k(0.4) * t476;
-            let t668 = k(0.4) * t491;
-            let t669 = k(0.4) * t500;
-            let t670 = T::fused(t669, t618, -T::fused(t667, t610, t668 * t614))
+            let t681 = k(0.4) * t491;
+            let t682 = k(0.4) * t506;
+            let t683 = k(0.4) * t515;
+            let t684 = T::fused(t683, t632, -T::fused(t681, t624, t682 * t628))
                 - T::fused(
                     k(0.001),
-                    t600,
-                    T::fused(k(0.048112522432468816), t573, -t648),
+                    t614,
+                    T::fused(k(0.048112522432468816), t587, -t662),
                 );
-            let t671 = T::fused(t669, t524, -T::fused(t667, t518, t668 * t536));
-            let t672 = T::fused(k(0.16), t476, t671);
-            let t673 = T::fused(t669, t527, -T::fused(t667, t524, t668 * t540));
-            let t674 = T::fused(-k(0.16), t500, t673);
-            let t675 = T::fused(
-                -k(0.9805806756909201),
-                t672,
-                k(0.19611613513818404) * t674,
-            );
-            let t676 = T::fused(t530, t675, t672);
-            let t677 = T::fused(t669, t540, -T::fused(t667, t536, t668 * t546));
-            let t678 = T::fused(k(0.16), t491, t677);
-            let t679 = T::fused(t547, t675, t678);
-            let t680 = T::fused(-t552, t675, t674);
-            let t681 = T::fused(
-                k(0.1887128390240993),
-                t680,
-                T::fused(k(0.03774256780481986), t676, k(0.9813067629253163) * t679),
-            );
-            let t682 = T::fused(
-                -k(0.19245008972987526),
-                T::fused(t666, t640, t660) + T::fused(t647, t640, t636),
-                k(0.9622504486493763) * T::fused(t681, t640, T::fused(t675, t626, t670)),
-            );
-            let t683 = t545 * t639;
-            let t684 = T::fused(
-                k(0.19245008972987526),
-                T::fused(t666, t683, t661) - T::fused(-t647, t683, t641),
-                k(0.9622504486493763) * T::fused(-t681, t683, t676),
-            );
-            let t685 = t550 * t639;
-            let t686 = T::fused(
-                -k(0.19245008972987526),
-                T::fused(-t666, t685, t664) + T::fused(-t647, t685, t645),
-                k(0.9622504486493763) * T::fused(-t681, t685, t679),
-            );
-            let t687 = t554 * t639;
-            let t688 = T::fused(
-                -k(0.19245008972987526),
-                T::fused(-t666, t687, t665) + T::fused(-t647, t687, t646),
-                k(0.9622504486493763) * T::fused(-t681, t687, t680),
-            );
+            let t685 = T::fused(t683, t539, -T::fused(t681, t533, t682 * t551));
+            let t686 = T::fused(k(0.16), t491, t685);
+            let t687 = T::fused(t683, t542, -T::fused(t681, t539, t682 * t555));
+            let t688 = T::fused(-k(0.16), t515, t687);
             let t689 = T::fused(
-                k(0.3849001794597505),
-                t481 - t493,
-                k(1.9245008972987525) * t502,
+                -k(0.9805806756909201),
+                t686,
+                k(0.19611613513818404) * t688,
             );
-            let t690 = T::fused(
-                -k(1.9245008972987525),
-                t504,
-                k(0.3849001794597505) * (t488 + t497),
+            let t690 = T::fused(t545, t689, t686);
+            let t691 = T::fused(t683, t555, -T::fused(t681, t551, t682 * t561));
+            let t692 = T::fused(k(0.16), t506, t691);
+            let t693 = T::fused(t562, t689, t692);
+            let t694 = T::fused(-t567, t689, t688);
+            let t695 = T::fused(
+                k(0.1887128390240993),
+                t694,
+                T::fused(k(0.03774256780481986), t690, k(0.9813067629253163) * t693),
             );
-            let t691 = k(0.19245008972987526) * t690;
-            let t692 = T::fused(
-                -k(0.3849001794597505),
-                t476 - t491,
-                k(1.9245008972987525) * t500,
+            let t696 = T::fused(
+                -k(0.19245008972987526),
+                T::fused(t680, t654, t674) + T::fused(t661, t654, t650),
+                k(0.9622504486493763) * T::fused(t695, t654, T::fused(t689, t640, t684)),
             );
-            let t693 = k(0.19245008972987526) * (puck_wx - puck_wy);
-            let t694 = k(0.19245008972987526) * puck_wz;
-            let t695 = T::fused(-k(0.9622504486493763), puck_wx, t694);
-            let t696 = T::fused(k(0.9622504486493763), puck_wy, -t694);
-            let t697 = T::fused(t693, t693, T::fused(t695, t695, t696 * t696))
-                / T::fused(
-                    k(0.19245008972987526),
-                    t689 + t692,
-                    k(0.9622504486493763) * t690,
-                );
+            let t697 = t560 * t653;
             let t698 = T::fused(
-                -t697,
-                T::fused(-k(0.9622504486493763), t689, t691),
-                t572 * t696,
+                k(0.19245008972987526),
+                T::fused(t680, t697, t675) - T::fused(-t661, t697, t655),
+                k(0.9622504486493763) * T::fused(-t695, t697, t690),
             );
-            let t699 = k(0.004)
-                + (k(0.02) - T::fused(t620, t631, T::fused(-t612, t627, t616 * t642)));
-            let t700 = k(0.01) * t525;
-            let t701 = T::fused(
-                k(2.0),
-                T::fused(t619, t632, T::fused(t611, t628, t615 * t643)),
-                -T::fused(t619, t633, T::fused(t611, t629, t615 * t644)),
-            );
-            let t702 = t529 * t635;
-            let t703 = t639 * t647;
-            let t704 = T::fused(t651, t632, -T::fused(t649, t628, t650 * t643))
-                - T::fused(t619, t657, T::fused(t611, t654, t615 * t663));
-            let t705 = t704 - T::fused(t619, t656, T::fused(t611, t653, t615 * t662))
-                + T::fused(t620, t656, T::fused(-t612, t653, t616 * t662));
-            let t706 = T::fused(t666, t703, T::fused(t659, t702, t705));
-            let t707 = t706
-                + T::fused(t647, t703, T::fused(t635, t702, -(t701 + (t700 + t699))));
-            let t708 = T::fused(t619, t674, T::fused(t611, t672, t615 * t678))
-                - T::fused(t620, t673, T::fused(-t612, t671, t616 * t677));
-            let t709 = T::fused(t681, t703, T::fused(t675, t702, t708));
-            let t710 = T::fused(
+            let t699 = t565 * t653;
+            let t700 = T::fused(
                 -k(0.19245008972987526),
-                t707,
-                k(0.9622504486493763) * t709,
+                T::fused(-t680, t699, t678) + T::fused(-t661, t699, t659),
+                k(0.9622504486493763) * T::fused(-t695, t699, t693),
             );
-            let t711 = T::fused(
-                -t697,
-                T::fused(k(0.9622504486493763), t692, -t691),
-                t572 * t695,
-            );
-            let t712 = T::fused(t651, t656, -T::fused(t649, t653, t650 * t662));
-            let t713 = T::fused(
-                k(2.0),
-                T::fused(t651, t657, -T::fused(t649, t654, t650 * t663)),
-                t712,
-            );
-            let t714 = t529 * t659;
-            let t715 = t639 * t666;
-            let t716 = T::fused(
-                t666,
-                t715,
-                T::fused(t659, t714, t713 - (t700 + (k(0.005) + (k(0.004) - t712)))),
-            );
-            let t717 = T::fused(t651, t674, -T::fused(t649, t672, t650 * t678))
-                - (k(0.008) - T::fused(t651, t673, -T::fused(t649, t671, t650 * t677)));
-            let t718 = T::fused(t681, t715, T::fused(t675, t714, -t717));
-            let t719 = T::fused(
+            let t701 = t569 * t653;
+            let t702 = T::fused(
                 -k(0.19245008972987526),
-                t716 + t706,
-                k(0.9622504486493763) * t718,
+                T::fused(-t680, t701, t679) + T::fused(-t661, t701, t660),
+                k(0.9622504486493763) * T::fused(-t695, t701, t694),
             );
-            let t720 = T::fused(
-                -(k(0.19245008972987526) * (t689 - t692)),
-                t697,
-                t572 * t693,
-            );
-            let t721 = k(0.003)
-                + (k(0.016) - T::fused(t669, t673, -T::fused(t667, t671, t668 * t677)));
-            let t722 = T::fused(
-                -k(0.19245008972987526),
-                t718 + t709,
-                k(0.9622504486493763)
-                    * T::fused(t681, t639 * t681, T::fused(t675, t529 * t675, -t721)),
-            );
-            let t723 = T::fused(t722, t720, -T::fused(t710, t698, t719 * t711))
-                + T::fused(t688, t551, -T::fused(-t508, t684, t686 * t508));
-            let t724 = k(1.0)
-                / T::fused(
-                    -k(0.19245008972987526),
-                    t719 + t710,
-                    k(0.9622504486493763) * t722,
-                );
-            let t725 = t724 * (t723 + t682);
-            let t726 = k(0.19245008972987526) * t725;
-            let t727 = t698 - t726;
-            let t728 = t711 - t726;
-            let t729 = T::fused(-k(0.9622504486493763), t725, t720);
-            let t730 = T::fused(t681, t729, -T::fused(t647, t727, t666 * t728))
-                - T::fused(t554, t551, -T::fused(-t545, t508, t550 * t508));
-            let t731 = t639 * (t638 + t730);
-            let t732 = T::fused(k(0.03774256780481986), t731, t508);
-            let t733 = T::fused(-k(0.9813067629253163), t731, t508);
-            let t734 = T::fused(k(0.1887128390240993), t731, t551);
-            let t735 = T::fused(t675, t729, -T::fused(t635, t727, t659 * t728))
-                - T::fused(t528, t734, T::fused(-t526, t732, t541 * t733));
-            let t736 = t529 * (t625 + t735);
-            let t737 = t649 * t728;
-            let t738 = T::fused(t611, t727, t737)
-                - T::fused(-k(0.9805806756909201), t736, t732);
-            let t739 = t604 + (T::fused(t667, t729, T::fused(t612, t727, t737)) + t738);
-            let t740 = t650 * t728;
-            let t741 = t733 + T::fused(t615, t727, t740);
-            let t742 = t606
-                - (T::fused(t668, t729, -T::fused(t616, t727, -t740)) + t741);
-            let t743 = t651 * t728;
-            let t744 = T::fused(-t619, t727, t743)
-                + T::fused(k(0.19611613513818404), t736, t734);
-            let t745 = t608 + (T::fused(t669, t729, T::fused(t620, t727, t743)) + t744);
-            let t746 = t594 - T::fused(t520, t745, T::fused(t512, t739, t532 * t742));
-            let t747 = T::fused(
-                k(2.1052631578947367),
-                t746,
-                T::fused(t519, t745, T::fused(t510, t739, t531 * t742)),
-            );
-            let t748 = k(50.0) * (t585 + t747);
-            let t749 = k(263.1578947368421) * t746;
-            let t750 = k(40.0)
-                * (t598 + T::fused(t523, t745, T::fused(-t517, t739, t535 * t742)));
-            let t751 = t739 + T::fused(t515, t750, T::fused(-t580, t748, t590 * t749));
-            let t752 = t742 - T::fused(t534, t750, -T::fused(-t582, t748, t591 * t749));
-            let t753 = t745 - T::fused(t522, t750, -T::fused(-t584, t748, t592 * t749));
-            let t754 = k(0.1) * (t104 - t105);
-            let t755 = k(0.1) * (t71 - t74);
-            let t756 = k(0.1) * (t25 + t28);
-            let t757 = T::fused(t124, t754, T::fused(t93, t755, t57 * t756));
-            let t758 = k(0.1) * t103;
-            let t759 = t592 - t758;
-            let t760 = k(0.1) * t69;
-            let t761 = t591 + t760;
-            let t762 = k(0.1) * t22;
-            let t763 = t590 - t762;
-            let t764 = T::fused(-t124, t759, T::fused(-t93, t761, t57 * t763));
-            let t765 = t758 - t521;
-            let t766 = t760 + t533;
-            let t767 = t762 + t514;
-            let t768 = T::fused(-t124, t765, T::fused(t93, t766, t57 * t767));
-            let t769 = T::fused(t768, t750, T::fused(-t757, t748, t764 * t749))
-                - T::fused(t124, t753, T::fused(-t57, t751, t93 * t752));
-            let t770 = t769 + t473 - (t125 + (t94 - t58));
-            let t771 = t468 + T::fused(t204, t124, T::fused(-t197, t57, t201 * t93));
-            let t772 = t472 - T::fused(t211, t124, T::fused(t209, t57, t210 * t93));
-            let t773 = T::fused(t213, t772, -T::fused(-t458, t189, t206 * t771));
-            let t774 = t773 * t218;
-            let t775 = T::fused(-t215, t774, t458);
-            let t776 = t775 * t222;
-            let t777 = T::fused(t776, t224, -T::fused(t216, t774, t771));
-            let t778 = T::fused(t776, t281, -T::fused(-t217, t774, t772));
-            let t779 = T::fused(t776, t242, -T::fused(t774, t240, t57));
-            let t780 = T::fused(t776, t254, -T::fused(t774, t252, t93));
-            let t781 = T::fused(t776, t266, -T::fused(t774, t264, t124));
-            let t782 = T::fused(t308, t781, T::fused(t297, t779, t303 * t780))
-                - T::fused(t777, t270, t778 * t271);
-            let t783 = T::fused(t313, t781, T::fused(-t310, t779, t311 * t780));
-            let t784 = T::fused(t320, t781, -T::fused(t316, t779, t318 * t780))
-                + T::fused(t138, t777, t137 * t778);
-            let t785 = T::fused(t324, t781, -T::fused(t326, t779, t328 * t780));
-            let t786 = T::fused(
-                k(0.6666666666666666),
-                t785 + (t785 + T::fused(t148, t777, t149 * t778)),
-                -T::fused(
-                    -k(0.3333333333333333),
-                    t783 + t782,
-                    k(0.6666666666666666) * (t783 + t784),
+            let t703 = k(0.3849001794597505) * t519;
+            let t704 = T::fused(k(1.9245008972987525), t515, t703);
+            let t705 = k(0.3849001794597505) * t512;
+            let t706 = k(0.3849001794597505) * t503;
+            let t707 = T::fused(k(1.9245008972987525), t491, t706);
+            let t708 = T::fused(
+                -k(0.1887128390240993),
+                t704,
+                T::fused(
+                    -k(0.9813067629253163),
+                    T::fused(-k(1.9245008972987525), t506, t705),
+                    k(0.03774256780481986) * t707,
                 ),
             );
-            let t787 = t786 * t427;
-            let t788 = k(0.3333333333333333) * t787;
-            let t789 = k(0.6666666666666666) * t787;
-            let t790 = t326 * t789;
-            let t791 = t790 - T::fused(-t310, t788, t310 * t789);
-            let t792 = T::fused(t297, t788, t316 * t789) - t790 - t791;
-            let t793 = t328 * t789;
-            let t794 = t793 + T::fused(-t311, t788, t311 * t789);
-            let t795 = T::fused(t303, t788, t318 * t789) - t793 - t794;
-            let t796 = t324 * t789;
-            let t797 = t796 - T::fused(-t313, t788, t313 * t789);
-            let t798 = T::fused(-t308, t788, t320 * t789) - t796 - t797;
-            let t799 = T::fused(t148, t789, -T::fused(t270, t788, t138 * t789));
-            let t800 = T::fused(t149, t789, -T::fused(t271, t788, t137 * t789));
-            let t801 = T::fused(t224, t799, t281 * t800)
-                - T::fused(t266, t798, -T::fused(t242, t792, t254 * t795));
-            let t802 = t222 * (t775 - t801);
-            let t803 = T::fused(t217, t800, -T::fused(-t215, t802, t216 * t799))
-                + T::fused(t264, t798, -T::fused(t240, t792, t252 * t795));
-            let t804 = t218 * (t773 - t803);
-            let t805 = T::fused(-t206, t804, t799);
-            let t806 = T::fused(t213, t804, t800);
-            let t807 = t792 - T::fused(t197, t805, t209 * t806);
-            let t808 = t795 - T::fused(-t201, t805, t210 * t806);
-            let t809 = t798 + T::fused(-t204, t805, t211 * t806);
-            let t810 = T::fused(t189, t804, t802);
-            let t811 = T::fused(t472, t806, T::fused(t458, t810, t468 * t805))
-                - T::fused(t124, t809, -T::fused(t57, t807, t93 * t808));
-            let t812 = t757 - T::fused(t124, t584, T::fused(-t57, t580, t93 * t582));
-            let t813 = k(50.0) * t812;
-            let t814 = T::fused(
-                k(0.4),
-                t812,
-                -(t764 - T::fused(t124, t592, T::fused(-t57, t590, t93 * t591))),
+            let t709 = t515 - t517;
+            let t710 = t491 + t496;
+            let t711 = k(0.19245008972987526)
+                * T::fused(
+                    -k(0.07263560560673482),
+                    t709,
+                    T::fused(
+                        k(0.3777051491550211),
+                        t506 + t508,
+                        k(0.014527121121346966) * t710,
+                    ),
+                );
+            let t712 = T::fused(k(0.9622504486493763), t708, t711);
+            let t713 = T::fused(k(1.9245008972987525), t517, t703);
+            let t714 = T::fused(-k(1.9245008972987525), t496, t706);
+            let t715 = T::fused(
+                k(0.19611613513818404),
+                t713,
+                k(0.9805806756909201) * t714,
             );
-            let t815 = k(263.1578947368421) * t814;
-            let t816 = t768 + T::fused(t124, t522, T::fused(t57, t515, t93 * t534));
-            let t817 = k(40.0) * t816;
-            let t818 = T::fused(
-                t817,
-                t517,
-                -T::fused(t815, t512, T::fused(-t813, t510, t57)),
+            let t716 = T::fused(
+                -k(0.1887128390240993),
+                t713,
+                T::fused(
+                    -k(0.9813067629253163),
+                    T::fused(k(1.9245008972987525), t508, t705),
+                    k(0.03774256780481986) * t714,
+                ),
             );
-            let t819 = T::fused(
-                t817,
-                t535,
-                T::fused(t815, t532, -T::fused(t813, t531, t93)),
+            let t717 = T::fused(k(0.9622504486493763), t716, -t711);
+            let t718 = T::fused(
+                k(0.19611613513818404),
+                t704,
+                k(0.9805806756909201) * t707,
             );
-            let t820 = T::fused(
-                t817,
-                t523,
-                T::fused(t815, t520, -T::fused(t813, t519, t124)),
+            let t719 = k(0.19245008972987526) * (t716 + t708);
+            let t720 = T::fused(
+                k(0.07548513560963972),
+                t709,
+                k(0.3774256780481986) * t710,
             );
-            let t821 = T::fused(t619, t820, T::fused(t611, t818, t615 * t819))
-                - T::fused(t620, t820, T::fused(-t612, t818, t616 * t819));
-            let t822 = T::fused(
-                -k(0.9805806756909201),
-                t818,
-                k(0.19611613513818404) * t820,
-            );
-            let t823 = t822 * t529;
-            let t824 = T::fused(
-                k(0.03774256780481986),
-                T::fused(t526, t823, t818),
-                k(0.9813067629253163) * T::fused(t823, t541, t819),
-            );
-            let t825 = T::fused(
-                k(0.1887128390240993),
-                T::fused(-t528, t823, t820),
-                t824,
-            );
-            let t826 = t825 * t639;
-            let t827 = T::fused(
-                -k(2.0),
-                T::fused(t651, t820, -T::fused(t649, t818, t650 * t819)),
-                t823 * t659,
-            );
-            let t828 = T::fused(t826, t666, t827)
-                + T::fused(t826, t647, T::fused(t823, t635, t821));
-            let t829 = T::fused(
-                t823,
-                t675,
-                T::fused(t669, t820, -T::fused(t667, t818, t668 * t819)),
-            );
-            let t830 = T::fused(
+            let t721 = k(1.0) / T::fused(t720, t719, T::fused(-t715, t712, t718 * t717));
+            let t722 = t615 + t499;
+            let t723 = T::fused(t504, t489, T::fused(t492, t722, t497 * t614));
+            let t724 = T::fused(
                 -k(0.19245008972987526),
-                t828,
-                k(0.9622504486493763) * T::fused(t826, t681, t829),
-            ) * t724;
-            let t831 = k(0.19245008972987526) * t830;
-            let t832 = k(0.9622504486493763) * t830;
-            let t833 = t639
-                * (t825 - T::fused(t681, t832, -T::fused(t647, t831, t666 * t831)));
-            let t834 = k(0.03774256780481986) * t833;
-            let t835 = k(0.9813067629253163) * t833;
-            let t836 = k(0.1887128390240993) * t833;
-            let t837 = T::fused(t675, t832, -T::fused(t635, t831, t659 * t831))
-                + T::fused(t528, t836, -T::fused(t526, t834, t541 * t835));
-            let t838 = t529 * (t822 - t837);
-            let t839 = t649 * t831;
-            let t840 = T::fused(t611, t831, t839)
-                + T::fused(-k(0.9805806756909201), t838, t834);
-            let t841 = T::fused(t667, t832, T::fused(t612, t831, t839)) + t840;
-            let t842 = t650 * t831;
-            let t843 = t835 + T::fused(t615, t831, t842);
-            let t844 = T::fused(t668, t832, -T::fused(t616, t831, -t842)) + t843;
-            let t845 = t651 * t831;
-            let t846 = T::fused(-t619, t831, t845)
-                - T::fused(k(0.19611613513818404), t838, t836);
-            let t847 = T::fused(t669, t832, T::fused(t620, t831, t845)) + t846;
-            let t848 = t814 - T::fused(t520, t847, -T::fused(-t512, t841, t532 * t844));
-            let t849 = T::fused(
-                k(2.1052631578947367),
-                t848,
-                T::fused(t519, t847, -T::fused(-t510, t841, t531 * t844)),
+                t617 + t723,
+                k(0.9622504486493763) * t505,
             );
-            let t850 = k(50.0) * (t812 + t849);
-            let t851 = k(263.1578947368421) * t848;
-            let t852 = k(40.0)
-                * (t816 - T::fused(t523, t847, -T::fused(t517, t841, t535 * t844)));
-            let t853 = t841 - T::fused(t515, t852, -T::fused(-t580, t850, t590 * t851));
-            let t854 = t844 - T::fused(t534, t852, T::fused(-t582, t850, t591 * t851));
-            let t855 = t847 + T::fused(t522, t852, T::fused(-t584, t850, t592 * t851));
-            let t856 = T::fused(t768, t852, -T::fused(-t757, t850, t764 * t851))
-                + T::fused(t124, t855, -T::fused(t57, t853, t93 * t854));
-            let t857 = k(1.0) / (t856 + t811);
-            let t858 = t38
+            let t725 = T::fused(t520, t489, -T::fused(-t516, t722, t518 * t614));
+            let t726 = T::fused(
+                -k(0.19245008972987526),
+                t621 + t725,
+                k(0.9622504486493763) * t521,
+            );
+            let t727 = T::fused(
+                k(0.9805806756909201),
+                t724,
+                k(0.19611613513818404) * t726,
+            );
+            let t728 = k(0.19245008972987526) * t720;
+            let t729 = T::fused(t513, t489, -T::fused(t507, t722, t509 * t614));
+            let t730 = T::fused(
+                -k(0.03774256780481986),
+                t724,
+                k(0.9813067629253163)
+                    * T::fused(
+                        -k(0.19245008972987526),
+                        t619 + t729,
+                        k(0.9622504486493763) * t514,
+                    ),
+            );
+            let t731 = T::fused(k(0.1887128390240993), t726, t730);
+            let t732 = T::fused(
+                t727,
+                t712 * t721,
+                t731 * (t721 * T::fused(k(0.9622504486493763), t718, t728)),
+            );
+            let t733 = k(0.004)
+                + (k(0.02) - T::fused(t634, t645, T::fused(-t626, t641, t630 * t656)));
+            let t734 = k(0.01) * t540;
+            let t735 = T::fused(
+                k(2.0),
+                T::fused(t633, t646, T::fused(t625, t642, t629 * t657)),
+                -T::fused(t633, t647, T::fused(t625, t643, t629 * t658)),
+            );
+            let t736 = t544 * t649;
+            let t737 = t653 * t661;
+            let t738 = T::fused(t665, t646, -T::fused(t663, t642, t664 * t657))
+                - T::fused(t633, t671, T::fused(t625, t668, t629 * t677));
+            let t739 = t738 - T::fused(t633, t670, T::fused(t625, t667, t629 * t676))
+                + T::fused(t634, t670, T::fused(-t626, t667, t630 * t676));
+            let t740 = T::fused(t680, t737, T::fused(t673, t736, t739));
+            let t741 = t740
+                + T::fused(t661, t737, T::fused(t649, t736, -(t735 + (t734 + t733))));
+            let t742 = T::fused(t633, t688, T::fused(t625, t686, t629 * t692))
+                - T::fused(t634, t687, T::fused(-t626, t685, t630 * t691));
+            let t743 = T::fused(t695, t737, T::fused(t689, t736, t742));
+            let t744 = T::fused(
+                -k(0.19245008972987526),
+                t741,
+                k(0.9622504486493763) * t743,
+            );
+            let t745 = T::fused(
+                t727,
+                t717 * t721,
+                t731 * (t721 * T::fused(k(0.9622504486493763), t715, -t728)),
+            );
+            let t746 = T::fused(t665, t670, -T::fused(t663, t667, t664 * t676));
+            let t747 = T::fused(
+                k(2.0),
+                T::fused(t665, t671, -T::fused(t663, t668, t664 * t677)),
+                t746,
+            );
+            let t748 = t544 * t673;
+            let t749 = t653 * t680;
+            let t750 = T::fused(
+                t680,
+                t749,
+                T::fused(t673, t748, t747 - (t734 + (k(0.005) + (k(0.004) - t746)))),
+            );
+            let t751 = T::fused(t665, t688, -T::fused(t663, t686, t664 * t692))
+                - (k(0.008) - T::fused(t665, t687, -T::fused(t663, t685, t664 * t691)));
+            let t752 = T::fused(t695, t749, T::fused(t689, t748, -t751));
+            let t753 = T::fused(
+                -k(0.19245008972987526),
+                t750 + t740,
+                k(0.9622504486493763) * t752,
+            );
+            let t754 = T::fused(
+                t719 * t721,
+                t727,
+                t721 * (k(0.19245008972987526) * (t715 + t718)) * t731,
+            );
+            let t755 = k(0.003)
+                + (k(0.016) - T::fused(t683, t687, -T::fused(t681, t685, t682 * t691)));
+            let t756 = T::fused(
+                -k(0.19245008972987526),
+                t752 + t743,
+                k(0.9622504486493763)
+                    * T::fused(t695, t653 * t695, T::fused(t689, t544 * t689, -t755)),
+            );
+            let t757 = T::fused(t756, t754, T::fused(t744, t732, t753 * t745))
+                + T::fused(t702, t566, -T::fused(-t523, t698, t700 * t523));
+            let t758 = k(1.0)
+                / T::fused(
+                    -k(0.19245008972987526),
+                    t753 + t744,
+                    k(0.9622504486493763) * t756,
+                );
+            let t759 = t758 * (t757 + t696);
+            let t760 = k(0.19245008972987526) * t759;
+            let t761 = t732 + t760;
+            let t762 = t745 + t760;
+            let t763 = T::fused(-k(0.9622504486493763), t759, t754);
+            let t764 = T::fused(t695, t763, T::fused(t661, t761, t680 * t762))
+                - T::fused(t569, t566, -T::fused(-t560, t523, t565 * t523));
+            let t765 = t653 * (t652 + t764);
+            let t766 = T::fused(k(0.03774256780481986), t765, t523);
+            let t767 = T::fused(-k(0.9813067629253163), t765, t523);
+            let t768 = T::fused(k(0.1887128390240993), t765, t566);
+            let t769 = T::fused(t689, t763, T::fused(t649, t761, t673 * t762))
+                - T::fused(t543, t768, T::fused(-t541, t766, t556 * t767));
+            let t770 = t544 * (t639 + t769);
+            let t771 = t663 * t762;
+            let t772 = T::fused(t625, t761, t771)
+                + T::fused(-k(0.9805806756909201), t770, t766);
+            let t773 = t618 + (T::fused(t681, t763, -T::fused(t626, t761, t771)) - t772);
+            let t774 = t664 * t762;
+            let t775 = t767 - T::fused(t629, t761, t774);
+            let t776 = t620 - (T::fused(t682, t763, T::fused(t630, t761, -t774)) + t775);
+            let t777 = t665 * t762;
+            let t778 = T::fused(-t633, t761, t777)
+                - T::fused(k(0.19611613513818404), t770, t768);
+            let t779 = t622 + (T::fused(t683, t763, -T::fused(t634, t761, t777)) - t778);
+            let t780 = t608 - T::fused(t535, t779, T::fused(t527, t773, t547 * t776));
+            let t781 = T::fused(
+                k(2.1052631578947367),
+                t780,
+                T::fused(t534, t779, T::fused(t525, t773, t546 * t776)),
+            );
+            let t782 = k(50.0) * (t599 + t781);
+            let t783 = k(263.1578947368421) * t780;
+            let t784 = k(40.0)
+                * (t612 + T::fused(t538, t779, T::fused(-t532, t773, t550 * t776)));
+            let t785 = t773 + T::fused(t530, t784, T::fused(-t594, t782, t604 * t783));
+            let t786 = t776 - T::fused(t549, t784, -T::fused(-t596, t782, t605 * t783));
+            let t787 = t779 - T::fused(t537, t784, -T::fused(-t598, t782, t606 * t783));
+            let t788 = k(0.1) * (t104 - t105);
+            let t789 = k(0.1) * (t71 - t74);
+            let t790 = k(0.1) * (t25 + t28);
+            let t791 = T::fused(t124, t788, T::fused(t93, t789, t57 * t790));
+            let t792 = k(0.1) * t103;
+            let t793 = t606 - t792;
+            let t794 = k(0.1) * t69;
+            let t795 = t605 + t794;
+            let t796 = k(0.1) * t22;
+            let t797 = t604 - t796;
+            let t798 = T::fused(-t124, t793, T::fused(-t93, t795, t57 * t797));
+            let t799 = t792 - t536;
+            let t800 = t794 + t548;
+            let t801 = t796 + t529;
+            let t802 = T::fused(-t124, t799, T::fused(t93, t800, t57 * t801));
+            let t803 = T::fused(t802, t784, T::fused(-t791, t782, t798 * t783))
+                - T::fused(t124, t787, T::fused(-t57, t785, t93 * t786));
+            let t804 = t803 + t488 - (t125 + (t94 - t58));
+            let t805 = t483 + T::fused(t204, t124, T::fused(-t197, t57, t201 * t93));
+            let t806 = t487 - T::fused(t211, t124, T::fused(t209, t57, t210 * t93));
+            let t807 = T::fused(t213, t806, -T::fused(-t473, t189, t206 * t805));
+            let t808 = t807 * t218;
+            let t809 = T::fused(-t215, t808, t473);
+            let t810 = t809 * t222;
+            let t811 = T::fused(t810, t224, -T::fused(t216, t808, t805));
+            let t812 = T::fused(t810, t281, -T::fused(-t217, t808, t806));
+            let t813 = T::fused(t810, t242, -T::fused(t808, t240, t57));
+            let t814 = T::fused(t810, t254, -T::fused(t808, t252, t93));
+            let t815 = T::fused(t810, t266, -T::fused(t808, t264, t124));
+            let t816 = T::fused(t308, t815, T::fused(t297, t813, t303 * t814))
+                - T::fused(t811, t270, t812 * t271);
+            let t817 = T::fused(t313, t815, T::fused(-t310, t813, t311 * t814));
+            let t818 = T::fused(t320, t815, -T::fused(t316, t813, t318 * t814))
+                + T::fused(t138, t811, t137 * t812);
+            let t819 = T::fused(t324, t815, -T::fused(t326, t813, t328 * t814));
+            let t820 = T::fused(
+                k(0.6666666666666666),
+                t819 + (t819 + T::fused(t148, t811, t149 * t812)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t817 + t816,
+                    k(0.6666666666666666) * (t817 + t818),
+                ),
+            );
+            let t821 = t820 * t442;
+            let t822 = k(0.3333333333333333) * t821;
+            let t823 = k(0.6666666666666666) * t821;
+            let t824 = t326 * t823;
+            let t825 = t824 - T::fused(-t310, t822, t310 * t823);
+            let t826 = T::fused(t297, t822, t316 * t823) - t824 - t825;
+            let t827 = t328 * t823;
+            let t828 = t827 + T::fused(-t311, t822, t311 * t823);
+            let t829 = T::fused(t303, t822, t318 * t823) - t827 - t828;
+            let t830 = t324 * t823;
+            let t831 = t830 - T::fused(-t313, t822, t313 * t823);
+            let t832 = T::fused(-t308, t822, t320 * t823) - t830 - t831;
+            let t833 = T::fused(t148, t823, -T::fused(t270, t822, t138 * t823));
+            let t834 = T::fused(t149, t823, -T::fused(t271, t822, t137 * t823));
+            let t835 = T::fused(t224, t833, t281 * t834)
+                - T::fused(t266, t832, -T::fused(t242, t826, t254 * t829));
+            let t836 = t222 * (t809 - t835);
+            let t837 = T::fused(t217, t834, -T::fused(-t215, t836, t216 * t833))
+                + T::fused(t264, t832, -T::fused(t240, t826, t252 * t829));
+            let t838 = t218 * (t807 - t837);
+            let t839 = T::fused(-t206, t838, t833);
+            let t840 = T::fused(t213, t838, t834);
+            let t841 = t826 - T::fused(t197, t839, t209 * t840);
+            let t842 = t829 - T::fused(-t201, t839, t210 * t840);
+            let t843 = t832 + T::fused(-t204, t839, t211 * t840);
+            let t844 = T::fused(t189, t838, t836);
+            let t845 = T::fused(t487, t840, T::fused(t473, t844, t483 * t839))
+                - T::fused(t124, t843, -T::fused(t57, t841, t93 * t842));
+            let t846 = t791 - T::fused(t124, t598, T::fused(-t57, t594, t93 * t596));
+            let t847 = k(50.0) * t846;
+            let t848 = T::fused(
+                k(0.4),
+                t846,
+                -(t798 - T::fused(t124, t606, T::fused(-t57, t604, t93 * t605))),
+            );
+            let t849 = k(263.1578947368421) * t848;
+            let t850 = t802 + T::fused(t124, t537, T::fused(t57, t530, t93 * t549));
+            let t851 = k(40.0) * t850;
+            let t852 = T::fused(
+                t851,
+                t532,
+                -T::fused(t849, t527, T::fused(-t847, t525, t57)),
+            );
+            let t853 = T::fused(
+                t851,
+                t550,
+                T::fused(t849, t547, -T::fused(t847, t546, t93)),
+            );
+            let t854 = T::fused(
+                t851,
+                t538,
+                T::fused(t849, t535, -T::fused(t847, t534, t124)),
+            );
+            let t855 = T::fused(t633, t854, T::fused(t625, t852, t629 * t853))
+                - T::fused(t634, t854, T::fused(-t626, t852, t630 * t853));
+            let t856 = T::fused(
+                -k(0.9805806756909201),
+                t852,
+                k(0.19611613513818404) * t854,
+            );
+            let t857 = t856 * t544;
+            let t858 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t541, t857, t852),
+                k(0.9813067629253163) * T::fused(t857, t556, t853),
+            );
+            let t859 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t543, t857, t854),
+                t858,
+            );
+            let t860 = t859 * t653;
+            let t861 = T::fused(
+                -k(2.0),
+                T::fused(t665, t854, -T::fused(t663, t852, t664 * t853)),
+                t857 * t673,
+            );
+            let t862 = T::fused(t860, t680, t861)
+                + T::fused(t860, t661, T::fused(t857, t649, t855));
+            let t863 = T::fused(
+                t857,
+                t689,
+                T::fused(t683, t854, -T::fused(t681, t852, t682 * t853)),
+            );
+            let t864 = T::fused(
+                -k(0.19245008972987526),
+                t862,
+                k(0.9622504486493763) * T::fused(t860, t695, t863),
+            ) * t758;
+            let t865 = k(0.19245008972987526) * t864;
+            let t866 = k(0.9622504486493763) * t864;
+            let t867 = t653
+                * (t859 - T::fused(t695, t866, -T::fused(t661, t865, t680 * t865)));
+            let t868 = k(0.03774256780481986) * t867;
+            let t869 = k(0.9813067629253163) * t867;
+            let t870 = k(0.1887128390240993) * t867;
+            let t871 = T::fused(t689, t866, -T::fused(t649, t865, t673 * t865))
+                + T::fused(t543, t870, -T::fused(t541, t868, t556 * t869));
+            let t872 = t544 * (t856 - t871);
+            let t873 = t663 * t865;
+            let t874 = T::fused(t625, t865, t873)
+                + T::fused(-k(0.9805806756909201), t872, t868);
+            let t875 = T::fused(t681, t866, T::fused(t626, t865, t873)) + t874;
+            let t876 = t664 * t865;
+            let t877 = t869 + T::fused(t629, t865, t876);
+            let t878 = T::fused(t682, t866, -T::fused(t630, t865, -t876)) + t877;
+            let t879 = t665 * t865;
+            let t880 = T::fused(-t633, t865, t879)
+                - T::fused(k(0.19611613513818404), t872, t870);
+            let t881 = T::fused(t683, t866, T::fused(t634, t865, t879)) + t880;
+            let t882 = t848 - T::fused(t535, t881, -T::fused(-t527, t875, t547 * t878));
+            let t883 = T::fused(
+                k(2.1052631578947367),
+                t882,
+                T::fused(t534, t881, -T::fused(-t525, t875, t546 * t878)),
+            );
+            let t884 = k(50.0) * (t846 + t883);
+            let t885 = k(263.1578947368421) * t882;
+            let t886 = k(40.0)
+                * (t850 - T::fused(t538, t881, -T::fused(t532, t875, t550 * t878)));
+            let t887 = t875 - T::fused(t530, t886, -T::fused(-t594, t884, t604 * t885));
+            let t888 = t878 - T::fused(t549, t886, T::fused(-t596, t884, t605 * t885));
+            let t889 = t881 + T::fused(t537, t886, T::fused(-t598, t884, t606 * t885));
+            let t890 = T::fused(t802, t886, -T::fused(-t791, t884, t798 * t885))
+                + T::fused(t124, t889, -T::fused(t57, t887, t93 * t888));
+            let t891 = k(1.0) / (t890 + t845);
+            let t892 = t38
                 * T::fused(
                     k(0.6396021490668313),
                     t31,
                     T::fused(k(0.6396021490668313), t32, k(0.4264014327112209) * t37),
                 );
-            let t859 = T::fused(
+            let t893 = T::fused(
                 -t30,
                 T::fused(
                     k(0.6396021490668313),
                     t20,
                     T::fused(-k(0.4264014327112209), t41, k(0.6396021490668313) * t16),
                 ),
-                t858,
+                t892,
             );
-            let t860 = T::fused(
+            let t894 = T::fused(
                 k(1.2792042981336627),
                 t14,
                 -T::fused(k(0.8528028654224418), t2, k(1.2792042981336627) * t9),
             );
-            let t861 = t84
+            let t895 = t84
                 * T::fused(
                     -k(0.6396021490668313),
                     t77,
                     T::fused(k(0.6396021490668313), t78, k(0.4264014327112209) * t83),
                 );
-            let t862 = T::fused(
+            let t896 = T::fused(
                 -t76,
                 T::fused(
                     k(0.6396021490668313),
                     t68,
                     T::fused(-k(0.4264014327112209), t86, k(0.6396021490668313) * t67),
                 ),
-                t861,
+                t895,
             );
-            let t863 = T::fused(
+            let t897 = T::fused(
                 k(1.2792042981336627),
                 t65,
                 T::fused(k(0.8528028654224418), t59, k(1.2792042981336627) * t61),
             );
-            let t864 = T::fused(t863, t91, -t861) - t862
-                + (T::fused(t860, t55, -t858) - t859);
-            let t865 = t115
+            let t898 = T::fused(t897, t91, -t895) - t896
+                + (T::fused(t894, t55, -t892) - t893);
+            let t899 = t115
                 * T::fused(
                     -k(0.6396021490668313),
                     t108,
                     T::fused(k(0.6396021490668313), t109, k(0.4264014327112209) * t114),
                 );
-            let t866 = T::fused(
+            let t900 = T::fused(
                 -t107,
                 T::fused(
                     k(0.6396021490668313),
                     t102,
                     T::fused(-k(0.4264014327112209), t117, k(0.6396021490668313) * t101),
                 ),
-                t865,
+                t899,
             );
-            let t867 = T::fused(
+            let t901 = T::fused(
                 k(1.2792042981336627),
                 t99,
                 T::fused(-k(0.8528028654224418), t95, k(1.2792042981336627) * t97),
             );
-            let t868 = T::fused(t456, t860, t30 * (k(1.2792042981336627) * t56))
-                - T::fused(t455, t863, t76 * (k(1.2792042981336627) * t92));
-            let t869 = t868
-                + T::fused(-t454, t867, t107 * (k(1.2792042981336627) * t123));
-            let t870 = k(1.2792042981336627) * t95;
-            let t871 = k(1.2792042981336627) * t59;
-            let t872 = k(1.2792042981336627) * t2;
-            let t873 = T::fused(
-                -t466,
-                t860,
-                t30 * T::fused(k(0.8528028654224418), t14, t872),
-            ) + T::fused(-t463, t863, t76 * T::fused(k(0.8528028654224418), t65, -t871));
-            let t874 = t873
+            let t902 = T::fused(t471, t894, t30 * (k(1.2792042981336627) * t56))
+                - T::fused(t470, t897, t76 * (k(1.2792042981336627) * t92));
+            let t903 = t902
+                + T::fused(-t469, t901, t107 * (k(1.2792042981336627) * t123));
+            let t904 = k(1.2792042981336627) * t95;
+            let t905 = k(1.2792042981336627) * t59;
+            let t906 = k(1.2792042981336627) * t2;
+            let t907 = T::fused(
+                -t481,
+                t894,
+                t30 * T::fused(k(0.8528028654224418), t14, t906),
+            ) + T::fused(-t478, t897, t76 * T::fused(k(0.8528028654224418), t65, -t905));
+            let t908 = t907
                 - T::fused(
-                    t460,
-                    t867,
-                    t107 * T::fused(k(0.8528028654224418), t99, t870),
+                    t475,
+                    t901,
+                    t107 * T::fused(k(0.8528028654224418), t99, t904),
                 );
-            let t875 = T::fused(
-                t471,
-                t860,
-                t30 * T::fused(-k(0.8528028654224418), t9, t872),
-            ) - T::fused(t470, t863, t76 * T::fused(-k(0.8528028654224418), t61, t871));
-            let t876 = t875
+            let t909 = T::fused(
+                t486,
+                t894,
+                t30 * T::fused(-k(0.8528028654224418), t9, t906),
+            ) - T::fused(t485, t897, t76 * T::fused(-k(0.8528028654224418), t61, t905));
+            let t910 = t909
                 - T::fused(
-                    t469,
-                    t867,
-                    t107 * T::fused(k(0.8528028654224418), t97, t870),
+                    t484,
+                    t901,
+                    t107 * T::fused(k(0.8528028654224418), t97, t904),
                 );
-            let t877 = T::fused(t876, t449, -T::fused(t869, t453, t874 * t448))
-                - T::fused(t867, t452, T::fused(t860, t450, t863 * t451));
-            let t878 = T::fused(-t754, t867, T::fused(-t755, t863, t756 * t860));
-            let t879 = T::fused(t759, t867, T::fused(t761, t863, t763 * t860));
-            let t880 = T::fused(t765, t867, T::fused(-t766, t863, t767 * t860));
-            let t881 = T::fused(t880, t750, T::fused(-t878, t748, t879 * t749))
-                + T::fused(t867, t753, T::fused(t860, t751, t863 * t752));
-            let t882 = T::fused(t876, t806, -T::fused(t869, t810, t874 * t805))
-                - T::fused(t867, t809, -T::fused(-t860, t807, t863 * t808));
-            let t883 = T::fused(t880, t852, -T::fused(-t878, t850, t879 * t851))
-                - T::fused(t867, t855, -T::fused(-t860, t853, t863 * t854));
-            let t884 = t883 - t882;
-            let t885 = t857 * t884;
-            let t886 = T::fused(
-                t885,
-                t770,
-                -(t881 - t877 + (T::fused(t867, t122, t865) + t866 + t864)),
+            let t911 = T::fused(t910, t464, -T::fused(t903, t468, t908 * t463))
+                - T::fused(t901, t467, T::fused(t894, t465, t897 * t466));
+            let t912 = T::fused(-t788, t901, T::fused(-t789, t897, t790 * t894));
+            let t913 = T::fused(t793, t901, T::fused(t795, t897, t797 * t894));
+            let t914 = T::fused(t799, t901, T::fused(-t800, t897, t801 * t894));
+            let t915 = T::fused(t914, t784, T::fused(-t912, t782, t913 * t783))
+                + T::fused(t901, t787, T::fused(t894, t785, t897 * t786));
+            let t916 = T::fused(t910, t840, -T::fused(t903, t844, t908 * t839))
+                - T::fused(t901, t843, -T::fused(-t894, t841, t897 * t842));
+            let t917 = T::fused(t914, t886, -T::fused(-t912, t884, t913 * t885))
+                - T::fused(t901, t889, -T::fused(-t894, t887, t897 * t888));
+            let t918 = t917 - t916;
+            let t919 = t891 * t918;
+            let t920 = T::fused(
+                t919,
+                t804,
+                -(t915 - t911 + (T::fused(t901, t122, t899) + t900 + t898)),
             );
-            let t887 = t874 - T::fused(t204, t867, T::fused(t197, t860, t201 * t863));
-            let t888 = t876 - T::fused(t211, t867, T::fused(-t209, t860, t210 * t863));
-            let t889 = T::fused(t213, t888, T::fused(-t869, t189, t206 * t887));
-            let t890 = t218 * t889;
-            let t891 = T::fused(t215, t890, t869);
-            let t892 = t222 * t891;
-            let t893 = T::fused(t224, t892, -T::fused(-t216, t890, t887));
-            let t894 = T::fused(t281, t892, T::fused(-t217, t890, t888));
-            let t895 = T::fused(t242, t892, -T::fused(-t240, t890, t860));
-            let t896 = T::fused(t254, t892, T::fused(t252, t890, t863));
-            let t897 = T::fused(t266, t892, T::fused(t264, t890, t867));
-            let t898 = T::fused(t308, t897, T::fused(t297, t895, t303 * t896))
-                - T::fused(t270, t893, t271 * t894);
-            let t899 = T::fused(t313, t897, T::fused(-t310, t895, t311 * t896));
-            let t900 = T::fused(t320, t897, -T::fused(t316, t895, t318 * t896))
-                + T::fused(t138, t893, t137 * t894);
-            let t901 = T::fused(t324, t897, -T::fused(t326, t895, t328 * t896));
-            let t902 = T::fused(
+            let t921 = t908 - T::fused(t204, t901, T::fused(t197, t894, t201 * t897));
+            let t922 = t910 - T::fused(t211, t901, T::fused(-t209, t894, t210 * t897));
+            let t923 = T::fused(t213, t922, T::fused(-t903, t189, t206 * t921));
+            let t924 = t218 * t923;
+            let t925 = T::fused(t215, t924, t903);
+            let t926 = t222 * t925;
+            let t927 = T::fused(t224, t926, -T::fused(-t216, t924, t921));
+            let t928 = T::fused(t281, t926, T::fused(-t217, t924, t922));
+            let t929 = T::fused(t242, t926, -T::fused(-t240, t924, t894));
+            let t930 = T::fused(t254, t926, T::fused(t252, t924, t897));
+            let t931 = T::fused(t266, t926, T::fused(t264, t924, t901));
+            let t932 = T::fused(t308, t931, T::fused(t297, t929, t303 * t930))
+                - T::fused(t270, t927, t271 * t928);
+            let t933 = T::fused(t313, t931, T::fused(-t310, t929, t311 * t930));
+            let t934 = T::fused(t320, t931, -T::fused(t316, t929, t318 * t930))
+                + T::fused(t138, t927, t137 * t928);
+            let t935 = T::fused(t324, t931, -T::fused(t326, t929, t328 * t930));
+            let t936 = T::fused(
                 k(0.6666666666666666),
-                t901 + (t901 + T::fused(t148, t893, t149 * t894)),
+                t935 + (t935 + T::fused(t148, t927, t149 * t928)),
                 -T::fused(
                     -k(0.3333333333333333),
-                    t899 + t898,
-                    k(0.6666666666666666) * (t899 + t900),
+                    t933 + t932,
+                    k(0.6666666666666666) * (t933 + t934),
                 ),
             );
-            let t903 = t427 * t902;
-            let t904 = k(0.3333333333333333) * t903;
-            let t905 = k(0.6666666666666666) * t903;
-            let t906 = t326 * t905;
-            let t907 = t906 - T::fused(-t310, t904, t310 * t905);
-            let t908 = T::fused(t297, t904, t316 * t905) - t906 - t907;
-            let t909 = t328 * t905;
-            let t910 = t909 + T::fused(-t311, t904, t311 * t905);
-            let t911 = T::fused(t303, t904, t318 * t905) - t909 - t910;
-            let t912 = t324 * t905;
-            let t913 = t912 - T::fused(-t313, t904, t313 * t905);
-            let t914 = T::fused(-t308, t904, t320 * t905) - t912 - t913;
-            let t915 = T::fused(t148, t905, -T::fused(t270, t904, t138 * t905));
-            let t916 = T::fused(t149, t905, -T::fused(t271, t904, t137 * t905));
-            let t917 = T::fused(t224, t915, t281 * t916)
-                - T::fused(t266, t914, -T::fused(t242, t908, t254 * t911));
-            let t918 = t222 * (t891 - t917);
-            let t919 = T::fused(t217, t916, -T::fused(-t215, t918, t216 * t915))
-                + T::fused(t264, t914, -T::fused(t240, t908, t252 * t911));
-            let t920 = t218 * (t889 + t919);
-            let t921 = T::fused(t206, t920, t915);
-            let t922 = T::fused(-t213, t920, t916);
-            let t923 = t908 - T::fused(t197, t921, t209 * t922);
-            let t924 = t911 - T::fused(-t201, t921, t210 * t922);
-            let t925 = t914 + T::fused(-t204, t921, t211 * t922);
-            let t926 = T::fused(-t189, t920, t918);
-            let t927 = T::fused(t876, t922, -T::fused(t869, t926, t874 * t921))
-                - T::fused(t867, t925, -T::fused(-t860, t923, t863 * t924));
-            let t928 = t878 + T::fused(t867, t584, T::fused(t860, t580, t863 * t582));
-            let t929 = k(50.0) * t928;
-            let t930 = T::fused(
+            let t937 = t442 * t936;
+            let t938 = k(0.3333333333333333) * t937;
+            let t939 = k(0.6666666666666666) * t937;
+            let t940 = t326 * t939;
+            let t941 = t940 - T::fused(-t310, t938, t310 * t939);
+            let t942 = T::fused(t297, t938, t316 * t939) - t940 - t941;
+            let t943 = t328 * t939;
+            let t944 = t943 + T::fused(-t311, t938, t311 * t939);
+            let t945 = T::fused(t303, t938, t318 * t939) - t943 - t944;
+            let t946 = t324 * t939;
+            let t947 = t946 - T::fused(-t313, t938, t313 * t939);
+            let t948 = T::fused(-t308, t938, t320 * t939) - t946 - t947;
+            let t949 = T::fused(t148, t939, -T::fused(t270, t938, t138 * t939));
+            let t950 = T::fused(t149, t939, -T::fused(t271, t938, t137 * t939));
+            let t951 = T::fused(t224, t949, t281 * t950)
+                - T::fused(t266, t948, -T::fused(t242, t942, t254 * t945));
+            let t952 = t222 * (t925 - t951);
+            let t953 = T::fused(t217, t950, -T::fused(-t215, t952, t216 * t949))
+                + T::fused(t264, t948, -T::fused(t240, t942, t252 * t945));
+            let t954 = t218 * (t923 + t953);
+            let t955 = T::fused(t206, t954, t949);
+            let t956 = T::fused(-t213, t954, t950);
+            let t957 = t942 - T::fused(t197, t955, t209 * t956);
+            let t958 = t945 - T::fused(-t201, t955, t210 * t956);
+            let t959 = t948 + T::fused(-t204, t955, t211 * t956);
+            let t960 = T::fused(-t189, t954, t952);
+            let t961 = T::fused(t910, t956, -T::fused(t903, t960, t908 * t955))
+                - T::fused(t901, t959, -T::fused(-t894, t957, t897 * t958));
+            let t962 = t912 + T::fused(t901, t598, T::fused(t894, t594, t897 * t596));
+            let t963 = k(50.0) * t962;
+            let t964 = T::fused(
                 k(0.4),
-                t928,
-                -(t879 + T::fused(t592, t867, T::fused(t590, t860, t591 * t863))),
+                t962,
+                -(t913 + T::fused(t606, t901, T::fused(t604, t894, t605 * t897))),
             );
-            let t931 = k(263.1578947368421) * t930;
-            let t932 = t880 - T::fused(t867, t522, T::fused(-t860, t515, t863 * t534));
-            let t933 = k(40.0) * t932;
-            let t934 = T::fused(
-                t517,
-                t933,
-                -T::fused(t512, t931, T::fused(-t510, t929, t860)),
+            let t965 = k(263.1578947368421) * t964;
+            let t966 = t914 - T::fused(t901, t537, T::fused(-t894, t530, t897 * t549));
+            let t967 = k(40.0) * t966;
+            let t968 = T::fused(
+                t532,
+                t967,
+                -T::fused(t527, t965, T::fused(-t525, t963, t894)),
             );
-            let t935 = T::fused(
-                t535,
-                t933,
-                T::fused(t532, t931, T::fused(-t531, t929, t863)),
+            let t969 = T::fused(
+                t550,
+                t967,
+                T::fused(t547, t965, T::fused(-t546, t963, t897)),
             );
-            let t936 = T::fused(
-                t523,
-                t933,
-                T::fused(t520, t931, T::fused(-t519, t929, t867)),
+            let t970 = T::fused(
+                t538,
+                t967,
+                T::fused(t535, t965, T::fused(-t534, t963, t901)),
             );
-            let t937 = T::fused(t619, t936, T::fused(t611, t934, t615 * t935))
-                - T::fused(t620, t936, T::fused(-t612, t934, t616 * t935));
-            let t938 = T::fused(
+            let t971 = T::fused(t633, t970, T::fused(t625, t968, t629 * t969))
+                - T::fused(t634, t970, T::fused(-t626, t968, t630 * t969));
+            let t972 = T::fused(
                 -k(0.9805806756909201),
-                t934,
-                k(0.19611613513818404) * t936,
+                t968,
+                k(0.19611613513818404) * t970,
             );
-            let t939 = t529 * t938;
-            let t940 = T::fused(
+            let t973 = t544 * t972;
+            let t974 = T::fused(
                 k(0.03774256780481986),
-                T::fused(t526, t939, t934),
-                k(0.9813067629253163) * T::fused(t541, t939, t935),
+                T::fused(t541, t973, t968),
+                k(0.9813067629253163) * T::fused(t556, t973, t969),
             );
-            let t941 = T::fused(
+            let t975 = T::fused(
                 k(0.1887128390240993),
-                T::fused(-t528, t939, t936),
-                t940,
+                T::fused(-t543, t973, t970),
+                t974,
             );
-            let t942 = t639 * t941;
-            let t943 = T::fused(
+            let t976 = t653 * t975;
+            let t977 = T::fused(
                 -k(2.0),
-                T::fused(t651, t936, -T::fused(t649, t934, t650 * t935)),
-                t659 * t939,
+                T::fused(t665, t970, -T::fused(t663, t968, t664 * t969)),
+                t673 * t973,
             );
-            let t944 = T::fused(t666, t942, t943)
-                + T::fused(t647, t942, T::fused(t635, t939, t937));
-            let t945 = T::fused(
-                t675,
-                t939,
-                T::fused(t669, t936, -T::fused(t667, t934, t668 * t935)),
+            let t978 = T::fused(t680, t976, t977)
+                + T::fused(t661, t976, T::fused(t649, t973, t971));
+            let t979 = T::fused(
+                t689,
+                t973,
+                T::fused(t683, t970, -T::fused(t681, t968, t682 * t969)),
             );
-            let t946 = t724
+            let t980 = t758
                 * T::fused(
                     -k(0.19245008972987526),
-                    t944,
-                    k(0.9622504486493763) * T::fused(t681, t942, t945),
+                    t978,
+                    k(0.9622504486493763) * T::fused(t695, t976, t979),
                 );
-            let t947 = k(0.19245008972987526) * t946;
-            let t948 = k(0.9622504486493763) * t946;
-            let t949 = t639
-                * (t941 - T::fused(t681, t948, -T::fused(t647, t947, t666 * t947)));
-            let t950 = k(0.03774256780481986) * t949;
-            let t951 = k(0.9813067629253163) * t949;
-            let t952 = k(0.1887128390240993) * t949;
-            let t953 = T::fused(t675, t948, -T::fused(t635, t947, t659 * t947))
-                + T::fused(t528, t952, -T::fused(t526, t950, t541 * t951));
-            let t954 = t529 * (t938 - t953);
-            let t955 = t649 * t947;
-            let t956 = T::fused(t611, t947, t955)
-                + T::fused(-k(0.9805806756909201), t954, t950);
-            let t957 = T::fused(t667, t948, T::fused(t612, t947, t955)) + t956;
-            let t958 = t650 * t947;
-            let t959 = t951 + T::fused(t615, t947, t958);
-            let t960 = T::fused(t668, t948, -T::fused(t616, t947, -t958)) + t959;
-            let t961 = t651 * t947;
-            let t962 = T::fused(-t619, t947, t961)
-                - T::fused(k(0.19611613513818404), t954, t952);
-            let t963 = T::fused(t669, t948, T::fused(t620, t947, t961)) + t962;
-            let t964 = t930 - T::fused(t520, t963, -T::fused(-t512, t957, t532 * t960));
-            let t965 = T::fused(
-                k(2.1052631578947367),
-                t964,
-                T::fused(t519, t963, -T::fused(-t510, t957, t531 * t960)),
-            );
-            let t966 = k(50.0) * (t928 + t965);
-            let t967 = k(263.1578947368421) * t964;
-            let t968 = k(40.0)
-                * (t932 - T::fused(t523, t963, -T::fused(t517, t957, t535 * t960)));
-            let t969 = t957 - T::fused(t515, t968, -T::fused(-t580, t966, t590 * t967));
-            let t970 = t960 - T::fused(t534, t968, T::fused(-t582, t966, t591 * t967));
-            let t971 = t963 + T::fused(t522, t968, T::fused(-t584, t966, t592 * t967));
-            let t972 = T::fused(t880, t968, -T::fused(-t878, t966, t879 * t967))
-                - T::fused(t867, t971, -T::fused(-t860, t969, t863 * t970));
-            let t973 = k(1.0) / T::fused(t884, t885, -(t972 - t927));
-            let t974 = T::fused(t96, t110, T::fused(t3, t33, t60 * t79));
-            let t975 = T::fused(t98, t110, -T::fused(t10, t33, t62 * t79));
-            let t976 = T::fused(t100, t110, -T::fused(-t15, t33, t66 * t79));
-            let t977 = T::fused(t96, t111, -T::fused(t3, t34, t60 * t80));
-            let t978 = T::fused(t96, t112, -T::fused(-t3, t35, t60 * t81));
-            let t979 = T::fused(sleeve_wz, t977, sleeve_wy * t978);
-            let t980 = T::fused(t100, t111, -T::fused(-t66, t80, t15 * t34));
-            let t981 = T::fused(t100, t112, T::fused(t66, t81, t15 * t35));
-            let t982 = T::fused(sleeve_wz, t980, sleeve_wy * t981);
-            let t983 = T::fused(t98, t111, T::fused(t62, t80, t10 * t34));
-            let t984 = T::fused(t98, t112, -T::fused(-t62, t81, t10 * t35));
-            let t985 = T::fused(
-                k(2.0),
-                T::fused(shaft_wz, t979, shaft_wx * t982),
-                T::fused(t51, t984, -T::fused(-t50, t975, t43 * t983)),
-            );
-            let t986 = T::fused(sleeve_wz, t974, sleeve_wx * t978);
-            let t987 = T::fused(sleeve_wz, t976, sleeve_wx * t981);
-            let t988 = T::fused(
-                -k(2.0),
-                T::fused(shaft_wz, t986, shaft_wx * t987),
-                T::fused(t47, t984, T::fused(-t43, t975, t46 * t983)),
-            );
-            let t989 = t988 + T::fused(t11, t980, T::fused(-t0, t977, t6 * t983));
-            let t990 = T::fused(
-                k(0.9045340337332909),
-                t985 + T::fused(t11, t976, T::fused(-t0, t974, t6 * t975)),
-                k(0.30151134457776363) * t989,
-            );
-            let t991 = T::fused(-sleeve_wy, t974, sleeve_wx * t977);
-            let t992 = T::fused(-sleeve_wy, t976, sleeve_wx * t980);
-            let t993 = T::fused(
-                k(2.0),
-                T::fused(shaft_wz, t991, shaft_wx * t992),
-                T::fused(t53, t984, T::fused(t51, t975, t47 * t983)),
-            );
-            let t994 = t993 + T::fused(t11, t981, T::fused(-t0, t978, t6 * t984));
-            let t995 = T::fused(k(0.30151134457776363), t994, t990);
-            let t996 = T::fused(sleeve_wz, t983, sleeve_wy * t984);
-            let t997 = T::fused(
-                -k(2.0),
-                T::fused(-shaft_wy, t979, shaft_wx * t996),
-                T::fused(t51, t981, -T::fused(-t50, t976, t43 * t980)),
-            );
-            let t998 = T::fused(sleeve_wz, t975, sleeve_wx * t984);
+            let t981 = k(0.19245008972987526) * t980;
+            let t982 = k(0.9622504486493763) * t980;
+            let t983 = t653
+                * (t975 - T::fused(t695, t982, -T::fused(t661, t981, t680 * t981)));
+            let t984 = k(0.03774256780481986) * t983;
+            let t985 = k(0.9813067629253163) * t983;
+            let t986 = k(0.1887128390240993) * t983;
+            let t987 = T::fused(t689, t982, -T::fused(t649, t981, t673 * t981))
+                + T::fused(t543, t986, -T::fused(t541, t984, t556 * t985));
+            let t988 = t544 * (t972 - t987);
+            let t989 = t663 * t981;
+            let t990 = T::fused(t625, t981, t989)
+                + T::fused(-k(0.9805806756909201), t988, t984);
+            let t991 = T::fused(t681, t982, T::fused(t626, t981, t989)) + t990;
+            let t992 = t664 * t981;
+            let t993 = t985 + T::fused(t629, t981, t992);
+            let t994 = T::fused(t682, t982, -T::fused(t630, t981, -t992)) + t993;
+            let t995 = t665 * t981;
+            let t996 = T::fused(-t633, t981, t995)
+                - T::fused(k(0.19611613513818404), t988, t986);
+            let t997 = T::fused(t683, t982, T::fused(t634, t981, t995)) + t996;
+            let t998 = t964 - T::fused(t535, t997, -T::fused(-t527, t991, t547 * t994));
             let t999 = T::fused(
-                k(2.0),
-                T::fused(-shaft_wy, t986, shaft_wx * t998),
-                T::fused(t47, t981, T::fused(-t43, t976, t46 * t980)),
+                k(2.1052631578947367),
+                t998,
+                T::fused(t534, t997, -T::fused(-t525, t991, t546 * t994)),
             );
             (
-                t501,
                 t503,
                 t504,
-                t505,
-                t510,
+                t509,
                 t512,
-                t515,
-                t517,
+                t513,
+                t518,
                 t519,
                 t520,
-                t522,
-                t523,
-                t526,
-                t528,
-                t529,
-                t531,
+                t525,
+                t527,
+                t530,
                 t532,
                 t534,
                 t535,
+                t537,
+                t538,
                 t541,
-                t580,
-                t582,
-                t584,
-                t590,
-                t591,
-                t592,
-                t600,
-                t601,
-                t611,
-                t612,
-                t615,
-                t616,
-                t619,
-                t620,
-                t635,
-                t639,
-                t647,
+                t543,
+                t544,
+                t546,
+                t547,
+                t549,
+                t550,
+                t556,
+                t594,
+                t596,
+                t598,
+                t604,
+                t605,
+                t606,
+                t625,
+                t626,
+                t629,
+                t630,
+                t633,
+                t634,
                 t649,
-                t650,
-                t651,
-                t659,
-                t666,
-                t667,
-                t668,
-                t669,
-                t675,
+                t653,
+                t661,
+                t663,
+                t664,
+                t665,
+                t673,
+                t680,
                 t681,
-                t724,
-                t727,
-                t728,
+                t682,
+                t683,
+                t689,
+                t695,
+                t723,
+                t725,
                 t729,
-                t738,
-                t741,
-                t744,
-                t748,
-                t749,
-                t750,
-                t751,
-                t752,
-                t753,
-                t770,
-                t788,
-                t789,
-                t791,
-                t794,
-                t797,
-                t805,
-                t806,
-                t807,
-                t808,
-                t809,
-                t810,
+                t758,
+                t761,
+                t762,
+                t763,
+                t772,
+                t775,
+                t778,
+                t782,
+                t783,
+                t784,
+                t785,
+                t786,
+                t787,
+                t804,
+                t822,
+                t823,
+                t825,
+                t828,
                 t831,
-                t832,
+                t839,
                 t840,
+                t841,
+                t842,
                 t843,
-                t846,
-                t850,
-                t851,
-                t852,
-                t853,
-                t854,
-                t855,
-                t857,
+                t844,
+                t865,
+                t866,
+                t874,
+                t877,
+                t880,
                 t884,
                 t885,
                 t886,
-                t904,
-                t905,
-                t907,
-                t910,
+                t887,
+                t888,
+                t889,
+                t891,
+                t894,
+                t897,
+                t901,
+                t912,
                 t913,
-                t921,
-                t922,
-                t923,
-                t924,
-                t925,
-                t926,
+                t914,
+                t918,
+                t919,
+                t920,
+                t938,
+                t939,
+                t941,
+                t944,
                 t947,
-                t948,
+                t955,
                 t956,
+                t957,
+                t958,
                 t959,
+                t960,
+                t961,
                 t962,
                 t966,
-                t967,
-                t968,
-                t969,
-                t970,
-                t971,
-                t973,
-                t974,
-                t975,
-                t976,
-                t977,
-                t978,
-                t980,
                 t981,
                 t982,
-                t983,
-                t984,
-                t986,
-                t987,
-                t989,
+                t990,
                 t991,
-                t992,
+                t993,
                 t994,
-                t995,
                 t996,
                 t997,
                 t998,
@@ -16193,191 +16195,192 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
         });
         let (
             t1000,
+            t1001,
             t1002,
+            t1003,
             t1004,
+            t1005,
+            t1007,
+            t1009,
+            t1010,
             t1011,
             t1012,
-            t1013,
+            t1014,
+            t1015,
+            t1017,
+            t1018,
+            t1020,
+            t1021,
+            t1023,
             t1025,
             t1026,
             t1028,
-            t1029,
-            t1030,
+            t1032,
+            t1034,
+            t1036,
+            t1038,
+            t1045,
             t1046,
             t1047,
-            t1049,
-            t1050,
-            t1052,
-            t1053,
-            t1055,
-            t1056,
+            t1059,
+            t1060,
+            t1062,
             t1063,
             t1064,
-            t1065,
+            t1080,
+            t1081,
             t1083,
             t1084,
-            t1092,
-            t1093,
-            t1095,
-            t1096,
+            t1086,
+            t1087,
+            t1089,
+            t1090,
+            t1097,
             t1098,
             t1099,
-            t1102,
-            t1103,
-            t1104,
-            t1106,
-            t1109,
-            t1112,
+            t1117,
             t1118,
-            t1120,
-            t1124,
-            t1125,
+            t1126,
             t1127,
-            t1128,
+            t1129,
             t1130,
-            t1131,
             t1132,
-            t1148,
-            t1149,
-            t1151,
+            t1133,
+            t1136,
+            t1137,
+            t1138,
+            t1140,
+            t1143,
+            t1146,
             t1152,
             t1154,
-            t1155,
-            t1157,
             t1158,
+            t1159,
+            t1161,
+            t1162,
+            t1164,
             t1165,
             t1166,
-            t1167,
+            t1182,
+            t1183,
             t1185,
             t1186,
-            t1194,
-            t1195,
-            t1197,
-            t1198,
+            t1188,
+            t1189,
+            t1191,
+            t1192,
+            t1199,
             t1200,
             t1201,
-            t1204,
-            t1205,
-            t1206,
-            t1208,
-            t1213,
-            t1218,
-            t1223,
-            t1225,
+            t1219,
+            t1220,
+            t1228,
             t1229,
-            t1230,
             t1231,
             t1232,
-            t1233,
             t1234,
-            t1237,
+            t1235,
+            t1238,
+            t1239,
             t1240,
-            t1241,
             t1242,
-            t1243,
-            t1245,
-            t1249,
-            t1251,
+            t1247,
             t1252,
-            t1253,
-            t1254,
-            t1255,
-            t1256,
             t1257,
             t1259,
-            t1261,
-            t1262,
             t1263,
             t1264,
+            t1265,
             t1266,
+            t1267,
             t1268,
-            t1270,
             t1271,
-            t1272,
             t1273,
             t1274,
             t1275,
             t1276,
             t1278,
-            t1280,
-            t1281,
             t1282,
-            t1283,
+            t1284,
             t1285,
             t1286,
             t1287,
-            t1291,
+            t1288,
+            t1289,
+            t1290,
+            t1292,
             t1294,
+            t1295,
+            t1296,
             t1297,
-            t1298,
             t1299,
             t1301,
-            t1302,
             t1303,
             t1304,
+            t1305,
             t1306,
-            t1310,
+            t1307,
+            t1308,
+            t1309,
             t1311,
-            t1312,
             t1313,
             t1314,
             t1315,
             t1316,
-            t1317,
+            t1318,
             t1319,
-            t1322,
+            t1320,
             t1323,
             t1324,
-            t1325,
-            t1326,
             t1327,
-            t1328,
-            t1329,
             t1330,
+            t1331,
+            t1332,
             t1334,
+            t1335,
+            t1336,
             t1337,
+            t1338,
             t1339,
-            t1340,
-            t1341,
+            t1342,
+            t1343,
+            t1344,
+            t1345,
             t1346,
+            t1347,
             t1348,
+            t1349,
             t1350,
-            t1351,
-            t1354,
+            t1352,
             t1355,
+            t1356,
+            t1357,
             t1358,
             t1359,
             t1360,
             t1361,
             t1362,
-            t1365,
-            t1366,
+            t1363,
             t1367,
-            t1368,
-            t1369,
             t1370,
             t1371,
             t1372,
             t1373,
             t1374,
             t1375,
-            t1376,
-            t1377,
-            t1378,
             t1379,
             t1380,
             t1381,
-            t1382,
             t1383,
             t1384,
-            t1385,
-            t1386,
             t1387,
-            t1389,
-            t1390,
+            t1388,
             t1391,
+            t1392,
             t1393,
-            t1397,
+            t1394,
+            t1395,
+            t1398,
             t1399,
             t1400,
             t1401,
@@ -16385,8 +16388,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1403,
             t1404,
             t1405,
+            t1406,
             t1407,
             t1408,
+            t1409,
+            t1410,
             t1411,
             t1412,
             t1413,
@@ -16395,1187 +16401,1167 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t1416,
             t1417,
             t1418,
+            t1419,
             t1420,
-            t1421,
-            t1427,
-            t1428,
-            t1429,
+            t1422,
+            t1423,
+            t1424,
+            t1426,
             t1430,
+            t1432,
+            t1433,
+            t1434,
             t1435,
+            t1436,
+            t1437,
             t1438,
             t1439,
             t1440,
+            t1441,
+            t1442,
+            t1443,
+            t1444,
             t1445,
             t1446,
             t1447,
+            t1448,
+            t1449,
             t1450,
+            t1451,
             t1452,
+            t1453,
             t1454,
-            t1457,
-            t1458,
-            t1459,
+            t1455,
+            t1456,
+            t1460,
             t1461,
             t1462,
-            t1464,
-            t1465,
-            t1466,
-            t1467,
+            t1463,
             t1468,
-            t1469,
-            t1470,
             t1471,
             t1472,
-            t1474,
-            t1475,
-            t1476,
-            t1477,
+            t1473,
             t1478,
             t1479,
             t1480,
-            t1481,
             t1482,
+            t1483,
             t1484,
             t1485,
             t1486,
             t1487,
-            t1488,
-            t1489,
             t1490,
             t1491,
             t1492,
-            t1493,
             t1494,
             t1495,
             t1496,
+            t1497,
             t1498,
             t1499,
         ) = gyro_sim::apart(move || {
-            let t1000 = t999 + T::fused(t19, t980, T::fused(t17, t977, t11 * t983));
-            let t1001 = T::fused(
-                k(0.9045340337332909),
-                t997 + T::fused(t19, t976, T::fused(t17, t974, t11 * t975)),
-                k(0.30151134457776363) * t1000,
+            let t1000 = k(50.0) * (t962 + t999);
+            let t1001 = k(263.1578947368421) * t998;
+            let t1002 = k(40.0)
+                * (t966 - T::fused(t538, t997, -T::fused(t532, t991, t550 * t994)));
+            let t1003 = t991
+                - T::fused(t530, t1002, -T::fused(-t594, t1000, t604 * t1001));
+            let t1004 = t994
+                - T::fused(t549, t1002, T::fused(-t596, t1000, t605 * t1001));
+            let t1005 = t997
+                + T::fused(t537, t1002, T::fused(-t598, t1000, t606 * t1001));
+            let t1006 = T::fused(t914, t1002, -T::fused(-t912, t1000, t913 * t1001))
+                - T::fused(t901, t1005, -T::fused(-t894, t1003, t897 * t1004));
+            let t1007 = k(1.0) / T::fused(t918, t919, -(t1006 - t961));
+            let t1008 = T::fused(t96, t110, T::fused(t3, t33, t60 * t79));
+            let t1009 = T::fused(t98, t110, -T::fused(t10, t33, t62 * t79));
+            let t1010 = T::fused(t100, t110, -T::fused(-t15, t33, t66 * t79));
+            let t1011 = T::fused(t96, t111, -T::fused(t3, t34, t60 * t80));
+            let t1012 = T::fused(t96, t112, -T::fused(-t3, t35, t60 * t81));
+            let t1013 = T::fused(sleeve_wz, t1011, sleeve_wy * t1012);
+            let t1014 = T::fused(t100, t111, -T::fused(-t66, t80, t15 * t34));
+            let t1015 = T::fused(t100, t112, T::fused(t66, t81, t15 * t35));
+            let t1016 = T::fused(sleeve_wz, t1014, sleeve_wy * t1015);
+            let t1017 = T::fused(t98, t111, T::fused(t62, t80, t10 * t34));
+            let t1018 = T::fused(t98, t112, -T::fused(-t62, t81, t10 * t35));
+            let t1019 = T::fused(
+                k(2.0),
+                T::fused(shaft_wz, t1013, shaft_wx * t1016),
+                T::fused(t51, t1018, -T::fused(-t50, t1009, t43 * t1017)),
             );
-            let t1002 = T::fused(-sleeve_wy, t975, sleeve_wx * t983);
-            let t1003 = T::fused(
+            let t1020 = T::fused(sleeve_wz, t1008, sleeve_wx * t1012);
+            let t1021 = T::fused(sleeve_wz, t1010, sleeve_wx * t1015);
+            let t1022 = T::fused(
                 -k(2.0),
-                T::fused(-shaft_wy, t991, shaft_wx * t1002),
-                T::fused(t53, t981, T::fused(t51, t976, t47 * t980)),
+                T::fused(shaft_wz, t1020, shaft_wx * t1021),
+                T::fused(t47, t1018, T::fused(-t43, t1009, t46 * t1017)),
             );
-            let t1004 = t1003 + T::fused(t19, t981, T::fused(t17, t978, t11 * t984));
-            let t1005 = T::fused(k(0.30151134457776363), t1004, t1001);
-            let t1006 = T::fused(
+            let t1023 = t1022 + T::fused(t11, t1014, T::fused(-t0, t1011, t6 * t1017));
+            let t1024 = T::fused(
+                k(0.9045340337332909),
+                t1019 + T::fused(t11, t1010, T::fused(-t0, t1008, t6 * t1009)),
+                k(0.30151134457776363) * t1023,
+            );
+            let t1025 = T::fused(-sleeve_wy, t1008, sleeve_wx * t1011);
+            let t1026 = T::fused(-sleeve_wy, t1010, sleeve_wx * t1014);
+            let t1027 = T::fused(
+                k(2.0),
+                T::fused(shaft_wz, t1025, shaft_wx * t1026),
+                T::fused(t53, t1018, T::fused(t51, t1009, t47 * t1017)),
+            );
+            let t1028 = t1027 + T::fused(t11, t1015, T::fused(-t0, t1012, t6 * t1018));
+            let t1029 = T::fused(k(0.30151134457776363), t1028, t1024);
+            let t1030 = T::fused(sleeve_wz, t1017, sleeve_wy * t1018);
+            let t1031 = T::fused(
+                -k(2.0),
+                T::fused(-shaft_wy, t1013, shaft_wx * t1030),
+                T::fused(t51, t1015, -T::fused(-t50, t1010, t43 * t1014)),
+            );
+            let t1032 = T::fused(sleeve_wz, t1009, sleeve_wx * t1018);
+            let t1033 = T::fused(
+                k(2.0),
+                T::fused(-shaft_wy, t1020, shaft_wx * t1032),
+                T::fused(t47, t1015, T::fused(-t43, t1010, t46 * t1014)),
+            );
+            let t1034 = t1033 + T::fused(t19, t1014, T::fused(t17, t1011, t11 * t1017));
+            let t1035 = T::fused(
+                k(0.9045340337332909),
+                t1031 + T::fused(t19, t1010, T::fused(t17, t1008, t11 * t1009)),
+                k(0.30151134457776363) * t1034,
+            );
+            let t1036 = T::fused(-sleeve_wy, t1009, sleeve_wx * t1017);
+            let t1037 = T::fused(
+                -k(2.0),
+                T::fused(-shaft_wy, t1025, shaft_wx * t1036),
+                T::fused(t53, t1015, T::fused(t51, t1010, t47 * t1014)),
+            );
+            let t1038 = t1037 + T::fused(t19, t1015, T::fused(t17, t1012, t11 * t1018));
+            let t1039 = T::fused(k(0.30151134457776363), t1038, t1035);
+            let t1040 = T::fused(
                 k(0.30151134457776363),
-                t984,
-                T::fused(k(0.9045340337332909), t975, k(0.30151134457776363) * t983),
+                t1018,
+                T::fused(k(0.9045340337332909), t1009, k(0.30151134457776363) * t1017),
             );
-            let t1007 = T::fused(
+            let t1041 = T::fused(
                 k(0.30151134457776363),
-                t981,
-                T::fused(k(0.9045340337332909), t976, k(0.30151134457776363) * t980),
+                t1015,
+                T::fused(k(0.9045340337332909), t1010, k(0.30151134457776363) * t1014),
             );
-            let t1008 = k(0.7071067811865476) * (t1007 + t1006);
-            let t1009 = T::fused(
+            let t1042 = k(0.7071067811865476) * (t1041 + t1040);
+            let t1043 = T::fused(
                 k(0.30151134457776363),
-                t978,
-                T::fused(k(0.9045340337332909), t974, k(0.30151134457776363) * t977),
+                t1012,
+                T::fused(k(0.9045340337332909), t1008, k(0.30151134457776363) * t1011),
             );
-            let t1010 = k(0.7071067811865476) * t1009;
-            let t1011 = t984 - t983;
-            let t1012 = t981 - t980;
-            let t1013 = t1012 - t1011;
-            let t1014 = k(0.21320071635561044) * t1013;
-            let t1015 = k(0.30151134457776363) * t976;
-            let t1016 = T::fused(k(0.9045340337332909), t981, -t1015);
-            let t1017 = k(0.30151134457776363) * t975;
-            let t1018 = T::fused(k(0.9045340337332909), t984, -t1017);
-            let t1019 = k(0.7071067811865476) * (t1018 - t1016);
-            let t1020 = T::fused(-k(0.9045340337332909), t980, t1015);
-            let t1021 = T::fused(-k(0.9045340337332909), t983, t1017);
-            let t1022 = t1021 - t1020;
-            let t1023 = k(0.7071067811865476) * t1022;
-            let t1024 = T::fused(t1023, t750, T::fused(t1014, t748, t1019 * t749))
-                - T::fused(t1010, t449, T::fused(-t1008, t453, t1010 * t448));
-            let t1025 = T::fused(t1023, t852, -T::fused(t1014, t850, t1019 * t851))
-                - T::fused(t1010, t806, T::fused(-t1008, t810, t1010 * t805));
-            let t1026 = t857 * t1025;
-            let t1027 = T::fused(t1023, t968, -T::fused(t1014, t966, t1019 * t967))
-                - T::fused(t1010, t922, T::fused(-t1008, t926, t1010 * t921));
-            let t1028 = T::fused(t884, t1026, -t1027);
-            let t1029 = t973 * t1028;
-            let t1030 = T::fused(
-                t1029,
-                t886,
+            let t1044 = k(0.7071067811865476) * t1043;
+            let t1045 = t1018 - t1017;
+            let t1046 = t1015 - t1014;
+            let t1047 = t1046 - t1045;
+            let t1048 = k(0.21320071635561044) * t1047;
+            let t1049 = k(0.30151134457776363) * t1010;
+            let t1050 = T::fused(k(0.9045340337332909), t1015, -t1049);
+            let t1051 = k(0.30151134457776363) * t1009;
+            let t1052 = T::fused(k(0.9045340337332909), t1018, -t1051);
+            let t1053 = k(0.7071067811865476) * (t1052 - t1050);
+            let t1054 = T::fused(-k(0.9045340337332909), t1014, t1049);
+            let t1055 = T::fused(-k(0.9045340337332909), t1017, t1051);
+            let t1056 = t1055 - t1054;
+            let t1057 = k(0.7071067811865476) * t1056;
+            let t1058 = T::fused(t1057, t784, T::fused(t1048, t782, t1053 * t783))
+                - T::fused(t1044, t464, T::fused(-t1042, t468, t1044 * t463));
+            let t1059 = T::fused(t1057, t886, -T::fused(t1048, t884, t1053 * t885))
+                - T::fused(t1044, t840, T::fused(-t1042, t844, t1044 * t839));
+            let t1060 = t891 * t1059;
+            let t1061 = T::fused(t1057, t1002, -T::fused(t1048, t1000, t1053 * t1001))
+                - T::fused(t1044, t956, T::fused(-t1042, t960, t1044 * t955));
+            let t1062 = T::fused(t918, t1060, -t1061);
+            let t1063 = t1007 * t1062;
+            let t1064 = T::fused(
+                t1063,
+                t920,
                 -T::fused(
-                    t1026,
-                    t770,
-                    -T::fused(-k(0.7071067811865476), t1005 - t995, t1024),
+                    t1060,
+                    t804,
+                    -T::fused(-k(0.7071067811865476), t1039 - t1029, t1058),
                 ),
             );
-            let t1031 = T::fused(t213, t1010, -T::fused(t1008, t189, t206 * t1010));
-            let t1032 = t218 * t1031;
-            let t1033 = T::fused(t215, t1032, t1008);
-            let t1034 = t222 * t1033;
-            let t1035 = T::fused(t224, t1034, T::fused(t216, t1032, t1010));
-            let t1036 = T::fused(t281, t1034, T::fused(-t217, t1032, t1010));
-            let t1037 = T::fused(t240, t1032, t242 * t1034);
-            let t1038 = T::fused(t252, t1032, t254 * t1034);
-            let t1039 = T::fused(t264, t1032, t266 * t1034);
-            let t1040 = T::fused(t308, t1039, T::fused(t297, t1037, t303 * t1038))
-                - T::fused(t270, t1035, t271 * t1036);
-            let t1041 = T::fused(t313, t1039, T::fused(-t310, t1037, t311 * t1038));
-            let t1042 = T::fused(t320, t1039, -T::fused(t316, t1037, t318 * t1038))
-                + T::fused(t138, t1035, t137 * t1036);
-            let t1043 = T::fused(t324, t1039, -T::fused(t326, t1037, t328 * t1038));
-            let t1044 = T::fused(
+            let t1065 = T::fused(t213, t1044, -T::fused(t1042, t189, t206 * t1044));
+            let t1066 = t218 * t1065;
+            let t1067 = T::fused(t215, t1066, t1042);
+            let t1068 = t222 * t1067;
+            let t1069 = T::fused(t224, t1068, T::fused(t216, t1066, t1044));
+            let t1070 = T::fused(t281, t1068, T::fused(-t217, t1066, t1044));
+            let t1071 = T::fused(t240, t1066, t242 * t1068);
+            let t1072 = T::fused(t252, t1066, t254 * t1068);
+            let t1073 = T::fused(t264, t1066, t266 * t1068);
+            let t1074 = T::fused(t308, t1073, T::fused(t297, t1071, t303 * t1072))
+                - T::fused(t270, t1069, t271 * t1070);
+            let t1075 = T::fused(t313, t1073, T::fused(-t310, t1071, t311 * t1072));
+            let t1076 = T::fused(t320, t1073, -T::fused(t316, t1071, t318 * t1072))
+                + T::fused(t138, t1069, t137 * t1070);
+            let t1077 = T::fused(t324, t1073, -T::fused(t326, t1071, t328 * t1072));
+            let t1078 = T::fused(
                 k(0.6666666666666666),
-                t1043 + (t1043 + T::fused(t148, t1035, t149 * t1036)),
+                t1077 + (t1077 + T::fused(t148, t1069, t149 * t1070)),
                 -T::fused(
                     -k(0.3333333333333333),
-                    t1041 + t1040,
-                    k(0.6666666666666666) * (t1041 + t1042),
+                    t1075 + t1074,
+                    k(0.6666666666666666) * (t1075 + t1076),
                 ),
             );
-            let t1045 = t427 * t1044;
-            let t1046 = k(0.3333333333333333) * t1045;
-            let t1047 = k(0.6666666666666666) * t1045;
-            let t1048 = t326 * t1047;
-            let t1049 = t1048 - T::fused(-t310, t1046, t310 * t1047);
-            let t1050 = T::fused(t297, t1046, t316 * t1047) - t1048 - t1049;
-            let t1051 = t328 * t1047;
-            let t1052 = t1051 + T::fused(-t311, t1046, t311 * t1047);
-            let t1053 = T::fused(t303, t1046, t318 * t1047) - t1051 - t1052;
-            let t1054 = t324 * t1047;
-            let t1055 = t1054 - T::fused(-t313, t1046, t313 * t1047);
-            let t1056 = T::fused(-t308, t1046, t320 * t1047) - t1054 - t1055;
-            let t1057 = T::fused(t148, t1047, -T::fused(t270, t1046, t138 * t1047));
-            let t1058 = T::fused(t149, t1047, -T::fused(t271, t1046, t137 * t1047));
-            let t1059 = T::fused(t224, t1057, t281 * t1058)
-                - T::fused(t266, t1056, -T::fused(t242, t1050, t254 * t1053));
-            let t1060 = t222 * (t1033 - t1059);
-            let t1061 = T::fused(t217, t1058, -T::fused(-t215, t1060, t216 * t1057))
-                + T::fused(t264, t1056, -T::fused(t240, t1050, t252 * t1053));
-            let t1062 = t218 * (t1031 + t1061);
-            let t1063 = T::fused(-t189, t1062, t1060);
-            let t1064 = T::fused(t206, t1062, t1057);
-            let t1065 = T::fused(-t213, t1062, t1058);
-            let t1066 = k(10.660035817780521) * t1013;
-            let t1067 = T::fused(k(0.08528028654224418), t1013, t1019);
-            let t1068 = k(263.1578947368421) * t1067;
-            let t1069 = k(28.284271247461902) * t1022;
-            let t1070 = T::fused(t517, t1069, T::fused(-t510, t1066, t512 * t1068));
-            let t1071 = T::fused(t535, t1069, -T::fused(-t531, t1066, t532 * t1068));
-            let t1072 = T::fused(t523, t1069, -T::fused(-t519, t1066, t520 * t1068));
-            let t1073 = T::fused(t619, t1072, T::fused(t611, t1070, t615 * t1071))
-                - T::fused(t620, t1072, T::fused(-t612, t1070, t616 * t1071));
-            let t1074 = T::fused(
-                -k(0.9805806756909201),
-                t1070,
-                k(0.19611613513818404) * t1072,
-            );
-            let t1075 = t529 * t1074;
-            let t1076 = T::fused(
-                k(0.03774256780481986),
-                T::fused(t526, t1075, t1070),
-                k(0.9813067629253163) * T::fused(t541, t1075, t1071),
-            );
-            let t1077 = T::fused(
-                k(0.1887128390240993),
-                T::fused(-t528, t1075, t1072),
-                t1076,
-            );
-            let t1078 = t639 * t1077;
-            let t1079 = T::fused(
-                -k(2.0),
-                T::fused(t651, t1072, -T::fused(t649, t1070, t650 * t1071)),
-                t659 * t1075,
-            );
-            let t1080 = T::fused(t666, t1078, t1079)
-                + T::fused(t647, t1078, T::fused(t635, t1075, t1073));
-            let t1081 = T::fused(
-                t675,
-                t1075,
-                T::fused(t669, t1072, -T::fused(t667, t1070, t668 * t1071)),
-            );
-            let t1082 = t724
-                * T::fused(
-                    -k(0.19245008972987526),
-                    t1080,
-                    k(0.9622504486493763) * T::fused(t681, t1078, t1081),
-                );
-            let t1083 = k(0.19245008972987526) * t1082;
-            let t1084 = k(0.9622504486493763) * t1082;
-            let t1085 = t639
-                * (t1077 - T::fused(t681, t1084, -T::fused(t647, t1083, t666 * t1083)));
-            let t1086 = k(0.03774256780481986) * t1085;
-            let t1087 = k(0.9813067629253163) * t1085;
-            let t1088 = k(0.1887128390240993) * t1085;
-            let t1089 = T::fused(t675, t1084, -T::fused(t635, t1083, t659 * t1083))
-                + T::fused(t528, t1088, -T::fused(t526, t1086, t541 * t1087));
-            let t1090 = t529 * (t1074 - t1089);
-            let t1091 = t649 * t1083;
-            let t1092 = T::fused(t611, t1083, t1091)
-                + T::fused(-k(0.9805806756909201), t1090, t1086);
-            let t1093 = T::fused(t667, t1084, T::fused(t612, t1083, t1091)) + t1092;
-            let t1094 = t650 * t1083;
-            let t1095 = t1087 + T::fused(t615, t1083, t1094);
-            let t1096 = T::fused(t668, t1084, -T::fused(t616, t1083, -t1094)) + t1095;
-            let t1097 = t651 * t1083;
-            let t1098 = T::fused(-t619, t1083, t1097)
-                - T::fused(k(0.19611613513818404), t1090, t1088);
-            let t1099 = T::fused(t669, t1084, T::fused(t620, t1083, t1097)) + t1098;
-            let t1100 = t1067
-                + T::fused(t520, t1099, -T::fused(-t512, t1093, t532 * t1096));
-            let t1101 = T::fused(
-                k(2.1052631578947367),
-                t1100,
-                -T::fused(t519, t1099, -T::fused(-t510, t1093, t531 * t1096)),
-            );
-            let t1102 = k(50.0) * (t1014 + t1101);
-            let t1103 = k(263.1578947368421) * t1100;
-            let t1104 = k(40.0)
-                * (t1023 - T::fused(t523, t1099, -T::fused(t517, t1093, t535 * t1096)));
-            let t1105 = T::fused(t1023, t1104, T::fused(t1014, t1102, t1019 * t1103))
-                - T::fused(t1010, t1065, T::fused(-t1008, t1063, t1010 * t1064));
-            let t1106 = k(1.0) / T::fused(t1028, t1029, -T::fused(t1025, t1026, -t1105));
-            let t1107 = T::fused(
-                -k(2.0),
-                T::fused(shaft_wz, t996, shaft_wy * t982),
-                T::fused(t51, t978, -T::fused(-t50, t974, t43 * t977)),
-            );
+            let t1079 = t442 * t1078;
+            let t1080 = k(0.3333333333333333) * t1079;
+            let t1081 = k(0.6666666666666666) * t1079;
+            let t1082 = t326 * t1081;
+            let t1083 = t1082 - T::fused(-t310, t1080, t310 * t1081);
+            let t1084 = T::fused(t297, t1080, t316 * t1081) - t1082 - t1083;
+            let t1085 = t328 * t1081;
+            let t1086 = t1085 + T::fused(-t311, t1080, t311 * t1081);
+            let t1087 = T::fused(t303, t1080, t318 * t1081) - t1085 - t1086;
+            let t1088 = t324 * t1081;
+            let t1089 = t1088 - T::fused(-t313, t1080, t313 * t1081);
+            let t1090 = T::fused(-t308, t1080, t320 * t1081) - t1088 - t1089;
+            let t1091 = T::fused(t148, t1081, -T::fused(t270, t1080, t138 * t1081));
+            let t1092 = T::fused(t149, t1081, -T::fused(t271, t1080, t137 * t1081));
+            let t1093 = T::fused(t224, t1091, t281 * t1092)
+                - T::fused(t266, t1090, -T::fused(t242, t1084, t254 * t1087));
+            let t1094 = t222 * (t1067 - t1093);
+            let t1095 = T::fused(t217, t1092, -T::fused(-t215, t1094, t216 * t1091))
+                + T::fused(t264, t1090, -T::fused(t240, t1084, t252 * t1087));
+            let t1096 = t218 * (t1065 + t1095);
+            let t1097 = T::fused(-t189, t1096, t1094);
+            let t1098 = T::fused(t206, t1096, t1091);
+            let t1099 = T::fused(-t213, t1096, t1092);
+            let t1100 = k(10.660035817780521) * t1047;
+            let t1101 = T::fused(k(0.08528028654224418), t1047, t1053);
+            let t1102 = k(263.1578947368421) * t1101;
+            let t1103 = k(28.284271247461902) * t1056;
+            let t1104 = T::fused(t532, t1103, T::fused(-t525, t1100, t527 * t1102));
+            let t1105 = T::fused(t550, t1103, -T::fused(-t546, t1100, t547 * t1102));
+            let t1106 = T::fused(t538, t1103, -T::fused(-t534, t1100, t535 * t1102));
+            let t1107 = T::fused(t633, t1106, T::fused(t625, t1104, t629 * t1105))
+                - T::fused(t634, t1106, T::fused(-t626, t1104, t630 * t1105));
             let t1108 = T::fused(
-                k(2.0),
-                T::fused(shaft_wz, t998, shaft_wy * t987),
-                T::fused(t47, t978, T::fused(-t43, t974, t46 * t977)),
+                -k(0.9805806756909201),
+                t1104,
+                k(0.19611613513818404) * t1106,
             );
-            let t1109 = t1108 + T::fused(t17, t980, -T::fused(-t40, t977, t0 * t983));
+            let t1109 = t544 * t1108;
             let t1110 = T::fused(
-                k(0.9045340337332909),
-                t1107 + T::fused(t17, t976, -T::fused(-t40, t974, t0 * t975)),
-                k(0.30151134457776363) * t1109,
+                k(0.03774256780481986),
+                T::fused(t541, t1109, t1104),
+                k(0.9813067629253163) * T::fused(t556, t1109, t1105),
             );
             let t1111 = T::fused(
-                -k(2.0),
-                T::fused(shaft_wz, t1002, shaft_wy * t992),
-                T::fused(t53, t978, T::fused(t51, t974, t47 * t977)),
-            );
-            let t1112 = t1111 + T::fused(t17, t981, -T::fused(-t40, t978, t0 * t984));
-            let t1113 = T::fused(
-                k(0.6396021490668313),
-                t1005,
-                T::fused(
-                    -k(0.4264014327112209),
-                    T::fused(k(0.30151134457776363), t1112, t1110),
-                    k(0.6396021490668313) * t995,
-                ),
-            );
-            let t1114 = k(0.6396021490668313) * (t1007 - t1006);
-            let t1115 = k(0.6396021490668313) * t1009;
-            let t1116 = T::fused(k(0.4264014327112209), t1007, t1115);
-            let t1117 = T::fused(k(0.4264014327112209), t1006, t1115);
-            let t1118 = t978 - t977;
-            let t1119 = T::fused(
-                -k(0.19284730395996752),
-                t1012,
-                T::fused(-k(0.19284730395996752), t1011, k(0.128564869306645) * t1118),
-            );
-            let t1120 = k(0.30151134457776363) * t974;
-            let t1121 = T::fused(
-                -k(0.6396021490668313),
-                t1016,
-                T::fused(
-                    -k(0.6396021490668313),
-                    t1018,
-                    k(0.4264014327112209) * T::fused(k(0.9045340337332909), t978, -t1120),
-                ),
-            );
-            let t1122 = T::fused(
-                -k(0.6396021490668313),
-                t1020,
-                T::fused(
-                    -k(0.6396021490668313),
-                    t1021,
-                    k(0.4264014327112209) * T::fused(-k(0.9045340337332909), t977, t1120),
-                ),
-            );
-            let t1123 = T::fused(t1122, t750, T::fused(-t1119, t748, t1121 * t749))
-                + T::fused(t1117, t449, -T::fused(t1114, t453, t1116 * t448));
-            let t1124 = T::fused(t1122, t852, -T::fused(-t1119, t850, t1121 * t851))
-                + T::fused(t1117, t806, -T::fused(t1114, t810, t1116 * t805));
-            let t1125 = t857 * t1124;
-            let t1126 = T::fused(t1122, t968, -T::fused(-t1119, t966, t1121 * t967))
-                + T::fused(t1117, t922, -T::fused(t1114, t926, t1116 * t921));
-            let t1127 = T::fused(t884, t1125, -t1126);
-            let t1128 = t973 * t1127;
-            let t1129 = T::fused(t1122, t1104, T::fused(-t1119, t1102, t1121 * t1103))
-                + T::fused(t1117, t1065, -T::fused(t1114, t1063, t1116 * t1064));
-            let t1130 = T::fused(t1028, t1128, -T::fused(t1025, t1125, -t1129));
-            let t1131 = t1106 * t1130;
-            let t1132 = T::fused(
-                t1131,
-                t1030,
-                -T::fused(t1128, t886, -T::fused(t1125, t770, -(t1123 - t1113))),
-            );
-            let t1133 = T::fused(t213, t1117, T::fused(-t1114, t189, t206 * t1116));
-            let t1134 = t218 * t1133;
-            let t1135 = T::fused(t215, t1134, t1114);
-            let t1136 = t222 * t1135;
-            let t1137 = T::fused(t224, t1136, -T::fused(-t216, t1134, t1116));
-            let t1138 = T::fused(t281, t1136, T::fused(-t217, t1134, t1117));
-            let t1139 = T::fused(t240, t1134, t242 * t1136);
-            let t1140 = T::fused(t252, t1134, t254 * t1136);
-            let t1141 = T::fused(t264, t1134, t266 * t1136);
-            let t1142 = T::fused(t308, t1141, T::fused(t297, t1139, t303 * t1140))
-                - T::fused(t270, t1137, t271 * t1138);
-            let t1143 = T::fused(t313, t1141, T::fused(-t310, t1139, t311 * t1140));
-            let t1144 = T::fused(t320, t1141, -T::fused(t316, t1139, t318 * t1140))
-                + T::fused(t138, t1137, t137 * t1138);
-            let t1145 = T::fused(t324, t1141, -T::fused(t326, t1139, t328 * t1140));
-            let t1146 = T::fused(
-                k(0.6666666666666666),
-                t1145 + (t1145 + T::fused(t148, t1137, t149 * t1138)),
-                -T::fused(
-                    -k(0.3333333333333333),
-                    t1143 + t1142,
-                    k(0.6666666666666666) * (t1143 + t1144),
-                ),
-            );
-            let t1147 = t427 * t1146;
-            let t1148 = k(0.3333333333333333) * t1147;
-            let t1149 = k(0.6666666666666666) * t1147;
-            let t1150 = t326 * t1149;
-            let t1151 = t1150 - T::fused(-t310, t1148, t310 * t1149);
-            let t1152 = T::fused(t297, t1148, t316 * t1149) - t1150 - t1151;
-            let t1153 = t328 * t1149;
-            let t1154 = t1153 + T::fused(-t311, t1148, t311 * t1149);
-            let t1155 = T::fused(t303, t1148, t318 * t1149) - t1153 - t1154;
-            let t1156 = t324 * t1149;
-            let t1157 = t1156 - T::fused(-t313, t1148, t313 * t1149);
-            let t1158 = T::fused(-t308, t1148, t320 * t1149) - t1156 - t1157;
-            let t1159 = T::fused(t148, t1149, -T::fused(t270, t1148, t138 * t1149));
-            let t1160 = T::fused(t149, t1149, -T::fused(t271, t1148, t137 * t1149));
-            let t1161 = T::fused(t224, t1159, t281 * t1160)
-                - T::fused(t266, t1158, -T::fused(t242, t1152, t254 * t1155));
-            let t1162 = t222 * (t1135 - t1161);
-            let t1163 = T::fused(t217, t1160, -T::fused(-t215, t1162, t216 * t1159))
-                + T::fused(t264, t1158, -T::fused(t240, t1152, t252 * t1155));
-            let t1164 = t218 * (t1133 + t1163);
-            let t1165 = T::fused(-t189, t1164, t1162);
-            let t1166 = T::fused(t206, t1164, t1159);
-            let t1167 = T::fused(-t213, t1164, t1160);
-            let t1168 = k(50.0) * t1119;
-            let t1169 = T::fused(-k(0.4), t1119, t1121);
-            let t1170 = k(263.1578947368421) * t1169;
-            let t1171 = k(40.0) * t1122;
-            let t1172 = T::fused(t517, t1171, T::fused(t510, t1168, t512 * t1170));
-            let t1173 = T::fused(t535, t1171, -T::fused(t531, t1168, t532 * t1170));
-            let t1174 = T::fused(t523, t1171, -T::fused(t519, t1168, t520 * t1170));
-            let t1175 = T::fused(t619, t1174, T::fused(t611, t1172, t615 * t1173))
-                - T::fused(t620, t1174, T::fused(-t612, t1172, t616 * t1173));
-            let t1176 = T::fused(
-                -k(0.9805806756909201),
-                t1172,
-                k(0.19611613513818404) * t1174,
-            );
-            let t1177 = t529 * t1176;
-            let t1178 = T::fused(
-                k(0.03774256780481986),
-                T::fused(t526, t1177, t1172),
-                k(0.9813067629253163) * T::fused(t541, t1177, t1173),
-            );
-            let t1179 = T::fused(
                 k(0.1887128390240993),
-                T::fused(-t528, t1177, t1174),
-                t1178,
+                T::fused(-t543, t1109, t1106),
+                t1110,
             );
-            let t1180 = t639 * t1179;
-            let t1181 = T::fused(
+            let t1112 = t653 * t1111;
+            let t1113 = T::fused(
                 -k(2.0),
-                T::fused(t651, t1174, -T::fused(t649, t1172, t650 * t1173)),
-                t659 * t1177,
+                T::fused(t665, t1106, -T::fused(t663, t1104, t664 * t1105)),
+                t673 * t1109,
             );
-            let t1182 = T::fused(t666, t1180, t1181)
-                + T::fused(t647, t1180, T::fused(t635, t1177, t1175));
-            let t1183 = T::fused(
-                t675,
-                t1177,
-                T::fused(t669, t1174, -T::fused(t667, t1172, t668 * t1173)),
+            let t1114 = T::fused(t680, t1112, t1113)
+                + T::fused(t661, t1112, T::fused(t649, t1109, t1107));
+            let t1115 = T::fused(
+                t689,
+                t1109,
+                T::fused(t683, t1106, -T::fused(t681, t1104, t682 * t1105)),
             );
-            let t1184 = t724
+            let t1116 = t758
                 * T::fused(
                     -k(0.19245008972987526),
-                    t1182,
-                    k(0.9622504486493763) * T::fused(t681, t1180, t1183),
+                    t1114,
+                    k(0.9622504486493763) * T::fused(t695, t1112, t1115),
                 );
-            let t1185 = k(0.19245008972987526) * t1184;
-            let t1186 = k(0.9622504486493763) * t1184;
-            let t1187 = t639
-                * (t1179 - T::fused(t681, t1186, -T::fused(t647, t1185, t666 * t1185)));
-            let t1188 = k(0.03774256780481986) * t1187;
-            let t1189 = k(0.9813067629253163) * t1187;
-            let t1190 = k(0.1887128390240993) * t1187;
-            let t1191 = T::fused(t675, t1186, -T::fused(t635, t1185, t659 * t1185))
-                + T::fused(t528, t1190, -T::fused(t526, t1188, t541 * t1189));
-            let t1192 = t529 * (t1176 - t1191);
-            let t1193 = t649 * t1185;
-            let t1194 = T::fused(t611, t1185, t1193)
-                + T::fused(-k(0.9805806756909201), t1192, t1188);
-            let t1195 = T::fused(t667, t1186, T::fused(t612, t1185, t1193)) + t1194;
-            let t1196 = t650 * t1185;
-            let t1197 = t1189 + T::fused(t615, t1185, t1196);
-            let t1198 = T::fused(t668, t1186, -T::fused(t616, t1185, -t1196)) + t1197;
-            let t1199 = t651 * t1185;
-            let t1200 = T::fused(-t619, t1185, t1199)
-                - T::fused(k(0.19611613513818404), t1192, t1190);
-            let t1201 = T::fused(t669, t1186, T::fused(t620, t1185, t1199)) + t1200;
-            let t1202 = t1169
-                + T::fused(t520, t1201, -T::fused(-t512, t1195, t532 * t1198));
-            let t1203 = T::fused(
+            let t1117 = k(0.19245008972987526) * t1116;
+            let t1118 = k(0.9622504486493763) * t1116;
+            let t1119 = t653
+                * (t1111 - T::fused(t695, t1118, -T::fused(t661, t1117, t680 * t1117)));
+            let t1120 = k(0.03774256780481986) * t1119;
+            let t1121 = k(0.9813067629253163) * t1119;
+            let t1122 = k(0.1887128390240993) * t1119;
+            let t1123 = T::fused(t689, t1118, -T::fused(t649, t1117, t673 * t1117))
+                + T::fused(t543, t1122, -T::fused(t541, t1120, t556 * t1121));
+            let t1124 = t544 * (t1108 - t1123);
+            let t1125 = t663 * t1117;
+            let t1126 = T::fused(t625, t1117, t1125)
+                + T::fused(-k(0.9805806756909201), t1124, t1120);
+            let t1127 = T::fused(t681, t1118, T::fused(t626, t1117, t1125)) + t1126;
+            let t1128 = t664 * t1117;
+            let t1129 = t1121 + T::fused(t629, t1117, t1128);
+            let t1130 = T::fused(t682, t1118, -T::fused(t630, t1117, -t1128)) + t1129;
+            let t1131 = t665 * t1117;
+            let t1132 = T::fused(-t633, t1117, t1131)
+                - T::fused(k(0.19611613513818404), t1124, t1122);
+            let t1133 = T::fused(t683, t1118, T::fused(t634, t1117, t1131)) + t1132;
+            let t1134 = t1101
+                + T::fused(t535, t1133, -T::fused(-t527, t1127, t547 * t1130));
+            let t1135 = T::fused(
                 k(2.1052631578947367),
-                t1202,
-                -T::fused(t519, t1201, -T::fused(-t510, t1195, t531 * t1198)),
+                t1134,
+                -T::fused(t534, t1133, -T::fused(-t525, t1127, t546 * t1130)),
             );
-            let t1204 = k(50.0) * (t1119 - t1203);
-            let t1205 = k(263.1578947368421) * t1202;
-            let t1206 = k(40.0)
-                * (t1122 - T::fused(t523, t1201, -T::fused(t517, t1195, t535 * t1198)));
-            let t1207 = T::fused(t1122, t1206, T::fused(t1119, t1204, t1121 * t1205))
-                - T::fused(t1117, t1167, -T::fused(t1114, t1165, t1116 * t1166));
-            let t1208 = k(1.0)
+            let t1136 = k(50.0) * (t1048 + t1135);
+            let t1137 = k(263.1578947368421) * t1134;
+            let t1138 = k(40.0)
+                * (t1057 - T::fused(t538, t1133, -T::fused(t532, t1127, t550 * t1130)));
+            let t1139 = T::fused(t1057, t1138, T::fused(t1048, t1136, t1053 * t1137))
+                - T::fused(t1044, t1099, T::fused(-t1042, t1097, t1044 * t1098));
+            let t1140 = k(1.0) / T::fused(t1062, t1063, -T::fused(t1059, t1060, -t1139));
+            let t1141 = T::fused(
+                -k(2.0),
+                T::fused(shaft_wz, t1030, shaft_wy * t1016),
+                T::fused(t51, t1012, -T::fused(-t50, t1008, t43 * t1011)),
+            );
+            let t1142 = T::fused(
+                k(2.0),
+                T::fused(shaft_wz, t1032, shaft_wy * t1021),
+                T::fused(t47, t1012, T::fused(-t43, t1008, t46 * t1011)),
+            );
+            let t1143 = t1142 + T::fused(t17, t1014, -T::fused(-t40, t1011, t0 * t1017));
+            let t1144 = T::fused(
+                k(0.9045340337332909),
+                t1141 + T::fused(t17, t1010, -T::fused(-t40, t1008, t0 * t1009)),
+                k(0.30151134457776363) * t1143,
+            );
+            let t1145 = T::fused(
+                -k(2.0),
+                T::fused(shaft_wz, t1036, shaft_wy * t1026),
+                T::fused(t53, t1012, T::fused(t51, t1008, t47 * t1011)),
+            );
+            let t1146 = t1145 + T::fused(t17, t1015, -T::fused(-t40, t1012, t0 * t1018));
+            let t1147 = T::fused(
+                k(0.6396021490668313),
+                t1039,
+                T::fused(
+                    -k(0.4264014327112209),
+                    T::fused(k(0.30151134457776363), t1146, t1144),
+                    k(0.6396021490668313) * t1029,
+                ),
+            );
+            let t1148 = k(0.6396021490668313) * (t1041 - t1040);
+            let t1149 = k(0.6396021490668313) * t1043;
+            let t1150 = T::fused(k(0.4264014327112209), t1041, t1149);
+            let t1151 = T::fused(k(0.4264014327112209), t1040, t1149);
+            let t1152 = t1012 - t1011;
+            let t1153 = T::fused(
+                -k(0.19284730395996752),
+                t1046,
+                T::fused(-k(0.19284730395996752), t1045, k(0.128564869306645) * t1152),
+            );
+            let t1154 = k(0.30151134457776363) * t1008;
+            let t1155 = T::fused(
+                -k(0.6396021490668313),
+                t1050,
+                T::fused(
+                    -k(0.6396021490668313),
+                    t1052,
+                    k(0.4264014327112209)
+                        * T::fused(k(0.9045340337332909), t1012, -t1154),
+                ),
+            );
+            let t1156 = T::fused(
+                -k(0.6396021490668313),
+                t1054,
+                T::fused(
+                    -k(0.6396021490668313),
+                    t1055,
+                    k(0.4264014327112209)
+                        * T::fused(-k(0.9045340337332909), t1011, t1154),
+                ),
+            );
+            let t1157 = T::fused(t1156, t784, T::fused(-t1153, t782, t1155 * t783))
+                + T::fused(t1151, t464, -T::fused(t1148, t468, t1150 * t463));
+            let t1158 = T::fused(t1156, t886, -T::fused(-t1153, t884, t1155 * t885))
+                + T::fused(t1151, t840, -T::fused(t1148, t844, t1150 * t839));
+            let t1159 = t891 * t1158;
+            let t1160 = T::fused(t1156, t1002, -T::fused(-t1153, t1000, t1155 * t1001))
+                + T::fused(t1151, t956, -T::fused(t1148, t960, t1150 * t955));
+            let t1161 = T::fused(t918, t1159, -t1160);
+            let t1162 = t1007 * t1161;
+            let t1163 = T::fused(t1156, t1138, T::fused(-t1153, t1136, t1155 * t1137))
+                + T::fused(t1151, t1099, -T::fused(t1148, t1097, t1150 * t1098));
+            let t1164 = T::fused(t1062, t1162, -T::fused(t1059, t1159, -t1163));
+            let t1165 = t1140 * t1164;
+            let t1166 = T::fused(
+                t1165,
+                t1064,
+                -T::fused(t1162, t920, -T::fused(t1159, t804, -(t1157 - t1147))),
+            );
+            let t1167 = T::fused(t213, t1151, T::fused(-t1148, t189, t206 * t1150));
+            let t1168 = t218 * t1167;
+            let t1169 = T::fused(t215, t1168, t1148);
+            let t1170 = t222 * t1169;
+            let t1171 = T::fused(t224, t1170, -T::fused(-t216, t1168, t1150));
+            let t1172 = T::fused(t281, t1170, T::fused(-t217, t1168, t1151));
+            let t1173 = T::fused(t240, t1168, t242 * t1170);
+            let t1174 = T::fused(t252, t1168, t254 * t1170);
+            let t1175 = T::fused(t264, t1168, t266 * t1170);
+            let t1176 = T::fused(t308, t1175, T::fused(t297, t1173, t303 * t1174))
+                - T::fused(t270, t1171, t271 * t1172);
+            let t1177 = T::fused(t313, t1175, T::fused(-t310, t1173, t311 * t1174));
+            let t1178 = T::fused(t320, t1175, -T::fused(t316, t1173, t318 * t1174))
+                + T::fused(t138, t1171, t137 * t1172);
+            let t1179 = T::fused(t324, t1175, -T::fused(t326, t1173, t328 * t1174));
+            let t1180 = T::fused(
+                k(0.6666666666666666),
+                t1179 + (t1179 + T::fused(t148, t1171, t149 * t1172)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t1177 + t1176,
+                    k(0.6666666666666666) * (t1177 + t1178),
+                ),
+            );
+            let t1181 = t442 * t1180;
+            let t1182 = k(0.3333333333333333) * t1181;
+            let t1183 = k(0.6666666666666666) * t1181;
+            let t1184 = t326 * t1183;
+            let t1185 = t1184 - T::fused(-t310, t1182, t310 * t1183);
+            let t1186 = T::fused(t297, t1182, t316 * t1183) - t1184 - t1185;
+            let t1187 = t328 * t1183;
+            let t1188 = t1187 + T::fused(-t311, t1182, t311 * t1183);
+            let t1189 = T::fused(t303, t1182, t318 * t1183) - t1187 - t1188;
+            let t1190 = t324 * t1183;
+            let t1191 = t1190 - T::fused(-t313, t1182, t313 * t1183);
+            let t1192 = T::fused(-t308, t1182, t320 * t1183) - t1190 - t1191;
+            let t1193 = T::fused(t148, t1183, -T::fused(t270, t1182, t138 * t1183));
+            let t1194 = T::fused(t149, t1183, -T::fused(t271, t1182, t137 * t1183));
+            let t1195 = T::fused(t224, t1193, t281 * t1194)
+                - T::fused(t266, t1192, -T::fused(t242, t1186, t254 * t1189));
+            let t1196 = t222 * (t1169 - t1195);
+            let t1197 = T::fused(t217, t1194, -T::fused(-t215, t1196, t216 * t1193))
+                + T::fused(t264, t1192, -T::fused(t240, t1186, t252 * t1189));
+            let t1198 = t218 * (t1167 + t1197);
+            let t1199 = T::fused(-t189, t1198, t1196);
+            let t1200 = T::fused(t206, t1198, t1193);
+            let t1201 = T::fused(-t213, t1198, t1194);
+            let t1202 = k(50.0) * t1153;
+            let t1203 = T::fused(-k(0.4), t1153, t1155);
+            let t1204 = k(263.1578947368421) * t1203;
+            let t1205 = k(40.0) * t1156;
+            let t1206 = T::fused(t532, t1205, T::fused(t525, t1202, t527 * t1204));
+            let t1207 = T::fused(t550, t1205, -T::fused(t546, t1202, t547 * t1204));
+            let t1208 = T::fused(t538, t1205, -T::fused(t534, t1202, t535 * t1204));
+            let t1209 = T::fused(t633, t1208, T::fused(t625, t1206, t629 * t1207))
+                - T::fused(t634, t1208, T::fused(-t626, t1206, t630 * t1207));
+            let t1210 = T::fused(
+                -k(0.9805806756909201),
+                t1206,
+                k(0.19611613513818404) * t1208,
+            );
+            let t1211 = t544 * t1210;
+            let t1212 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t541, t1211, t1206),
+                k(0.9813067629253163) * T::fused(t556, t1211, t1207),
+            );
+            let t1213 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t543, t1211, t1208),
+                t1212,
+            );
+            let t1214 = t653 * t1213;
+            let t1215 = T::fused(
+                -k(2.0),
+                T::fused(t665, t1208, -T::fused(t663, t1206, t664 * t1207)),
+                t673 * t1211,
+            );
+            let t1216 = T::fused(t680, t1214, t1215)
+                + T::fused(t661, t1214, T::fused(t649, t1211, t1209));
+            let t1217 = T::fused(
+                t689,
+                t1211,
+                T::fused(t683, t1208, -T::fused(t681, t1206, t682 * t1207)),
+            );
+            let t1218 = t758
+                * T::fused(
+                    -k(0.19245008972987526),
+                    t1216,
+                    k(0.9622504486493763) * T::fused(t695, t1214, t1217),
+                );
+            let t1219 = k(0.19245008972987526) * t1218;
+            let t1220 = k(0.9622504486493763) * t1218;
+            let t1221 = t653
+                * (t1213 - T::fused(t695, t1220, -T::fused(t661, t1219, t680 * t1219)));
+            let t1222 = k(0.03774256780481986) * t1221;
+            let t1223 = k(0.9813067629253163) * t1221;
+            let t1224 = k(0.1887128390240993) * t1221;
+            let t1225 = T::fused(t689, t1220, -T::fused(t649, t1219, t673 * t1219))
+                + T::fused(t543, t1224, -T::fused(t541, t1222, t556 * t1223));
+            let t1226 = t544 * (t1210 - t1225);
+            let t1227 = t663 * t1219;
+            let t1228 = T::fused(t625, t1219, t1227)
+                + T::fused(-k(0.9805806756909201), t1226, t1222);
+            let t1229 = T::fused(t681, t1220, T::fused(t626, t1219, t1227)) + t1228;
+            let t1230 = t664 * t1219;
+            let t1231 = t1223 + T::fused(t629, t1219, t1230);
+            let t1232 = T::fused(t682, t1220, -T::fused(t630, t1219, -t1230)) + t1231;
+            let t1233 = t665 * t1219;
+            let t1234 = T::fused(-t633, t1219, t1233)
+                - T::fused(k(0.19611613513818404), t1226, t1224);
+            let t1235 = T::fused(t683, t1220, T::fused(t634, t1219, t1233)) + t1234;
+            let t1236 = t1203
+                + T::fused(t535, t1235, -T::fused(-t527, t1229, t547 * t1232));
+            let t1237 = T::fused(
+                k(2.1052631578947367),
+                t1236,
+                -T::fused(t534, t1235, -T::fused(-t525, t1229, t546 * t1232)),
+            );
+            let t1238 = k(50.0) * (t1153 - t1237);
+            let t1239 = k(263.1578947368421) * t1236;
+            let t1240 = k(40.0)
+                * (t1156 - T::fused(t538, t1235, -T::fused(t532, t1229, t550 * t1232)));
+            let t1241 = T::fused(t1156, t1240, T::fused(t1153, t1238, t1155 * t1239))
+                - T::fused(t1151, t1201, -T::fused(t1148, t1199, t1150 * t1200));
+            let t1242 = k(1.0)
                 / T::fused(
-                    t1130,
-                    t1131,
-                    -T::fused(t1127, t1128, -T::fused(t1124, t1125, -t1207)),
+                    t1164,
+                    t1165,
+                    -T::fused(t1161, t1162, -T::fused(t1158, t1159, -t1241)),
                 );
-            let t1209 = lid_wy * lid_wy;
-            let t1210 = lid_wz * lid_wz;
-            let t1211 = t1210 + t1209;
-            let t1212 = lid_e0 * lid_e0;
-            let t1213 = k(0.5) - T::fused(lid_e1, lid_e1, t1212);
-            let t1214 = k(2.0) * t1213;
-            let t1215 = lid_wx * lid_wy;
-            let t1216 = lid_e0 * lid_e3;
-            let t1217 = lid_e1 * lid_e2;
-            let t1218 = t1217 - t1216;
-            let t1219 = k(2.0) * t1218;
-            let t1220 = lid_wx * lid_wz;
-            let t1221 = lid_e0 * lid_e2;
-            let t1222 = lid_e1 * lid_e3;
-            let t1223 = t1222 + t1221;
-            let t1224 = k(2.0) * t1223;
-            let t1225 = T::fused(t1224, t1220, T::fused(t1214, t1211, t1219 * t1215));
-            let t1226 = lid_wx * lid_wx;
-            let t1227 = t1210 + t1226;
-            let t1228 = lid_wy * lid_wz;
-            let t1229 = T::fused(t1224, t1228, -T::fused(t1214, t1215, t1219 * t1227));
-            let t1230 = puck_rx + t649
-                - (lid_rx - T::fused(k(0.2), t1223, k(0.4) * t1213));
-            let t1231 = T::fused(t1214, lid_wz, t1224 * lid_wx);
-            let t1232 = T::fused(-t1219, lid_wz, t1224 * lid_wy);
-            let t1233 = T::fused(t1214, lid_wy, t1219 * lid_wx);
-            let t1234 = lid_sx - T::fused(-k(0.1), t1233, k(0.2) * t1232)
-                - T::fused(k(0.1), T::fused(-t482, puck_wz, t489 * puck_wy), puck_sx);
-            let t1235 = t1234
-                * T::fused(-k(0.8944271909999159), t1231, k(0.4472135954999579) * t1232);
-            let t1236 = t1209 + t1226;
-            let t1237 = T::fused(t1224, t1236, -T::fused(-t1214, t1220, t1219 * t1228));
-            let t1238 = k(0.1) * t1237;
-            let t1239 = t601 + t484;
-            let t1240 = T::fused(
-                k(0.1),
-                T::fused(t489, t474, T::fused(t477, t1239, t482 * t600)),
-                T::fused(k(0.2), t1225, t1238),
-            );
-            let t1241 = T::fused(
+            let t1243 = lid_wy * lid_wy;
+            let t1244 = lid_wz * lid_wz;
+            let t1245 = t1244 + t1243;
+            let t1246 = lid_e0 * lid_e0;
+            let t1247 = k(0.5) - T::fused(lid_e1, lid_e1, t1246);
+            let t1248 = k(2.0) * t1247;
+            let t1249 = lid_wx * lid_wy;
+            let t1250 = lid_e0 * lid_e3;
+            let t1251 = lid_e1 * lid_e2;
+            let t1252 = t1251 - t1250;
+            let t1253 = k(2.0) * t1252;
+            let t1254 = lid_wx * lid_wz;
+            let t1255 = lid_e0 * lid_e2;
+            let t1256 = lid_e1 * lid_e3;
+            let t1257 = t1256 + t1255;
+            let t1258 = k(2.0) * t1257;
+            let t1259 = T::fused(t1258, t1254, T::fused(t1248, t1245, t1253 * t1249));
+            let t1260 = lid_wx * lid_wx;
+            let t1261 = t1244 + t1260;
+            let t1262 = lid_wy * lid_wz;
+            let t1263 = T::fused(t1258, t1262, -T::fused(t1248, t1249, t1253 * t1261));
+            let t1264 = puck_rx + t663
+                - (lid_rx - T::fused(k(0.2), t1257, k(0.4) * t1247));
+            let t1265 = T::fused(t1248, lid_wz, t1258 * lid_wx);
+            let t1266 = T::fused(-t1253, lid_wz, t1258 * lid_wy);
+            let t1267 = T::fused(t1248, lid_wy, t1253 * lid_wx);
+            let t1268 = lid_sx - T::fused(-k(0.1), t1267, k(0.2) * t1266)
+                - T::fused(k(0.1), T::fused(-t497, puck_wz, t504 * puck_wy), puck_sx);
+            let t1269 = t1268
+                * T::fused(-k(0.8944271909999159), t1265, k(0.4472135954999579) * t1266);
+            let t1270 = t1243 + t1260;
+            let t1271 = T::fused(t1258, t1270, -T::fused(-t1248, t1254, t1253 * t1262));
+            let t1272 = k(0.1) * t1271;
+            let t1273 = T::fused(k(0.1), t723, T::fused(k(0.2), t1259, t1272));
+            let t1274 = T::fused(
                 -k(0.8944271909999159),
-                t1213,
-                k(1.7888543819998317) * t1218,
+                t1247,
+                k(1.7888543819998317) * t1252,
             );
-            let t1242 = T::fused(t1241, t1240, -t1235)
+            let t1275 = T::fused(t1274, t1273, -t1269)
                 - T::fused(
-                    t1230,
+                    t1264,
                     T::fused(
                         k(0.4472135954999579),
-                        t1225,
-                        k(0.8944271909999159) * t1229,
+                        t1259,
+                        k(0.8944271909999159) * t1263,
                     ),
-                    t1235,
+                    t1269,
                 );
-            let t1243 = t1217 + t1216;
-            let t1244 = k(2.0) * t1243;
-            let t1245 = k(0.5) - T::fused(lid_e2, lid_e2, t1212);
-            let t1246 = k(2.0) * t1245;
-            let t1247 = lid_e0 * lid_e1;
-            let t1248 = lid_e2 * lid_e3;
-            let t1249 = t1248 - t1247;
-            let t1250 = k(2.0) * t1249;
-            let t1251 = T::fused(t1250, t1220, -T::fused(t1244, t1211, t1246 * t1215));
-            let t1252 = T::fused(t1250, t1228, T::fused(t1244, t1215, t1246 * t1227));
-            let t1253 = puck_ry - t650
-                - (lid_ry + T::fused(-k(0.2), t1249, k(0.4) * t1243));
-            let t1254 = T::fused(-t1244, lid_wz, t1250 * lid_wx);
-            let t1255 = T::fused(t1246, lid_wz, t1250 * lid_wy);
-            let t1256 = T::fused(t1244, lid_wy, t1246 * lid_wx);
-            let t1257 = lid_sy - T::fused(k(0.1), t1256, k(0.2) * t1255)
-                - T::fused(k(0.1), T::fused(t494, puck_wz, t498 * puck_wy), puck_sy);
-            let t1258 = t1257
-                * T::fused(-k(0.8944271909999159), t1254, k(0.4472135954999579) * t1255);
-            let t1259 = T::fused(t1250, t1236, T::fused(-t1244, t1220, t1246 * t1228));
-            let t1260 = k(0.1) * t1259;
-            let t1261 = T::fused(
-                k(0.1),
-                T::fused(t498, t474, -T::fused(t492, t1239, t494 * t600)),
-                T::fused(k(0.2), t1251, t1260),
-            );
-            let t1262 = T::fused(
+            let t1276 = t1251 + t1250;
+            let t1277 = k(2.0) * t1276;
+            let t1278 = k(0.5) - T::fused(lid_e2, lid_e2, t1246);
+            let t1279 = k(2.0) * t1278;
+            let t1280 = lid_e0 * lid_e1;
+            let t1281 = lid_e2 * lid_e3;
+            let t1282 = t1281 - t1280;
+            let t1283 = k(2.0) * t1282;
+            let t1284 = T::fused(t1283, t1254, -T::fused(t1277, t1245, t1279 * t1249));
+            let t1285 = T::fused(t1283, t1262, T::fused(t1277, t1249, t1279 * t1261));
+            let t1286 = puck_ry - t664
+                - (lid_ry + T::fused(-k(0.2), t1282, k(0.4) * t1276));
+            let t1287 = T::fused(-t1277, lid_wz, t1283 * lid_wx);
+            let t1288 = T::fused(t1279, lid_wz, t1283 * lid_wy);
+            let t1289 = T::fused(t1277, lid_wy, t1279 * lid_wx);
+            let t1290 = lid_sy - T::fused(k(0.1), t1289, k(0.2) * t1288)
+                - T::fused(k(0.1), T::fused(t509, puck_wz, t513 * puck_wy), puck_sy);
+            let t1291 = t1290
+                * T::fused(-k(0.8944271909999159), t1287, k(0.4472135954999579) * t1288);
+            let t1292 = T::fused(t1283, t1270, T::fused(-t1277, t1254, t1279 * t1262));
+            let t1293 = k(0.1) * t1292;
+            let t1294 = T::fused(k(0.1), t729, T::fused(k(0.2), t1284, t1293));
+            let t1295 = T::fused(
                 -k(0.8944271909999159),
-                t1243,
-                k(1.7888543819998317) * t1245,
+                t1276,
+                k(1.7888543819998317) * t1278,
             );
-            let t1263 = T::fused(t1262, t1261, t1258)
+            let t1296 = T::fused(t1295, t1294, t1291)
                 + T::fused(
-                    t1253,
+                    t1286,
                     T::fused(
                         k(0.4472135954999579),
-                        t1251,
-                        k(0.8944271909999159) * t1252,
+                        t1284,
+                        k(0.8944271909999159) * t1285,
                     ),
-                    t1258,
+                    t1291,
                 );
-            let t1264 = t1222 - t1221;
-            let t1265 = k(2.0) * t1264;
-            let t1266 = t1248 + t1247;
-            let t1267 = k(2.0) * t1266;
-            let t1268 = k(0.5) - T::fused(lid_e3, lid_e3, t1212);
-            let t1269 = k(2.0) * t1268;
-            let t1270 = T::fused(t1269, t1220, -T::fused(-t1265, t1211, t1267 * t1215));
-            let t1271 = T::fused(t1269, t1228, T::fused(-t1265, t1215, t1267 * t1227));
-            let t1272 = puck_rz - t651
-                - (lid_rz + T::fused(k(0.2), t1268, k(0.4) * t1264));
-            let t1273 = T::fused(t1265, lid_wz, t1269 * lid_wx);
-            let t1274 = T::fused(t1267, lid_wz, t1269 * lid_wy);
-            let t1275 = T::fused(-t1265, lid_wy, t1267 * lid_wx);
-            let t1276 = lid_sz + T::fused(k(0.1), t1275, k(0.2) * t1274)
-                - T::fused(-k(0.1), T::fused(t503, puck_wz, t505 * puck_wy), puck_sz);
-            let t1277 = t1276
-                * T::fused(-k(0.8944271909999159), t1273, k(0.4472135954999579) * t1274);
-            let t1278 = T::fused(t1269, t1236, T::fused(t1265, t1220, t1267 * t1228));
-            let t1279 = k(0.1) * t1278;
-            let t1280 = T::fused(
-                k(0.1),
-                T::fused(t505, t474, -T::fused(-t501, t1239, t503 * t600)),
-                T::fused(k(0.2), t1270, t1279),
-            );
-            let t1281 = T::fused(
-                k(0.8944271909999159),
-                t1264,
-                k(1.7888543819998317) * t1266,
-            );
-            let t1282 = T::fused(t1281, t1280, -t1277)
-                - T::fused(
-                    t1272,
-                    T::fused(
-                        k(0.4472135954999579),
-                        t1270,
-                        k(0.8944271909999159) * t1271,
-                    ),
-                    t1277,
-                );
-            let t1283 = nut_wx * nut_wz;
-            let t1284 = nut_e0 * nut_e0;
-            let t1285 = k(0.5) - T::fused(nut_e1, nut_e1, t1284);
-            let t1286 = k(2.0) * t1285;
-            let t1287 = nut_wy * nut_wz;
-            let t1288 = nut_e0 * nut_e3;
-            let t1289 = nut_e1 * nut_e2;
-            let t1290 = t1289 - t1288;
-            let t1291 = k(2.0) * t1290;
-            let t1292 = nut_wx * nut_wx;
-            let t1293 = nut_wy * nut_wy;
-            let t1294 = t1293 + t1292;
-            let t1295 = nut_e0 * nut_e2;
-            let t1296 = nut_e1 * nut_e3;
-            let t1297 = t1296 + t1295;
+            let t1297 = t1256 - t1255;
             let t1298 = k(2.0) * t1297;
-            let t1299 = T::fused(t1298, t1294, -T::fused(-t1286, t1283, t1291 * t1287));
-            let t1300 = nut_wz * nut_wz;
-            let t1301 = t1300 + t1293;
-            let t1302 = nut_wx * nut_wy;
-            let t1303 = T::fused(t1298, t1283, T::fused(t1286, t1301, t1291 * t1302));
-            let t1304 = T::fused(-k(0.05), t1225, t1238)
-                - T::fused(-k(0.1), t1299, k(0.05) * t1303);
-            let t1305 = k(0.5) - T::fused(nut_e2, nut_e2, t1284);
-            let t1306 = k(2.0) * t1305;
-            let t1307 = nut_e0 * nut_e1;
-            let t1308 = nut_e2 * nut_e3;
-            let t1309 = t1308 + t1307;
-            let t1310 = k(2.0) * t1309;
-            let t1311 = T::fused(t1310, t1265, -T::fused(t1291, t1214, t1306 * t1244));
-            let t1312 = t1289 + t1288;
-            let t1313 = k(2.0) * t1312;
-            let t1314 = t1296 - t1295;
-            let t1315 = k(2.0) * t1314;
-            let t1316 = T::fused(t1315, t1265, T::fused(t1286, t1214, t1313 * t1244));
-            let t1317 = T::fused(t1310, t1267, T::fused(t1291, t1219, t1306 * t1246));
-            let t1318 = t1316 * t1317;
-            let t1319 = T::fused(t1315, t1267, -T::fused(t1286, t1219, t1313 * t1246));
-            let t1320 = T::fused(t1319, t1311, -t1318);
-            let t1321 = k(1.0) / (t1316 * t1320);
-            let t1322 = T::fused(t1315, t1269, -T::fused(-t1286, t1224, t1313 * t1250));
-            let t1323 = T::fused(t1310, t1269, T::fused(-t1291, t1224, t1306 * t1250));
-            let t1324 = t1308 - t1307;
-            let t1325 = k(2.0) * t1324;
-            let t1326 = k(0.5) - T::fused(nut_e3, nut_e3, t1284);
-            let t1327 = k(2.0) * t1326;
-            let t1328 = T::fused(t1327, t1269, T::fused(t1298, t1224, t1325 * t1250));
-            let t1329 = T::fused(t1327, t1265, -T::fused(-t1298, t1214, t1325 * t1244));
-            let t1330 = T::fused(t1327, t1267, T::fused(-t1298, t1219, t1325 * t1246));
-            let t1331 = T::fused(-lid_wy, t1329, lid_wx * t1330);
-            let t1332 = T::fused(
+            let t1299 = t1281 + t1280;
+            let t1300 = k(2.0) * t1299;
+            let t1301 = k(0.5) - T::fused(lid_e3, lid_e3, t1246);
+            let t1302 = k(2.0) * t1301;
+            let t1303 = T::fused(t1302, t1254, -T::fused(-t1298, t1245, t1300 * t1249));
+            let t1304 = T::fused(t1302, t1262, T::fused(-t1298, t1249, t1300 * t1261));
+            let t1305 = puck_rz - t665
+                - (lid_rz + T::fused(k(0.2), t1301, k(0.4) * t1297));
+            let t1306 = T::fused(t1298, lid_wz, t1302 * lid_wx);
+            let t1307 = T::fused(t1300, lid_wz, t1302 * lid_wy);
+            let t1308 = T::fused(-t1298, lid_wy, t1300 * lid_wx);
+            let t1309 = lid_sz + T::fused(k(0.1), t1308, k(0.2) * t1307)
+                - T::fused(-k(0.1), T::fused(t518, puck_wz, t520 * puck_wy), puck_sz);
+            let t1310 = t1309
+                * T::fused(-k(0.8944271909999159), t1306, k(0.4472135954999579) * t1307);
+            let t1311 = T::fused(t1302, t1270, T::fused(t1298, t1254, t1300 * t1262));
+            let t1312 = k(0.1) * t1311;
+            let t1313 = T::fused(k(0.1), t725, T::fused(k(0.2), t1303, t1312));
+            let t1314 = T::fused(
+                k(0.8944271909999159),
+                t1297,
+                k(1.7888543819998317) * t1299,
+            );
+            let t1315 = T::fused(t1314, t1313, -t1310)
+                - T::fused(
+                    t1305,
+                    T::fused(
+                        k(0.4472135954999579),
+                        t1303,
+                        k(0.8944271909999159) * t1304,
+                    ),
+                    t1310,
+                );
+            let t1316 = nut_wx * nut_wz;
+            let t1317 = nut_e0 * nut_e0;
+            let t1318 = k(0.5) - T::fused(nut_e1, nut_e1, t1317);
+            let t1319 = k(2.0) * t1318;
+            let t1320 = nut_wy * nut_wz;
+            let t1321 = nut_e0 * nut_e3;
+            let t1322 = nut_e1 * nut_e2;
+            let t1323 = t1322 - t1321;
+            let t1324 = k(2.0) * t1323;
+            let t1325 = nut_wx * nut_wx;
+            let t1326 = nut_wy * nut_wy;
+            let t1327 = t1326 + t1325;
+            let t1328 = nut_e0 * nut_e2;
+            let t1329 = nut_e1 * nut_e3;
+            let t1330 = t1329 + t1328;
+            let t1331 = k(2.0) * t1330;
+            let t1332 = T::fused(t1331, t1327, -T::fused(-t1319, t1316, t1324 * t1320));
+            let t1333 = nut_wz * nut_wz;
+            let t1334 = t1333 + t1326;
+            let t1335 = nut_wx * nut_wy;
+            let t1336 = T::fused(t1331, t1316, T::fused(t1319, t1334, t1324 * t1335));
+            let t1337 = T::fused(-k(0.05), t1259, t1272)
+                - T::fused(-k(0.1), t1332, k(0.05) * t1336);
+            let t1338 = k(0.5) - T::fused(nut_e2, nut_e2, t1317);
+            let t1339 = k(2.0) * t1338;
+            let t1340 = nut_e0 * nut_e1;
+            let t1341 = nut_e2 * nut_e3;
+            let t1342 = t1341 + t1340;
+            let t1343 = k(2.0) * t1342;
+            let t1344 = T::fused(t1343, t1298, -T::fused(t1324, t1248, t1339 * t1277));
+            let t1345 = t1322 + t1321;
+            let t1346 = k(2.0) * t1345;
+            let t1347 = t1329 - t1328;
+            let t1348 = k(2.0) * t1347;
+            let t1349 = T::fused(t1348, t1298, T::fused(t1319, t1248, t1346 * t1277));
+            let t1350 = T::fused(t1343, t1300, T::fused(t1324, t1253, t1339 * t1279));
+            let t1351 = t1349 * t1350;
+            let t1352 = T::fused(t1348, t1300, -T::fused(t1319, t1253, t1346 * t1279));
+            let t1353 = T::fused(t1352, t1344, -t1351);
+            let t1354 = k(1.0) / (t1349 * t1353);
+            let t1355 = T::fused(t1348, t1302, -T::fused(-t1319, t1258, t1346 * t1283));
+            let t1356 = T::fused(t1343, t1302, T::fused(-t1324, t1258, t1339 * t1283));
+            let t1357 = t1341 - t1340;
+            let t1358 = k(2.0) * t1357;
+            let t1359 = k(0.5) - T::fused(nut_e3, nut_e3, t1317);
+            let t1360 = k(2.0) * t1359;
+            let t1361 = T::fused(t1360, t1302, T::fused(t1331, t1258, t1358 * t1283));
+            let t1362 = T::fused(t1360, t1298, -T::fused(-t1331, t1248, t1358 * t1277));
+            let t1363 = T::fused(t1360, t1300, T::fused(-t1331, t1253, t1358 * t1279));
+            let t1364 = T::fused(-lid_wy, t1362, lid_wx * t1363);
+            let t1365 = T::fused(
                 -k(2.0),
                 T::fused(
                     nut_wz,
-                    T::fused(-lid_wy, t1311, lid_wx * t1317),
-                    nut_wy * t1331,
+                    T::fused(-lid_wy, t1344, lid_wx * t1350),
+                    nut_wy * t1364,
                 ),
-                T::fused(t1236, t1322, T::fused(t1220, t1316, t1228 * t1319)),
+                T::fused(t1270, t1355, T::fused(t1254, t1349, t1262 * t1352)),
             );
-            let t1333 = t1332
-                + T::fused(t1283, t1328, -T::fused(-t1301, t1322, t1302 * t1323));
-            let t1334 = t1300 + t1292;
-            let t1335 = T::fused(
+            let t1366 = t1365
+                + T::fused(t1316, t1361, -T::fused(-t1334, t1355, t1335 * t1356));
+            let t1367 = t1333 + t1325;
+            let t1368 = T::fused(
                 k(2.0),
                 T::fused(
                     nut_wz,
-                    T::fused(-lid_wy, t1316, lid_wx * t1319),
-                    nut_wx * t1331,
+                    T::fused(-lid_wy, t1349, lid_wx * t1352),
+                    nut_wx * t1364,
                 ),
-                T::fused(t1236, t1323, T::fused(t1220, t1311, t1228 * t1317)),
+                T::fused(t1270, t1356, T::fused(t1254, t1344, t1262 * t1350)),
             );
-            let t1336 = t1335
-                + T::fused(t1287, t1328, T::fused(-t1302, t1322, t1334 * t1323));
-            let t1337 = T::fused(
-                -t1333,
-                t1321 * (t1316 * t1311),
-                t1336 * (t1321 * (t1316 * t1316)),
+            let t1369 = t1368
+                + T::fused(t1320, t1361, T::fused(-t1335, t1355, t1367 * t1356));
+            let t1370 = T::fused(
+                -t1366,
+                t1354 * (t1349 * t1344),
+                t1369 * (t1354 * (t1349 * t1349)),
             );
-            let t1338 = k(0.04) * t1218;
-            let t1339 = T::fused(
-                -t1333,
-                t1318 * t1321,
-                t1336 * (t1321 * (t1319 * t1316)),
+            let t1371 = k(0.04) * t1252;
+            let t1372 = T::fused(
+                -t1366,
+                t1351 * t1354,
+                t1369 * (t1354 * (t1352 * t1349)),
             );
-            let t1340 = k(0.2) * t1213;
-            let t1341 = T::fused(k(0.1), t1223, t1340);
-            let t1342 = k(0.2) * t1341;
-            let t1343 = T::fused(
+            let t1373 = k(0.2) * t1247;
+            let t1374 = T::fused(k(0.1), t1257, t1373);
+            let t1375 = k(0.2) * t1374;
+            let t1376 = T::fused(
                 nut_wz,
-                T::fused(lid_wz, t1311, lid_wx * t1323),
-                nut_wy * T::fused(lid_wz, t1329, lid_wx * t1328),
+                T::fused(lid_wz, t1344, lid_wx * t1356),
+                nut_wy * T::fused(lid_wz, t1362, lid_wx * t1361),
             );
-            let t1344 = T::fused(
+            let t1377 = T::fused(
                 k(2.0),
-                t1343,
-                T::fused(t1228, t1322, T::fused(-t1215, t1316, t1227 * t1319)),
+                t1376,
+                T::fused(t1262, t1355, T::fused(-t1249, t1349, t1261 * t1352)),
             );
-            let t1345 = T::fused(
-                -(t1321 * (t1322 * t1311)),
-                t1333,
-                t1321 * (t1316 * t1322) * t1336,
+            let t1378 = T::fused(
+                -(t1354 * (t1355 * t1344)),
+                t1366,
+                t1354 * (t1349 * t1355) * t1369,
             );
-            let t1346 = T::fused(
-                -(t1320 * t1321),
-                t1344 + T::fused(t1283, t1330, -T::fused(-t1301, t1319, t1302 * t1317)),
-                t1345,
-            );
-            let t1347 = k(0.02) * t1218;
-            let t1348 = T::fused(
-                -k(0.2),
-                t1304,
-                T::fused(t1347, t1346, T::fused(t1338, t1337, t1342 * t1339)),
-            );
-            let t1349 = slide_e0 * slide_e0;
-            let t1350 = k(0.5) - T::fused(slide_e3, slide_e3, t1349);
-            let t1351 = k(2.0) * t1350;
-            let t1352 = slide_e0 * slide_e1;
-            let t1353 = slide_e2 * slide_e3;
-            let t1354 = t1353 - t1352;
-            let t1355 = k(2.0) * t1354;
-            let t1356 = slide_e0 * slide_e2;
-            let t1357 = slide_e1 * slide_e3;
-            let t1358 = t1357 + t1356;
-            let t1359 = k(2.0) * t1358;
-            let t1360 = T::fused(t1351, t1327, T::fused(t1355, t1325, t1359 * t1298));
-            let t1361 = k(0.5) - T::fused(slide_e2, slide_e2, t1349);
-            let t1362 = k(2.0) * t1361;
-            let t1363 = slide_e0 * slide_e3;
-            let t1364 = slide_e1 * slide_e2;
-            let t1365 = t1364 - t1363;
-            let t1366 = k(2.0) * t1365;
-            let t1367 = t1353 + t1352;
-            let t1368 = k(2.0) * t1367;
-            let t1369 = T::fused(t1368, t1327, -T::fused(-t1362, t1325, t1366 * t1298));
-            let t1370 = k(0.5) - T::fused(slide_e1, slide_e1, t1349);
-            let t1371 = k(2.0) * t1370;
-            let t1372 = t1364 + t1363;
-            let t1373 = k(2.0) * t1372;
-            let t1374 = t1357 - t1356;
-            let t1375 = k(2.0) * t1374;
-            let t1376 = T::fused(t1375, t1327, -T::fused(-t1371, t1298, t1373 * t1325));
-            let t1377 = T::fused(t1375, t1315, T::fused(t1371, t1286, t1373 * t1313));
-            let t1378 = T::fused(t1375, t1310, -T::fused(t1371, t1291, t1373 * t1306));
             let t1379 = T::fused(
-                k(0.4472135954999579),
-                t1377,
-                k(0.8944271909999159) * t1378,
+                -(t1353 * t1354),
+                t1377 + T::fused(t1316, t1363, -T::fused(-t1334, t1352, t1335 * t1350)),
+                t1378,
             );
-            let t1380 = T::fused(t1368, t1315, -T::fused(t1366, t1286, t1362 * t1313));
-            let t1381 = T::fused(t1368, t1310, T::fused(t1362, t1306, t1366 * t1291));
-            let t1382 = T::fused(
-                k(0.4472135954999579),
-                t1380,
-                k(0.8944271909999159) * t1381,
+            let t1380 = k(0.02) * t1252;
+            let t1381 = T::fused(
+                -k(0.2),
+                t1337,
+                T::fused(t1380, t1379, T::fused(t1371, t1370, t1375 * t1372)),
             );
-            let t1383 = T::fused(
+            let t1382 = slide_e0 * slide_e0;
+            let t1383 = k(0.5) - T::fused(slide_e3, slide_e3, t1382);
+            let t1384 = k(2.0) * t1383;
+            let t1385 = slide_e0 * slide_e1;
+            let t1386 = slide_e2 * slide_e3;
+            let t1387 = t1386 - t1385;
+            let t1388 = k(2.0) * t1387;
+            let t1389 = slide_e0 * slide_e2;
+            let t1390 = slide_e1 * slide_e3;
+            let t1391 = t1390 + t1389;
+            let t1392 = k(2.0) * t1391;
+            let t1393 = T::fused(t1384, t1360, T::fused(t1388, t1358, t1392 * t1331));
+            let t1394 = k(0.5) - T::fused(slide_e2, slide_e2, t1382);
+            let t1395 = k(2.0) * t1394;
+            let t1396 = slide_e0 * slide_e3;
+            let t1397 = slide_e1 * slide_e2;
+            let t1398 = t1397 - t1396;
+            let t1399 = k(2.0) * t1398;
+            let t1400 = t1386 + t1385;
+            let t1401 = k(2.0) * t1400;
+            let t1402 = T::fused(t1401, t1360, -T::fused(-t1395, t1358, t1399 * t1331));
+            let t1403 = k(0.5) - T::fused(slide_e1, slide_e1, t1382);
+            let t1404 = k(2.0) * t1403;
+            let t1405 = t1397 + t1396;
+            let t1406 = k(2.0) * t1405;
+            let t1407 = t1390 - t1389;
+            let t1408 = k(2.0) * t1407;
+            let t1409 = T::fused(t1408, t1360, -T::fused(-t1404, t1331, t1406 * t1358));
+            let t1410 = T::fused(t1408, t1348, T::fused(t1404, t1319, t1406 * t1346));
+            let t1411 = T::fused(t1408, t1343, -T::fused(t1404, t1324, t1406 * t1339));
+            let t1412 = T::fused(
                 k(0.4472135954999579),
-                t1379,
-                k(0.8944271909999159) * t1382,
+                t1410,
+                k(0.8944271909999159) * t1411,
             );
-            let t1384 = T::fused(t1351, t1315, -T::fused(-t1359, t1286, t1355 * t1313));
-            let t1385 = T::fused(t1351, t1310, -T::fused(-t1355, t1306, t1359 * t1291));
-            let t1386 = T::fused(
+            let t1413 = T::fused(t1401, t1348, -T::fused(t1399, t1319, t1395 * t1346));
+            let t1414 = T::fused(t1401, t1343, T::fused(t1395, t1339, t1399 * t1324));
+            let t1415 = T::fused(
                 k(0.4472135954999579),
-                t1384,
-                k(0.8944271909999159) * t1385,
+                t1413,
+                k(0.8944271909999159) * t1414,
             );
-            let t1387 = T::fused(
+            let t1416 = T::fused(
+                k(0.4472135954999579),
+                t1412,
+                k(0.8944271909999159) * t1415,
+            );
+            let t1417 = T::fused(t1384, t1348, -T::fused(-t1392, t1319, t1388 * t1346));
+            let t1418 = T::fused(t1384, t1343, -T::fused(-t1388, t1339, t1392 * t1324));
+            let t1419 = T::fused(
+                k(0.4472135954999579),
+                t1417,
+                k(0.8944271909999159) * t1418,
+            );
+            let t1420 = T::fused(
                 k(0.7453559924999299),
-                t1386,
-                -T::fused(-k(0.5962847939999439), t1379, k(0.29814239699997197) * t1382),
+                t1419,
+                -T::fused(-k(0.5962847939999439), t1412, k(0.29814239699997197) * t1415),
             );
-            let t1388 = T::fused(
-                -t1383,
+            let t1421 = T::fused(
+                -t1416,
                 T::fused(
                     k(0.6666666666666666),
-                    t1360,
+                    t1393,
                     T::fused(
                         -k(0.26666666666666666),
-                        t1369,
-                        k(0.5333333333333333) * t1376,
+                        t1402,
+                        k(0.5333333333333333) * t1409,
                     ),
                 ),
-                t1387 * T::fused(k(0.8), t1369, k(0.4) * t1376),
+                t1420 * T::fused(k(0.8), t1402, k(0.4) * t1409),
             );
-            let t1389 = k(1.0) / T::fused(t1383, t1383, t1387 * t1387);
-            let t1390 = t1389 * t1388;
-            let t1391 = k(0.3333333333333333) * t1360;
-            let t1392 = T::fused(
-                -t1383,
-                T::fused(-k(0.13333333333333333), t1369, k(0.26666666666666666) * t1376)
-                    + t1391,
-                t1387 * T::fused(k(0.4), t1369, k(0.2) * t1376),
+            let t1422 = k(1.0) / T::fused(t1416, t1416, t1420 * t1420);
+            let t1423 = t1422 * t1421;
+            let t1424 = k(0.3333333333333333) * t1393;
+            let t1425 = T::fused(
+                -t1416,
+                T::fused(-k(0.13333333333333333), t1402, k(0.26666666666666666) * t1409)
+                    + t1424,
+                t1420 * T::fused(k(0.4), t1402, k(0.2) * t1409),
             );
-            let t1393 = t1389 * t1392;
-            let t1394 = T::fused(
+            let t1426 = t1422 * t1425;
+            let t1427 = T::fused(
                 -k(0.8944271909999159),
-                t1380,
-                k(0.4472135954999579) * t1381,
+                t1413,
+                k(0.4472135954999579) * t1414,
             );
-            let t1395 = T::fused(
+            let t1428 = T::fused(
                 -k(0.8944271909999159),
-                t1377,
-                k(0.4472135954999579) * t1378,
+                t1410,
+                k(0.4472135954999579) * t1411,
             );
-            let t1396 = T::fused(
+            let t1429 = T::fused(
                 k(0.7453559924999299),
-                T::fused(-k(0.8944271909999159), t1384, k(0.4472135954999579) * t1385),
-                T::fused(-k(0.29814239699997197), t1394, k(0.5962847939999439) * t1395),
+                T::fused(-k(0.8944271909999159), t1417, k(0.4472135954999579) * t1418),
+                T::fused(-k(0.29814239699997197), t1427, k(0.5962847939999439) * t1428),
             );
-            let t1397 = t1389
+            let t1430 = t1422
                 * T::fused(
-                    -t1383,
-                    t1396,
-                    t1387
+                    -t1416,
+                    t1429,
+                    t1420
                         * T::fused(
                             k(0.8944271909999159),
-                            t1394,
-                            k(0.4472135954999579) * t1395,
+                            t1427,
+                            k(0.4472135954999579) * t1428,
                         ),
                 );
-            let t1398 = T::fused(
+            let t1431 = T::fused(
                 k(0.0021220659078919376),
-                t1397,
+                t1430,
                 -T::fused(
                     k(0.0021220659078919376),
-                    t1390,
-                    k(0.0010610329539459688) * t1393,
+                    t1423,
+                    k(0.0010610329539459688) * t1426,
                 ),
             );
-            let t1399 = k(0.6666666666666666) * t1365;
-            let t1400 = k(1.3333333333333333) * t1358;
-            let t1401 = t1400 - T::fused(k(1.3333333333333333), t1370, t1399);
-            let t1402 = t1401 * t1398;
-            let t1403 = T::fused(t1325, t1294, T::fused(-t1313, t1283, t1306 * t1287));
-            let t1404 = T::fused(t1325, t1283, -T::fused(t1313, t1301, t1306 * t1302));
-            let t1405 = T::fused(-k(0.05), t1251, t1260)
-                - T::fused(-k(0.1), t1403, k(0.05) * t1404);
-            let t1406 = k(0.04) * t1245;
-            let t1407 = k(0.2) * t1243;
-            let t1408 = T::fused(k(0.1), t1249, -t1407);
-            let t1409 = k(0.2) * t1408;
-            let t1410 = k(0.02) * t1245;
-            let t1411 = T::fused(
+            let t1432 = k(0.6666666666666666) * t1398;
+            let t1433 = k(1.3333333333333333) * t1391;
+            let t1434 = t1433 - T::fused(k(1.3333333333333333), t1403, t1432);
+            let t1435 = t1434 * t1431;
+            let t1436 = T::fused(t1358, t1327, T::fused(-t1346, t1316, t1339 * t1320));
+            let t1437 = T::fused(t1358, t1316, -T::fused(t1346, t1334, t1339 * t1335));
+            let t1438 = T::fused(-k(0.05), t1284, t1293)
+                - T::fused(-k(0.1), t1436, k(0.05) * t1437);
+            let t1439 = k(0.04) * t1278;
+            let t1440 = k(0.2) * t1276;
+            let t1441 = T::fused(k(0.1), t1282, -t1440);
+            let t1442 = k(0.2) * t1441;
+            let t1443 = k(0.02) * t1278;
+            let t1444 = T::fused(
                 k(0.2),
-                t1405,
-                T::fused(t1410, t1346, -T::fused(-t1406, t1337, t1409 * t1339)),
+                t1438,
+                T::fused(t1443, t1379, -T::fused(-t1439, t1370, t1442 * t1372)),
             );
-            let t1412 = k(0.6666666666666666) * t1361;
-            let t1413 = k(1.3333333333333333) * t1354;
-            let t1414 = t1413 + T::fused(k(1.3333333333333333), t1372, t1412);
-            let t1415 = t1414 * t1398;
-            let t1416 = T::fused(t1327, t1294, T::fused(t1315, t1283, t1310 * t1287));
-            let t1417 = T::fused(t1327, t1283, -T::fused(-t1315, t1301, t1310 * t1302));
-            let t1418 = T::fused(-k(0.05), t1270, t1279)
-                - T::fused(-k(0.1), t1416, k(0.05) * t1417);
-            let t1419 = k(0.04) * t1266;
-            let t1420 = k(0.2) * t1264;
-            let t1421 = T::fused(k(0.1), t1268, t1420);
-            let t1422 = k(0.2) * t1421;
-            let t1423 = k(0.02) * t1266;
-            let t1424 = T::fused(
+            let t1445 = k(0.6666666666666666) * t1394;
+            let t1446 = k(1.3333333333333333) * t1387;
+            let t1447 = t1446 + T::fused(k(1.3333333333333333), t1405, t1445);
+            let t1448 = t1447 * t1431;
+            let t1449 = T::fused(t1360, t1327, T::fused(t1348, t1316, t1343 * t1320));
+            let t1450 = T::fused(t1360, t1316, -T::fused(-t1348, t1334, t1343 * t1335));
+            let t1451 = T::fused(-k(0.05), t1303, t1312)
+                - T::fused(-k(0.1), t1449, k(0.05) * t1450);
+            let t1452 = k(0.04) * t1299;
+            let t1453 = k(0.2) * t1297;
+            let t1454 = T::fused(k(0.1), t1301, t1453);
+            let t1455 = k(0.2) * t1454;
+            let t1456 = k(0.02) * t1299;
+            let t1457 = T::fused(
                 k(0.2),
-                t1418,
-                T::fused(t1423, t1346, -T::fused(-t1419, t1337, t1422 * t1339)),
+                t1451,
+                T::fused(t1456, t1379, -T::fused(-t1452, t1370, t1455 * t1372)),
             );
-            let t1425 = k(0.2) * self.gravity;
-            let t1426 = t1425 + t1424;
-            let t1427 = T::fused(k(0.3), self.gravity, t1426);
-            let t1428 = T::fused(
-                k(1.3333333333333333),
-                t1350,
-                T::fused(-k(1.3333333333333333), t1374, k(0.6666666666666666) * t1367),
-            );
-            let t1429 = t1428 * t1398;
-            let t1430 = k(0.2) * t1266;
-            let t1431 = T::fused(k(0.003), t1337, k(0.001) * t1346)
-                + T::fused(t1419, t1418, T::fused(-t1338, t1304, t1406 * t1405));
-            let t1432 = t1431 - T::fused(-t1425, t1430, k(0.0005) * t1228);
-            let t1433 = T::fused(
-                k(0.004),
-                t1339,
-                -T::fused(t1422, t1418, T::fused(t1342, t1304, t1409 * t1405)),
-            );
-            let t1434 = t1433 + T::fused(-t1425, t1421, k(0.001) * t1220);
-            let t1435 = k(0.1) * t1266;
-            let t1436 = T::fused(k(0.001), t1337, k(0.0025) * t1346)
-                + T::fused(t1423, t1418, T::fused(-t1347, t1304, t1410 * t1405));
-            let t1437 = t1436 + T::fused(t1425, t1435, k(0.0005) * t1215);
-            let t1438 = k(0.2) * t1309;
-            let t1439 = k(0.2) * t1290;
-            let t1440 = k(0.2) * t1305;
-            let t1441 = T::fused(t1439, t1348, t1440 * t1411);
-            let t1442 = T::fused(t1438, t1426, t1441)
-                + T::fused(t1322, t1437, T::fused(t1316, t1432, t1319 * t1434));
-            let t1443 = k(0.6666666666666666) * self.motor;
-            let t1444 = T::fused(t1438, t1427, t1441);
-            let t1445 = T::fused(k(0.2), t1285, k(0.1) * t1297);
-            let t1446 = T::fused(-k(0.2), t1312, k(0.1) * t1324);
-            let t1447 = T::fused(k(0.2), t1314, k(0.1) * t1326);
-            let t1448 = T::fused(t1447, t1426, T::fused(-t1445, t1348, t1446 * t1411))
-                - T::fused(t1323, t1437, T::fused(t1311, t1432, t1317 * t1434));
-            let t1449 = t1285 + t1297;
-            let t1450 = k(0.2) * t1449;
-            let t1451 = t1312 - t1324;
-            let t1452 = k(0.2) * t1451;
-            let t1453 = t1314 + t1326;
-            let t1454 = k(0.2) * t1453;
-            let t1455 = T::fused(t1454, t1427, -T::fused(t1450, t1348, t1452 * t1411))
-                + (T::fused(-k(0.001), t1283, k(0.3333333333333333) * self.motor)
-                    + t1448);
-            let t1456 = T::fused(
-                k(0.6666666666666666),
-                t1444 + (T::fused(-k(0.0005), t1287, t1443) + t1442),
-                k(0.3333333333333333) * t1455,
-            );
-            let t1457 = k(0.1) * t1290;
-            let t1458 = k(0.1) * t1305;
-            let t1459 = k(0.1) * t1309;
-            let t1460 = T::fused(t1459, t1426, T::fused(t1457, t1348, t1458 * t1411))
-                + T::fused(t1328, t1437, T::fused(t1329, t1432, t1330 * t1434));
+            let t1458 = k(0.2) * self.gravity;
+            let t1459 = t1458 + t1457;
+            let t1460 = T::fused(k(0.3), self.gravity, t1459);
             let t1461 = T::fused(
+                k(1.3333333333333333),
+                t1383,
+                T::fused(-k(1.3333333333333333), t1407, k(0.6666666666666666) * t1400),
+            );
+            let t1462 = t1461 * t1431;
+            let t1463 = k(0.2) * t1299;
+            let t1464 = T::fused(k(0.003), t1370, k(0.001) * t1379)
+                + T::fused(t1452, t1451, T::fused(-t1371, t1337, t1439 * t1438));
+            let t1465 = t1464 - T::fused(-t1458, t1463, k(0.0005) * t1262);
+            let t1466 = T::fused(
+                k(0.004),
+                t1372,
+                -T::fused(t1455, t1451, T::fused(t1375, t1337, t1442 * t1438)),
+            );
+            let t1467 = t1466 + T::fused(-t1458, t1454, k(0.001) * t1254);
+            let t1468 = k(0.1) * t1299;
+            let t1469 = T::fused(k(0.001), t1370, k(0.0025) * t1379)
+                + T::fused(t1456, t1451, T::fused(-t1380, t1337, t1443 * t1438));
+            let t1470 = t1469 + T::fused(t1458, t1468, k(0.0005) * t1249);
+            let t1471 = k(0.2) * t1342;
+            let t1472 = k(0.2) * t1323;
+            let t1473 = k(0.2) * t1338;
+            let t1474 = T::fused(t1472, t1381, t1473 * t1444);
+            let t1475 = T::fused(t1471, t1459, t1474)
+                + T::fused(t1355, t1470, T::fused(t1349, t1465, t1352 * t1467));
+            let t1476 = k(0.6666666666666666) * self.motor;
+            let t1477 = T::fused(t1471, t1460, t1474);
+            let t1478 = T::fused(k(0.2), t1318, k(0.1) * t1330);
+            let t1479 = T::fused(-k(0.2), t1345, k(0.1) * t1357);
+            let t1480 = T::fused(k(0.2), t1347, k(0.1) * t1359);
+            let t1481 = T::fused(t1480, t1459, T::fused(-t1478, t1381, t1479 * t1444))
+                - T::fused(t1356, t1470, T::fused(t1344, t1465, t1350 * t1467));
+            let t1482 = t1318 + t1330;
+            let t1483 = k(0.2) * t1482;
+            let t1484 = t1345 - t1357;
+            let t1485 = k(0.2) * t1484;
+            let t1486 = t1347 + t1359;
+            let t1487 = k(0.2) * t1486;
+            let t1488 = T::fused(t1487, t1460, -T::fused(t1483, t1381, t1485 * t1444))
+                + (T::fused(-k(0.001), t1316, k(0.3333333333333333) * self.motor)
+                    + t1481);
+            let t1489 = T::fused(
                 k(0.6666666666666666),
-                t1444 - (T::fused(-k(0.0005), t1302, t1443) - t1460),
-                -t1456,
-            ) - T::fused(t1429, t1427, T::fused(-t1402, t1348, t1415 * t1411));
-            let t1462 = T::fused(t1322, t1347, T::fused(t1316, t1338, t1319 * t1342));
-            let t1463 = T::fused(k(0.04), t1290, t1462);
-            let t1464 = t1457 + t1463;
-            let t1465 = T::fused(t1323, t1347, T::fused(t1311, t1338, t1317 * t1342));
-            let t1466 = T::fused(k(0.2), t1445, t1465);
-            let t1467 = T::fused(k(0.1), t1449, t1466);
-            let t1468 = T::fused(t1328, t1347, T::fused(t1329, t1338, t1330 * t1342));
-            let t1469 = T::fused(k(0.02), t1290, t1468);
-            let t1470 = t1457 + t1469;
-            let t1471 = T::fused(
-                k(0.5),
-                t1402,
-                T::fused(
-                    k(0.6666666666666666),
-                    t1470,
-                    T::fused(
-                        -k(0.6666666666666666),
-                        t1464,
-                        k(0.3333333333333333) * t1467,
-                    ),
-                ),
+                t1477 + (T::fused(-k(0.0005), t1320, t1476) + t1475),
+                k(0.3333333333333333) * t1488,
             );
-            let t1472 = T::fused(t1322, t1410, -T::fused(-t1316, t1406, t1319 * t1409));
-            let t1473 = T::fused(k(0.04), t1305, t1472);
-            let t1474 = t1458 + t1473;
-            let t1475 = T::fused(t1323, t1410, -T::fused(-t1311, t1406, t1317 * t1409));
-            let t1476 = T::fused(k(0.2), t1446, -t1475);
-            let t1477 = T::fused(-k(0.1), t1451, t1476);
-            let t1478 = T::fused(t1328, t1410, -T::fused(-t1329, t1406, t1330 * t1409));
-            let t1479 = T::fused(k(0.02), t1305, t1478);
-            let t1480 = t1458 + t1479;
-            let t1481 = T::fused(
-                -k(0.5),
-                t1415,
-                T::fused(
-                    k(0.6666666666666666),
-                    t1480,
-                    -T::fused(
-                        k(0.6666666666666666),
-                        t1474,
-                        k(0.3333333333333333) * t1477,
-                    ),
-                ),
-            );
-            let t1482 = T::fused(t1322, t1423, -T::fused(-t1316, t1419, t1319 * t1422));
-            let t1483 = T::fused(k(0.04), t1309, t1482);
-            let t1484 = t1459 + t1483;
-            let t1485 = T::fused(t1323, t1423, -T::fused(-t1311, t1419, t1317 * t1422));
-            let t1486 = T::fused(k(0.2), t1447, -t1485);
-            let t1487 = T::fused(k(0.1), t1453, t1486);
-            let t1488 = T::fused(t1328, t1423, -T::fused(-t1329, t1419, t1330 * t1422));
-            let t1489 = T::fused(k(0.02), t1309, t1488);
-            let t1490 = t1459 + t1489;
-            let t1491 = T::fused(
-                -k(0.5),
-                t1429,
-                T::fused(
-                    k(0.6666666666666666),
-                    t1490,
-                    -T::fused(
-                        k(0.6666666666666666),
-                        t1484,
-                        k(0.3333333333333333) * t1487,
-                    ),
-                ),
-            );
-            let t1492 = T::fused(t1438, t1483, T::fused(t1439, t1463, t1440 * t1473));
-            let t1493 = T::fused(k(0.003), t1316, k(0.001) * t1322);
-            let t1494 = k(0.004) * t1319;
-            let t1495 = T::fused(k(0.001), t1316, k(0.0025) * t1322);
-            let t1496 = T::fused(
-                k(2.0),
-                T::fused(t1438, t1482, T::fused(t1439, t1462, t1440 * t1472)),
-                k(0.002) + T::fused(t1322, t1495, T::fused(t1316, t1493, t1319 * t1494)),
-            );
-            let t1497 = T::fused(t1447, t1482, T::fused(-t1445, t1462, t1446 * t1472))
-                - T::fused(t1438, t1485, T::fused(t1439, t1465, t1440 * t1475));
-            let t1498 = T::fused(t1438, t1486, T::fused(-t1439, t1466, t1440 * t1476));
-            let t1499 = t1498
-                + T::fused(t1454, t1483, -T::fused(t1450, t1463, t1452 * t1473))
-                + (t1497
-                    - T::fused(t1323, t1495, T::fused(t1311, t1493, t1317 * t1494)));
+            let t1490 = k(0.1) * t1323;
+            let t1491 = k(0.1) * t1338;
+            let t1492 = k(0.1) * t1342;
+            let t1493 = T::fused(t1492, t1459, T::fused(t1490, t1381, t1491 * t1444))
+                + T::fused(t1361, t1470, T::fused(t1362, t1465, t1363 * t1467));
+            let t1494 = T::fused(
+                k(0.6666666666666666),
+                t1477 - (T::fused(-k(0.0005), t1335, t1476) - t1493),
+                -t1489,
+            ) - T::fused(t1462, t1460, T::fused(-t1435, t1381, t1448 * t1444));
+            let t1495 = T::fused(t1355, t1380, T::fused(t1349, t1371, t1352 * t1375));
+            let t1496 = T::fused(k(0.04), t1323, t1495);
+            let t1497 = t1490 + t1496;
+            let t1498 = T::fused(t1356, t1380, T::fused(t1344, t1371, t1350 * t1375));
+            let t1499 = T::fused(k(0.2), t1478, t1498);
             (
                 t1000,
+                t1001,
                 t1002,
+                t1003,
                 t1004,
+                t1005,
+                t1007,
+                t1009,
+                t1010,
                 t1011,
                 t1012,
-                t1013,
+                t1014,
+                t1015,
+                t1017,
+                t1018,
+                t1020,
+                t1021,
+                t1023,
                 t1025,
                 t1026,
                 t1028,
-                t1029,
-                t1030,
+                t1032,
+                t1034,
+                t1036,
+                t1038,
+                t1045,
                 t1046,
                 t1047,
-                t1049,
-                t1050,
-                t1052,
-                t1053,
-                t1055,
-                t1056,
+                t1059,
+                t1060,
+                t1062,
                 t1063,
                 t1064,
-                t1065,
+                t1080,
+                t1081,
                 t1083,
                 t1084,
-                t1092,
-                t1093,
-                t1095,
-                t1096,
+                t1086,
+                t1087,
+                t1089,
+                t1090,
+                t1097,
                 t1098,
                 t1099,
-                t1102,
-                t1103,
-                t1104,
-                t1106,
-                t1109,
-                t1112,
+                t1117,
                 t1118,
-                t1120,
-                t1124,
-                t1125,
+                t1126,
                 t1127,
-                t1128,
+                t1129,
                 t1130,
-                t1131,
                 t1132,
-                t1148,
-                t1149,
-                t1151,
+                t1133,
+                t1136,
+                t1137,
+                t1138,
+                t1140,
+                t1143,
+                t1146,
                 t1152,
                 t1154,
-                t1155,
-                t1157,
                 t1158,
+                t1159,
+                t1161,
+                t1162,
+                t1164,
                 t1165,
                 t1166,
-                t1167,
+                t1182,
+                t1183,
                 t1185,
                 t1186,
-                t1194,
-                t1195,
-                t1197,
-                t1198,
+                t1188,
+                t1189,
+                t1191,
+                t1192,
+                t1199,
                 t1200,
                 t1201,
-                t1204,
-                t1205,
-                t1206,
-                t1208,
-                t1213,
-                t1218,
-                t1223,
-                t1225,
+                t1219,
+                t1220,
+                t1228,
                 t1229,
-                t1230,
                 t1231,
                 t1232,
-                t1233,
                 t1234,
-                t1237,
+                t1235,
+                t1238,
+                t1239,
                 t1240,
-                t1241,
                 t1242,
-                t1243,
-                t1245,
-                t1249,
-                t1251,
+                t1247,
                 t1252,
-                t1253,
-                t1254,
-                t1255,
-                t1256,
                 t1257,
                 t1259,
-                t1261,
-                t1262,
                 t1263,
                 t1264,
+                t1265,
                 t1266,
+                t1267,
                 t1268,
-                t1270,
                 t1271,
-                t1272,
                 t1273,
                 t1274,
                 t1275,
                 t1276,
                 t1278,
-                t1280,
-                t1281,
                 t1282,
-                t1283,
+                t1284,
                 t1285,
                 t1286,
                 t1287,
-                t1291,
+                t1288,
+                t1289,
+                t1290,
+                t1292,
                 t1294,
+                t1295,
+                t1296,
                 t1297,
-                t1298,
                 t1299,
                 t1301,
-                t1302,
                 t1303,
                 t1304,
+                t1305,
                 t1306,
-                t1310,
+                t1307,
+                t1308,
+                t1309,
                 t1311,
-                t1312,
                 t1313,
                 t1314,
                 t1315,
                 t1316,
-                t1317,
+                t1318,
                 t1319,
-                t1322,
+                t1320,
                 t1323,
                 t1324,
-                t1325,
-                t1326,
                 t1327,
-                t1328,
-                t1329,
                 t1330,
+                t1331,
+                t1332,
                 t1334,
+                t1335,
+                t1336,
                 t1337,
+                t1338,
                 t1339,
-                t1340,
-                t1341,
+                t1342,
+                t1343,
+                t1344,
+                t1345,
                 t1346,
+                t1347,
                 t1348,
+                t1349,
                 t1350,
-                t1351,
-                t1354,
+                t1352,
                 t1355,
+                t1356,
+                t1357,
                 t1358,
                 t1359,
                 t1360,
                 t1361,
                 t1362,
-                t1365,
-                t1366,
+                t1363,
                 t1367,
-                t1368,
-                t1369,
                 t1370,
                 t1371,
                 t1372,
                 t1373,
                 t1374,
                 t1375,
-                t1376,
-                t1377,
-                t1378,
                 t1379,
                 t1380,
                 t1381,
-                t1382,
                 t1383,
                 t1384,
-                t1385,
-                t1386,
                 t1387,
-                t1389,
-                t1390,
+                t1388,
                 t1391,
+                t1392,
                 t1393,
-                t1397,
+                t1394,
+                t1395,
+                t1398,
                 t1399,
                 t1400,
                 t1401,
@@ -17583,8 +17569,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1403,
                 t1404,
                 t1405,
+                t1406,
                 t1407,
                 t1408,
+                t1409,
+                t1410,
                 t1411,
                 t1412,
                 t1413,
@@ -17593,3354 +17582,3415 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t1416,
                 t1417,
                 t1418,
+                t1419,
                 t1420,
-                t1421,
-                t1427,
-                t1428,
-                t1429,
+                t1422,
+                t1423,
+                t1424,
+                t1426,
                 t1430,
+                t1432,
+                t1433,
+                t1434,
                 t1435,
+                t1436,
+                t1437,
                 t1438,
                 t1439,
                 t1440,
+                t1441,
+                t1442,
+                t1443,
+                t1444,
                 t1445,
                 t1446,
                 t1447,
+                t1448,
+                t1449,
                 t1450,
+                t1451,
                 t1452,
+                t1453,
                 t1454,
-                t1457,
-                t1458,
-                t1459,
+                t1455,
+                t1456,
+                t1460,
                 t1461,
                 t1462,
-                t1464,
-                t1465,
-                t1466,
-                t1467,
+                t1463,
                 t1468,
-                t1469,
-                t1470,
                 t1471,
                 t1472,
-                t1474,
-                t1475,
-                t1476,
-                t1477,
+                t1473,
                 t1478,
                 t1479,
                 t1480,
-                t1481,
                 t1482,
+                t1483,
                 t1484,
                 t1485,
                 t1486,
                 t1487,
-                t1488,
-                t1489,
                 t1490,
                 t1491,
                 t1492,
-                t1493,
                 t1494,
                 t1495,
                 t1496,
+                t1497,
                 t1498,
                 t1499,
             )
         });
         let (
-            t1519,
-            t1591,
-            t1597,
-            t1605,
-            t1611,
-            t1620,
-            t1626,
-            t1643,
-            t1723,
-            t1724,
-            t1725,
-            t1764,
-            t1785,
+            t1504,
+            t1514,
+            t1524,
+            t1552,
+            t1624,
+            t1630,
+            t1638,
+            t1644,
+            t1653,
+            t1659,
+            t1676,
+            t1756,
+            t1757,
+            t1758,
             t1797,
-            t1799,
-            t1802,
-            t1804,
-            t1806,
-            t1813,
-            t1815,
-            t1817,
             t1818,
-            t1819,
-            t1820,
-            t1821,
-            t1822,
-            t1823,
-            t1824,
-            t1826,
-            t1827,
-            t1828,
-            t1829,
-            t1831,
+            t1830,
             t1832,
+            t1835,
+            t1837,
+            t1839,
+            t1846,
+            t1848,
+            t1850,
+            t1851,
+            t1852,
+            t1853,
+            t1854,
             t1855,
             t1856,
-            t1858,
+            t1857,
             t1859,
+            t1860,
+            t1861,
             t1862,
-            t1863,
+            t1864,
             t1865,
-            t1866,
-            t1867,
-            t1880,
-            t1881,
-            t1883,
-            t1884,
-            t1886,
-            t1887,
             t1888,
             t1889,
-            t1890,
+            t1891,
             t1892,
-            t1893,
             t1895,
             t1896,
-            t1907,
-            t1908,
-            t1915,
+            t1898,
+            t1899,
+            t1900,
+            t1913,
+            t1914,
             t1916,
             t1917,
-            t1918,
             t1919,
             t1920,
+            t1921,
+            t1922,
             t1923,
+            t1925,
             t1926,
+            t1928,
             t1929,
-            t1933,
-            t1944,
-            t1945,
-            t1947,
+            t1940,
+            t1941,
             t1948,
+            t1949,
+            t1950,
             t1951,
             t1952,
-            t1954,
-            t1955,
-            t1957,
-            t1958,
+            t1953,
+            t1956,
+            t1959,
             t1962,
-            t1963,
-            t1964,
+            t1966,
+            t1971,
+            t1973,
+            t1975,
             t1977,
             t1978,
             t1980,
             t1981,
-            t1983,
             t1984,
             t1985,
-            t1986,
             t1987,
-            t1989,
+            t1988,
             t1990,
-            t1992,
-            t1993,
-            t1994,
+            t1991,
             t1995,
             t1996,
+            t1997,
             t1998,
             t1999,
         ) = gyro_sim::apart(move || {
-            let t1500 = T::fused(
-                k(0.6666666666666666),
-                T::fused(k(2.0), t1492, k(0.005) + (k(0.002) + t1496)),
-                k(0.3333333333333333) * t1499,
+            let t1500 = T::fused(k(0.1), t1482, t1499);
+            let t1501 = T::fused(t1361, t1380, T::fused(t1362, t1371, t1363 * t1375));
+            let t1502 = T::fused(k(0.02), t1323, t1501);
+            let t1503 = t1490 + t1502;
+            let t1504 = T::fused(
+                k(0.5),
+                t1435,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1503,
+                    T::fused(
+                        -k(0.6666666666666666),
+                        t1497,
+                        k(0.3333333333333333) * t1500,
+                    ),
+                ),
             );
-            let t1501 = T::fused(t1438, t1489, T::fused(t1439, t1469, t1440 * t1479));
-            let t1502 = T::fused(t1459, t1482, T::fused(t1457, t1462, t1458 * t1472))
-                + T::fused(t1438, t1488, T::fused(t1439, t1468, t1440 * t1478));
-            let t1503 = k(0.001)
-                + T::fused(t1328, t1495, T::fused(t1329, t1493, t1330 * t1494)) + t1502;
-            let t1504 = k(0.6666666666666666) * (k(0.005) + t1503 + (t1501 + t1492));
-            let t1505 = t1504 - t1500
-                - T::fused(t1429, t1484, T::fused(-t1402, t1464, t1415 * t1474));
-            let t1506 = T::fused(k(0.003), t1311, k(0.001) * t1323);
-            let t1507 = k(0.004) * t1317;
-            let t1508 = T::fused(k(0.001), t1311, k(0.0025) * t1323);
-            let t1509 = T::fused(
-                -k(2.0),
-                T::fused(t1447, t1485, T::fused(-t1445, t1465, t1446 * t1475)),
-                k(0.0025) + T::fused(t1323, t1508, T::fused(t1311, t1506, t1317 * t1507)),
-            );
-            let t1510 = T::fused(
-                k(2.0),
-                T::fused(t1454, t1486, -T::fused(-t1450, t1466, t1452 * t1476)),
-                k(0.01) + (k(0.0025) + t1509),
-            );
-            let t1511 = T::fused(t1459, t1485, T::fused(t1457, t1465, t1458 * t1475))
-                - T::fused(t1447, t1488, T::fused(-t1445, t1468, t1446 * t1478));
-            let t1512 = T::fused(t1454, t1489, -T::fused(t1450, t1469, t1452 * t1479))
-                + t1498
-                - (t1511
-                    + T::fused(t1328, t1508, T::fused(t1329, t1506, t1330 * t1507)));
-            let t1513 = T::fused(
-                k(0.6666666666666666),
-                t1512,
-                -T::fused(k(0.6666666666666666), t1499, k(0.3333333333333333) * t1510),
-            ) - T::fused(t1429, t1487, T::fused(t1402, t1467, t1415 * t1477));
+            let t1505 = T::fused(t1355, t1443, -T::fused(-t1349, t1439, t1352 * t1442));
+            let t1506 = T::fused(k(0.04), t1338, t1505);
+            let t1507 = t1491 + t1506;
+            let t1508 = T::fused(t1356, t1443, -T::fused(-t1344, t1439, t1350 * t1442));
+            let t1509 = T::fused(k(0.2), t1479, -t1508);
+            let t1510 = T::fused(-k(0.1), t1484, t1509);
+            let t1511 = T::fused(t1361, t1443, -T::fused(-t1362, t1439, t1363 * t1442));
+            let t1512 = T::fused(k(0.02), t1338, t1511);
+            let t1513 = t1491 + t1512;
             let t1514 = T::fused(
-                t1329,
-                T::fused(k(0.003), t1329, k(0.001) * t1328),
-                t1330 * (k(0.004) * t1330),
+                -k(0.5),
+                t1448,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1513,
+                    -T::fused(
+                        k(0.6666666666666666),
+                        t1507,
+                        k(0.3333333333333333) * t1510,
+                    ),
+                ),
             );
-            let t1515 = T::fused(
+            let t1515 = T::fused(t1355, t1456, -T::fused(-t1349, t1452, t1352 * t1455));
+            let t1516 = T::fused(k(0.04), t1342, t1515);
+            let t1517 = t1492 + t1516;
+            let t1518 = T::fused(t1356, t1456, -T::fused(-t1344, t1452, t1350 * t1455));
+            let t1519 = T::fused(k(0.2), t1480, -t1518);
+            let t1520 = T::fused(k(0.1), t1486, t1519);
+            let t1521 = T::fused(t1361, t1456, -T::fused(-t1362, t1452, t1363 * t1455));
+            let t1522 = T::fused(k(0.02), t1342, t1521);
+            let t1523 = t1492 + t1522;
+            let t1524 = T::fused(
+                -k(0.5),
+                t1462,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1523,
+                    -T::fused(
+                        k(0.6666666666666666),
+                        t1517,
+                        k(0.3333333333333333) * t1520,
+                    ),
+                ),
+            );
+            let t1525 = T::fused(t1471, t1516, T::fused(t1472, t1496, t1473 * t1506));
+            let t1526 = T::fused(k(0.003), t1349, k(0.001) * t1355);
+            let t1527 = k(0.004) * t1352;
+            let t1528 = T::fused(k(0.001), t1349, k(0.0025) * t1355);
+            let t1529 = T::fused(
                 k(2.0),
-                T::fused(t1459, t1488, T::fused(t1457, t1468, t1458 * t1478)),
+                T::fused(t1471, t1515, T::fused(t1472, t1495, t1473 * t1505)),
+                k(0.002) + T::fused(t1355, t1528, T::fused(t1349, t1526, t1352 * t1527)),
+            );
+            let t1530 = T::fused(t1480, t1515, T::fused(-t1478, t1495, t1479 * t1505))
+                - T::fused(t1471, t1518, T::fused(t1472, t1498, t1473 * t1508));
+            let t1531 = T::fused(t1471, t1519, T::fused(-t1472, t1499, t1473 * t1509));
+            let t1532 = t1531
+                + T::fused(t1487, t1516, -T::fused(t1483, t1496, t1485 * t1506))
+                + (t1530
+                    - T::fused(t1356, t1528, T::fused(t1344, t1526, t1350 * t1527)));
+            let t1533 = T::fused(
+                k(0.6666666666666666),
+                T::fused(k(2.0), t1525, k(0.005) + (k(0.002) + t1529)),
+                k(0.3333333333333333) * t1532,
+            );
+            let t1534 = T::fused(t1471, t1522, T::fused(t1472, t1502, t1473 * t1512));
+            let t1535 = T::fused(t1492, t1515, T::fused(t1490, t1495, t1491 * t1505))
+                + T::fused(t1471, t1521, T::fused(t1472, t1501, t1473 * t1511));
+            let t1536 = k(0.001)
+                + T::fused(t1361, t1528, T::fused(t1362, t1526, t1363 * t1527)) + t1535;
+            let t1537 = k(0.6666666666666666) * (k(0.005) + t1536 + (t1534 + t1525));
+            let t1538 = t1537 - t1533
+                - T::fused(t1462, t1517, T::fused(-t1435, t1497, t1448 * t1507));
+            let t1539 = T::fused(k(0.003), t1344, k(0.001) * t1356);
+            let t1540 = k(0.004) * t1350;
+            let t1541 = T::fused(k(0.001), t1344, k(0.0025) * t1356);
+            let t1542 = T::fused(
+                -k(2.0),
+                T::fused(t1480, t1518, T::fused(-t1478, t1498, t1479 * t1508)),
+                k(0.0025) + T::fused(t1356, t1541, T::fused(t1344, t1539, t1350 * t1540)),
+            );
+            let t1543 = T::fused(
+                k(2.0),
+                T::fused(t1487, t1519, -T::fused(-t1483, t1499, t1485 * t1509)),
+                k(0.01) + (k(0.0025) + t1542),
+            );
+            let t1544 = T::fused(t1492, t1518, T::fused(t1490, t1498, t1491 * t1508))
+                - T::fused(t1480, t1521, T::fused(-t1478, t1501, t1479 * t1511));
+            let t1545 = T::fused(t1487, t1522, -T::fused(t1483, t1502, t1485 * t1512))
+                + t1531
+                - (t1544
+                    + T::fused(t1361, t1541, T::fused(t1362, t1539, t1363 * t1540)));
+            let t1546 = T::fused(
+                k(0.6666666666666666),
+                t1545,
+                -T::fused(k(0.6666666666666666), t1532, k(0.3333333333333333) * t1543),
+            ) - T::fused(t1462, t1520, T::fused(t1435, t1500, t1448 * t1510));
+            let t1547 = T::fused(
+                t1362,
+                T::fused(k(0.003), t1362, k(0.001) * t1361),
+                t1363 * (k(0.004) * t1363),
+            );
+            let t1548 = T::fused(
+                k(2.0),
+                T::fused(t1492, t1521, T::fused(t1490, t1501, t1491 * t1511)),
                 k(0.0005)
                     + T::fused(
-                        t1328,
-                        T::fused(k(0.001), t1329, k(0.0025) * t1328),
-                        t1514,
+                        t1361,
+                        T::fused(k(0.001), t1362, k(0.0025) * t1361),
+                        t1547,
                     ),
             );
-            let t1516 = T::fused(
+            let t1549 = T::fused(
                 k(0.6666666666666666),
-                T::fused(k(2.0), t1501, k(0.005) + (k(0.003) + t1515)),
-                -T::fused(k(0.3333333333333333), t1512, t1504),
+                T::fused(k(2.0), t1534, k(0.005) + (k(0.003) + t1548)),
+                -T::fused(k(0.3333333333333333), t1545, t1537),
             );
-            let t1517 = t1516
-                - T::fused(t1429, t1490, T::fused(-t1402, t1470, t1415 * t1480));
-            let t1518 = T::fused(
+            let t1550 = t1549
+                - T::fused(t1462, t1523, T::fused(-t1435, t1503, t1448 * t1513));
+            let t1551 = T::fused(
                 k(0.6666666666666666),
-                t1517,
-                -T::fused(k(0.6666666666666666), t1505, k(0.3333333333333333) * t1513),
-            ) - T::fused(t1429, t1491, T::fused(-t1402, t1471, t1415 * t1481));
-            let t1519 = k(1.0) / t1518;
-            let t1520 = t1519 * t1461;
-            let t1521 = k(0.6666666666666666) * t1381;
-            let t1522 = T::fused(k(0.3333333333333333), t1380, t1521);
-            let t1523 = k(0.6666666666666666) * t1378;
-            let t1524 = T::fused(k(0.3333333333333333), t1377, t1523);
-            let t1525 = T::fused(
+                t1550,
+                -T::fused(k(0.6666666666666666), t1538, k(0.3333333333333333) * t1546),
+            ) - T::fused(t1462, t1524, T::fused(-t1435, t1504, t1448 * t1514));
+            let t1552 = k(1.0) / t1551;
+            let t1553 = t1552 * t1494;
+            let t1554 = k(0.6666666666666666) * t1414;
+            let t1555 = T::fused(k(0.3333333333333333), t1413, t1554);
+            let t1556 = k(0.6666666666666666) * t1411;
+            let t1557 = T::fused(k(0.3333333333333333), t1410, t1556);
+            let t1558 = T::fused(
                 k(0.8944271909999159),
-                t1522,
-                k(0.4472135954999579) * t1524,
+                t1555,
+                k(0.4472135954999579) * t1557,
             );
-            let t1526 = t1380 + t1369;
-            let t1527 = t1377 + t1376;
-            let t1528 = T::fused(
+            let t1559 = t1413 + t1402;
+            let t1560 = t1410 + t1409;
+            let t1561 = T::fused(
                 k(0.5962847939999439),
-                t1526,
-                k(0.29814239699997197) * t1527,
+                t1559,
+                k(0.29814239699997197) * t1560,
             );
-            let t1529 = k(0.6666666666666666) * t1528;
-            let t1530 = k(0.6666666666666666) * t1385;
-            let t1531 = T::fused(
+            let t1562 = k(0.6666666666666666) * t1561;
+            let t1563 = k(0.6666666666666666) * t1418;
+            let t1564 = T::fused(
                 k(0.7453559924999299),
-                T::fused(k(0.3333333333333333), t1384, t1530),
-                T::fused(-k(0.29814239699997197), t1522, k(0.5962847939999439) * t1524),
+                T::fused(k(0.3333333333333333), t1417, t1563),
+                T::fused(-k(0.29814239699997197), t1555, k(0.5962847939999439) * t1557),
             );
-            let t1532 = k(0.6666666666666666)
+            let t1565 = k(0.6666666666666666)
                 * T::fused(
                     k(0.49690399499995325),
-                    t1384 + t1360,
+                    t1417 + t1393,
                     T::fused(
                         -k(0.1987615979999813),
-                        t1526,
-                        k(0.3975231959999626) * t1527,
+                        t1559,
+                        k(0.3975231959999626) * t1560,
                     ),
                 );
-            let t1533 = T::fused(k(0.3333333333333333), t1531, t1532);
-            let t1534 = T::fused(k(0.3333333333333333), t1369, -t1521);
-            let t1535 = T::fused(k(0.3333333333333333), t1376, -t1523);
-            let t1536 = T::fused(
-                k(0.8944271909999159),
-                t1534,
-                k(0.4472135954999579) * t1535,
-            );
-            let t1537 = T::fused(
-                k(0.7453559924999299),
-                t1391 - t1530,
-                T::fused(-k(0.29814239699997197), t1534, k(0.5962847939999439) * t1535),
-            );
-            let t1538 = k(0.6666666666666666) * (t1537 - t1531);
-            let t1539 = T::fused(k(0.3333333333333333), t1537, t1532);
-            let t1540 = k(1.0)
-                / T::fused(t1525, t1539, T::fused(-t1536, t1533, t1528 * t1538));
-            let t1541 = t1540 * T::fused(k(0.3333333333333333), t1525, t1529);
-            let t1542 = k(0.0031830988618379067) * t1390;
-            let t1543 = t1540 * (k(0.6666666666666666) * (t1536 - t1525));
-            let t1544 = k(0.0031830988618379067) * t1393;
-            let t1545 = t1540 * T::fused(k(0.3333333333333333), t1536, t1529);
-            let t1546 = k(0.0031830988618379067) * t1397;
-            let t1547 = T::fused(t1546, t1545, T::fused(t1542, t1541, t1544 * t1543));
-            let t1548 = slide_wy * slide_wy;
-            let t1549 = slide_wz * slide_wz;
-            let t1550 = t1549 + t1548;
-            let t1551 = slide_wx * slide_wy;
-            let t1552 = slide_wx * slide_wz;
-            let t1553 = T::fused(nut_wz, t1381, nut_wy * t1369);
-            let t1554 = T::fused(nut_wz, t1385, nut_wy * t1360);
-            let t1555 = T::fused(
-                -k(2.0),
-                T::fused(slide_wz, t1553, slide_wy * t1554),
-                T::fused(t1283, t1376, -T::fused(-t1301, t1377, t1302 * t1378)),
-            );
-            let t1556 = t1555
-                + T::fused(t1552, t1384, -T::fused(-t1550, t1377, t1551 * t1380));
-            let t1557 = T::fused(nut_wz, t1380, nut_wx * t1369);
-            let t1558 = T::fused(nut_wz, t1384, nut_wx * t1360);
-            let t1559 = T::fused(
-                k(2.0),
-                T::fused(slide_wz, t1557, slide_wy * t1558),
-                T::fused(t1287, t1376, T::fused(-t1302, t1377, t1334 * t1378)),
-            );
-            let t1560 = t1559
-                + T::fused(t1552, t1385, -T::fused(-t1550, t1378, t1551 * t1381));
-            let t1561 = T::fused(-nut_wy, t1380, nut_wx * t1381);
-            let t1562 = T::fused(-nut_wy, t1384, nut_wx * t1385);
-            let t1563 = T::fused(
-                -k(2.0),
-                T::fused(slide_wz, t1561, slide_wy * t1562),
-                T::fused(t1294, t1376, T::fused(t1283, t1377, t1287 * t1378)),
-            );
-            let t1564 = T::fused(
-                k(0.6666666666666666),
-                t1563 + T::fused(t1552, t1360, -T::fused(-t1550, t1376, t1551 * t1369)),
-                T::fused(-k(0.6666666666666666), t1556, k(0.3333333333333333) * t1560),
-            );
-            let t1565 = slide_wx * slide_wx;
-            let t1566 = t1549 + t1565;
-            let t1567 = slide_wy * slide_wz;
-            let t1568 = T::fused(nut_wz, t1378, nut_wy * t1376);
+            let t1566 = T::fused(k(0.3333333333333333), t1564, t1565);
+            let t1567 = T::fused(k(0.3333333333333333), t1402, -t1554);
+            let t1568 = T::fused(k(0.3333333333333333), t1409, -t1556);
             let t1569 = T::fused(
-                k(2.0),
-                T::fused(slide_wz, t1568, slide_wx * t1554),
-                T::fused(t1283, t1369, -T::fused(-t1301, t1380, t1302 * t1381)),
+                k(0.8944271909999159),
+                t1567,
+                k(0.4472135954999579) * t1568,
             );
-            let t1570 = t1569
-                + T::fused(t1567, t1384, T::fused(-t1551, t1377, t1566 * t1380));
-            let t1571 = T::fused(nut_wz, t1377, nut_wx * t1376);
-            let t1572 = T::fused(
-                -k(2.0),
-                T::fused(slide_wz, t1571, slide_wx * t1558),
-                T::fused(t1287, t1369, T::fused(-t1302, t1380, t1334 * t1381)),
-            );
-            let t1573 = t1572
-                + T::fused(t1567, t1385, T::fused(-t1551, t1378, t1566 * t1381));
-            let t1574 = T::fused(-nut_wy, t1377, nut_wx * t1378);
-            let t1575 = T::fused(
-                k(2.0),
-                T::fused(slide_wz, t1574, slide_wx * t1562),
-                T::fused(t1294, t1369, T::fused(t1283, t1380, t1287 * t1381)),
-            );
-            let t1576 = T::fused(
-                k(0.6666666666666666),
-                t1575 + T::fused(t1567, t1360, T::fused(-t1551, t1376, t1566 * t1369)),
-                T::fused(-k(0.6666666666666666), t1570, k(0.3333333333333333) * t1573),
-            );
-            let t1577 = t1548 + t1565;
-            let t1578 = T::fused(
-                -k(2.0),
-                T::fused(-slide_wy, t1568, slide_wx * t1553),
-                T::fused(t1283, t1360, -T::fused(-t1301, t1384, t1302 * t1385)),
-            );
-            let t1579 = t1578
-                + T::fused(t1577, t1384, T::fused(t1552, t1377, t1567 * t1380));
-            let t1580 = T::fused(
-                k(2.0),
-                T::fused(-slide_wy, t1571, slide_wx * t1557),
-                T::fused(t1287, t1360, T::fused(-t1302, t1384, t1334 * t1385)),
-            );
-            let t1581 = t1580
-                + T::fused(t1577, t1385, T::fused(t1552, t1378, t1567 * t1381));
-            let t1582 = T::fused(
-                -k(2.0),
-                T::fused(-slide_wy, t1574, slide_wx * t1561),
-                T::fused(t1294, t1360, T::fused(t1283, t1384, t1287 * t1385)),
-            );
-            let t1583 = T::fused(
-                k(0.6666666666666666),
-                t1582 + T::fused(t1577, t1360, T::fused(t1552, t1376, t1567 * t1369)),
-                T::fused(-k(0.6666666666666666), t1579, k(0.3333333333333333) * t1581),
-            );
-            let t1584 = T::fused(
+            let t1570 = T::fused(
                 k(0.7453559924999299),
-                t1583,
-                -T::fused(-k(0.5962847939999439), t1564, k(0.29814239699997197) * t1576),
+                t1424 - t1563,
+                T::fused(-k(0.29814239699997197), t1567, k(0.5962847939999439) * t1568),
             );
-            let t1585 = t1533 * t1540;
-            let t1586 = t1538 * t1540;
-            let t1587 = t1539 * t1540;
-            let t1588 = T::fused(t1546, t1587, T::fused(t1542, t1585, t1544 * t1586));
-            let t1589 = T::fused(
-                k(0.4472135954999579),
-                t1564,
-                k(0.8944271909999159) * t1576,
+            let t1571 = k(0.6666666666666666) * (t1570 - t1564);
+            let t1572 = T::fused(k(0.3333333333333333), t1570, t1565);
+            let t1573 = k(1.0)
+                / T::fused(t1558, t1572, T::fused(-t1569, t1566, t1561 * t1571));
+            let t1574 = t1573 * T::fused(k(0.3333333333333333), t1558, t1562);
+            let t1575 = k(0.0031830988618379067) * t1423;
+            let t1576 = t1573 * (k(0.6666666666666666) * (t1569 - t1558));
+            let t1577 = k(0.0031830988618379067) * t1426;
+            let t1578 = t1573 * T::fused(k(0.3333333333333333), t1569, t1562);
+            let t1579 = k(0.0031830988618379067) * t1430;
+            let t1580 = T::fused(t1579, t1578, T::fused(t1575, t1574, t1577 * t1576));
+            let t1581 = slide_wy * slide_wy;
+            let t1582 = slide_wz * slide_wz;
+            let t1583 = t1582 + t1581;
+            let t1584 = slide_wx * slide_wy;
+            let t1585 = slide_wx * slide_wz;
+            let t1586 = T::fused(nut_wz, t1414, nut_wy * t1402);
+            let t1587 = T::fused(nut_wz, t1418, nut_wy * t1393);
+            let t1588 = T::fused(
+                -k(2.0),
+                T::fused(slide_wz, t1586, slide_wy * t1587),
+                T::fused(t1316, t1409, -T::fused(-t1334, t1410, t1335 * t1411)),
             );
-            let t1590 = T::fused(t1359, t1552, T::fused(t1371, t1550, t1366 * t1551));
-            let t1591 = T::fused(t1359, t1567, -T::fused(t1371, t1551, t1366 * t1566));
-            let t1592 = T::fused(t1359, t1577, -T::fused(-t1371, t1552, t1366 * t1567));
-            let t1593 = t1370 - t1365;
-            let t1594 = T::fused(k(0.2), t1285 - t1297, nut_rx);
-            let t1595 = t1594 - T::fused(k(0.2), t1358 - t1593, slide_rx);
-            let t1596 = T::fused(t1371, slide_wy, t1366 * slide_wx);
-            let t1597 = T::fused(t1371, slide_wz, t1359 * slide_wx);
-            let t1598 = T::fused(-t1366, slide_wz, t1359 * slide_wy);
-            let t1599 = T::fused(t1286, nut_wy, t1291 * nut_wx)
-                + T::fused(-t1291, nut_wz, t1298 * nut_wy);
-            let t1600 = T::fused(-k(0.1), t1596 + (t1598 - t1597), slide_sx)
-                - T::fused(k(0.1), t1599, nut_sx);
-            let t1601 = t1600
-                * T::fused(
-                    k(0.6666666666666666),
-                    t1596,
-                    T::fused(k(0.3333333333333333), t1597, k(0.6666666666666666) * t1598),
-                );
+            let t1589 = t1588
+                + T::fused(t1585, t1417, -T::fused(-t1583, t1410, t1584 * t1413));
+            let t1590 = T::fused(nut_wz, t1413, nut_wx * t1402);
+            let t1591 = T::fused(nut_wz, t1417, nut_wx * t1393);
+            let t1592 = T::fused(
+                k(2.0),
+                T::fused(slide_wz, t1590, slide_wy * t1591),
+                T::fused(t1320, t1409, T::fused(-t1335, t1410, t1367 * t1411)),
+            );
+            let t1593 = t1592
+                + T::fused(t1585, t1418, -T::fused(-t1583, t1411, t1584 * t1414));
+            let t1594 = T::fused(-nut_wy, t1413, nut_wx * t1414);
+            let t1595 = T::fused(-nut_wy, t1417, nut_wx * t1418);
+            let t1596 = T::fused(
+                -k(2.0),
+                T::fused(slide_wz, t1594, slide_wy * t1595),
+                T::fused(t1327, t1409, T::fused(t1316, t1410, t1320 * t1411)),
+            );
+            let t1597 = T::fused(
+                k(0.6666666666666666),
+                t1596 + T::fused(t1585, t1393, -T::fused(-t1583, t1409, t1584 * t1402)),
+                T::fused(-k(0.6666666666666666), t1589, k(0.3333333333333333) * t1593),
+            );
+            let t1598 = slide_wx * slide_wx;
+            let t1599 = t1582 + t1598;
+            let t1600 = slide_wy * slide_wz;
+            let t1601 = T::fused(nut_wz, t1411, nut_wy * t1409);
             let t1602 = T::fused(
-                -t1595,
-                T::fused(
-                    k(0.6666666666666666),
-                    t1592,
-                    T::fused(
-                        -k(0.6666666666666666),
-                        t1590,
-                        k(0.3333333333333333) * t1591,
-                    ),
-                ),
-                t1601,
+                k(2.0),
+                T::fused(slide_wz, t1601, slide_wx * t1587),
+                T::fused(t1316, t1402, -T::fused(-t1334, t1413, t1335 * t1414)),
             );
-            let t1603 = k(0.1) * (t1299 - t1303 + (t1592 - (t1591 + t1590)));
-            let t1604 = T::fused(t1355, t1552, -T::fused(t1373, t1550, t1362 * t1551));
-            let t1605 = T::fused(t1355, t1567, T::fused(t1373, t1551, t1362 * t1566));
-            let t1606 = T::fused(t1355, t1577, T::fused(-t1373, t1552, t1362 * t1567));
-            let t1607 = t1372 - t1361;
-            let t1608 = T::fused(-k(0.2), t1312 + t1324, nut_ry);
-            let t1609 = t1608 - T::fused(k(0.2), t1354 + t1607, slide_ry);
-            let t1610 = T::fused(t1373, slide_wy, t1362 * slide_wx);
-            let t1611 = T::fused(-t1373, slide_wz, t1355 * slide_wx);
-            let t1612 = T::fused(t1362, slide_wz, t1355 * slide_wy);
-            let t1613 = T::fused(t1313, nut_wy, t1306 * nut_wx)
-                - T::fused(t1306, nut_wz, t1325 * nut_wy);
-            let t1614 = T::fused(k(0.1), t1610 - (t1612 - t1611), slide_sy)
-                - T::fused(-k(0.1), t1613, nut_sy);
-            let t1615 = t1614
-                * T::fused(
-                    -k(0.6666666666666666),
-                    t1610,
-                    T::fused(k(0.3333333333333333), t1611, k(0.6666666666666666) * t1612),
-                );
+            let t1603 = t1602
+                + T::fused(t1600, t1417, T::fused(-t1584, t1410, t1599 * t1413));
+            let t1604 = T::fused(nut_wz, t1410, nut_wx * t1409);
+            let t1605 = T::fused(
+                -k(2.0),
+                T::fused(slide_wz, t1604, slide_wx * t1591),
+                T::fused(t1320, t1402, T::fused(-t1335, t1413, t1367 * t1414)),
+            );
+            let t1606 = t1605
+                + T::fused(t1600, t1418, T::fused(-t1584, t1411, t1599 * t1414));
+            let t1607 = T::fused(-nut_wy, t1410, nut_wx * t1411);
+            let t1608 = T::fused(
+                k(2.0),
+                T::fused(slide_wz, t1607, slide_wx * t1595),
+                T::fused(t1327, t1402, T::fused(t1316, t1413, t1320 * t1414)),
+            );
+            let t1609 = T::fused(
+                k(0.6666666666666666),
+                t1608 + T::fused(t1600, t1393, T::fused(-t1584, t1409, t1599 * t1402)),
+                T::fused(-k(0.6666666666666666), t1603, k(0.3333333333333333) * t1606),
+            );
+            let t1610 = t1581 + t1598;
+            let t1611 = T::fused(
+                -k(2.0),
+                T::fused(-slide_wy, t1601, slide_wx * t1586),
+                T::fused(t1316, t1393, -T::fused(-t1334, t1417, t1335 * t1418)),
+            );
+            let t1612 = t1611
+                + T::fused(t1610, t1417, T::fused(t1585, t1410, t1600 * t1413));
+            let t1613 = T::fused(
+                k(2.0),
+                T::fused(-slide_wy, t1604, slide_wx * t1590),
+                T::fused(t1320, t1393, T::fused(-t1335, t1417, t1367 * t1418)),
+            );
+            let t1614 = t1613
+                + T::fused(t1610, t1418, T::fused(t1585, t1411, t1600 * t1414));
+            let t1615 = T::fused(
+                -k(2.0),
+                T::fused(-slide_wy, t1607, slide_wx * t1594),
+                T::fused(t1327, t1393, T::fused(t1316, t1417, t1320 * t1418)),
+            );
             let t1616 = T::fused(
-                -t1609,
+                k(0.6666666666666666),
+                t1615 + T::fused(t1610, t1393, T::fused(t1585, t1409, t1600 * t1402)),
+                T::fused(-k(0.6666666666666666), t1612, k(0.3333333333333333) * t1614),
+            );
+            let t1617 = T::fused(
+                k(0.7453559924999299),
+                t1616,
+                -T::fused(-k(0.5962847939999439), t1597, k(0.29814239699997197) * t1609),
+            );
+            let t1618 = t1566 * t1573;
+            let t1619 = t1571 * t1573;
+            let t1620 = t1572 * t1573;
+            let t1621 = T::fused(t1579, t1620, T::fused(t1575, t1618, t1577 * t1619));
+            let t1622 = T::fused(
+                k(0.4472135954999579),
+                t1597,
+                k(0.8944271909999159) * t1609,
+            );
+            let t1623 = T::fused(t1392, t1585, T::fused(t1404, t1583, t1399 * t1584));
+            let t1624 = T::fused(t1392, t1600, -T::fused(t1404, t1584, t1399 * t1599));
+            let t1625 = T::fused(t1392, t1610, -T::fused(-t1404, t1585, t1399 * t1600));
+            let t1626 = t1403 - t1398;
+            let t1627 = T::fused(k(0.2), t1318 - t1330, nut_rx);
+            let t1628 = t1627 - T::fused(k(0.2), t1391 - t1626, slide_rx);
+            let t1629 = T::fused(t1404, slide_wy, t1399 * slide_wx);
+            let t1630 = T::fused(t1404, slide_wz, t1392 * slide_wx);
+            let t1631 = T::fused(-t1399, slide_wz, t1392 * slide_wy);
+            let t1632 = T::fused(t1319, nut_wy, t1324 * nut_wx)
+                + T::fused(-t1324, nut_wz, t1331 * nut_wy);
+            let t1633 = T::fused(-k(0.1), t1629 + (t1631 - t1630), slide_sx)
+                - T::fused(k(0.1), t1632, nut_sx);
+            let t1634 = t1633
+                * T::fused(
+                    k(0.6666666666666666),
+                    t1629,
+                    T::fused(k(0.3333333333333333), t1630, k(0.6666666666666666) * t1631),
+                );
+            let t1635 = T::fused(
+                -t1628,
                 T::fused(
                     k(0.6666666666666666),
-                    t1606,
+                    t1625,
                     T::fused(
                         -k(0.6666666666666666),
-                        t1604,
-                        k(0.3333333333333333) * t1605,
+                        t1623,
+                        k(0.3333333333333333) * t1624,
                     ),
                 ),
-                t1615,
+                t1634,
             );
-            let t1617 = k(0.1) * (t1403 - t1404 + (t1606 - (t1605 + t1604)));
-            let t1618 = T::fused(t1414, t1617, t1615) + t1616
-                + (T::fused(t1401, t1603, t1601) + t1602);
-            let t1619 = T::fused(t1351, t1552, -T::fused(-t1375, t1550, t1368 * t1551));
-            let t1620 = T::fused(t1351, t1567, T::fused(-t1375, t1551, t1368 * t1566));
-            let t1621 = T::fused(t1351, t1577, T::fused(t1375, t1552, t1368 * t1567));
-            let t1622 = t1374 + t1367;
-            let t1623 = T::fused(-k(0.2), t1314 - t1326, nut_rz);
-            let t1624 = t1623 - T::fused(-k(0.2), t1350 - t1622, slide_rz);
-            let t1625 = T::fused(-t1375, slide_wy, t1368 * slide_wx);
-            let t1626 = T::fused(t1375, slide_wz, t1351 * slide_wx);
-            let t1627 = T::fused(t1368, slide_wz, t1351 * slide_wy);
-            let t1628 = T::fused(-t1315, nut_wy, t1310 * nut_wx)
-                - T::fused(t1310, nut_wz, t1327 * nut_wy);
-            let t1629 = T::fused(-k(0.1), t1625 - (t1627 - t1626), slide_sz)
-                - T::fused(k(0.1), t1628, nut_sz);
-            let t1630 = t1629
+            let t1636 = k(0.1) * (t1332 - t1336 + (t1625 - (t1624 + t1623)));
+            let t1637 = T::fused(t1388, t1585, -T::fused(t1406, t1583, t1395 * t1584));
+            let t1638 = T::fused(t1388, t1600, T::fused(t1406, t1584, t1395 * t1599));
+            let t1639 = T::fused(t1388, t1610, T::fused(-t1406, t1585, t1395 * t1600));
+            let t1640 = t1405 - t1394;
+            let t1641 = T::fused(-k(0.2), t1345 + t1357, nut_ry);
+            let t1642 = t1641 - T::fused(k(0.2), t1387 + t1640, slide_ry);
+            let t1643 = T::fused(t1406, slide_wy, t1395 * slide_wx);
+            let t1644 = T::fused(-t1406, slide_wz, t1388 * slide_wx);
+            let t1645 = T::fused(t1395, slide_wz, t1388 * slide_wy);
+            let t1646 = T::fused(t1346, nut_wy, t1339 * nut_wx)
+                - T::fused(t1339, nut_wz, t1358 * nut_wy);
+            let t1647 = T::fused(k(0.1), t1643 - (t1645 - t1644), slide_sy)
+                - T::fused(-k(0.1), t1646, nut_sy);
+            let t1648 = t1647
                 * T::fused(
                     -k(0.6666666666666666),
-                    t1625,
-                    T::fused(k(0.3333333333333333), t1626, k(0.6666666666666666) * t1627),
+                    t1643,
+                    T::fused(k(0.3333333333333333), t1644, k(0.6666666666666666) * t1645),
                 );
-            let t1631 = T::fused(
-                -t1624,
+            let t1649 = T::fused(
+                -t1642,
                 T::fused(
                     k(0.6666666666666666),
-                    t1621,
+                    t1639,
                     T::fused(
                         -k(0.6666666666666666),
-                        t1619,
-                        k(0.3333333333333333) * t1620,
+                        t1637,
+                        k(0.3333333333333333) * t1638,
                     ),
                 ),
-                t1630,
+                t1648,
             );
-            let t1632 = k(0.1) * (t1416 - t1417 + (t1621 - (t1620 + t1619)));
-            let t1633 = T::fused(
-                -k(0.8944271909999159),
-                t1558 - T::fused(-slide_wy, t1378, slide_wx * t1381),
-                k(0.4472135954999579)
-                    * (t1554 + T::fused(-slide_wy, t1377, slide_wx * t1380)),
-            );
-            let t1634 = T::fused(
-                -k(0.8944271909999159),
-                t1557 + T::fused(slide_wz, t1378, slide_wx * t1385),
-                k(0.4472135954999579)
-                    * (t1553 - T::fused(slide_wz, t1377, slide_wx * t1384)),
-            );
-            let t1635 = T::fused(
-                -k(0.8944271909999159),
-                t1571 - T::fused(slide_wz, t1381, slide_wy * t1385),
-                k(0.4472135954999579)
-                    * (t1568 + T::fused(slide_wz, t1380, slide_wy * t1384)),
-            );
-            let t1636 = T::fused(
-                k(0.7453559924999299),
-                t1633,
-                T::fused(-k(0.29814239699997197), t1634, k(0.5962847939999439) * t1635),
-            );
-            let t1637 = T::fused(
-                k(0.8944271909999159),
-                t1634,
-                k(0.4472135954999579) * t1635,
-            );
-            let t1638 = T::fused(
-                k(0.4472135954999579),
-                t1556,
-                k(0.8944271909999159) * t1560,
-            );
-            let t1639 = T::fused(
-                k(0.4472135954999579),
-                t1570,
-                k(0.8944271909999159) * t1573,
-            );
-            let t1640 = t1637 * t1636;
-            let t1641 = T::fused(
-                k(0.7453559924999299),
-                T::fused(k(0.4472135954999579), t1579, k(0.8944271909999159) * t1581),
-                -T::fused(-k(0.5962847939999439), t1638, k(0.29814239699997197) * t1639),
-            );
-            let t1642 = T::fused(t1383, t1641, -t1640)
-                + T::fused(
-                    -t1387,
-                    T::fused(
-                        k(0.4472135954999579),
-                        t1638,
-                        k(0.8944271909999159) * t1639,
-                    ),
-                    t1640,
+            let t1650 = k(0.1) * (t1436 - t1437 + (t1639 - (t1638 + t1637)));
+            let t1651 = T::fused(t1447, t1650, t1648) + t1649
+                + (T::fused(t1434, t1636, t1634) + t1635);
+            let t1652 = T::fused(t1384, t1585, -T::fused(-t1408, t1583, t1401 * t1584));
+            let t1653 = T::fused(t1384, t1600, T::fused(-t1408, t1584, t1401 * t1599));
+            let t1654 = T::fused(t1384, t1610, T::fused(t1408, t1585, t1401 * t1600));
+            let t1655 = t1407 + t1400;
+            let t1656 = T::fused(-k(0.2), t1347 - t1359, nut_rz);
+            let t1657 = t1656 - T::fused(-k(0.2), t1383 - t1655, slide_rz);
+            let t1658 = T::fused(-t1408, slide_wy, t1401 * slide_wx);
+            let t1659 = T::fused(t1408, slide_wz, t1384 * slide_wx);
+            let t1660 = T::fused(t1401, slide_wz, t1384 * slide_wy);
+            let t1661 = T::fused(-t1348, nut_wy, t1343 * nut_wx)
+                - T::fused(t1343, nut_wz, t1360 * nut_wy);
+            let t1662 = T::fused(-k(0.1), t1658 - (t1660 - t1659), slide_sz)
+                - T::fused(k(0.1), t1661, nut_sz);
+            let t1663 = t1662
+                * T::fused(
+                    -k(0.6666666666666666),
+                    t1658,
+                    T::fused(k(0.3333333333333333), t1659, k(0.6666666666666666) * t1660),
                 );
-            let t1643 = T::fused(
-                -(t1389 * t1389 * (k(2.0) * T::fused(t1387, t1636, t1383 * t1637))),
-                T::fused(-t1383, t1636, t1387 * t1637),
-                t1389 * t1642,
-            );
-            let t1644 = T::fused(
-                k(0.0031830988618379067),
-                t1643,
-                -(T::fused(t1428, t1632, -t1630) - t1631 + t1618),
-            );
-            let t1645 = t1600
-                * T::fused(-k(0.8944271909999159), t1597, k(0.4472135954999579) * t1598);
-            let t1646 = T::fused(
-                -k(0.8944271909999159),
-                t1370,
-                k(1.7888543819998317) * t1365,
-            );
-            let t1647 = T::fused(t1646, t1603, t1645)
-                + T::fused(
-                    t1595,
-                    T::fused(
-                        k(0.4472135954999579),
-                        t1590,
-                        k(0.8944271909999159) * t1591,
-                    ),
-                    t1645,
-                );
-            let t1648 = t1614
-                * T::fused(-k(0.8944271909999159), t1611, k(0.4472135954999579) * t1612);
-            let t1649 = T::fused(
-                -k(0.8944271909999159),
-                t1372,
-                k(1.7888543819998317) * t1361,
-            );
-            let t1650 = T::fused(t1649, t1617, -t1648)
-                - T::fused(
-                    t1609,
-                    T::fused(
-                        k(0.4472135954999579),
-                        t1604,
-                        k(0.8944271909999159) * t1605,
-                    ),
-                    t1648,
-                );
-            let t1651 = t1629
-                * T::fused(-k(0.8944271909999159), t1626, k(0.4472135954999579) * t1627);
-            let t1652 = T::fused(
-                k(0.8944271909999159),
-                t1374,
-                k(1.7888543819998317) * t1367,
-            );
-            let t1653 = T::fused(t1652, t1632, t1651)
-                + T::fused(
-                    t1624,
-                    T::fused(
-                        k(0.4472135954999579),
-                        t1619,
-                        k(0.8944271909999159) * t1620,
-                    ),
-                    t1651,
-                );
-            let t1654 = t1653 + (t1650 - t1647);
-            let t1655 = T::fused(
-                -k(0.7453559924999299),
-                t1596,
-                T::fused(k(0.29814239699997197), t1597, k(0.5962847939999439) * t1598),
-            ) * t1600;
-            let t1656 = T::fused(
-                t1595,
-                T::fused(
-                    k(0.7453559924999299),
-                    t1592,
-                    -T::fused(
-                        -k(0.5962847939999439),
-                        t1590,
-                        k(0.29814239699997197) * t1591,
-                    ),
-                ),
-                t1655,
-            );
-            let t1657 = T::fused(
-                k(1.4907119849998598),
-                t1358,
-                T::fused(k(1.1925695879998879), t1370, k(0.5962847939999439) * t1365),
-            );
-            let t1658 = T::fused(
-                k(0.7453559924999299),
-                t1610,
-                T::fused(k(0.29814239699997197), t1611, k(0.5962847939999439) * t1612),
-            ) * t1614;
-            let t1659 = T::fused(
-                t1609,
-                T::fused(
-                    k(0.7453559924999299),
-                    t1606,
-                    -T::fused(
-                        -k(0.5962847939999439),
-                        t1604,
-                        k(0.29814239699997197) * t1605,
-                    ),
-                ),
-                t1658,
-            );
-            let t1660 = T::fused(
-                k(1.4907119849998598),
-                t1354,
-                -T::fused(k(1.1925695879998879), t1372, k(0.5962847939999439) * t1361),
-            );
-            let t1661 = T::fused(t1660, t1617, -t1658) - t1659
-                + (T::fused(t1657, t1603, -t1655) - t1656);
-            let t1662 = T::fused(
-                k(0.7453559924999299),
-                t1625,
-                T::fused(k(0.29814239699997197), t1626, k(0.5962847939999439) * t1627),
-            ) * t1629;
-            let t1663 = T::fused(
-                t1624,
-                T::fused(
-                    k(0.7453559924999299),
-                    t1621,
-                    -T::fused(
-                        -k(0.5962847939999439),
-                        t1619,
-                        k(0.29814239699997197) * t1620,
-                    ),
-                ),
-                t1662,
-            );
             let t1664 = T::fused(
-                k(1.4907119849998598),
-                t1350,
-                -T::fused(-k(1.1925695879998879), t1374, k(0.5962847939999439) * t1367),
+                -t1657,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1654,
+                    T::fused(
+                        -k(0.6666666666666666),
+                        t1652,
+                        k(0.3333333333333333) * t1653,
+                    ),
+                ),
+                t1663,
             );
-            let t1665 = T::fused(t1664, t1632, t1662) + t1663 + t1661;
+            let t1665 = k(0.1) * (t1449 - t1450 + (t1654 - (t1653 + t1652)));
             let t1666 = T::fused(
-                t1589,
-                t1401 * t1588,
-                T::fused(-t1401, t1644, T::fused(-t1646, t1654, t1657 * t1665)),
+                -k(0.8944271909999159),
+                t1591 - T::fused(-slide_wy, t1411, slide_wx * t1414),
+                k(0.4472135954999579)
+                    * (t1587 + T::fused(-slide_wy, t1410, slide_wx * t1413)),
             );
-            let t1667 = T::fused(-t1584, t1401 * t1547, t1666);
-            let t1668 = t1471 * t1519;
-            let t1669 = t1471 * t1668;
+            let t1667 = T::fused(
+                -k(0.8944271909999159),
+                t1590 + T::fused(slide_wz, t1411, slide_wx * t1418),
+                k(0.4472135954999579)
+                    * (t1586 - T::fused(slide_wz, t1410, slide_wx * t1417)),
+            );
+            let t1668 = T::fused(
+                -k(0.8944271909999159),
+                t1604 - T::fused(slide_wz, t1414, slide_wy * t1418),
+                k(0.4472135954999579)
+                    * (t1601 + T::fused(slide_wz, t1413, slide_wy * t1417)),
+            );
+            let t1669 = T::fused(
+                k(0.7453559924999299),
+                t1666,
+                T::fused(-k(0.29814239699997197), t1667, k(0.5962847939999439) * t1668),
+            );
             let t1670 = T::fused(
-                t1589,
-                t1414 * t1588,
-                T::fused(-t1414, t1644, T::fused(t1649, t1654, t1660 * t1665)),
-            );
-            let t1671 = T::fused(-t1584, t1414 * t1547, t1670);
-            let t1672 = t1481 * t1668;
-            let t1673 = T::fused(
-                t1589,
-                t1428 * t1588,
-                T::fused(-t1428, t1644, T::fused(t1652, t1654, t1664 * t1665)),
-            );
-            let t1674 = T::fused(-t1584, t1428 * t1547, t1673);
-            let t1675 = t1491 * t1668;
-            let t1676 = T::fused(
-                k(0.5),
+                k(0.8944271909999159),
                 t1667,
-                T::fused(t1675, t1674, T::fused(-t1669, t1667, t1672 * t1671)),
+                k(0.4472135954999579) * t1668,
             );
-            let t1677 = T::fused(-t1505, t1668, t1464);
-            let t1678 = T::fused(-t1589, t1585, t1584 * t1541);
-            let t1679 = T::fused(t1513, t1668, t1467);
-            let t1680 = T::fused(-t1589, t1586, t1584 * t1543);
-            let t1681 = T::fused(-t1517, t1668, t1470);
-            let t1682 = T::fused(-t1587, t1589, t1545 * t1584);
-            let t1683 = T::fused(t1682, t1681, -T::fused(-t1678, t1677, t1680 * t1679))
-                - t1676 + T::fused(-t1471, t1520, t1348);
-            let t1684 = T::fused(k(0.1), t1598 + t1596, slide_sx)
-                - T::fused(k(0.1), t1612 - t1610, slide_sy);
+            let t1671 = T::fused(
+                k(0.4472135954999579),
+                t1589,
+                k(0.8944271909999159) * t1593,
+            );
+            let t1672 = T::fused(
+                k(0.4472135954999579),
+                t1603,
+                k(0.8944271909999159) * t1606,
+            );
+            let t1673 = t1670 * t1669;
+            let t1674 = T::fused(
+                k(0.7453559924999299),
+                T::fused(k(0.4472135954999579), t1612, k(0.8944271909999159) * t1614),
+                -T::fused(-k(0.5962847939999439), t1671, k(0.29814239699997197) * t1672),
+            );
+            let t1675 = T::fused(t1416, t1674, -t1673)
+                + T::fused(
+                    -t1420,
+                    T::fused(
+                        k(0.4472135954999579),
+                        t1671,
+                        k(0.8944271909999159) * t1672,
+                    ),
+                    t1673,
+                );
+            let t1676 = T::fused(
+                -(t1422 * t1422 * (k(2.0) * T::fused(t1420, t1669, t1416 * t1670))),
+                T::fused(-t1416, t1669, t1420 * t1670),
+                t1422 * t1675,
+            );
+            let t1677 = T::fused(
+                k(0.0031830988618379067),
+                t1676,
+                -(T::fused(t1461, t1665, -t1663) - t1664 + t1651),
+            );
+            let t1678 = t1633
+                * T::fused(-k(0.8944271909999159), t1630, k(0.4472135954999579) * t1631);
+            let t1679 = T::fused(
+                -k(0.8944271909999159),
+                t1403,
+                k(1.7888543819998317) * t1398,
+            );
+            let t1680 = T::fused(t1679, t1636, t1678)
+                + T::fused(
+                    t1628,
+                    T::fused(
+                        k(0.4472135954999579),
+                        t1623,
+                        k(0.8944271909999159) * t1624,
+                    ),
+                    t1678,
+                );
+            let t1681 = t1647
+                * T::fused(-k(0.8944271909999159), t1644, k(0.4472135954999579) * t1645);
+            let t1682 = T::fused(
+                -k(0.8944271909999159),
+                t1405,
+                k(1.7888543819998317) * t1394,
+            );
+            let t1683 = T::fused(t1682, t1650, -t1681)
+                - T::fused(
+                    t1642,
+                    T::fused(
+                        k(0.4472135954999579),
+                        t1637,
+                        k(0.8944271909999159) * t1638,
+                    ),
+                    t1681,
+                );
+            let t1684 = t1662
+                * T::fused(-k(0.8944271909999159), t1659, k(0.4472135954999579) * t1660);
             let t1685 = T::fused(
-                k(0.9428090415820634),
-                T::fused(-k(0.1), t1627 - t1625, slide_sz),
-                k(0.23570226039551584) * t1684,
+                k(0.8944271909999159),
+                t1407,
+                k(1.7888543819998317) * t1400,
             );
-            let t1686 = k(0.11785113019775792) * t1685;
-            let t1687 = t1481 * t1519;
-            let t1688 = t1481 * t1687;
-            let t1689 = t1491 * t1687;
+            let t1686 = T::fused(t1685, t1665, t1684)
+                + T::fused(
+                    t1657,
+                    T::fused(
+                        k(0.4472135954999579),
+                        t1652,
+                        k(0.8944271909999159) * t1653,
+                    ),
+                    t1684,
+                );
+            let t1687 = t1686 + (t1683 - t1680);
+            let t1688 = T::fused(
+                -k(0.7453559924999299),
+                t1629,
+                T::fused(k(0.29814239699997197), t1630, k(0.5962847939999439) * t1631),
+            ) * t1633;
+            let t1689 = T::fused(
+                t1628,
+                T::fused(
+                    k(0.7453559924999299),
+                    t1625,
+                    -T::fused(
+                        -k(0.5962847939999439),
+                        t1623,
+                        k(0.29814239699997197) * t1624,
+                    ),
+                ),
+                t1688,
+            );
             let t1690 = T::fused(
-                -k(0.5),
-                t1671,
-                T::fused(t1689, t1674, T::fused(-t1672, t1667, t1688 * t1671)),
+                k(1.4907119849998598),
+                t1391,
+                T::fused(k(1.1925695879998879), t1403, k(0.5962847939999439) * t1398),
             );
-            let t1691 = T::fused(-t1505, t1687, t1474);
-            let t1692 = T::fused(-t1513, t1687, t1477);
-            let t1693 = T::fused(-t1517, t1687, t1480);
-            let t1694 = T::fused(t1682, t1693, T::fused(t1678, t1691, t1680 * t1692))
-                - t1690 + T::fused(-t1481, t1520, t1411);
-            let t1695 = t1491 * t1519;
-            let t1696 = t1491 * t1695;
+            let t1691 = T::fused(
+                k(0.7453559924999299),
+                t1643,
+                T::fused(k(0.29814239699997197), t1644, k(0.5962847939999439) * t1645),
+            ) * t1647;
+            let t1692 = T::fused(
+                t1642,
+                T::fused(
+                    k(0.7453559924999299),
+                    t1639,
+                    -T::fused(
+                        -k(0.5962847939999439),
+                        t1637,
+                        k(0.29814239699997197) * t1638,
+                    ),
+                ),
+                t1691,
+            );
+            let t1693 = T::fused(
+                k(1.4907119849998598),
+                t1387,
+                -T::fused(k(1.1925695879998879), t1405, k(0.5962847939999439) * t1394),
+            );
+            let t1694 = T::fused(t1693, t1650, -t1691) - t1692
+                + (T::fused(t1690, t1636, -t1688) - t1689);
+            let t1695 = T::fused(
+                k(0.7453559924999299),
+                t1658,
+                T::fused(k(0.29814239699997197), t1659, k(0.5962847939999439) * t1660),
+            ) * t1662;
+            let t1696 = T::fused(
+                t1657,
+                T::fused(
+                    k(0.7453559924999299),
+                    t1654,
+                    -T::fused(
+                        -k(0.5962847939999439),
+                        t1652,
+                        k(0.29814239699997197) * t1653,
+                    ),
+                ),
+                t1695,
+            );
             let t1697 = T::fused(
-                -k(0.5),
-                t1674,
-                T::fused(t1696, t1674, T::fused(-t1675, t1667, t1689 * t1671)),
+                k(1.4907119849998598),
+                t1383,
+                -T::fused(-k(1.1925695879998879), t1407, k(0.5962847939999439) * t1400),
             );
-            let t1698 = T::fused(-t1505, t1695, t1484);
-            let t1699 = T::fused(-t1513, t1695, t1487);
-            let t1700 = T::fused(-t1517, t1695, t1490);
-            let t1701 = T::fused(t1682, t1700, T::fused(t1678, t1698, t1680 * t1699))
-                - t1697 + T::fused(-t1491, t1520, t1427);
-            let t1702 = T::fused(
-                k(0.23570226039551584),
-                t1694 + t1686 + (t1686 + t1683),
-                k(0.9428090415820634)
-                    * (t1701
-                        + T::fused(k(0.4714045207910317), t1685, k(0.8) * self.gravity)),
-            );
-            let t1703 = t1592 - t1590;
-            let t1704 = t1606 - t1604;
-            let t1705 = k(0.05) * (t1704 + t1703);
-            let t1706 = T::fused(
-                -k(0.06666666666666667),
-                t1704 - t1703,
-                k(0.03333333333333333) * (t1621 - t1619),
-            );
-            let t1707 = k(0.6666666666666666) * t1706;
-            let t1708 = t1707 + t1705;
-            let t1709 = k(0.3064129385141706)
-                - T::fused(
-                    k(0.23570226039551584),
-                    t1672 + t1669,
-                    k(0.9428090415820634) * t1675,
-                );
-            let t1710 = t1707 - t1705;
-            let t1711 = k(0.3064129385141706)
-                - T::fused(
-                    k(0.23570226039551584),
-                    t1688 + t1672,
-                    k(0.9428090415820634) * t1689,
-                );
-            let t1712 = k(0.3333333333333333) * t1706;
-            let t1713 = k(1.2256517540566825)
-                - T::fused(
-                    k(0.23570226039551584),
-                    t1689 + t1675,
-                    k(0.9428090415820634) * t1696,
-                );
-            let t1714 = slide_rx - t1594;
-            let t1715 = slide_ry - t1608;
-            let t1716 = slide_rz - t1623;
-            let t1717 = T::fused(t1351, t1716, -T::fused(t1359, t1714, t1355 * t1715));
-            let t1718 = T::fused(t1368, t1716, -T::fused(-t1366, t1714, t1362 * t1715));
-            let t1719 = T::fused(t1366, t1717, t1359 * t1718);
-            let t1720 = T::fused(-t1362, t1717, t1355 * t1718);
-            let t1721 = T::fused(-t1368, t1717, t1351 * t1718);
-            let t1722 = T::fused(
-                k(0.5),
-                t1719,
-                T::fused(t1675, t1721, T::fused(-t1669, t1719, t1672 * t1720)),
-            );
-            let t1723 = k(0.2) * t1365;
-            let t1724 = k(0.2) * t1361;
-            let t1725 = k(0.2) * t1367;
-            let t1726 = T::fused(
-                -k(0.26),
-                t1365,
-                T::fused(t1725, t1675, T::fused(t1723, t1669, t1724 * t1672)),
-            );
-            let t1727 = t1726
-                - (t1722
-                    + T::fused(t1376, t1681, T::fused(t1377, t1677, t1378 * t1679)));
-            let t1728 = T::fused(
-                -k(0.5),
-                t1720,
-                T::fused(t1689, t1721, T::fused(-t1672, t1719, t1688 * t1720)),
-            );
-            let t1729 = T::fused(
-                -k(0.26),
-                t1361,
-                T::fused(t1725, t1689, T::fused(t1723, t1672, t1724 * t1688)),
-            );
-            let t1730 = t1729
-                - (t1728
-                    + T::fused(t1376, t1693, -T::fused(-t1377, t1691, t1378 * t1692)));
-            let t1731 = T::fused(
-                -k(0.5),
-                t1721,
-                T::fused(t1696, t1721, T::fused(-t1675, t1719, t1689 * t1720)),
-            );
-            let t1732 = T::fused(
-                -k(0.26),
-                t1367,
-                T::fused(t1725, t1696, T::fused(t1723, t1675, t1724 * t1689)),
-            );
-            let t1733 = t1732
-                - (t1731
-                    + T::fused(t1376, t1700, -T::fused(-t1377, t1698, t1378 * t1699)));
-            let t1734 = T::fused(
-                k(0.15713484026367722),
+            let t1698 = T::fused(t1697, t1665, t1695) + t1696 + t1694;
+            let t1699 = T::fused(
                 t1622,
-                k(0.31426968052735443) * (t1607 + t1593),
+                t1434 * t1621,
+                T::fused(-t1434, t1677, T::fused(-t1679, t1687, t1690 * t1698)),
             );
-            let t1735 = k(0.4714045207910317) * t1354;
-            let t1736 = T::fused(-k(1.8856180831641267), t1372, t1735);
-            let t1737 = k(0.4714045207910317) * t1358;
-            let t1738 = T::fused(k(1.8856180831641267), t1370, t1737);
-            let t1739 = k(0.7071067811865476) * (t1738 + t1736);
-            let t1740 = k(0.4714045207910317) * t1350;
-            let t1741 = T::fused(
-                k(0.3333333333333333),
-                T::fused(k(1.8856180831641267), t1374, t1740),
-                k(0.6666666666666666) * (t1738 - t1736),
+            let t1700 = T::fused(-t1617, t1434 * t1580, t1699);
+            let t1701 = t1504 * t1552;
+            let t1702 = t1504 * t1701;
+            let t1703 = T::fused(
+                t1622,
+                t1447 * t1621,
+                T::fused(-t1447, t1677, T::fused(t1682, t1687, t1693 * t1698)),
             );
-            let t1742 = t1607 - t1593;
-            let t1743 = k(0.3333333333333333) * t1742;
-            let t1744 = T::fused(t1739, t1734, t1743 * t1741);
-            let t1745 = k(0.7071067811865476) * (t1400 - t1399 + (t1413 + t1412));
-            let t1746 = T::fused(-k(1.8856180831641267), t1361, t1735);
-            let t1747 = T::fused(k(1.8856180831641267), t1365, t1737);
-            let t1748 = T::fused(
-                k(0.3333333333333333),
-                T::fused(-k(1.8856180831641267), t1367, t1740),
-                k(0.6666666666666666) * (t1747 - t1746),
+            let t1704 = T::fused(-t1617, t1447 * t1580, t1703);
+            let t1705 = t1514 * t1701;
+            let t1706 = T::fused(
+                t1622,
+                t1461 * t1621,
+                T::fused(-t1461, t1677, T::fused(t1685, t1687, t1697 * t1698)),
             );
-            let t1749 = k(0.7071067811865476) * (t1747 + t1746);
-            let t1750 = T::fused(t1743, t1748, t1749 * t1734);
-            let t1751 = k(0.7071067811865476)
-                * (T::fused(-k(0.6666666666666666), t1370, t1400)
-                    + T::fused(k(0.6666666666666666), t1372, t1413));
-            let t1752 = T::fused(-t1749, t1741, t1739 * t1748);
-            let t1753 = k(0.9428090415820634) * t1742;
-            let t1754 = k(1.0)
-                / T::fused(t1753, t1752, -T::fused(-t1745, t1744, t1751 * t1750));
-            let t1755 = t1591 - t1590;
-            let t1756 = t1605 - t1604;
-            let t1757 = T::fused(
-                -k(0.6666666666666666),
-                t1756,
-                k(0.3333333333333333) * t1606,
-            ) + T::fused(-k(0.6666666666666666), t1755, k(0.3333333333333333) * t1592);
-            let t1758 = k(0.7071067811865476) * t1757;
+            let t1707 = T::fused(-t1617, t1461 * t1580, t1706);
+            let t1708 = t1524 * t1701;
+            let t1709 = T::fused(
+                k(0.5),
+                t1700,
+                T::fused(t1708, t1707, T::fused(-t1702, t1700, t1705 * t1704)),
+            );
+            let t1710 = T::fused(-t1538, t1701, t1497);
+            let t1711 = T::fused(-t1622, t1618, t1617 * t1574);
+            let t1712 = T::fused(t1546, t1701, t1500);
+            let t1713 = T::fused(-t1622, t1619, t1617 * t1576);
+            let t1714 = T::fused(-t1550, t1701, t1503);
+            let t1715 = T::fused(-t1620, t1622, t1578 * t1617);
+            let t1716 = T::fused(t1715, t1714, -T::fused(-t1711, t1710, t1713 * t1712))
+                - t1709 + T::fused(-t1504, t1553, t1381);
+            let t1717 = T::fused(k(0.1), t1631 + t1629, slide_sx)
+                - T::fused(k(0.1), t1645 - t1643, slide_sy);
+            let t1718 = T::fused(
+                k(0.9428090415820634),
+                T::fused(-k(0.1), t1660 - t1658, slide_sz),
+                k(0.23570226039551584) * t1717,
+            );
+            let t1719 = k(0.11785113019775792) * t1718;
+            let t1720 = t1514 * t1552;
+            let t1721 = t1514 * t1720;
+            let t1722 = t1524 * t1720;
+            let t1723 = T::fused(
+                -k(0.5),
+                t1704,
+                T::fused(t1722, t1707, T::fused(-t1705, t1700, t1721 * t1704)),
+            );
+            let t1724 = T::fused(-t1538, t1720, t1507);
+            let t1725 = T::fused(-t1546, t1720, t1510);
+            let t1726 = T::fused(-t1550, t1720, t1513);
+            let t1727 = T::fused(t1715, t1726, T::fused(t1711, t1724, t1713 * t1725))
+                - t1723 + T::fused(-t1514, t1553, t1444);
+            let t1728 = t1524 * t1552;
+            let t1729 = t1524 * t1728;
+            let t1730 = T::fused(
+                -k(0.5),
+                t1707,
+                T::fused(t1729, t1707, T::fused(-t1708, t1700, t1722 * t1704)),
+            );
+            let t1731 = T::fused(-t1538, t1728, t1517);
+            let t1732 = T::fused(-t1546, t1728, t1520);
+            let t1733 = T::fused(-t1550, t1728, t1523);
+            let t1734 = T::fused(t1715, t1733, T::fused(t1711, t1731, t1713 * t1732))
+                - t1730 + T::fused(-t1524, t1553, t1460);
+            let t1735 = T::fused(
+                k(0.23570226039551584),
+                t1727 + t1719 + (t1719 + t1716),
+                k(0.9428090415820634)
+                    * (t1734
+                        + T::fused(k(0.4714045207910317), t1718, k(0.8) * self.gravity)),
+            );
+            let t1736 = t1625 - t1623;
+            let t1737 = t1639 - t1637;
+            let t1738 = k(0.05) * (t1737 + t1736);
+            let t1739 = T::fused(
+                -k(0.06666666666666667),
+                t1737 - t1736,
+                k(0.03333333333333333) * (t1654 - t1652),
+            );
+            let t1740 = k(0.6666666666666666) * t1739;
+            let t1741 = t1740 + t1738;
+            let t1742 = k(0.3064129385141706)
+                - T::fused(
+                    k(0.23570226039551584),
+                    t1705 + t1702,
+                    k(0.9428090415820634) * t1708,
+                );
+            let t1743 = t1740 - t1738;
+            let t1744 = k(0.3064129385141706)
+                - T::fused(
+                    k(0.23570226039551584),
+                    t1721 + t1705,
+                    k(0.9428090415820634) * t1722,
+                );
+            let t1745 = k(0.3333333333333333) * t1739;
+            let t1746 = k(1.2256517540566825)
+                - T::fused(
+                    k(0.23570226039551584),
+                    t1722 + t1708,
+                    k(0.9428090415820634) * t1729,
+                );
+            let t1747 = slide_rx - t1627;
+            let t1748 = slide_ry - t1641;
+            let t1749 = slide_rz - t1656;
+            let t1750 = T::fused(t1384, t1749, -T::fused(t1392, t1747, t1388 * t1748));
+            let t1751 = T::fused(t1401, t1749, -T::fused(-t1399, t1747, t1395 * t1748));
+            let t1752 = T::fused(t1399, t1750, t1392 * t1751);
+            let t1753 = T::fused(-t1395, t1750, t1388 * t1751);
+            let t1754 = T::fused(-t1401, t1750, t1384 * t1751);
+            let t1755 = T::fused(
+                k(0.5),
+                t1752,
+                T::fused(t1708, t1754, T::fused(-t1702, t1752, t1705 * t1753)),
+            );
+            let t1756 = k(0.2) * t1398;
+            let t1757 = k(0.2) * t1394;
+            let t1758 = k(0.2) * t1400;
             let t1759 = T::fused(
-                k(0.23570226039551584),
-                t1755,
-                k(0.9428090415820634) * t1592,
+                -k(0.26),
+                t1398,
+                T::fused(t1758, t1708, T::fused(t1756, t1702, t1757 * t1705)),
             );
-            let t1760 = T::fused(
-                k(0.23570226039551584),
-                t1756,
-                k(0.9428090415820634) * t1606,
+            let t1760 = t1759
+                - (t1755
+                    + T::fused(t1409, t1714, T::fused(t1410, t1710, t1411 * t1712)));
+            let t1761 = T::fused(
+                -k(0.5),
+                t1753,
+                T::fused(t1722, t1754, T::fused(-t1705, t1752, t1721 * t1753)),
             );
-            let t1761 = k(0.7071067811865476) * (t1760 + t1759);
             let t1762 = T::fused(
+                -k(0.26),
+                t1394,
+                T::fused(t1758, t1722, T::fused(t1756, t1705, t1757 * t1721)),
+            );
+            let t1763 = t1762
+                - (t1761
+                    + T::fused(t1409, t1726, -T::fused(-t1410, t1724, t1411 * t1725)));
+            let t1764 = T::fused(
+                -k(0.5),
+                t1754,
+                T::fused(t1729, t1754, T::fused(-t1708, t1752, t1722 * t1753)),
+            );
+            let t1765 = T::fused(
+                -k(0.26),
+                t1400,
+                T::fused(t1758, t1729, T::fused(t1756, t1708, t1757 * t1722)),
+            );
+            let t1766 = t1765
+                - (t1764
+                    + T::fused(t1409, t1733, -T::fused(-t1410, t1731, t1411 * t1732)));
+            let t1767 = T::fused(
+                k(0.15713484026367722),
+                t1655,
+                k(0.31426968052735443) * (t1640 + t1626),
+            );
+            let t1768 = k(0.4714045207910317) * t1387;
+            let t1769 = T::fused(-k(1.8856180831641267), t1405, t1768);
+            let t1770 = k(0.4714045207910317) * t1391;
+            let t1771 = T::fused(k(1.8856180831641267), t1403, t1770);
+            let t1772 = k(0.7071067811865476) * (t1771 + t1769);
+            let t1773 = k(0.4714045207910317) * t1383;
+            let t1774 = T::fused(
+                k(0.3333333333333333),
+                T::fused(k(1.8856180831641267), t1407, t1773),
+                k(0.6666666666666666) * (t1771 - t1769),
+            );
+            let t1775 = t1640 - t1626;
+            let t1776 = k(0.3333333333333333) * t1775;
+            let t1777 = T::fused(t1772, t1767, t1776 * t1774);
+            let t1778 = k(0.7071067811865476) * (t1433 - t1432 + (t1446 + t1445));
+            let t1779 = T::fused(-k(1.8856180831641267), t1394, t1768);
+            let t1780 = T::fused(k(1.8856180831641267), t1398, t1770);
+            let t1781 = T::fused(
+                k(0.3333333333333333),
+                T::fused(-k(1.8856180831641267), t1400, t1773),
+                k(0.6666666666666666) * (t1780 - t1779),
+            );
+            let t1782 = k(0.7071067811865476) * (t1780 + t1779);
+            let t1783 = T::fused(t1776, t1781, t1782 * t1767);
+            let t1784 = k(0.7071067811865476)
+                * (T::fused(-k(0.6666666666666666), t1403, t1433)
+                    + T::fused(k(0.6666666666666666), t1405, t1446));
+            let t1785 = T::fused(-t1782, t1774, t1772 * t1781);
+            let t1786 = k(0.9428090415820634) * t1775;
+            let t1787 = k(1.0)
+                / T::fused(t1786, t1785, -T::fused(-t1778, t1777, t1784 * t1783));
+            let t1788 = t1624 - t1623;
+            let t1789 = t1638 - t1637;
+            let t1790 = T::fused(
                 -k(0.6666666666666666),
-                t1760 - t1759,
+                t1789,
+                k(0.3333333333333333) * t1639,
+            ) + T::fused(-k(0.6666666666666666), t1788, k(0.3333333333333333) * t1625);
+            let t1791 = k(0.7071067811865476) * t1790;
+            let t1792 = T::fused(
+                k(0.23570226039551584),
+                t1788,
+                k(0.9428090415820634) * t1625,
+            );
+            let t1793 = T::fused(
+                k(0.23570226039551584),
+                t1789,
+                k(0.9428090415820634) * t1639,
+            );
+            let t1794 = k(0.7071067811865476) * (t1793 + t1792);
+            let t1795 = T::fused(
+                -k(0.6666666666666666),
+                t1793 - t1792,
                 k(0.3333333333333333)
                     * T::fused(
                         k(0.23570226039551584),
-                        t1620 - t1619,
-                        k(0.9428090415820634) * t1621,
+                        t1653 - t1652,
+                        k(0.9428090415820634) * t1654,
                     ),
             );
-            let t1763 = T::fused(
-                -t1761,
-                t1754 * T::fused(t1741, t1753, t1734 * t1751),
-                t1762 * (t1754 * T::fused(-t1743, t1751, t1739 * t1753)),
+            let t1796 = T::fused(
+                -t1794,
+                t1787 * T::fused(t1774, t1786, t1767 * t1784),
+                t1795 * (t1787 * T::fused(-t1776, t1784, t1772 * t1786)),
             );
-            let t1764 = T::fused(-t1758, t1744 * t1754, t1763);
-            let t1765 = T::fused(t1375, t1716, T::fused(-t1371, t1714, t1373 * t1715));
-            let t1766 = T::fused(-t1371, t1717, t1359 * t1765);
-            let t1767 = T::fused(t1373, t1717, t1355 * t1765);
-            let t1768 = T::fused(-t1375, t1717, t1351 * t1765);
-            let t1769 = T::fused(
+            let t1797 = T::fused(-t1791, t1777 * t1787, t1796);
+            let t1798 = T::fused(t1408, t1749, T::fused(-t1404, t1747, t1406 * t1748));
+            let t1799 = T::fused(-t1404, t1750, t1392 * t1798);
+            let t1800 = T::fused(t1406, t1750, t1388 * t1798);
+            let t1801 = T::fused(-t1408, t1750, t1384 * t1798);
+            let t1802 = T::fused(
                 k(0.5),
-                t1766,
-                T::fused(t1675, t1768, T::fused(-t1669, t1766, t1672 * t1767)),
+                t1799,
+                T::fused(t1708, t1801, T::fused(-t1702, t1799, t1705 * t1800)),
             );
-            let t1770 = t1370 + t1358;
-            let t1771 = k(0.2) * t1770;
-            let t1772 = t1372 - t1354;
-            let t1773 = k(0.2) * t1772;
-            let t1774 = t1374 + t1350;
-            let t1775 = k(0.2) * t1774;
-            let t1776 = T::fused(
+            let t1803 = t1403 + t1391;
+            let t1804 = k(0.2) * t1803;
+            let t1805 = t1405 - t1387;
+            let t1806 = k(0.2) * t1805;
+            let t1807 = t1407 + t1383;
+            let t1808 = k(0.2) * t1807;
+            let t1809 = T::fused(
                 k(0.26),
-                t1770,
-                T::fused(t1775, t1675, -T::fused(t1771, t1669, t1773 * t1672)),
+                t1803,
+                T::fused(t1808, t1708, -T::fused(t1804, t1702, t1806 * t1705)),
             );
-            let t1777 = t1776
-                - (t1769
-                    - T::fused(t1369, t1681, T::fused(t1380, t1677, t1381 * t1679)));
-            let t1778 = T::fused(
+            let t1810 = t1809
+                - (t1802
+                    - T::fused(t1402, t1714, T::fused(t1413, t1710, t1414 * t1712)));
+            let t1811 = T::fused(
                 -k(0.5),
-                t1767,
-                T::fused(t1689, t1768, T::fused(-t1672, t1766, t1688 * t1767)),
+                t1800,
+                T::fused(t1722, t1801, T::fused(-t1705, t1799, t1721 * t1800)),
             );
-            let t1779 = T::fused(
+            let t1812 = T::fused(
                 k(0.26),
-                t1772,
-                T::fused(t1775, t1689, -T::fused(t1771, t1672, t1773 * t1688)),
+                t1805,
+                T::fused(t1808, t1722, -T::fused(t1804, t1705, t1806 * t1721)),
             );
-            let t1780 = t1779
-                - (t1778
-                    - T::fused(t1369, t1693, -T::fused(-t1380, t1691, t1381 * t1692)));
-            let t1781 = T::fused(
+            let t1813 = t1812
+                - (t1811
+                    - T::fused(t1402, t1726, -T::fused(-t1413, t1724, t1414 * t1725)));
+            let t1814 = T::fused(
                 -k(0.5),
-                t1768,
-                T::fused(t1696, t1768, T::fused(-t1675, t1766, t1689 * t1767)),
+                t1801,
+                T::fused(t1729, t1801, T::fused(-t1708, t1799, t1722 * t1800)),
             );
-            let t1782 = T::fused(
+            let t1815 = T::fused(
                 -k(0.26),
-                t1774,
-                T::fused(t1775, t1696, -T::fused(t1771, t1675, t1773 * t1689)),
+                t1807,
+                T::fused(t1808, t1729, -T::fused(t1804, t1708, t1806 * t1722)),
             );
-            let t1783 = t1782
-                - (t1781
-                    - T::fused(t1369, t1700, -T::fused(-t1380, t1698, t1381 * t1699)));
-            let t1784 = T::fused(
-                t1761,
-                t1754 * T::fused(t1734, t1745, t1748 * t1753),
-                t1762 * (t1754 * T::fused(-t1749, t1753, t1743 * t1745)),
+            let t1816 = t1815
+                - (t1814
+                    - T::fused(t1402, t1733, -T::fused(-t1413, t1731, t1414 * t1732)));
+            let t1817 = T::fused(
+                t1794,
+                t1787 * T::fused(t1767, t1778, t1781 * t1786),
+                t1795 * (t1787 * T::fused(-t1782, t1786, t1776 * t1778)),
             );
-            let t1785 = T::fused(t1758, t1750 * t1754, t1784);
-            let t1786 = T::fused(
-                -t1764,
+            let t1818 = T::fused(t1791, t1783 * t1787, t1817);
+            let t1819 = T::fused(
+                -t1797,
                 T::fused(
                     k(0.23570226039551584),
-                    t1730 + t1727,
-                    k(0.9428090415820634) * t1733,
+                    t1763 + t1760,
+                    k(0.9428090415820634) * t1766,
                 ),
-                t1785
+                t1818
                     * T::fused(
                         k(0.23570226039551584),
-                        t1780 + t1777,
-                        k(0.9428090415820634) * t1783,
+                        t1813 + t1810,
+                        k(0.9428090415820634) * t1816,
                     ),
             );
-            let t1787 = T::fused(t1371, t1718, t1366 * t1765);
-            let t1788 = T::fused(t1373, t1718, t1362 * t1765);
-            let t1789 = T::fused(-t1375, t1718, t1368 * t1765);
-            let t1790 = T::fused(
+            let t1820 = T::fused(t1404, t1751, t1399 * t1798);
+            let t1821 = T::fused(t1406, t1751, t1395 * t1798);
+            let t1822 = T::fused(-t1408, t1751, t1401 * t1798);
+            let t1823 = T::fused(
                 -k(0.5),
-                t1787,
-                T::fused(t1675, t1789, T::fused(t1669, t1787, t1672 * t1788)),
+                t1820,
+                T::fused(t1708, t1822, T::fused(t1702, t1820, t1705 * t1821)),
             );
-            let t1791 = t1726
-                - (t1790
-                    + T::fused(t1360, t1681, T::fused(t1384, t1677, t1385 * t1679)));
-            let t1792 = T::fused(
+            let t1824 = t1759
+                - (t1823
+                    + T::fused(t1393, t1714, T::fused(t1417, t1710, t1418 * t1712)));
+            let t1825 = T::fused(
                 -k(0.5),
-                t1788,
-                T::fused(t1689, t1789, T::fused(t1672, t1787, t1688 * t1788)),
+                t1821,
+                T::fused(t1722, t1822, T::fused(t1705, t1820, t1721 * t1821)),
             );
-            let t1793 = t1729
-                - (t1792
-                    + T::fused(t1360, t1693, -T::fused(-t1384, t1691, t1385 * t1692)));
-            let t1794 = T::fused(
+            let t1826 = t1762
+                - (t1825
+                    + T::fused(t1393, t1726, -T::fused(-t1417, t1724, t1418 * t1725)));
+            let t1827 = T::fused(
                 -k(0.5),
-                t1789,
-                T::fused(t1696, t1789, T::fused(t1675, t1787, t1689 * t1788)),
+                t1822,
+                T::fused(t1729, t1822, T::fused(t1708, t1820, t1722 * t1821)),
             );
-            let t1795 = t1732
-                - (t1794
-                    + T::fused(t1360, t1700, -T::fused(-t1384, t1698, t1385 * t1699)));
-            let t1796 = T::fused(
-                t1754 * T::fused(-t1748, t1751, t1741 * t1745),
-                t1761,
-                t1754 * T::fused(-t1739, t1745, t1749 * t1751) * t1762,
+            let t1828 = t1765
+                - (t1827
+                    + T::fused(t1393, t1733, -T::fused(-t1417, t1731, t1418 * t1732)));
+            let t1829 = T::fused(
+                t1787 * T::fused(-t1781, t1784, t1774 * t1778),
+                t1794,
+                t1787 * T::fused(-t1772, t1778, t1782 * t1784) * t1795,
             );
-            let t1797 = T::fused(-(t1752 * t1754), t1758, t1796);
-            let t1798 = T::fused(
-                t1797,
+            let t1830 = T::fused(-(t1785 * t1787), t1791, t1829);
+            let t1831 = T::fused(
+                t1830,
                 T::fused(
                     k(0.23570226039551584),
-                    t1793 + t1791,
-                    k(0.9428090415820634) * t1795,
+                    t1826 + t1824,
+                    k(0.9428090415820634) * t1828,
                 ),
-                -t1786,
-            ) - T::fused(t1713, t1712, -T::fused(t1709, t1708, t1711 * t1710));
-            let t1799 = k(1.0)
+                -t1819,
+            ) - T::fused(t1746, t1745, -T::fused(t1742, t1741, t1744 * t1743));
+            let t1832 = k(1.0)
                 / T::fused(
                     k(0.23570226039551584),
-                    t1711 + t1709,
-                    k(0.9428090415820634) * t1713,
+                    t1744 + t1742,
+                    k(0.9428090415820634) * t1746,
                 );
-            let t1800 = t1799 * (t1798 - t1702);
-            let t1801 = k(0.23570226039551584) * t1800;
-            let t1802 = T::fused(t1723, t1797, T::fused(t1723, t1764, t1771 * t1785))
-                - (t1708 - t1801);
-            let t1803 = t1667
-                + (T::fused(t1797, t1787, T::fused(-t1764, t1719, t1785 * t1766))
-                    - t1802);
-            let t1804 = T::fused(t1724, t1797, T::fused(t1724, t1764, t1773 * t1785))
-                - (t1710 - t1801);
-            let t1805 = t1671
-                - (T::fused(t1797, t1788, -T::fused(-t1764, t1720, t1785 * t1767))
-                    - t1804);
-            let t1806 = T::fused(t1725, t1797, -T::fused(-t1725, t1764, t1775 * t1785))
-                + T::fused(k(0.9428090415820634), t1800, t1712);
-            let t1807 = t1674
-                - (T::fused(t1797, t1789, -T::fused(-t1764, t1721, t1785 * t1768))
-                    - t1806);
-            let t1808 = T::fused(t1384, t1797, T::fused(t1377, t1764, t1380 * t1785))
-                + t1678;
-            let t1809 = T::fused(t1385, t1797, T::fused(t1378, t1764, t1381 * t1785))
-                - t1680;
-            let t1810 = T::fused(t1360, t1797, T::fused(t1376, t1764, t1369 * t1785))
-                + t1682;
-            let t1811 = T::fused(t1517, t1810, -T::fused(-t1505, t1808, t1513 * t1809))
-                + T::fused(t1491, t1807, T::fused(-t1471, t1803, t1481 * t1805));
-            let t1812 = t1519 * (t1461 + t1811);
-            let t1813 = T::fused(-k(0.3333333333333333), t1812, t1809);
-            let t1814 = k(0.6666666666666666) * t1812;
-            let t1815 = t1808 + t1814;
-            let t1816 = t1439 * t1815;
-            let t1817 = t1810 - t1814;
-            let t1818 = T::fused(t1439, t1817, T::fused(t1450, t1813, t1816))
-                - T::fused(t1402, t1812, t1803);
-            let t1819 = t1337
-                + T::fused(t1329, t1817, T::fused(t1316, t1815, t1311 * t1813));
-            let t1820 = k(0.2) * t1218;
-            let t1821 = t1339
-                + T::fused(t1330, t1817, T::fused(t1319, t1815, t1317 * t1813));
-            let t1822 = t1346
-                + T::fused(t1328, t1817, T::fused(t1322, t1815, t1323 * t1813));
-            let t1823 = k(0.1) * t1218;
-            let t1824 = T::fused(t1823, t1822, T::fused(t1820, t1819, t1341 * t1821))
-                - (t1304
-                    - (T::fused(t1457, t1817, T::fused(t1445, t1813, t1816)) + t1818));
-            let t1825 = t1440 * t1815;
-            let t1826 = T::fused(t1440, t1817, T::fused(t1452, t1813, t1825))
-                + T::fused(t1415, t1812, t1805);
-            let t1827 = k(0.2) * t1245;
-            let t1828 = k(0.1) * t1245;
-            let t1829 = T::fused(t1828, t1822, -T::fused(-t1827, t1819, t1408 * t1821))
-                + (t1405
-                    + (T::fused(t1458, t1817, -T::fused(t1446, t1813, -t1825)) + t1826));
-            let t1830 = t1438 * t1815;
-            let t1831 = T::fused(t1438, t1817, T::fused(-t1454, t1813, t1830))
-                + T::fused(t1429, t1812, t1807);
-            let t1832 = T::fused(t1435, t1822, -T::fused(-t1430, t1819, t1421 * t1821))
-                + (t1418
-                    + (T::fused(t1459, t1817, -T::fused(t1447, t1813, -t1830)) + t1831));
-            let t1833 = t1430 * t1281;
-            let t1834 = t1827 * t1262;
-            let t1835 = t1820 * t1241;
-            let t1836 = T::fused(k(1.7888543819998317) * t1223, t1230, -t1835)
-                + T::fused(k(1.7888543819998317) * t1249, t1253, -t1834);
-            let t1837 = t1836 - T::fused(k(1.7888543819998317) * t1268, t1272, t1833);
-            let t1838 = T::fused(-k(0.4), t1268, t1420);
-            let t1839 = T::fused(k(0.4), t1249, t1407);
-            let t1840 = T::fused(-k(0.4), t1223, t1340);
-            let t1841 = T::fused(t1241, t1840, t1230 * (k(0.8944271909999159) * t1223))
-                + T::fused(t1262, t1839, t1253 * (k(0.8944271909999159) * t1249));
-            let t1842 = t1841
-                - T::fused(t1281, t1838, t1272 * (k(0.8944271909999159) * t1268));
-            let t1843 = k(0.4) * t1266;
-            let t1844 = k(0.4) * t1245;
-            let t1845 = k(0.4) * t1218;
-            let t1846 = T::fused(
-                -t1241,
-                t1845,
-                t1230
+            let t1833 = t1832 * (t1831 - t1735);
+            let t1834 = k(0.23570226039551584) * t1833;
+            let t1835 = T::fused(t1756, t1830, T::fused(t1756, t1797, t1804 * t1818))
+                - (t1741 - t1834);
+            let t1836 = t1700
+                + (T::fused(t1830, t1820, T::fused(-t1797, t1752, t1818 * t1799))
+                    - t1835);
+            let t1837 = T::fused(t1757, t1830, T::fused(t1757, t1797, t1806 * t1818))
+                - (t1743 - t1834);
+            let t1838 = t1704
+                - (T::fused(t1830, t1821, -T::fused(-t1797, t1753, t1818 * t1800))
+                    - t1837);
+            let t1839 = T::fused(t1758, t1830, -T::fused(-t1758, t1797, t1808 * t1818))
+                + T::fused(k(0.9428090415820634), t1833, t1745);
+            let t1840 = t1707
+                - (T::fused(t1830, t1822, -T::fused(-t1797, t1754, t1818 * t1801))
+                    - t1839);
+            let t1841 = T::fused(t1417, t1830, T::fused(t1410, t1797, t1413 * t1818))
+                + t1711;
+            let t1842 = T::fused(t1418, t1830, T::fused(t1411, t1797, t1414 * t1818))
+                - t1713;
+            let t1843 = T::fused(t1393, t1830, T::fused(t1409, t1797, t1402 * t1818))
+                + t1715;
+            let t1844 = T::fused(t1550, t1843, -T::fused(-t1538, t1841, t1546 * t1842))
+                + T::fused(t1524, t1840, T::fused(-t1504, t1836, t1514 * t1838));
+            let t1845 = t1552 * (t1494 + t1844);
+            let t1846 = T::fused(-k(0.3333333333333333), t1845, t1842);
+            let t1847 = k(0.6666666666666666) * t1845;
+            let t1848 = t1841 + t1847;
+            let t1849 = t1472 * t1848;
+            let t1850 = t1843 - t1847;
+            let t1851 = T::fused(t1472, t1850, T::fused(t1483, t1846, t1849))
+                - T::fused(t1435, t1845, t1836);
+            let t1852 = t1370
+                + T::fused(t1362, t1850, T::fused(t1349, t1848, t1344 * t1846));
+            let t1853 = k(0.2) * t1252;
+            let t1854 = t1372
+                + T::fused(t1363, t1850, T::fused(t1352, t1848, t1350 * t1846));
+            let t1855 = t1379
+                + T::fused(t1361, t1850, T::fused(t1355, t1848, t1356 * t1846));
+            let t1856 = k(0.1) * t1252;
+            let t1857 = T::fused(t1856, t1855, T::fused(t1853, t1852, t1374 * t1854))
+                - (t1337
+                    - (T::fused(t1490, t1850, T::fused(t1478, t1846, t1849)) + t1851));
+            let t1858 = t1473 * t1848;
+            let t1859 = T::fused(t1473, t1850, T::fused(t1485, t1846, t1858))
+                + T::fused(t1448, t1845, t1838);
+            let t1860 = k(0.2) * t1278;
+            let t1861 = k(0.1) * t1278;
+            let t1862 = T::fused(t1861, t1855, -T::fused(-t1860, t1852, t1441 * t1854))
+                + (t1438
+                    + (T::fused(t1491, t1850, -T::fused(t1479, t1846, -t1858)) + t1859));
+            let t1863 = t1471 * t1848;
+            let t1864 = T::fused(t1471, t1850, T::fused(-t1487, t1846, t1863))
+                + T::fused(t1462, t1845, t1840);
+            let t1865 = T::fused(t1468, t1855, -T::fused(-t1463, t1852, t1454 * t1854))
+                + (t1451
+                    + (T::fused(t1492, t1850, -T::fused(t1480, t1846, -t1863)) + t1864));
+            let t1866 = t1463 * t1314;
+            let t1867 = t1860 * t1295;
+            let t1868 = t1853 * t1274;
+            let t1869 = T::fused(k(1.7888543819998317) * t1257, t1264, -t1868)
+                + T::fused(k(1.7888543819998317) * t1282, t1286, -t1867);
+            let t1870 = t1869 - T::fused(k(1.7888543819998317) * t1301, t1305, t1866);
+            let t1871 = T::fused(-k(0.4), t1301, t1453);
+            let t1872 = T::fused(k(0.4), t1282, t1440);
+            let t1873 = T::fused(-k(0.4), t1257, t1373);
+            let t1874 = T::fused(t1274, t1873, t1264 * (k(0.8944271909999159) * t1257))
+                + T::fused(t1295, t1872, t1286 * (k(0.8944271909999159) * t1282));
+            let t1875 = t1874
+                - T::fused(t1314, t1871, t1305 * (k(0.8944271909999159) * t1301));
+            let t1876 = k(0.4) * t1299;
+            let t1877 = k(0.4) * t1278;
+            let t1878 = k(0.4) * t1252;
+            let t1879 = T::fused(
+                -t1274,
+                t1878,
+                t1264
                     * T::fused(
                         k(1.7888543819998317),
-                        t1213,
-                        k(0.8944271909999159) * t1218,
+                        t1247,
+                        k(0.8944271909999159) * t1252,
                     ),
             )
                 - T::fused(
-                    t1262,
-                    t1844,
-                    t1253
+                    t1295,
+                    t1877,
+                    t1286
                         * T::fused(
                             k(1.7888543819998317),
-                            t1243,
-                            k(0.8944271909999159) * t1245,
+                            t1276,
+                            k(0.8944271909999159) * t1278,
                         ),
                 );
-            let t1847 = t1846
+            let t1880 = t1879
                 + T::fused(
-                    -t1281,
-                    t1843,
-                    t1272
+                    -t1314,
+                    t1876,
+                    t1305
                         * T::fused(
                             -k(1.7888543819998317),
-                            t1264,
-                            k(0.8944271909999159) * t1266,
+                            t1297,
+                            k(0.8944271909999159) * t1299,
                         ),
                 );
-            let t1848 = T::fused(t1847, t1822, T::fused(-t1837, t1819, t1842 * t1821))
-                - T::fused(t1281, t1832, T::fused(t1241, t1824, t1262 * t1829));
-            let t1849 = k(0.2) * t504;
-            let t1850 = k(0.2) * t497;
-            let t1851 = k(0.2) * t488;
-            let t1852 = T::fused(-t1281, t1849, T::fused(-t1262, t1850, t1241 * t1851));
-            let t1853 = T::fused(t619, t1281, T::fused(t615, t1262, t611 * t1241));
-            let t1854 = T::fused(-t1852, t728, t1853 * t729)
-                - T::fused(t1281, t744, -T::fused(t1241, t738, t1262 * t741));
-            let t1855 = T::fused(-t1852, t831, t1853 * t832)
-                - T::fused(t1281, t846, -T::fused(t1241, t840, t1262 * t843));
-            let t1856 = t857 * t1855;
-            let t1857 = T::fused(-t1852, t947, t1853 * t948)
-                - T::fused(t1281, t962, -T::fused(t1241, t956, t1262 * t959));
-            let t1858 = T::fused(t884, t1856, -t1857);
-            let t1859 = t973 * t1858;
-            let t1860 = T::fused(
-                t1859,
-                t886,
-                -T::fused(t1856, t770, t1854 - t1848 - (t1282 + (t1263 - t1242))),
-            );
-            let t1861 = T::fused(-t1852, t1083, t1853 * t1084)
-                - T::fused(t1281, t1098, -T::fused(t1241, t1092, t1262 * t1095));
-            let t1862 = T::fused(t1028, t1859, -T::fused(t1025, t1856, -t1861));
-            let t1863 = t1106 * t1862;
-            let t1864 = T::fused(-t1852, t1185, t1853 * t1186)
-                - T::fused(t1281, t1200, -T::fused(t1241, t1194, t1262 * t1197));
-            let t1865 = T::fused(
-                t1130,
-                t1863,
-                -T::fused(t1127, t1859, -T::fused(t1124, t1856, -t1864)),
-            );
-            let t1866 = t1208 * t1865;
-            let t1867 = T::fused(t1866, t1132, -T::fused(t1863, t1030, -t1860));
-            let t1868 = t1837 + (t1833 + (t1835 + t1834));
-            let t1869 = t1842
-                + T::fused(t1421, t1281, T::fused(-t1341, t1241, t1408 * t1262));
-            let t1870 = t1847
-                - T::fused(t1435, t1281, T::fused(t1823, t1241, t1828 * t1262));
-            let t1871 = T::fused(t1438, t1281, T::fused(t1439, t1241, t1440 * t1262));
-            let t1872 = t1871
-                + (t1871
-                    - T::fused(t1322, t1870, T::fused(-t1316, t1868, t1319 * t1869)));
-            let t1873 = T::fused(t1447, t1281, T::fused(-t1445, t1241, t1446 * t1262))
-                + T::fused(t1323, t1870, T::fused(-t1311, t1868, t1317 * t1869));
-            let t1874 = T::fused(
-                k(0.6666666666666666),
-                t1872,
-                k(0.3333333333333333)
-                    * (T::fused(t1454, t1281, -T::fused(t1450, t1241, t1452 * t1262))
-                        + t1873),
-            );
-            let t1875 = T::fused(t1459, t1281, T::fused(t1457, t1241, t1458 * t1262))
-                - T::fused(t1328, t1870, T::fused(-t1868, t1329, t1330 * t1869));
-            let t1876 = T::fused(k(0.6666666666666666), t1875 + t1871, -t1874)
-                - T::fused(t1281, t1429, T::fused(-t1241, t1402, t1262 * t1415));
-            let t1877 = t1876 * t1519;
-            let t1878 = T::fused(
-                k(0.23570226039551584),
-                T::fused(-t1481, t1877, t1262) + T::fused(-t1471, t1877, t1241),
-                k(0.9428090415820634) * T::fused(-t1491, t1877, t1281),
-            );
-            let t1879 = t1878 * t1799;
-            let t1880 = k(0.23570226039551584) * t1879;
-            let t1881 = k(0.9428090415820634) * t1879;
-            let t1882 = t1519
-                * (t1876
-                    - T::fused(t1491, t1881, T::fused(t1471, t1880, t1481 * t1880)));
-            let t1883 = k(0.3333333333333333) * t1882;
-            let t1884 = k(0.6666666666666666) * t1882;
-            let t1885 = t1439 * t1884;
-            let t1886 = t1885 - T::fused(-t1450, t1883, t1885)
-                + T::fused(t1402, t1882, t1880);
-            let t1887 = T::fused(t1329, t1884, T::fused(-t1316, t1884, t1311 * t1883));
-            let t1888 = T::fused(t1330, t1884, T::fused(-t1319, t1884, t1317 * t1883));
-            let t1889 = T::fused(t1328, t1884, T::fused(-t1322, t1884, t1323 * t1883));
-            let t1890 = T::fused(t1823, t1889, T::fused(t1820, t1887, t1341 * t1888))
-                + (T::fused(t1457, t1884, T::fused(t1445, t1883, -t1885)) + t1886);
-            let t1891 = t1440 * t1884;
-            let t1892 = t1891 - T::fused(-t1452, t1883, t1891)
-                + T::fused(-t1415, t1882, t1880);
-            let t1893 = T::fused(t1828, t1889, -T::fused(-t1827, t1887, t1408 * t1888))
-                + (T::fused(t1458, t1884, -T::fused(t1446, t1883, t1891)) + t1892);
-            let t1894 = t1438 * t1884;
-            let t1895 = t1894 - T::fused(t1454, t1883, t1894)
-                + T::fused(-t1429, t1882, t1881);
-            let t1896 = T::fused(t1435, t1889, -T::fused(-t1430, t1887, t1421 * t1888))
-                + (T::fused(t1459, t1884, -T::fused(t1447, t1883, t1894)) + t1895);
-            let t1897 = T::fused(t1847, t1889, T::fused(-t1837, t1887, t1842 * t1888))
-                - T::fused(t1281, t1896, T::fused(t1241, t1890, t1262 * t1893));
-            let t1898 = T::fused(
-                -k(0.9805806756909201),
-                t1241,
-                k(0.19611613513818404) * t1281,
-            );
-            let t1899 = t529 * t1898;
-            let t1900 = T::fused(
-                k(0.03774256780481986),
-                T::fused(t526, t1899, t1241),
-                k(0.9813067629253163) * T::fused(t541, t1899, t1262),
-            );
-            let t1901 = T::fused(
-                k(0.1887128390240993),
-                T::fused(-t528, t1899, t1281),
-                t1900,
-            );
-            let t1902 = t639 * t1901;
-            let t1903 = T::fused(
-                t659,
-                t1899,
-                -(t1852 + T::fused(t651, t1281, -T::fused(t649, t1241, t650 * t1262))),
-            );
-            let t1904 = T::fused(t666, t1902, t1903)
-                + T::fused(t647, t1902, T::fused(t635, t1899, t1853));
-            let t1905 = T::fused(
-                -k(0.19245008972987526),
-                t1904,
-                k(0.9622504486493763)
-                    * T::fused(t681, t1902, -T::fused(-t675, t1899, t1853)),
-            );
-            let t1906 = t724 * t1905;
-            let t1907 = k(0.19245008972987526) * t1906;
-            let t1908 = k(0.9622504486493763) * t1906;
-            let t1909 = t639
-                * (t1901 - T::fused(t681, t1908, -T::fused(t647, t1907, t666 * t1907)));
-            let t1910 = k(0.03774256780481986) * t1909;
-            let t1911 = k(0.9813067629253163) * t1909;
-            let t1912 = k(0.1887128390240993) * t1909;
-            let t1913 = T::fused(t675, t1908, -T::fused(t635, t1907, t659 * t1907))
-                + T::fused(t528, t1912, -T::fused(t526, t1910, t541 * t1911));
-            let t1914 = t529 * (t1898 - t1913);
-            let t1915 = t649 * t1907;
-            let t1916 = T::fused(t611, t1907, t1915)
-                + T::fused(-k(0.9805806756909201), t1914, t1910);
-            let t1917 = t650 * t1907;
-            let t1918 = t1911 + T::fused(t615, t1907, t1917);
-            let t1919 = t651 * t1907;
-            let t1920 = T::fused(-t619, t1907, t1919)
-                - T::fused(k(0.19611613513818404), t1914, t1912);
-            let t1921 = T::fused(-t1852, t1907, t1853 * t1908)
-                - T::fused(t1281, t1920, -T::fused(t1241, t1916, t1262 * t1918));
-            let t1922 = T::fused(
-                t1862,
-                t1863,
-                -T::fused(t1858, t1859, -T::fused(t1855, t1856, -(t1921 - t1897))),
-            );
-            let t1923 = k(1.0) / T::fused(t1865, t1866, -t1922);
-            let t1924 = t1234
-                * T::fused(
-                    k(0.7453559924999299),
-                    t1233,
-                    T::fused(
-                        k(0.29814239699997197),
-                        t1231,
-                        k(0.5962847939999439) * t1232,
-                    ),
-                );
-            let t1925 = T::fused(
-                -t1230,
-                T::fused(
-                    k(0.7453559924999299),
-                    t1237,
-                    T::fused(
-                        -k(0.5962847939999439),
-                        t1225,
-                        k(0.29814239699997197) * t1229,
-                    ),
-                ),
-                t1924,
-            );
-            let t1926 = T::fused(
-                k(1.4907119849998598),
-                t1223,
-                -T::fused(k(1.1925695879998879), t1213, k(0.5962847939999439) * t1218),
-            );
-            let t1927 = t1257
-                * T::fused(
-                    -k(0.7453559924999299),
-                    t1256,
-                    T::fused(
-                        k(0.29814239699997197),
-                        t1254,
-                        k(0.5962847939999439) * t1255,
-                    ),
-                );
-            let t1928 = T::fused(
-                -t1253,
-                T::fused(
-                    k(0.7453559924999299),
-                    t1259,
-                    T::fused(
-                        -k(0.5962847939999439),
-                        t1251,
-                        k(0.29814239699997197) * t1252,
-                    ),
-                ),
-                t1927,
-            );
-            let t1929 = T::fused(
-                k(1.4907119849998598),
-                t1249,
-                T::fused(k(1.1925695879998879), t1243, k(0.5962847939999439) * t1245),
-            );
-            let t1930 = T::fused(t1929, t1261, -t1927) - t1928
-                + (T::fused(t1926, t1240, -t1924) - t1925);
-            let t1931 = t1276
-                * T::fused(
-                    -k(0.7453559924999299),
-                    t1275,
-                    T::fused(
-                        k(0.29814239699997197),
-                        t1273,
-                        k(0.5962847939999439) * t1274,
-                    ),
-                );
-            let t1932 = T::fused(
-                -t1272,
-                T::fused(
-                    k(0.7453559924999299),
-                    t1278,
-                    T::fused(
-                        -k(0.5962847939999439),
-                        t1270,
-                        k(0.29814239699997197) * t1271,
-                    ),
-                ),
-                t1931,
-            );
-            let t1933 = T::fused(
-                k(1.4907119849998598),
-                t1268,
-                T::fused(-k(1.1925695879998879), t1264, k(0.5962847939999439) * t1266),
-            );
-            let t1934 = t1430 * t1933;
-            let t1935 = t1827 * t1929;
-            let t1936 = t1820 * t1926;
-            let t1937 = T::fused(
-                t1230,
-                T::fused(k(1.4907119849998598), t1218, k(0.5962847939999439) * t1223),
-                t1936,
-            )
-                + T::fused(
-                    t1253,
-                    T::fused(
-                        -k(1.4907119849998598),
-                        t1245,
-                        k(0.5962847939999439) * t1249,
-                    ),
-                    -t1935,
-                );
-            let t1938 = t1937
-                - T::fused(
-                    t1272,
-                    T::fused(
-                        -k(1.4907119849998598),
-                        t1266,
-                        k(0.5962847939999439) * t1268,
-                    ),
-                    t1934,
-                );
-            let t1939 = T::fused(
-                t1840,
-                t1926,
-                t1230
-                    * T::fused(
-                        k(1.4907119849998598),
-                        t1213,
-                        k(1.1925695879998879) * t1223,
-                    ),
-            )
-                + T::fused(
-                    -t1839,
-                    t1929,
-                    t1253
-                        * T::fused(
-                            -k(1.4907119849998598),
-                            t1243,
-                            k(1.1925695879998879) * t1249,
-                        ),
-                );
-            let t1940 = t1939
-                - T::fused(
-                    -t1838,
-                    t1933,
-                    t1272
-                        * T::fused(
-                            k(1.4907119849998598),
-                            t1264,
-                            k(1.1925695879998879) * t1268,
-                        ),
-                );
-            let t1941 = T::fused(
-                -t1845,
-                t1926,
-                t1230
-                    * T::fused(
-                        -k(0.5962847939999439),
-                        t1213,
-                        k(1.1925695879998879) * t1218,
-                    ),
-            )
-                - T::fused(
-                    -t1844,
-                    t1929,
-                    t1253
-                        * T::fused(
-                            -k(0.5962847939999439),
-                            t1243,
-                            k(1.1925695879998879) * t1245,
-                        ),
-                );
-            let t1942 = t1941
-                + T::fused(
-                    t1843,
-                    t1933,
-                    t1272
-                        * T::fused(
-                            k(0.5962847939999439),
-                            t1264,
-                            k(1.1925695879998879) * t1266,
-                        ),
-                );
-            let t1943 = T::fused(t1942, t1822, T::fused(t1938, t1819, t1940 * t1821))
-                + T::fused(t1933, t1832, T::fused(-t1926, t1824, t1929 * t1829));
-            let t1944 = T::fused(t1849, t1933, T::fused(t1850, t1929, t1851 * t1926));
-            let t1945 = T::fused(-t619, t1933, T::fused(-t615, t1929, t611 * t1926));
-            let t1946 = T::fused(-t1944, t728, t1945 * t729)
-                + T::fused(t1933, t744, -T::fused(-t1926, t738, t1929 * t741));
-            let t1947 = T::fused(-t1944, t831, t1945 * t832)
-                + T::fused(t1933, t846, -T::fused(-t1926, t840, t1929 * t843));
-            let t1948 = t857 * t1947;
-            let t1949 = T::fused(
-                t1948,
-                t770,
-                t1946 - t1943 + (T::fused(t1933, t1280, t1931) + t1932 + t1930),
-            );
-            let t1950 = T::fused(-t1944, t947, t1945 * t948)
-                + T::fused(t1933, t962, -T::fused(-t1926, t956, t1929 * t959));
-            let t1951 = T::fused(t884, t1948, -t1950);
-            let t1952 = t973 * t1951;
-            let t1953 = T::fused(-t1944, t1083, t1945 * t1084)
-                + T::fused(t1933, t1098, -T::fused(-t1926, t1092, t1929 * t1095));
-            let t1954 = T::fused(t1028, t1952, -T::fused(t1025, t1948, -t1953));
-            let t1955 = t1106 * t1954;
-            let t1956 = T::fused(-t1944, t1185, t1945 * t1186)
-                + T::fused(t1933, t1200, -T::fused(-t1926, t1194, t1929 * t1197));
-            let t1957 = T::fused(
-                t1130,
-                t1955,
-                -T::fused(t1127, t1952, -T::fused(t1124, t1948, -t1956)),
-            );
-            let t1958 = t1208 * t1957;
-            let t1959 = T::fused(t1942, t1889, T::fused(t1938, t1887, t1940 * t1888))
-                + T::fused(t1933, t1896, T::fused(-t1926, t1890, t1929 * t1893));
-            let t1960 = T::fused(-t1944, t1907, t1945 * t1908)
-                + T::fused(t1933, t1920, -T::fused(-t1926, t1916, t1929 * t1918));
-            let t1961 = T::fused(
-                t1862,
-                t1955,
-                -T::fused(t1858, t1952, -T::fused(t1855, t1948, -(t1960 - t1959))),
-            );
-            let t1962 = T::fused(t1865, t1958, -t1961);
-            let t1963 = t1923 * t1962;
-            let t1964 = T::fused(
-                t1963,
-                t1867,
-                -T::fused(
-                    t1958,
-                    t1132,
-                    -T::fused(t1955, t1030, -T::fused(t1952, t886, -t1949)),
-                ),
-            );
-            let t1965 = t1938 + (t1934 - (t1936 - t1935));
-            let t1966 = t1940
-                - T::fused(t1421, t1933, T::fused(t1341, t1926, t1408 * t1929));
-            let t1967 = t1942
-                + T::fused(t1435, t1933, T::fused(-t1823, t1926, t1828 * t1929));
-            let t1968 = T::fused(t1438, t1933, T::fused(-t1439, t1926, t1440 * t1929));
-            let t1969 = t1968
-                + (t1968
-                    + T::fused(t1322, t1967, T::fused(t1316, t1965, t1319 * t1966)));
-            let t1970 = T::fused(t1447, t1933, T::fused(t1445, t1926, t1446 * t1929))
-                - T::fused(t1323, t1967, T::fused(t1311, t1965, t1317 * t1966));
-            let t1971 = T::fused(
-                k(0.6666666666666666),
-                t1969,
-                k(0.3333333333333333)
-                    * (T::fused(t1454, t1933, -T::fused(-t1450, t1926, t1452 * t1929))
-                        + t1970),
-            );
-            let t1972 = T::fused(t1459, t1933, T::fused(-t1457, t1926, t1458 * t1929))
-                + T::fused(t1328, t1967, T::fused(t1329, t1965, t1330 * t1966));
-            let t1973 = T::fused(k(0.6666666666666666), t1972 + t1968, -t1971)
-                - T::fused(t1933, t1429, T::fused(t1926, t1402, t1929 * t1415));
-            let t1974 = t1519 * t1973;
-            let t1975 = T::fused(
-                k(0.23570226039551584),
-                T::fused(-t1481, t1974, t1929) - T::fused(t1471, t1974, t1926),
-                k(0.9428090415820634) * T::fused(-t1491, t1974, t1933),
-            );
-            let t1976 = t1799 * t1975;
-            let t1977 = k(0.23570226039551584) * t1976;
-            let t1978 = k(0.9428090415820634) * t1976;
-            let t1979 = t1519
-                * (t1973
-                    - T::fused(t1491, t1978, T::fused(t1471, t1977, t1481 * t1977)));
-            let t1980 = k(0.3333333333333333) * t1979;
-            let t1981 = k(0.6666666666666666) * t1979;
-            let t1982 = t1439 * t1981;
-            let t1983 = t1982 - T::fused(-t1450, t1980, t1982)
-                + T::fused(t1402, t1979, t1977);
-            let t1984 = T::fused(t1329, t1981, T::fused(-t1316, t1981, t1311 * t1980));
-            let t1985 = T::fused(t1330, t1981, T::fused(-t1319, t1981, t1317 * t1980));
-            let t1986 = T::fused(t1328, t1981, T::fused(-t1322, t1981, t1323 * t1980));
-            let t1987 = T::fused(t1823, t1986, T::fused(t1820, t1984, t1341 * t1985))
-                + (T::fused(t1457, t1981, T::fused(t1445, t1980, -t1982)) + t1983);
-            let t1988 = t1440 * t1981;
-            let t1989 = t1988 - T::fused(-t1452, t1980, t1988)
-                + T::fused(-t1415, t1979, t1977);
-            let t1990 = T::fused(t1828, t1986, -T::fused(-t1827, t1984, t1408 * t1985))
-                + (T::fused(t1458, t1981, -T::fused(t1446, t1980, t1988)) + t1989);
-            let t1991 = t1438 * t1981;
-            let t1992 = t1991 - T::fused(t1454, t1980, t1991)
-                + T::fused(-t1429, t1979, t1978);
-            let t1993 = T::fused(t1435, t1986, -T::fused(-t1430, t1984, t1421 * t1985))
-                + (T::fused(t1459, t1981, -T::fused(t1447, t1980, t1991)) + t1992);
-            let t1994 = T::fused(t1942, t1986, T::fused(t1938, t1984, t1940 * t1985))
-                + T::fused(t1933, t1993, T::fused(-t1926, t1987, t1929 * t1990));
-            let t1995 = T::fused(
-                k(0.9805806756909201),
-                t1926,
-                k(0.19611613513818404) * t1933,
-            );
-            let t1996 = t529 * t1995;
-            let t1997 = T::fused(
-                -k(0.03774256780481986),
-                T::fused(-t526, t1996, t1926),
-                k(0.9813067629253163) * T::fused(t541, t1996, t1929),
-            );
-            let t1998 = T::fused(
-                k(0.1887128390240993),
-                T::fused(-t528, t1996, t1933),
-                t1997,
-            );
-            let t1999 = t639 * t1998;
-            (
-                t1519,
-                t1591,
-                t1597,
-                t1605,
-                t1611,
-                t1620,
-                t1626,
-                t1643,
-                t1723,
-                t1724,
-                t1725,
-                t1764,
-                t1785,
-                t1797,
-                t1799,
-                t1802,
-                t1804,
-                t1806,
-                t1813,
-                t1815,
-                t1817,
-                t1818,
-                t1819,
-                t1820,
-                t1821,
-                t1822,
-                t1823,
-                t1824,
-                t1826,
-                t1827,
-                t1828,
-                t1829,
-                t1831,
-                t1832,
-                t1855,
-                t1856,
-                t1858,
-                t1859,
-                t1862,
-                t1863,
-                t1865,
-                t1866,
-                t1867,
-                t1880,
-                t1881,
-                t1883,
-                t1884,
-                t1886,
-                t1887,
-                t1888,
-                t1889,
-                t1890,
+            let t1881 = T::fused(t1880, t1855, T::fused(-t1870, t1852, t1875 * t1854))
+                - T::fused(t1314, t1865, T::fused(t1274, t1857, t1295 * t1862));
+            let t1882 = k(0.2) * t519;
+            let t1883 = k(0.2) * t512;
+            let t1884 = k(0.2) * t503;
+            let t1885 = T::fused(-t1314, t1882, T::fused(-t1295, t1883, t1274 * t1884));
+            let t1886 = T::fused(t633, t1314, T::fused(t629, t1295, t625 * t1274));
+            let t1887 = T::fused(t1885, t762, t1886 * t763)
+                + T::fused(t1314, t778, T::fused(-t1274, t772, t1295 * t775));
+            let t1888 = T::fused(-t1885, t865, t1886 * t866)
+                - T::fused(t1314, t880, -T::fused(t1274, t874, t1295 * t877));
+            let t1889 = t891 * t1888;
+            let t1890 = T::fused(-t1885, t981, t1886 * t982)
+                - T::fused(t1314, t996, -T::fused(t1274, t990, t1295 * t993));
+            let t1891 = T::fused(t918, t1889, -t1890);
+            let t1892 = t1007 * t1891;
+            let t1893 = T::fused(
                 t1892,
-                t1893,
+                t920,
+                -T::fused(t1889, t804, t1887 - t1881 - (t1315 + (t1296 - t1275))),
+            );
+            let t1894 = T::fused(-t1885, t1117, t1886 * t1118)
+                - T::fused(t1314, t1132, -T::fused(t1274, t1126, t1295 * t1129));
+            let t1895 = T::fused(t1062, t1892, -T::fused(t1059, t1889, -t1894));
+            let t1896 = t1140 * t1895;
+            let t1897 = T::fused(-t1885, t1219, t1886 * t1220)
+                - T::fused(t1314, t1234, -T::fused(t1274, t1228, t1295 * t1231));
+            let t1898 = T::fused(
+                t1164,
+                t1896,
+                -T::fused(t1161, t1892, -T::fused(t1158, t1889, -t1897)),
+            );
+            let t1899 = t1242 * t1898;
+            let t1900 = T::fused(t1899, t1166, -T::fused(t1896, t1064, -t1893));
+            let t1901 = t1870 + (t1866 + (t1868 + t1867));
+            let t1902 = t1875
+                + T::fused(t1454, t1314, T::fused(-t1374, t1274, t1441 * t1295));
+            let t1903 = t1880
+                - T::fused(t1468, t1314, T::fused(t1856, t1274, t1861 * t1295));
+            let t1904 = T::fused(t1471, t1314, T::fused(t1472, t1274, t1473 * t1295));
+            let t1905 = t1904
+                + (t1904
+                    - T::fused(t1355, t1903, T::fused(-t1349, t1901, t1352 * t1902)));
+            let t1906 = T::fused(t1480, t1314, T::fused(-t1478, t1274, t1479 * t1295))
+                + T::fused(t1356, t1903, T::fused(-t1344, t1901, t1350 * t1902));
+            let t1907 = T::fused(
+                k(0.6666666666666666),
+                t1905,
+                k(0.3333333333333333)
+                    * (T::fused(t1487, t1314, -T::fused(t1483, t1274, t1485 * t1295))
+                        + t1906),
+            );
+            let t1908 = T::fused(t1492, t1314, T::fused(t1490, t1274, t1491 * t1295))
+                - T::fused(t1361, t1903, T::fused(-t1901, t1362, t1363 * t1902));
+            let t1909 = T::fused(k(0.6666666666666666), t1908 + t1904, -t1907)
+                - T::fused(t1314, t1462, T::fused(-t1274, t1435, t1295 * t1448));
+            let t1910 = t1909 * t1552;
+            let t1911 = T::fused(
+                k(0.23570226039551584),
+                T::fused(-t1514, t1910, t1295) + T::fused(-t1504, t1910, t1274),
+                k(0.9428090415820634) * T::fused(-t1524, t1910, t1314),
+            );
+            let t1912 = t1911 * t1832;
+            let t1913 = k(0.23570226039551584) * t1912;
+            let t1914 = k(0.9428090415820634) * t1912;
+            let t1915 = t1552
+                * (t1909
+                    - T::fused(t1524, t1914, T::fused(t1504, t1913, t1514 * t1913)));
+            let t1916 = k(0.3333333333333333) * t1915;
+            let t1917 = k(0.6666666666666666) * t1915;
+            let t1918 = t1472 * t1917;
+            let t1919 = t1918 - T::fused(-t1483, t1916, t1918)
+                + T::fused(t1435, t1915, t1913);
+            let t1920 = T::fused(t1362, t1917, T::fused(-t1349, t1917, t1344 * t1916));
+            let t1921 = T::fused(t1363, t1917, T::fused(-t1352, t1917, t1350 * t1916));
+            let t1922 = T::fused(t1361, t1917, T::fused(-t1355, t1917, t1356 * t1916));
+            let t1923 = T::fused(t1856, t1922, T::fused(t1853, t1920, t1374 * t1921))
+                + (T::fused(t1490, t1917, T::fused(t1478, t1916, -t1918)) + t1919);
+            let t1924 = t1473 * t1917;
+            let t1925 = t1924 - T::fused(-t1485, t1916, t1924)
+                + T::fused(-t1448, t1915, t1913);
+            let t1926 = T::fused(t1861, t1922, -T::fused(-t1860, t1920, t1441 * t1921))
+                + (T::fused(t1491, t1917, -T::fused(t1479, t1916, t1924)) + t1925);
+            let t1927 = t1471 * t1917;
+            let t1928 = t1927 - T::fused(t1487, t1916, t1927)
+                + T::fused(-t1462, t1915, t1914);
+            let t1929 = T::fused(t1468, t1922, -T::fused(-t1463, t1920, t1454 * t1921))
+                + (T::fused(t1492, t1917, -T::fused(t1480, t1916, t1927)) + t1928);
+            let t1930 = T::fused(t1880, t1922, T::fused(-t1870, t1920, t1875 * t1921))
+                - T::fused(t1314, t1929, T::fused(t1274, t1923, t1295 * t1926));
+            let t1931 = T::fused(
+                -k(0.9805806756909201),
+                t1274,
+                k(0.19611613513818404) * t1314,
+            );
+            let t1932 = t544 * t1931;
+            let t1933 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t541, t1932, t1274),
+                k(0.9813067629253163) * T::fused(t556, t1932, t1295),
+            );
+            let t1934 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t543, t1932, t1314),
+                t1933,
+            );
+            let t1935 = t653 * t1934;
+            let t1936 = T::fused(
+                t673,
+                t1932,
+                -(t1885 + T::fused(t665, t1314, -T::fused(t663, t1274, t664 * t1295))),
+            );
+            let t1937 = T::fused(t680, t1935, t1936)
+                + T::fused(t661, t1935, T::fused(t649, t1932, t1886));
+            let t1938 = T::fused(
+                -k(0.19245008972987526),
+                t1937,
+                k(0.9622504486493763)
+                    * T::fused(t695, t1935, -T::fused(-t689, t1932, t1886)),
+            );
+            let t1939 = t758 * t1938;
+            let t1940 = k(0.19245008972987526) * t1939;
+            let t1941 = k(0.9622504486493763) * t1939;
+            let t1942 = t653
+                * (t1934 - T::fused(t695, t1941, -T::fused(t661, t1940, t680 * t1940)));
+            let t1943 = k(0.03774256780481986) * t1942;
+            let t1944 = k(0.9813067629253163) * t1942;
+            let t1945 = k(0.1887128390240993) * t1942;
+            let t1946 = T::fused(t689, t1941, -T::fused(t649, t1940, t673 * t1940))
+                + T::fused(t543, t1945, -T::fused(t541, t1943, t556 * t1944));
+            let t1947 = t544 * (t1931 - t1946);
+            let t1948 = t663 * t1940;
+            let t1949 = T::fused(t625, t1940, t1948)
+                + T::fused(-k(0.9805806756909201), t1947, t1943);
+            let t1950 = t664 * t1940;
+            let t1951 = t1944 + T::fused(t629, t1940, t1950);
+            let t1952 = t665 * t1940;
+            let t1953 = T::fused(-t633, t1940, t1952)
+                - T::fused(k(0.19611613513818404), t1947, t1945);
+            let t1954 = T::fused(-t1885, t1940, t1886 * t1941)
+                - T::fused(t1314, t1953, -T::fused(t1274, t1949, t1295 * t1951));
+            let t1955 = T::fused(
                 t1895,
                 t1896,
-                t1907,
-                t1908,
-                t1915,
+                -T::fused(t1891, t1892, -T::fused(t1888, t1889, -(t1954 - t1930))),
+            );
+            let t1956 = k(1.0) / T::fused(t1898, t1899, -t1955);
+            let t1957 = t1268
+                * T::fused(
+                    k(0.7453559924999299),
+                    t1267,
+                    T::fused(
+                        k(0.29814239699997197),
+                        t1265,
+                        k(0.5962847939999439) * t1266,
+                    ),
+                );
+            let t1958 = T::fused(
+                -t1264,
+                T::fused(
+                    k(0.7453559924999299),
+                    t1271,
+                    T::fused(
+                        -k(0.5962847939999439),
+                        t1259,
+                        k(0.29814239699997197) * t1263,
+                    ),
+                ),
+                t1957,
+            );
+            let t1959 = T::fused(
+                k(1.4907119849998598),
+                t1257,
+                -T::fused(k(1.1925695879998879), t1247, k(0.5962847939999439) * t1252),
+            );
+            let t1960 = t1290
+                * T::fused(
+                    -k(0.7453559924999299),
+                    t1289,
+                    T::fused(
+                        k(0.29814239699997197),
+                        t1287,
+                        k(0.5962847939999439) * t1288,
+                    ),
+                );
+            let t1961 = T::fused(
+                -t1286,
+                T::fused(
+                    k(0.7453559924999299),
+                    t1292,
+                    T::fused(
+                        -k(0.5962847939999439),
+                        t1284,
+                        k(0.29814239699997197) * t1285,
+                    ),
+                ),
+                t1960,
+            );
+            let t1962 = T::fused(
+                k(1.4907119849998598),
+                t1282,
+                T::fused(k(1.1925695879998879), t1276, k(0.5962847939999439) * t1278),
+            );
+            let t1963 = T::fused(t1962, t1294, -t1960) - t1961
+                + (T::fused(t1959, t1273, -t1957) - t1958);
+            let t1964 = t1309
+                * T::fused(
+                    -k(0.7453559924999299),
+                    t1308,
+                    T::fused(
+                        k(0.29814239699997197),
+                        t1306,
+                        k(0.5962847939999439) * t1307,
+                    ),
+                );
+            let t1965 = T::fused(
+                -t1305,
+                T::fused(
+                    k(0.7453559924999299),
+                    t1311,
+                    T::fused(
+                        -k(0.5962847939999439),
+                        t1303,
+                        k(0.29814239699997197) * t1304,
+                    ),
+                ),
+                t1964,
+            );
+            let t1966 = T::fused(
+                k(1.4907119849998598),
+                t1301,
+                T::fused(-k(1.1925695879998879), t1297, k(0.5962847939999439) * t1299),
+            );
+            let t1967 = t1463 * t1966;
+            let t1968 = t1860 * t1962;
+            let t1969 = t1853 * t1959;
+            let t1970 = T::fused(
+                t1264,
+                T::fused(k(1.4907119849998598), t1252, k(0.5962847939999439) * t1257),
+                t1969,
+            )
+                + T::fused(
+                    t1286,
+                    T::fused(
+                        -k(1.4907119849998598),
+                        t1278,
+                        k(0.5962847939999439) * t1282,
+                    ),
+                    -t1968,
+                );
+            let t1971 = t1970
+                - T::fused(
+                    t1305,
+                    T::fused(
+                        -k(1.4907119849998598),
+                        t1299,
+                        k(0.5962847939999439) * t1301,
+                    ),
+                    t1967,
+                );
+            let t1972 = T::fused(
+                t1873,
+                t1959,
+                t1264
+                    * T::fused(
+                        k(1.4907119849998598),
+                        t1247,
+                        k(1.1925695879998879) * t1257,
+                    ),
+            )
+                + T::fused(
+                    -t1872,
+                    t1962,
+                    t1286
+                        * T::fused(
+                            -k(1.4907119849998598),
+                            t1276,
+                            k(1.1925695879998879) * t1282,
+                        ),
+                );
+            let t1973 = t1972
+                - T::fused(
+                    -t1871,
+                    t1966,
+                    t1305
+                        * T::fused(
+                            k(1.4907119849998598),
+                            t1297,
+                            k(1.1925695879998879) * t1301,
+                        ),
+                );
+            let t1974 = T::fused(
+                -t1878,
+                t1959,
+                t1264
+                    * T::fused(
+                        -k(0.5962847939999439),
+                        t1247,
+                        k(1.1925695879998879) * t1252,
+                    ),
+            )
+                - T::fused(
+                    -t1877,
+                    t1962,
+                    t1286
+                        * T::fused(
+                            -k(0.5962847939999439),
+                            t1276,
+                            k(1.1925695879998879) * t1278,
+                        ),
+                );
+            let t1975 = t1974
+                + T::fused(
+                    t1876,
+                    t1966,
+                    t1305
+                        * T::fused(
+                            k(0.5962847939999439),
+                            t1297,
+                            k(1.1925695879998879) * t1299,
+                        ),
+                );
+            let t1976 = T::fused(t1975, t1855, T::fused(t1971, t1852, t1973 * t1854))
+                + T::fused(t1966, t1865, T::fused(-t1959, t1857, t1962 * t1862));
+            let t1977 = T::fused(t1882, t1966, T::fused(t1883, t1962, t1884 * t1959));
+            let t1978 = T::fused(-t633, t1966, T::fused(-t629, t1962, t625 * t1959));
+            let t1979 = T::fused(t1977, t762, t1978 * t763)
+                - T::fused(t1966, t778, T::fused(t1959, t772, t1962 * t775));
+            let t1980 = T::fused(-t1977, t865, t1978 * t866)
+                + T::fused(t1966, t880, -T::fused(-t1959, t874, t1962 * t877));
+            let t1981 = t891 * t1980;
+            let t1982 = T::fused(
+                t1981,
+                t804,
+                t1979 - t1976 + (T::fused(t1966, t1313, t1964) + t1965 + t1963),
+            );
+            let t1983 = T::fused(-t1977, t981, t1978 * t982)
+                + T::fused(t1966, t996, -T::fused(-t1959, t990, t1962 * t993));
+            let t1984 = T::fused(t918, t1981, -t1983);
+            let t1985 = t1007 * t1984;
+            let t1986 = T::fused(-t1977, t1117, t1978 * t1118)
+                + T::fused(t1966, t1132, -T::fused(-t1959, t1126, t1962 * t1129));
+            let t1987 = T::fused(t1062, t1985, -T::fused(t1059, t1981, -t1986));
+            let t1988 = t1140 * t1987;
+            let t1989 = T::fused(-t1977, t1219, t1978 * t1220)
+                + T::fused(t1966, t1234, -T::fused(-t1959, t1228, t1962 * t1231));
+            let t1990 = T::fused(
+                t1164,
+                t1988,
+                -T::fused(t1161, t1985, -T::fused(t1158, t1981, -t1989)),
+            );
+            let t1991 = t1242 * t1990;
+            let t1992 = T::fused(t1975, t1922, T::fused(t1971, t1920, t1973 * t1921))
+                + T::fused(t1966, t1929, T::fused(-t1959, t1923, t1962 * t1926));
+            let t1993 = T::fused(-t1977, t1940, t1978 * t1941)
+                + T::fused(t1966, t1953, -T::fused(-t1959, t1949, t1962 * t1951));
+            let t1994 = T::fused(
+                t1895,
+                t1988,
+                -T::fused(t1891, t1985, -T::fused(t1888, t1981, -(t1993 - t1992))),
+            );
+            let t1995 = T::fused(t1898, t1991, -t1994);
+            let t1996 = t1956 * t1995;
+            let t1997 = T::fused(
+                t1996,
+                t1900,
+                -T::fused(
+                    t1991,
+                    t1166,
+                    -T::fused(t1988, t1064, -T::fused(t1985, t920, -t1982)),
+                ),
+            );
+            let t1998 = t1971 + (t1967 - (t1969 - t1968));
+            let t1999 = t1973
+                - T::fused(t1454, t1966, T::fused(t1374, t1959, t1441 * t1962));
+            (
+                t1504,
+                t1514,
+                t1524,
+                t1552,
+                t1624,
+                t1630,
+                t1638,
+                t1644,
+                t1653,
+                t1659,
+                t1676,
+                t1756,
+                t1757,
+                t1758,
+                t1797,
+                t1818,
+                t1830,
+                t1832,
+                t1835,
+                t1837,
+                t1839,
+                t1846,
+                t1848,
+                t1850,
+                t1851,
+                t1852,
+                t1853,
+                t1854,
+                t1855,
+                t1856,
+                t1857,
+                t1859,
+                t1860,
+                t1861,
+                t1862,
+                t1864,
+                t1865,
+                t1888,
+                t1889,
+                t1891,
+                t1892,
+                t1895,
+                t1896,
+                t1898,
+                t1899,
+                t1900,
+                t1913,
+                t1914,
                 t1916,
                 t1917,
-                t1918,
                 t1919,
                 t1920,
+                t1921,
+                t1922,
                 t1923,
+                t1925,
                 t1926,
+                t1928,
                 t1929,
-                t1933,
-                t1944,
-                t1945,
-                t1947,
+                t1940,
+                t1941,
                 t1948,
+                t1949,
+                t1950,
                 t1951,
                 t1952,
-                t1954,
-                t1955,
-                t1957,
-                t1958,
+                t1953,
+                t1956,
+                t1959,
                 t1962,
-                t1963,
-                t1964,
+                t1966,
+                t1971,
+                t1973,
+                t1975,
                 t1977,
                 t1978,
                 t1980,
                 t1981,
-                t1983,
                 t1984,
                 t1985,
-                t1986,
                 t1987,
-                t1989,
+                t1988,
                 t1990,
-                t1992,
-                t1993,
-                t1994,
+                t1991,
                 t1995,
                 t1996,
+                t1997,
                 t1998,
                 t1999,
             )
         });
         let (
-            t2005,
-            t2013,
-            t2015,
-            t2017,
-            t2082,
-            t2085,
-            t2087,
-            t2089,
-            t2147,
-            t2148,
-            t2149,
-            t2158,
-            t2159,
-            t2160,
-            t2176,
-            t2177,
-            t2201,
-            t2204,
-            t2207,
+            t2037,
+            t2038,
+            t2046,
+            t2048,
+            t2050,
+            t2115,
+            t2118,
+            t2120,
+            t2122,
+            t2180,
+            t2181,
+            t2182,
+            t2191,
+            t2192,
+            t2193,
+            t2209,
             t2210,
-            t2219,
-            t2220,
-            t2239,
-            t2247,
-            t2250,
+            t2234,
+            t2237,
+            t2240,
+            t2243,
+            t2252,
             t2253,
-            t2257,
-            t2258,
-            t2259,
-            t2334,
-            t2338,
-            t2339,
-            t2340,
-            t2341,
-            t2343,
-            t2345,
-            t2347,
-            t2349,
-            t2352,
-            t2353,
-            t2355,
-            t2356,
-            t2358,
-            t2359,
-            t2361,
-            t2362,
-            t2370,
-            t2371,
-            t2383,
+            t2271,
+            t2272,
+            t2280,
+            t2283,
+            t2286,
+            t2290,
+            t2291,
+            t2292,
+            t2369,
+            t2373,
+            t2374,
+            t2375,
+            t2376,
+            t2378,
+            t2380,
+            t2382,
             t2384,
-            t2385,
+            t2387,
             t2388,
+            t2390,
             t2391,
             t2393,
             t2394,
-            t2395,
-            t2400,
+            t2396,
+            t2397,
             t2405,
-            t2410,
-            t2411,
-            t2412,
-            t2413,
-            t2414,
-            t2415,
-            t2416,
-            t2417,
+            t2406,
             t2418,
+            t2419,
+            t2420,
             t2423,
+            t2426,
             t2428,
-            t2433,
-            t2434,
+            t2429,
+            t2430,
             t2435,
-            t2436,
-            t2437,
-            t2438,
+            t2440,
+            t2445,
+            t2446,
             t2447,
+            t2448,
+            t2449,
             t2450,
+            t2451,
+            t2452,
             t2453,
-            t2454,
-            t2455,
-            t2456,
-            t2457,
             t2458,
-            t2459,
-            t2467,
+            t2463,
             t2468,
             t2469,
+            t2470,
+            t2471,
+            t2472,
+            t2473,
+            t2482,
+            t2485,
+            t2488,
+            t2489,
+            t2490,
+            t2491,
+            t2492,
+            t2493,
+            t2494,
+            t2495,
+            t2496,
+            t2497,
+            t2498,
+            t2499,
         ) = gyro_sim::apart(move || {
-            let t2000 = T::fused(
-                t659,
-                t1996,
-                t1944 - T::fused(t651, t1933, -T::fused(-t649, t1926, t650 * t1929)),
+            let t2000 = t1975
+                + T::fused(t1468, t1966, T::fused(-t1856, t1959, t1861 * t1962));
+            let t2001 = T::fused(t1471, t1966, T::fused(-t1472, t1959, t1473 * t1962));
+            let t2002 = t2001
+                + (t2001
+                    + T::fused(t1355, t2000, T::fused(t1349, t1998, t1352 * t1999)));
+            let t2003 = T::fused(t1480, t1966, T::fused(t1478, t1959, t1479 * t1962))
+                - T::fused(t1356, t2000, T::fused(t1344, t1998, t1350 * t1999));
+            let t2004 = T::fused(
+                k(0.6666666666666666),
+                t2002,
+                k(0.3333333333333333)
+                    * (T::fused(t1487, t1966, -T::fused(-t1483, t1959, t1485 * t1962))
+                        + t2003),
             );
-            let t2001 = T::fused(t666, t1999, t2000)
-                + T::fused(t647, t1999, -T::fused(-t635, t1996, t1945));
-            let t2002 = T::fused(
+            let t2005 = T::fused(t1492, t1966, T::fused(-t1490, t1959, t1491 * t1962))
+                + T::fused(t1361, t2000, T::fused(t1362, t1998, t1363 * t1999));
+            let t2006 = T::fused(k(0.6666666666666666), t2005 + t2001, -t2004)
+                - T::fused(t1966, t1462, T::fused(t1959, t1435, t1962 * t1448));
+            let t2007 = t1552 * t2006;
+            let t2008 = T::fused(
+                k(0.23570226039551584),
+                T::fused(-t1514, t2007, t1962) - T::fused(t1504, t2007, t1959),
+                k(0.9428090415820634) * T::fused(-t1524, t2007, t1966),
+            );
+            let t2009 = t1832 * t2008;
+            let t2010 = k(0.23570226039551584) * t2009;
+            let t2011 = k(0.9428090415820634) * t2009;
+            let t2012 = t1552
+                * (t2006
+                    - T::fused(t1524, t2011, T::fused(t1504, t2010, t1514 * t2010)));
+            let t2013 = k(0.3333333333333333) * t2012;
+            let t2014 = k(0.6666666666666666) * t2012;
+            let t2015 = t1472 * t2014;
+            let t2016 = t2015 - T::fused(-t1483, t2013, t2015)
+                + T::fused(t1435, t2012, t2010);
+            let t2017 = T::fused(t1362, t2014, T::fused(-t1349, t2014, t1344 * t2013));
+            let t2018 = T::fused(t1363, t2014, T::fused(-t1352, t2014, t1350 * t2013));
+            let t2019 = T::fused(t1361, t2014, T::fused(-t1355, t2014, t1356 * t2013));
+            let t2020 = T::fused(t1856, t2019, T::fused(t1853, t2017, t1374 * t2018))
+                + (T::fused(t1490, t2014, T::fused(t1478, t2013, -t2015)) + t2016);
+            let t2021 = t1473 * t2014;
+            let t2022 = t2021 - T::fused(-t1485, t2013, t2021)
+                + T::fused(-t1448, t2012, t2010);
+            let t2023 = T::fused(t1861, t2019, -T::fused(-t1860, t2017, t1441 * t2018))
+                + (T::fused(t1491, t2014, -T::fused(t1479, t2013, t2021)) + t2022);
+            let t2024 = t1471 * t2014;
+            let t2025 = t2024 - T::fused(t1487, t2013, t2024)
+                + T::fused(-t1462, t2012, t2011);
+            let t2026 = T::fused(t1468, t2019, -T::fused(-t1463, t2017, t1454 * t2018))
+                + (T::fused(t1492, t2014, -T::fused(t1480, t2013, t2024)) + t2025);
+            let t2027 = T::fused(t1975, t2019, T::fused(t1971, t2017, t1973 * t2018))
+                + T::fused(t1966, t2026, T::fused(-t1959, t2020, t1962 * t2023));
+            let t2028 = T::fused(
+                k(0.9805806756909201),
+                t1959,
+                k(0.19611613513818404) * t1966,
+            );
+            let t2029 = t544 * t2028;
+            let t2030 = T::fused(
+                -k(0.03774256780481986),
+                T::fused(-t541, t2029, t1959),
+                k(0.9813067629253163) * T::fused(t556, t2029, t1962),
+            );
+            let t2031 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t543, t2029, t1966),
+                t2030,
+            );
+            let t2032 = t653 * t2031;
+            let t2033 = T::fused(
+                t673,
+                t2029,
+                t1977 - T::fused(t665, t1966, -T::fused(-t663, t1959, t664 * t1962)),
+            );
+            let t2034 = T::fused(t680, t2032, t2033)
+                + T::fused(t661, t2032, -T::fused(-t649, t2029, t1978));
+            let t2035 = T::fused(
                 -k(0.19245008972987526),
-                t2001,
+                t2034,
                 k(0.9622504486493763)
-                    * T::fused(t681, t1999, T::fused(t675, t1996, t1945)),
+                    * T::fused(t695, t2032, T::fused(t689, t2029, t1978)),
             );
-            let t2003 = t724 * t2002;
-            let t2004 = k(0.19245008972987526) * t2003;
-            let t2005 = k(0.9622504486493763) * t2003;
-            let t2006 = t639
-                * (t1998 - T::fused(t681, t2005, -T::fused(t647, t2004, t666 * t2004)));
-            let t2007 = k(0.03774256780481986) * t2006;
-            let t2008 = k(0.9813067629253163) * t2006;
-            let t2009 = k(0.1887128390240993) * t2006;
-            let t2010 = T::fused(t675, t2005, -T::fused(t635, t2004, t659 * t2004))
-                + T::fused(t528, t2009, -T::fused(t526, t2007, t541 * t2008));
-            let t2011 = t529 * (t1995 - t2010);
-            let t2012 = t649 * t2004;
-            let t2013 = T::fused(t611, t2004, t2012)
-                + T::fused(-k(0.9805806756909201), t2011, t2007);
-            let t2014 = t650 * t2004;
-            let t2015 = t2008 + T::fused(t615, t2004, t2014);
-            let t2016 = t651 * t2004;
-            let t2017 = T::fused(-t619, t2004, t2016)
-                - T::fused(k(0.19611613513818404), t2011, t2009);
-            let t2018 = T::fused(-t1944, t2004, t1945 * t2005)
-                + T::fused(t1933, t2017, -T::fused(-t1926, t2013, t1929 * t2015));
-            let t2019 = T::fused(
-                t1954,
-                t1955,
-                -T::fused(t1951, t1952, -T::fused(t1947, t1948, t2018 - t1994)),
+            let t2036 = t758 * t2035;
+            let t2037 = k(0.19245008972987526) * t2036;
+            let t2038 = k(0.9622504486493763) * t2036;
+            let t2039 = t653
+                * (t2031 - T::fused(t695, t2038, -T::fused(t661, t2037, t680 * t2037)));
+            let t2040 = k(0.03774256780481986) * t2039;
+            let t2041 = k(0.9813067629253163) * t2039;
+            let t2042 = k(0.1887128390240993) * t2039;
+            let t2043 = T::fused(t689, t2038, -T::fused(t649, t2037, t673 * t2037))
+                + T::fused(t543, t2042, -T::fused(t541, t2040, t556 * t2041));
+            let t2044 = t544 * (t2028 - t2043);
+            let t2045 = t663 * t2037;
+            let t2046 = T::fused(t625, t2037, t2045)
+                + T::fused(-k(0.9805806756909201), t2044, t2040);
+            let t2047 = t664 * t2037;
+            let t2048 = t2041 + T::fused(t629, t2037, t2047);
+            let t2049 = t665 * t2037;
+            let t2050 = T::fused(-t633, t2037, t2049)
+                - T::fused(k(0.19611613513818404), t2044, t2042);
+            let t2051 = T::fused(-t1977, t2037, t1978 * t2038)
+                + T::fused(t1966, t2050, -T::fused(-t1959, t2046, t1962 * t2048));
+            let t2052 = T::fused(
+                t1987,
+                t1988,
+                -T::fused(t1984, t1985, -T::fused(t1980, t1981, t2051 - t2027)),
             );
-            let t2020 = k(1.0) / T::fused(t1962, t1963, -T::fused(t1957, t1958, -t2019));
-            let t2021 = T::fused(t160, carrier_wy, t132 * carrier_wx);
-            let t2022 = T::fused(t160, carrier_wz, t145 * carrier_wx);
-            let t2023 = T::fused(-t132, carrier_wz, t145 * carrier_wy);
-            let t2024 = T::fused(-k(0.1), t1597, slide_sx)
+            let t2053 = k(1.0) / T::fused(t1995, t1996, -T::fused(t1990, t1991, -t2052));
+            let t2054 = T::fused(t160, carrier_wy, t132 * carrier_wx);
+            let t2055 = T::fused(t160, carrier_wz, t145 * carrier_wx);
+            let t2056 = T::fused(-t132, carrier_wz, t145 * carrier_wy);
+            let t2057 = T::fused(-k(0.1), t1630, slide_sx)
                 - (carrier_sx
-                    - T::fused(k(0.4), t2021, T::fused(-k(0.2), t2022, k(0.1) * t2023)));
-            let t2025 = T::fused(
+                    - T::fused(k(0.4), t2054, T::fused(-k(0.2), t2055, k(0.1) * t2056)));
+            let t2058 = T::fused(
                 -k(0.1),
-                t1591,
-                T::fused(k(0.4), t229, -T::fused(k(0.1), t233, k(0.2) * t235)),
+                t1624,
+                T::fused(k(0.4), t236, -T::fused(k(0.1), t230, k(0.2) * t233)),
             );
-            let t2026 = carrier_rx
+            let t2059 = carrier_rx
                 + T::fused(k(0.8), t144, T::fused(-k(0.2), t159, k(0.4) * t131))
-                - (slide_rx - t1723);
-            let t2027 = T::fused(t162, carrier_wy, t128 * carrier_wx);
-            let t2028 = T::fused(-t162, carrier_wz, t141 * carrier_wx);
-            let t2029 = T::fused(t128, carrier_wz, t141 * carrier_wy);
-            let t2030 = T::fused(-k(0.1), t1611, slide_sy)
+                - (slide_rx - t1756);
+            let t2060 = T::fused(t162, carrier_wy, t128 * carrier_wx);
+            let t2061 = T::fused(-t162, carrier_wz, t141 * carrier_wx);
+            let t2062 = T::fused(t128, carrier_wz, t141 * carrier_wy);
+            let t2063 = T::fused(-k(0.1), t1644, slide_sy)
                 - (carrier_sy
                     - T::fused(
                         -k(0.4),
-                        t2027,
-                        T::fused(-k(0.2), t2028, k(0.1) * t2029),
+                        t2060,
+                        T::fused(-k(0.2), t2061, k(0.1) * t2062),
                     ));
-            let t2031 = T::fused(
+            let t2064 = T::fused(
                 -k(0.1),
-                t1605,
-                T::fused(k(0.4), t245, -T::fused(k(0.1), t246, k(0.2) * t247)),
+                t1638,
+                T::fused(k(0.4), t248, -T::fused(k(0.1), t245, k(0.2) * t246)),
             );
-            let t2032 = carrier_ry
+            let t2065 = carrier_ry
                 + T::fused(k(0.8), t140, -T::fused(-k(0.2), t161, k(0.4) * t127))
-                - (slide_ry + t1724);
-            let t2033 = T::fused(-t2030, t2030, t2032 * t2031)
-                + T::fused(-t2024, t2024, t2026 * t2025);
-            let t2034 = T::fused(-t164, carrier_wy, t136 * carrier_wx);
-            let t2035 = T::fused(t164, carrier_wz, t147 * carrier_wx);
-            let t2036 = T::fused(t136, carrier_wz, t147 * carrier_wy);
-            let t2037 = T::fused(k(0.1), t1626, slide_sz)
+                - (slide_ry + t1757);
+            let t2066 = T::fused(-t2063, t2063, t2065 * t2064)
+                + T::fused(-t2057, t2057, t2059 * t2058);
+            let t2067 = T::fused(-t164, carrier_wy, t136 * carrier_wx);
+            let t2068 = T::fused(t164, carrier_wz, t147 * carrier_wx);
+            let t2069 = T::fused(t136, carrier_wz, t147 * carrier_wy);
+            let t2070 = T::fused(k(0.1), t1659, slide_sz)
                 - (carrier_sz
                     + T::fused(
                         -k(0.4),
-                        t2034,
-                        T::fused(-k(0.2), t2035, k(0.1) * t2036),
+                        t2067,
+                        T::fused(-k(0.2), t2068, k(0.1) * t2069),
                     ));
-            let t2038 = T::fused(
-                -k(0.1),
-                t1620,
-                T::fused(k(0.4), t257, -T::fused(k(0.1), t258, k(0.2) * t259)),
-            );
-            let t2039 = carrier_rz
-                - T::fused(k(0.8), t146, -T::fused(k(0.2), t163, k(0.4) * t135))
-                - (slide_rz - t1725);
-            let t2040 = k(1.0) / self.rod_length;
-            let t2041 = t2040 * (k(2.0) * t2026);
-            let t2042 = k(0.5) * t2041;
-            let t2043 = t2040 * (k(2.0) * t2032);
-            let t2044 = k(0.5) * t2043;
-            let t2045 = t2040 * (k(2.0) * t2039);
-            let t2046 = k(0.5) * t2045;
-            let t2047 = T::fused(
-                t2032,
-                T::fused(k(0.8), t127, t347),
-                t2026 * T::fused(-k(0.8), t131, t333),
-            );
-            let t2048 = k(0.5)
-                * (t2040
-                    * (k(2.0) * T::fused(-t2039, T::fused(k(0.8), t135, t361), t2047)));
-            let t2049 = T::fused(
-                t2032,
-                T::fused(-k(0.8), t161, t311),
-                t2026 * T::fused(k(0.8), t159, t310),
-            );
-            let t2050 = k(0.5)
-                * (t2040
-                    * (k(2.0) * T::fused(-t2039, T::fused(k(0.8), t163, t313), t2049)));
-            let t2051 = T::fused(
-                -t2032,
-                T::fused(k(0.2), t127, k(0.4) * t161),
-                t2026 * T::fused(k(0.2), t131, k(0.4) * t159),
-            );
-            let t2052 = t2040
-                * (k(2.0)
-                    * T::fused(-t2039, T::fused(-k(0.2), t135, k(0.4) * t163), t2051));
-            let t2053 = k(0.5) * t2052;
-            let t2054 = T::fused(t2053, t432, -T::fused(-t2048, t429, t2050 * t431))
-                - T::fused(t2046, t440, -T::fused(t2042, t434, t2044 * t437));
-            let t2055 = T::fused(
-                -t2039,
-                k(0.2) * t1350,
-                T::fused(t2032, k(0.2) * t1354, t2026 * (k(0.2) * t1358)),
-            );
-            let t2056 = T::fused(
-                -t2039,
-                k(0.2) * t1374,
-                T::fused(-t2032, k(0.2) * t1372, t2026 * (k(0.2) * t1370)),
-            );
-            let t2057 = T::fused(
-                -(k(0.5) * (t2040 * (k(2.0) * t2055))),
-                t1764,
-                k(0.5) * (t2040 * (k(2.0) * t2056)) * t1797,
-            );
-            let t2058 = t2057
-                - T::fused(t2046, t1806, -T::fused(-t2042, t1802, t2044 * t1804))
-                + t2054;
-            let t2059 = T::fused(
-                k(0.5),
-                t2040 * (k(2.0) * (T::fused(t2037, t2037, t2039 * t2038) - t2033)),
-                t2058,
-            );
-            let t2060 = T::fused(t2053, t789, -T::fused(-t2048, t788, t2050 * t789))
-                - T::fused(t2046, t797, T::fused(-t2042, t791, t2044 * t794));
-            let t2061 = t857 * t2060;
-            let t2062 = T::fused(t2053, t905, -T::fused(-t2048, t904, t2050 * t905))
-                - T::fused(t2046, t913, T::fused(-t2042, t907, t2044 * t910));
-            let t2063 = T::fused(t884, t2061, -t2062);
-            let t2064 = t973 * t2063;
-            let t2065 = T::fused(t2053, t1047, -T::fused(-t2048, t1046, t2050 * t1047))
-                - T::fused(t2046, t1055, T::fused(-t2042, t1049, t2044 * t1052));
-            let t2066 = T::fused(t1028, t2064, -T::fused(t1025, t2061, -t2065));
-            let t2067 = t1106 * t2066;
-            let t2068 = T::fused(t2053, t1149, -T::fused(-t2048, t1148, t2050 * t1149))
-                - T::fused(t2046, t1157, T::fused(-t2042, t1151, t2044 * t1154));
-            let t2069 = T::fused(
-                t1130,
-                t2067,
-                -T::fused(t1127, t2064, -T::fused(t1124, t2061, t2068)),
-            );
-            let t2070 = t1208 * t2069;
             let t2071 = T::fused(
-                t2070,
-                t1132,
-                -T::fused(
-                    t2067,
-                    t1030,
-                    -T::fused(t2064, t886, -T::fused(t2061, t770, t2059)),
-                ),
+                -k(0.1),
+                t1653,
+                T::fused(k(0.4), t260, -T::fused(k(0.1), t257, k(0.2) * t258)),
             );
-            let t2072 = T::fused(
-                t1855,
-                t2061,
-                T::fused(t2046, t1881, -T::fused(-t2042, t1880, t2044 * t1880)),
-            );
-            let t2073 = T::fused(
-                t1865,
-                t2070,
-                -T::fused(t1862, t2067, -T::fused(t1858, t2064, -t2072)),
-            );
-            let t2074 = t1923 * t2073;
-            let t2075 = T::fused(
-                t1947,
-                t2061,
-                -T::fused(t2046, t1978, -T::fused(-t2042, t1977, t2044 * t1977)),
-            );
-            let t2076 = T::fused(
-                t1962,
-                t2074,
-                -T::fused(
-                    t1957,
-                    t2070,
-                    -T::fused(t1954, t2067, -T::fused(t1951, t2064, -t2075)),
-                ),
-            );
-            let t2077 = t2020 * t2076;
-            let t2078 = T::fused(t2077, t1964, -T::fused(t2074, t1867, -t2071));
-            let t2079 = T::fused(t313, t2046, -T::fused(t310, t2042, t311 * t2044));
+            let t2072 = carrier_rz
+                - T::fused(k(0.8), t146, -T::fused(k(0.2), t163, k(0.4) * t135))
+                - (slide_rz - t1758);
+            let t2073 = k(1.0) / self.rod_length;
+            let t2074 = t2073 * (k(2.0) * t2059);
+            let t2075 = k(0.5) * t2074;
+            let t2076 = t2073 * (k(2.0) * t2065);
+            let t2077 = k(0.5) * t2076;
+            let t2078 = t2073 * (k(2.0) * t2072);
+            let t2079 = k(0.5) * t2078;
             let t2080 = T::fused(
-                k(0.6666666666666666),
-                t2053 - T::fused(t324, t2046, T::fused(-t326, t2042, t328 * t2044)),
+                t2065,
+                T::fused(k(0.8), t127, t347),
+                t2059 * T::fused(-k(0.8), t131, t333),
+            );
+            let t2081 = k(0.5)
+                * (t2073
+                    * (k(2.0) * T::fused(-t2072, T::fused(k(0.8), t135, t361), t2080)));
+            let t2082 = T::fused(
+                t2065,
+                T::fused(-k(0.8), t161, t311),
+                t2059 * T::fused(k(0.8), t159, t310),
+            );
+            let t2083 = k(0.5)
+                * (t2073
+                    * (k(2.0) * T::fused(-t2072, T::fused(k(0.8), t163, t313), t2082)));
+            let t2084 = T::fused(
+                -t2065,
+                T::fused(k(0.2), t127, k(0.4) * t161),
+                t2059 * T::fused(k(0.2), t131, k(0.4) * t159),
+            );
+            let t2085 = t2073
+                * (k(2.0)
+                    * T::fused(-t2072, T::fused(-k(0.2), t135, k(0.4) * t163), t2084));
+            let t2086 = k(0.5) * t2085;
+            let t2087 = T::fused(t2086, t447, -T::fused(t2081, t444, t2083 * t446))
+                + T::fused(t2079, t455, -T::fused(t2075, t449, t2077 * t452));
+            let t2088 = T::fused(
+                -t2072,
+                k(0.2) * t1383,
+                T::fused(t2065, k(0.2) * t1387, t2059 * (k(0.2) * t1391)),
+            );
+            let t2089 = T::fused(
+                -t2072,
+                k(0.2) * t1407,
+                T::fused(-t2065, k(0.2) * t1405, t2059 * (k(0.2) * t1403)),
+            );
+            let t2090 = T::fused(
+                -(k(0.5) * (t2073 * (k(2.0) * t2088))),
+                t1797,
+                k(0.5) * (t2073 * (k(2.0) * t2089)) * t1830,
+            );
+            let t2091 = t2090
+                - T::fused(t2079, t1839, -T::fused(-t2075, t1835, t2077 * t1837))
+                - t2087;
+            let t2092 = T::fused(
+                k(0.5),
+                t2073 * (k(2.0) * (T::fused(t2070, t2070, t2072 * t2071) - t2066)),
+                t2091,
+            );
+            let t2093 = T::fused(t2086, t823, -T::fused(-t2081, t822, t2083 * t823))
+                - T::fused(t2079, t831, T::fused(-t2075, t825, t2077 * t828));
+            let t2094 = t891 * t2093;
+            let t2095 = T::fused(t2086, t939, -T::fused(-t2081, t938, t2083 * t939))
+                - T::fused(t2079, t947, T::fused(-t2075, t941, t2077 * t944));
+            let t2096 = T::fused(t918, t2094, -t2095);
+            let t2097 = t1007 * t2096;
+            let t2098 = T::fused(t2086, t1081, -T::fused(-t2081, t1080, t2083 * t1081))
+                - T::fused(t2079, t1089, T::fused(-t2075, t1083, t2077 * t1086));
+            let t2099 = T::fused(t1062, t2097, -T::fused(t1059, t2094, -t2098));
+            let t2100 = t1140 * t2099;
+            let t2101 = T::fused(t2086, t1183, -T::fused(-t2081, t1182, t2083 * t1183))
+                - T::fused(t2079, t1191, T::fused(-t2075, t1185, t2077 * t1188));
+            let t2102 = T::fused(
+                t1164,
+                t2100,
+                -T::fused(t1161, t2097, -T::fused(t1158, t2094, t2101)),
+            );
+            let t2103 = t1242 * t2102;
+            let t2104 = T::fused(
+                t2103,
+                t1166,
                 -T::fused(
-                    -k(0.3333333333333333),
-                    t2048 - t2079,
-                    k(0.6666666666666666) * (t2050 - t2079),
+                    t2100,
+                    t1064,
+                    -T::fused(t2097, t920, -T::fused(t2094, t804, t2092)),
                 ),
             );
-            let t2081 = t427 * t2080;
-            let t2082 = k(0.3333333333333333) * t2081;
-            let t2083 = k(0.6666666666666666) * t2081;
-            let t2084 = t326 * t2083;
-            let t2085 = t2084 - T::fused(-t310, t2082, t310 * t2083);
-            let t2086 = t328 * t2083;
-            let t2087 = t2086 + T::fused(-t311, t2082, t311 * t2083);
-            let t2088 = t324 * t2083;
-            let t2089 = t2088 - T::fused(-t313, t2082, t313 * t2083);
-            let t2090 = T::fused(t2053, t2083, -T::fused(-t2048, t2082, t2050 * t2083))
-                - T::fused(t2046, t2089, T::fused(-t2042, t2085, t2044 * t2087));
-            let t2091 = t1799
-                * T::fused(
-                    k(0.11785113019775792),
-                    t2041 - t2043,
-                    k(0.4714045207910317) * t2045,
-                );
-            let t2092 = k(0.23570226039551584) * t2091;
-            let t2093 = k(0.9428090415820634) * t2091;
-            let t2094 = T::fused(
-                t2060,
-                t2061,
-                -(T::fused(t2046, t2093, -T::fused(-t2042, t2092, t2044 * t2092))
-                    - t2090),
+            let t2105 = T::fused(
+                t1888,
+                t2094,
+                T::fused(t2079, t1914, -T::fused(-t2075, t1913, t2077 * t1913)),
             );
-            let t2095 = T::fused(
-                t2073,
-                t2074,
-                -T::fused(
-                    t2069,
-                    t2070,
-                    -T::fused(t2066, t2067, -T::fused(t2063, t2064, -t2094)),
-                ),
+            let t2106 = T::fused(
+                t1898,
+                t2103,
+                -T::fused(t1895, t2100, -T::fused(t1891, t2097, -t2105)),
             );
-            let t2096 = k(1.0) / T::fused(t2076, t2077, -t2095);
-            let t2097 = t992 + T::fused(-shaft_wy, t978, shaft_wx * t984)
-                + (t987 - T::fused(-shaft_wy, t977, shaft_wx * t983));
-            let t2098 = t1002 - T::fused(shaft_wz, t978, shaft_wx * t981)
-                + (t998 + T::fused(shaft_wz, t977, shaft_wx * t980));
-            let t2099 = t991 + T::fused(shaft_wz, t984, shaft_wy * t981)
-                + (t986 - T::fused(shaft_wz, t983, shaft_wy * t980));
-            let t2100 = T::fused(
-                -k(0.45226701686664544),
-                t2097,
-                T::fused(-k(0.45226701686664544), t2098, k(0.30151134457776363) * t2099),
-            );
-            let t2101 = k(0.5) * t1013;
-            let t2102 = k(0.5) * (t2098 - t2097);
-            let t2103 = T::fused(
-                k(0.45226701686664544),
-                t1012,
-                T::fused(-k(0.30151134457776363), t1118, k(0.45226701686664544) * t1011),
-            );
-            let t2104 = k(1.0) / T::fused(t2101, t2101, t2103 * t2103);
-            let t2105 = t994 - t989;
-            let t2106 = t1004 - t1000;
-            let t2107 = t2102 * t2100;
+            let t2107 = t1956 * t2106;
             let t2108 = T::fused(
-                t2101,
-                T::fused(
-                    k(0.45226701686664544),
-                    t2106,
-                    T::fused(
-                        -k(0.30151134457776363),
-                        t1112 - t1109,
-                        k(0.45226701686664544) * t2105,
-                    ),
-                ),
-                -t2107,
+                t1980,
+                t2094,
+                -T::fused(t2079, t2011, -T::fused(-t2075, t2010, t2077 * t2010)),
             );
             let t2109 = T::fused(
-                -(t2104 * t2104 * (k(2.0) * T::fused(t2103, t2100, t2101 * t2102))),
-                T::fused(-t2101, t2100, t2103 * t2102),
-                t2104 * (t2108 + T::fused(-t2103, k(0.5) * (t2106 - t2105), t2107)),
+                t1995,
+                t2107,
+                -T::fused(
+                    t1990,
+                    t2103,
+                    -T::fused(t1987, t2100, -T::fused(t1984, t2097, -t2108)),
+                ),
             );
-            let t2110 = T::fused(
-                k(0.45226701686664544) * t1013,
-                t2101,
-                k(0.5) * (t1012 + t1011) * t2103,
-            ) * t2104;
-            let t2111 = k(0.45226701686664544) * t1118;
-            let t2112 = t2103 * (k(0.5) * t1118);
-            let t2113 = t2104
+            let t2110 = t2053 * t2109;
+            let t2111 = T::fused(t2110, t1997, -T::fused(t2107, t1900, -t2104));
+            let t2112 = T::fused(t313, t2079, -T::fused(t310, t2075, t311 * t2077));
+            let t2113 = T::fused(
+                k(0.6666666666666666),
+                t2086 - T::fused(t324, t2079, T::fused(-t326, t2075, t328 * t2077)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t2081 - t2112,
+                    k(0.6666666666666666) * (t2083 - t2112),
+                ),
+            );
+            let t2114 = t442 * t2113;
+            let t2115 = k(0.3333333333333333) * t2114;
+            let t2116 = k(0.6666666666666666) * t2114;
+            let t2117 = t326 * t2116;
+            let t2118 = t2117 - T::fused(-t310, t2115, t310 * t2116);
+            let t2119 = t328 * t2116;
+            let t2120 = t2119 + T::fused(-t311, t2115, t311 * t2116);
+            let t2121 = t324 * t2116;
+            let t2122 = t2121 - T::fused(-t313, t2115, t313 * t2116);
+            let t2123 = T::fused(t2086, t2116, -T::fused(-t2081, t2115, t2083 * t2116))
+                - T::fused(t2079, t2122, T::fused(-t2075, t2118, t2077 * t2120));
+            let t2124 = t1832
                 * T::fused(
-                    -t2101,
-                    T::fused(k(0.30151134457776363), t1012, t2111),
-                    t2112,
+                    k(0.11785113019775792),
+                    t2074 - t2076,
+                    k(0.4714045207910317) * t2078,
                 );
-            let t2114 = t2104
-                * T::fused(t2101, T::fused(k(0.30151134457776363), t1011, t2111), t2112);
-            let t2115 = t981 + t980;
-            let t2116 = t984 + t983;
-            let t2117 = T::fused(
-                -t2101,
+            let t2125 = k(0.23570226039551584) * t2124;
+            let t2126 = k(0.9428090415820634) * t2124;
+            let t2127 = T::fused(
+                t2093,
+                t2094,
+                -(T::fused(t2079, t2126, -T::fused(-t2075, t2125, t2077 * t2125))
+                    - t2123),
+            );
+            let t2128 = T::fused(
+                t2106,
+                t2107,
+                -T::fused(
+                    t2102,
+                    t2103,
+                    -T::fused(t2099, t2100, -T::fused(t2096, t2097, -t2127)),
+                ),
+            );
+            let t2129 = k(1.0) / T::fused(t2109, t2110, -t2128);
+            let t2130 = t1026 + T::fused(-shaft_wy, t1012, shaft_wx * t1018)
+                + (t1021 - T::fused(-shaft_wy, t1011, shaft_wx * t1017));
+            let t2131 = t1036 - T::fused(shaft_wz, t1012, shaft_wx * t1015)
+                + (t1032 + T::fused(shaft_wz, t1011, shaft_wx * t1014));
+            let t2132 = t1025 + T::fused(shaft_wz, t1018, shaft_wy * t1015)
+                + (t1020 - T::fused(shaft_wz, t1017, shaft_wy * t1014));
+            let t2133 = T::fused(
+                -k(0.45226701686664544),
+                t2130,
+                T::fused(-k(0.45226701686664544), t2131, k(0.30151134457776363) * t2132),
+            );
+            let t2134 = k(0.5) * t1047;
+            let t2135 = k(0.5) * (t2131 - t2130);
+            let t2136 = T::fused(
+                k(0.45226701686664544),
+                t1046,
+                T::fused(-k(0.30151134457776363), t1152, k(0.45226701686664544) * t1045),
+            );
+            let t2137 = k(1.0) / T::fused(t2134, t2134, t2136 * t2136);
+            let t2138 = t1028 - t1023;
+            let t2139 = t1038 - t1034;
+            let t2140 = t2135 * t2133;
+            let t2141 = T::fused(
+                t2134,
+                T::fused(
+                    k(0.45226701686664544),
+                    t2139,
+                    T::fused(
+                        -k(0.30151134457776363),
+                        t1146 - t1143,
+                        k(0.45226701686664544) * t2138,
+                    ),
+                ),
+                -t2140,
+            );
+            let t2142 = T::fused(
+                -(t2137 * t2137 * (k(2.0) * T::fused(t2136, t2133, t2134 * t2135))),
+                T::fused(-t2134, t2133, t2136 * t2135),
+                t2137 * (t2141 + T::fused(-t2136, k(0.5) * (t2139 - t2138), t2140)),
+            );
+            let t2143 = T::fused(
+                k(0.45226701686664544) * t1047,
+                t2134,
+                k(0.5) * (t1046 + t1045) * t2136,
+            ) * t2137;
+            let t2144 = k(0.45226701686664544) * t1152;
+            let t2145 = t2136 * (k(0.5) * t1152);
+            let t2146 = t2137
+                * T::fused(
+                    -t2134,
+                    T::fused(k(0.30151134457776363), t1046, t2144),
+                    t2145,
+                );
+            let t2147 = t2137
+                * T::fused(t2134, T::fused(k(0.30151134457776363), t1045, t2144), t2145);
+            let t2148 = t1015 + t1014;
+            let t2149 = t1018 + t1017;
+            let t2150 = T::fused(
+                -t2134,
                 T::fused(
                     -k(0.45226701686664544),
-                    t2115,
+                    t2148,
                     T::fused(
                         -k(0.45226701686664544),
-                        t2116,
-                        k(0.30151134457776363) * (t978 + t977),
+                        t2149,
+                        k(0.30151134457776363) * (t1012 + t1011),
                     ),
                 ),
-                t2103 * (k(0.5) * (t2116 - t2115)),
+                t2136 * (k(0.5) * (t2149 - t2148)),
             );
-            let t2118 = t2104 * t2117;
-            let t2119 = T::fused(
-                t2101,
+            let t2151 = t2137 * t2150;
+            let t2152 = T::fused(
+                t2134,
                 T::fused(
                     -k(0.45226701686664544),
-                    t976,
-                    T::fused(-k(0.45226701686664544), t975, t1120),
+                    t1010,
+                    T::fused(-k(0.45226701686664544), t1009, t1154),
                 ),
-                t2103 * (k(0.5) * (t976 - t975)),
+                t2136 * (k(0.5) * (t1010 - t1009)),
             );
-            let t2120 = t2104 * t2119;
-            let t2121 = T::fused(t2120, t750, T::fused(t2118, t748, t2120 * t749))
-                - T::fused(t2114, t449, T::fused(-t2110, t453, t2113 * t448));
-            let t2122 = T::fused(
-                T::fused(k(0.7453559924999299), t1382, k(0.29814239699997197) * t1386),
-                t1383,
-                k(0.8944271909999159) * t1386 * t1387,
+            let t2153 = t2137 * t2152;
+            let t2154 = T::fused(t2153, t784, T::fused(t2151, t782, t2153 * t783))
+                - T::fused(t2147, t464, T::fused(-t2143, t468, t2146 * t463));
+            let t2155 = T::fused(
+                T::fused(k(0.7453559924999299), t1415, k(0.29814239699997197) * t1419),
+                t1416,
+                k(0.8944271909999159) * t1419 * t1420,
             );
-            let t2123 = T::fused(
-                -t1383,
-                T::fused(-k(0.7453559924999299), t1379, k(0.5962847939999439) * t1386),
-                t1387 * (k(0.4472135954999579) * t1386),
+            let t2156 = T::fused(
+                -t1416,
+                T::fused(-k(0.7453559924999299), t1412, k(0.5962847939999439) * t1419),
+                t1420 * (k(0.4472135954999579) * t1419),
             );
-            let t2124 = T::fused(
-                -(self.gear_ratio * (t2122 * t1389)),
-                t1764,
-                self.gear_ratio * (t1389 * t2123) * t1785,
+            let t2157 = T::fused(
+                -(self.gear_ratio * (t2155 * t1422)),
+                t1797,
+                self.gear_ratio * (t1422 * t2156) * t1818,
             );
-            let t2125 = T::fused(
-                -t1383,
-                T::fused(k(0.29814239699997197), t1379, k(0.5962847939999439) * t1382),
-                t1387
+            let t2158 = T::fused(
+                -t1416,
+                T::fused(k(0.29814239699997197), t1412, k(0.5962847939999439) * t1415),
+                t1420
                     * T::fused(
                         -k(0.8944271909999159),
-                        t1379,
-                        k(0.4472135954999579) * t1382,
+                        t1412,
+                        k(0.4472135954999579) * t1415,
                     ),
             );
-            let t2126 = self.gear_ratio * t1390;
-            let t2127 = self.gear_ratio * t1393;
-            let t2128 = self.gear_ratio * t1397;
-            let t2129 = T::fused(t2128, t1817, -T::fused(-t2126, t1815, t2127 * t1813))
-                + (T::fused(self.gear_ratio * (t1389 * t2125), t1797, -t2124) + t2121);
-            let t2130 = T::fused(t2120, t852, -T::fused(t2118, t850, t2120 * t851))
-                - T::fused(t2114, t806, T::fused(-t2110, t810, t2113 * t805));
-            let t2131 = t857 * t2130;
-            let t2132 = T::fused(t2120, t968, -T::fused(t2118, t966, t2120 * t967))
-                - T::fused(t2114, t922, T::fused(-t2110, t926, t2113 * t921));
-            let t2133 = T::fused(t884, t2131, -t2132);
-            let t2134 = t973 * t2133;
-            let t2135 = T::fused(
-                t2134,
-                t886,
+            let t2159 = self.gear_ratio * t1423;
+            let t2160 = self.gear_ratio * t1426;
+            let t2161 = self.gear_ratio * t1430;
+            let t2162 = T::fused(t2161, t1850, -T::fused(-t2159, t1848, t2160 * t1846))
+                + (T::fused(self.gear_ratio * (t1422 * t2158), t1830, -t2157) + t2154);
+            let t2163 = T::fused(t2153, t886, -T::fused(t2151, t884, t2153 * t885))
+                - T::fused(t2147, t840, T::fused(-t2143, t844, t2146 * t839));
+            let t2164 = t891 * t2163;
+            let t2165 = T::fused(t2153, t1002, -T::fused(t2151, t1000, t2153 * t1001))
+                - T::fused(t2147, t956, T::fused(-t2143, t960, t2146 * t955));
+            let t2166 = T::fused(t918, t2164, -t2165);
+            let t2167 = t1007 * t2166;
+            let t2168 = T::fused(
+                t2167,
+                t920,
                 -T::fused(
-                    t2131,
-                    t770,
-                    -(t2129 + T::fused(self.gear_ratio, t1643, t2109)),
+                    t2164,
+                    t804,
+                    -(t2162 + T::fused(self.gear_ratio, t1676, t2142)),
                 ),
             );
-            let t2136 = T::fused(t2120, t1104, T::fused(t2118, t1102, t2120 * t1103))
-                - T::fused(t2114, t1065, T::fused(-t2110, t1063, t2113 * t1064));
-            let t2137 = T::fused(t1028, t2134, -T::fused(t1025, t2131, -t2136));
-            let t2138 = t1106 * t2137;
-            let t2139 = T::fused(t2120, t1206, T::fused(-t2118, t1204, t2120 * t1205))
-                + T::fused(t2114, t1167, T::fused(-t2110, t1165, t2113 * t1166));
-            let t2140 = T::fused(
-                t1130,
-                t2138,
-                -T::fused(t1127, t2134, -T::fused(t1124, t2131, -t2139)),
+            let t2169 = T::fused(t2153, t1138, T::fused(t2151, t1136, t2153 * t1137))
+                - T::fused(t2147, t1099, T::fused(-t2143, t1097, t2146 * t1098));
+            let t2170 = T::fused(t1062, t2167, -T::fused(t1059, t2164, -t2169));
+            let t2171 = t1140 * t2170;
+            let t2172 = T::fused(t2153, t1240, T::fused(-t2151, t1238, t2153 * t1239))
+                + T::fused(t2147, t1201, T::fused(-t2143, t1199, t2146 * t1200));
+            let t2173 = T::fused(
+                t1164,
+                t2171,
+                -T::fused(t1161, t2167, -T::fused(t1158, t2164, -t2172)),
             );
-            let t2141 = t1208 * t2140;
-            let t2142 = t1916 + T::fused(t667, t1908, T::fused(t612, t1907, t1915));
-            let t2143 = t1918 + T::fused(t668, t1908, T::fused(-t616, t1907, t1917));
-            let t2144 = t1920 + T::fused(t669, t1908, T::fused(t620, t1907, t1919));
-            let t2145 = T::fused(t520, t2144, -T::fused(-t512, t2142, t532 * t2143));
-            let t2146 = T::fused(
+            let t2174 = t1242 * t2173;
+            let t2175 = t1949 + T::fused(t681, t1941, T::fused(t626, t1940, t1948));
+            let t2176 = t1951 + T::fused(t682, t1941, T::fused(-t630, t1940, t1950));
+            let t2177 = t1953 + T::fused(t683, t1941, T::fused(t634, t1940, t1952));
+            let t2178 = T::fused(t535, t2177, -T::fused(-t527, t2175, t547 * t2176));
+            let t2179 = T::fused(
                 k(2.1052631578947367),
-                t2145,
-                -T::fused(t519, t2144, -T::fused(-t510, t2142, t531 * t2143)),
+                t2178,
+                -T::fused(t534, t2177, -T::fused(-t525, t2175, t546 * t2176)),
             );
-            let t2147 = k(50.0) * t2146;
-            let t2148 = k(263.1578947368421) * t2145;
-            let t2149 = k(40.0)
-                * T::fused(t523, t2144, -T::fused(t517, t2142, t535 * t2143));
-            let t2150 = T::fused(t2128, t1884, -T::fused(t2126, t1884, t2127 * t1883))
-                + T::fused(t2120, t2149, -T::fused(t2118, t2147, t2120 * t2148));
-            let t2151 = T::fused(
-                t1865,
-                t2141,
+            let t2180 = k(50.0) * t2179;
+            let t2181 = k(263.1578947368421) * t2178;
+            let t2182 = k(40.0)
+                * T::fused(t538, t2177, -T::fused(t532, t2175, t550 * t2176));
+            let t2183 = T::fused(t2161, t1917, -T::fused(t2159, t1917, t2160 * t1916))
+                + T::fused(t2153, t2182, -T::fused(t2151, t2180, t2153 * t2181));
+            let t2184 = T::fused(
+                t1898,
+                t2174,
                 -T::fused(
-                    t1862,
-                    t2138,
-                    -T::fused(t1858, t2134, -T::fused(t1855, t2131, t2150)),
+                    t1895,
+                    t2171,
+                    -T::fused(t1891, t2167, -T::fused(t1888, t2164, t2183)),
                 ),
             );
-            let t2152 = t1923 * t2151;
-            let t2153 = t2013 + T::fused(t667, t2005, T::fused(t612, t2004, t2012));
-            let t2154 = t2015 + T::fused(t668, t2005, T::fused(-t616, t2004, t2014));
-            let t2155 = t2017 + T::fused(t669, t2005, T::fused(t620, t2004, t2016));
-            let t2156 = T::fused(t520, t2155, -T::fused(-t512, t2153, t532 * t2154));
-            let t2157 = T::fused(
+            let t2185 = t1956 * t2184;
+            let t2186 = t2046 + T::fused(t681, t2038, T::fused(t626, t2037, t2045));
+            let t2187 = t2048 + T::fused(t682, t2038, T::fused(-t630, t2037, t2047));
+            let t2188 = t2050 + T::fused(t683, t2038, T::fused(t634, t2037, t2049));
+            let t2189 = T::fused(t535, t2188, -T::fused(-t527, t2186, t547 * t2187));
+            let t2190 = T::fused(
                 k(2.1052631578947367),
-                t2156,
-                -T::fused(t519, t2155, -T::fused(-t510, t2153, t531 * t2154)),
+                t2189,
+                -T::fused(t534, t2188, -T::fused(-t525, t2186, t546 * t2187)),
             );
-            let t2158 = k(50.0) * t2157;
-            let t2159 = k(263.1578947368421) * t2156;
-            let t2160 = k(40.0)
-                * T::fused(t523, t2155, -T::fused(t517, t2153, t535 * t2154));
-            let t2161 = T::fused(t2128, t1981, -T::fused(t2126, t1981, t2127 * t1980))
-                + T::fused(t2120, t2160, -T::fused(t2118, t2158, t2120 * t2159));
-            let t2162 = T::fused(
-                t1957,
-                t2141,
+            let t2191 = k(50.0) * t2190;
+            let t2192 = k(263.1578947368421) * t2189;
+            let t2193 = k(40.0)
+                * T::fused(t538, t2188, -T::fused(t532, t2186, t550 * t2187));
+            let t2194 = T::fused(t2161, t2014, -T::fused(t2159, t2014, t2160 * t2013))
+                + T::fused(t2153, t2193, -T::fused(t2151, t2191, t2153 * t2192));
+            let t2195 = T::fused(
+                t1990,
+                t2174,
                 -T::fused(
-                    t1954,
-                    t2138,
-                    -T::fused(t1951, t2134, -T::fused(t1947, t2131, -t2161)),
+                    t1987,
+                    t2171,
+                    -T::fused(t1984, t2167, -T::fused(t1980, t2164, -t2194)),
                 ),
             );
-            let t2163 = T::fused(t1962, t2152, -t2162);
-            let t2164 = t2020 * t2163;
-            let t2165 = T::fused(
-                t2164,
-                t1964,
+            let t2196 = T::fused(t1995, t2185, -t2195);
+            let t2197 = t2053 * t2196;
+            let t2198 = T::fused(
+                t2197,
+                t1997,
                 -T::fused(
-                    t2152,
-                    t1867,
-                    -T::fused(t2141, t1132, -T::fused(t2138, t1030, -t2135)),
+                    t2185,
+                    t1900,
+                    -T::fused(t2174, t1166, -T::fused(t2171, t1064, -t2168)),
                 ),
             );
-            let t2166 = t2085 + (t2084 - T::fused(t297, t2082, t316 * t2083));
-            let t2167 = t2087 + (t2086 - T::fused(t303, t2082, t318 * t2083));
-            let t2168 = t2089 + (t2088 - T::fused(-t308, t2082, t320 * t2083));
-            let t2169 = T::fused(t148, t2083, -T::fused(t270, t2082, t138 * t2083));
-            let t2170 = T::fused(t149, t2083, -T::fused(t271, t2082, t137 * t2083));
-            let t2171 = T::fused(t224, t2169, t281 * t2170)
-                + T::fused(t266, t2168, -T::fused(t242, t2166, t254 * t2167));
-            let t2172 = t222 * t2171;
-            let t2173 = T::fused(t217, t2170, -T::fused(t215, t2172, t216 * t2169))
-                - T::fused(t264, t2168, -T::fused(t240, t2166, t252 * t2167));
-            let t2174 = t218 * t2173;
-            let t2175 = T::fused(t189, t2174, t2172);
-            let t2176 = T::fused(t206, t2174, t2169);
-            let t2177 = T::fused(-t213, t2174, t2170);
-            let t2178 = t1519
-                * T::fused(t1491, t2093, T::fused(t1471, t2092, t1481 * t2092));
-            let t2179 = k(0.6666666666666666) * t2178;
-            let t2180 = k(0.3333333333333333) * t2178;
-            let t2181 = T::fused(t2128, t2179, -T::fused(t2126, t2179, t2127 * t2180))
-                - T::fused(t2114, t2177, T::fused(t2110, t2175, t2113 * t2176));
-            let t2182 = T::fused(
-                t2069,
-                t2141,
+            let t2199 = t2118 + (t2117 - T::fused(t297, t2115, t316 * t2116));
+            let t2200 = t2120 + (t2119 - T::fused(t303, t2115, t318 * t2116));
+            let t2201 = t2122 + (t2121 - T::fused(-t308, t2115, t320 * t2116));
+            let t2202 = T::fused(t148, t2116, -T::fused(t270, t2115, t138 * t2116));
+            let t2203 = T::fused(t149, t2116, -T::fused(t271, t2115, t137 * t2116));
+            let t2204 = T::fused(t224, t2202, t281 * t2203)
+                + T::fused(t266, t2201, -T::fused(t242, t2199, t254 * t2200));
+            let t2205 = t222 * t2204;
+            let t2206 = T::fused(t217, t2203, -T::fused(t215, t2205, t216 * t2202))
+                - T::fused(t264, t2201, -T::fused(t240, t2199, t252 * t2200));
+            let t2207 = t218 * t2206;
+            let t2208 = T::fused(t189, t2207, t2205);
+            let t2209 = T::fused(t206, t2207, t2202);
+            let t2210 = T::fused(-t213, t2207, t2203);
+            let t2211 = t1552
+                * T::fused(t1524, t2126, T::fused(t1504, t2125, t1514 * t2125));
+            let t2212 = k(0.6666666666666666) * t2211;
+            let t2213 = k(0.3333333333333333) * t2211;
+            let t2214 = T::fused(t2161, t2212, -T::fused(t2159, t2212, t2160 * t2213))
+                - T::fused(t2147, t2210, T::fused(t2143, t2208, t2146 * t2209));
+            let t2215 = T::fused(
+                t2102,
+                t2174,
                 -T::fused(
-                    t2066,
-                    t2138,
-                    -T::fused(t2063, t2134, -T::fused(t2060, t2131, t2181)),
+                    t2099,
+                    t2171,
+                    -T::fused(t2096, t2167, -T::fused(t2093, t2164, t2214)),
                 ),
             );
-            let t2183 = T::fused(t2076, t2164, -T::fused(t2073, t2152, -t2182));
-            let t2184 = t2096 * t2183;
-            let t2185 = T::fused(t2184, t2078, -t2165);
-            let t2186 = T::fused(t213, t2114, -T::fused(t2110, t189, t206 * t2113));
-            let t2187 = t218 * t2186;
-            let t2188 = T::fused(t215, t2187, t2110);
-            let t2189 = t222 * t2188;
-            let t2190 = T::fused(t224, t2189, T::fused(t216, t2187, t2113));
-            let t2191 = T::fused(t281, t2189, T::fused(-t217, t2187, t2114));
-            let t2192 = T::fused(t240, t2187, t242 * t2189);
-            let t2193 = T::fused(t252, t2187, t254 * t2189);
-            let t2194 = T::fused(t264, t2187, t266 * t2189);
-            let t2195 = T::fused(t308, t2194, T::fused(t297, t2192, t303 * t2193))
-                - T::fused(t270, t2190, t271 * t2191);
-            let t2196 = T::fused(t313, t2194, T::fused(-t310, t2192, t311 * t2193));
-            let t2197 = T::fused(t320, t2194, -T::fused(t316, t2192, t318 * t2193))
-                + T::fused(t138, t2190, t137 * t2191);
-            let t2198 = T::fused(t324, t2194, -T::fused(t326, t2192, t328 * t2193));
-            let t2199 = T::fused(
+            let t2216 = T::fused(t2109, t2197, -T::fused(t2106, t2185, -t2215));
+            let t2217 = t2129 * t2216;
+            let t2218 = T::fused(t2217, t2111, -t2198);
+            let t2219 = T::fused(t213, t2147, -T::fused(t2143, t189, t206 * t2146));
+            let t2220 = t218 * t2219;
+            let t2221 = T::fused(t215, t2220, t2143);
+            let t2222 = t222 * t2221;
+            let t2223 = T::fused(t224, t2222, T::fused(t216, t2220, t2146));
+            let t2224 = T::fused(t281, t2222, T::fused(-t217, t2220, t2147));
+            let t2225 = T::fused(t240, t2220, t242 * t2222);
+            let t2226 = T::fused(t252, t2220, t254 * t2222);
+            let t2227 = T::fused(t264, t2220, t266 * t2222);
+            let t2228 = T::fused(t308, t2227, T::fused(t297, t2225, t303 * t2226))
+                - T::fused(t270, t2223, t271 * t2224);
+            let t2229 = T::fused(t313, t2227, T::fused(-t310, t2225, t311 * t2226));
+            let t2230 = T::fused(t320, t2227, -T::fused(t316, t2225, t318 * t2226))
+                + T::fused(t138, t2223, t137 * t2224);
+            let t2231 = T::fused(t324, t2227, -T::fused(t326, t2225, t328 * t2226));
+            let t2232 = T::fused(
                 k(0.6666666666666666),
-                t2198 + (t2198 + T::fused(t148, t2190, t149 * t2191)),
+                t2231 + (t2231 + T::fused(t148, t2223, t149 * t2224)),
                 -T::fused(
                     -k(0.3333333333333333),
-                    t2196 + t2195,
-                    k(0.6666666666666666) * (t2196 + t2197),
+                    t2229 + t2228,
+                    k(0.6666666666666666) * (t2229 + t2230),
                 ),
             );
-            let t2200 = t427 * t2199;
-            let t2201 = k(0.3333333333333333) * t2200;
-            let t2202 = k(0.6666666666666666) * t2200;
-            let t2203 = t326 * t2202;
-            let t2204 = t2203 - T::fused(-t310, t2201, t310 * t2202);
-            let t2205 = T::fused(t297, t2201, t316 * t2202) - t2203 - t2204;
-            let t2206 = t328 * t2202;
-            let t2207 = t2206 + T::fused(-t311, t2201, t311 * t2202);
-            let t2208 = T::fused(t303, t2201, t318 * t2202) - t2206 - t2207;
-            let t2209 = t324 * t2202;
-            let t2210 = t2209 - T::fused(-t313, t2201, t313 * t2202);
-            let t2211 = T::fused(-t308, t2201, t320 * t2202) - t2209 - t2210;
-            let t2212 = T::fused(t148, t2202, -T::fused(t270, t2201, t138 * t2202));
-            let t2213 = T::fused(t149, t2202, -T::fused(t271, t2201, t137 * t2202));
-            let t2214 = T::fused(t224, t2212, t281 * t2213)
-                - T::fused(t266, t2211, -T::fused(t242, t2205, t254 * t2208));
-            let t2215 = t222 * (t2188 - t2214);
-            let t2216 = T::fused(t217, t2213, -T::fused(-t215, t2215, t216 * t2212))
-                + T::fused(t264, t2211, -T::fused(t240, t2205, t252 * t2208));
-            let t2217 = t218 * (t2186 + t2216);
-            let t2218 = T::fused(-t189, t2217, t2215);
-            let t2219 = T::fused(t206, t2217, t2212);
-            let t2220 = T::fused(-t213, t2217, t2213);
-            let t2221 = k(50.0) * t2118;
-            let t2222 = T::fused(k(0.4), t2118, t2120);
-            let t2223 = k(263.1578947368421) * t2222;
-            let t2224 = k(40.0) * t2120;
-            let t2225 = T::fused(t517, t2224, T::fused(-t510, t2221, t512 * t2223));
-            let t2226 = T::fused(t535, t2224, -T::fused(-t531, t2221, t532 * t2223));
-            let t2227 = T::fused(t523, t2224, -T::fused(-t519, t2221, t520 * t2223));
-            let t2228 = T::fused(t619, t2227, T::fused(t611, t2225, t615 * t2226))
-                - T::fused(t620, t2227, T::fused(-t612, t2225, t616 * t2226));
-            let t2229 = T::fused(
+            let t2233 = t442 * t2232;
+            let t2234 = k(0.3333333333333333) * t2233;
+            let t2235 = k(0.6666666666666666) * t2233;
+            let t2236 = t326 * t2235;
+            let t2237 = t2236 - T::fused(-t310, t2234, t310 * t2235);
+            let t2238 = T::fused(t297, t2234, t316 * t2235) - t2236 - t2237;
+            let t2239 = t328 * t2235;
+            let t2240 = t2239 + T::fused(-t311, t2234, t311 * t2235);
+            let t2241 = T::fused(t303, t2234, t318 * t2235) - t2239 - t2240;
+            let t2242 = t324 * t2235;
+            let t2243 = t2242 - T::fused(-t313, t2234, t313 * t2235);
+            let t2244 = T::fused(-t308, t2234, t320 * t2235) - t2242 - t2243;
+            let t2245 = T::fused(t148, t2235, -T::fused(t270, t2234, t138 * t2235));
+            let t2246 = T::fused(t149, t2235, -T::fused(t271, t2234, t137 * t2235));
+            let t2247 = T::fused(t224, t2245, t281 * t2246)
+                - T::fused(t266, t2244, -T::fused(t242, t2238, t254 * t2241));
+            let t2248 = t222 * (t2221 - t2247);
+            let t2249 = T::fused(t217, t2246, -T::fused(-t215, t2248, t216 * t2245))
+                + T::fused(t264, t2244, -T::fused(t240, t2238, t252 * t2241));
+            let t2250 = t218 * (t2219 + t2249);
+            let t2251 = T::fused(-t189, t2250, t2248);
+            let t2252 = T::fused(t206, t2250, t2245);
+            let t2253 = T::fused(-t213, t2250, t2246);
+            let t2254 = k(50.0) * t2151;
+            let t2255 = T::fused(k(0.4), t2151, t2153);
+            let t2256 = k(263.1578947368421) * t2255;
+            let t2257 = k(40.0) * t2153;
+            let t2258 = T::fused(t532, t2257, T::fused(-t525, t2254, t527 * t2256));
+            let t2259 = T::fused(t550, t2257, -T::fused(-t546, t2254, t547 * t2256));
+            let t2260 = T::fused(t538, t2257, -T::fused(-t534, t2254, t535 * t2256));
+            let t2261 = T::fused(t633, t2260, T::fused(t625, t2258, t629 * t2259))
+                - T::fused(t634, t2260, T::fused(-t626, t2258, t630 * t2259));
+            let t2262 = T::fused(
                 -k(0.9805806756909201),
-                t2225,
-                k(0.19611613513818404) * t2227,
+                t2258,
+                k(0.19611613513818404) * t2260,
             );
-            let t2230 = t529 * t2229;
-            let t2231 = T::fused(
+            let t2263 = t544 * t2262;
+            let t2264 = T::fused(
                 k(0.03774256780481986),
-                T::fused(t526, t2230, t2225),
-                k(0.9813067629253163) * T::fused(t541, t2230, t2226),
+                T::fused(t541, t2263, t2258),
+                k(0.9813067629253163) * T::fused(t556, t2263, t2259),
             );
-            let t2232 = T::fused(
+            let t2265 = T::fused(
                 k(0.1887128390240993),
-                T::fused(-t528, t2230, t2227),
-                t2231,
+                T::fused(-t543, t2263, t2260),
+                t2264,
             );
-            let t2233 = t639 * t2232;
-            let t2234 = T::fused(
+            let t2266 = t653 * t2265;
+            let t2267 = T::fused(
                 -k(2.0),
-                T::fused(t651, t2227, -T::fused(t649, t2225, t650 * t2226)),
-                t659 * t2230,
+                T::fused(t665, t2260, -T::fused(t663, t2258, t664 * t2259)),
+                t673 * t2263,
             );
-            let t2235 = T::fused(t666, t2233, t2234)
-                + T::fused(t647, t2233, T::fused(t635, t2230, t2228));
-            let t2236 = T::fused(
-                t675,
-                t2230,
-                T::fused(t669, t2227, -T::fused(t667, t2225, t668 * t2226)),
+            let t2268 = T::fused(t680, t2266, t2267)
+                + T::fused(t661, t2266, T::fused(t649, t2263, t2261));
+            let t2269 = T::fused(
+                t689,
+                t2263,
+                T::fused(t683, t2260, -T::fused(t681, t2258, t682 * t2259)),
             );
-            let t2237 = t724
+            let t2270 = t758
                 * T::fused(
                     -k(0.19245008972987526),
-                    t2235,
-                    k(0.9622504486493763) * T::fused(t681, t2233, t2236),
+                    t2268,
+                    k(0.9622504486493763) * T::fused(t695, t2266, t2269),
                 );
-            let t2238 = k(0.19245008972987526) * t2237;
-            let t2239 = k(0.9622504486493763) * t2237;
-            let t2240 = t639
-                * (t2232 - T::fused(t681, t2239, -T::fused(t647, t2238, t666 * t2238)));
-            let t2241 = k(0.03774256780481986) * t2240;
-            let t2242 = k(0.9813067629253163) * t2240;
-            let t2243 = k(0.1887128390240993) * t2240;
-            let t2244 = T::fused(t675, t2239, -T::fused(t635, t2238, t659 * t2238))
-                + T::fused(t528, t2243, -T::fused(t526, t2241, t541 * t2242));
-            let t2245 = t529 * (t2229 - t2244);
-            let t2246 = t649 * t2238;
-            let t2247 = T::fused(t611, t2238, t2246)
-                + T::fused(-k(0.9805806756909201), t2245, t2241);
-            let t2248 = T::fused(t667, t2239, T::fused(t612, t2238, t2246)) + t2247;
-            let t2249 = t650 * t2238;
-            let t2250 = t2242 + T::fused(t615, t2238, t2249);
-            let t2251 = T::fused(t668, t2239, -T::fused(t616, t2238, -t2249)) + t2250;
-            let t2252 = t651 * t2238;
-            let t2253 = T::fused(-t619, t2238, t2252)
-                - T::fused(k(0.19611613513818404), t2245, t2243);
-            let t2254 = T::fused(t669, t2239, T::fused(t620, t2238, t2252)) + t2253;
-            let t2255 = t2222
-                + T::fused(t520, t2254, -T::fused(-t512, t2248, t532 * t2251));
-            let t2256 = T::fused(
-                k(2.1052631578947367),
-                t2255,
-                -T::fused(t519, t2254, -T::fused(-t510, t2248, t531 * t2251)),
-            );
-            let t2257 = k(50.0) * (t2118 + t2256);
-            let t2258 = k(263.1578947368421) * t2255;
-            let t2259 = k(40.0)
-                * (t2120 - T::fused(t523, t2254, -T::fused(t517, t2248, t535 * t2251)));
-            let t2260 = T::fused(t2120, t2259, T::fused(t2118, t2257, t2120 * t2258))
-                - T::fused(t2114, t2220, T::fused(-t2110, t2218, t2113 * t2219));
-            let t2261 = T::fused(
-                k(0.6666666666666666),
-                t2128,
-                -T::fused(k(0.6666666666666666), t2126, k(0.3333333333333333) * t2127),
-            );
-            let t2262 = t1519 * t2261;
-            let t2263 = T::fused(
-                k(0.23570226039551584),
-                T::fused(t1471, t2262, t1481 * t2262),
-                k(0.9428090415820634) * (t1491 * t2262),
-            );
-            let t2264 = t1799 * t2263;
-            let t2265 = k(0.23570226039551584) * t2264;
-            let t2266 = k(0.9428090415820634) * t2264;
-            let t2267 = t1519
-                * (t2261
-                    + T::fused(t1491, t2266, T::fused(t1471, t2265, t1481 * t2265)));
-            let t2268 = k(0.6666666666666666) * t2267;
-            let t2269 = k(0.3333333333333333) * t2267;
-            let t2270 = T::fused(
-                t2130,
-                t2131,
-                -(T::fused(t2128, t2268, -T::fused(t2126, t2268, t2127 * t2269)) + t2260),
-            );
-            let t2271 = T::fused(
-                t2151,
-                t2152,
-                -T::fused(
-                    t2140,
-                    t2141,
-                    -T::fused(t2137, t2138, -T::fused(t2133, t2134, -t2270)),
-                ),
-            );
-            let t2272 = k(1.0) / T::fused(t2183, t2184, -T::fused(t2163, t2164, -t2271));
-            let t2273 = T::fused(
-                k(0.6666666666666666),
-                t2034,
-                T::fused(-k(0.3333333333333333), t2035, k(0.6666666666666666) * t2036),
-            );
-            let t2274 = T::fused(
-                k(0.6666666666666666),
-                t2027,
-                T::fused(-k(0.3333333333333333), t2028, k(0.6666666666666666) * t2029),
-            );
-            let t2275 = T::fused(
-                -k(0.6666666666666666),
-                t2021,
-                T::fused(-k(0.3333333333333333), t2022, k(0.6666666666666666) * t2023),
-            );
-            let t2276 = T::fused(
-                -k(0.3333333333333333),
-                t2273,
-                k(0.6666666666666666) * (t2275 - t2274),
-            );
-            let t2277 = T::fused(
-                k(1.3333333333333333),
-                t144,
-                -T::fused(-k(1.3333333333333333), t159, t378),
-            );
-            let t2278 = t374 - T::fused(-k(0.6666666666666666), t127, t382);
-            let t2279 = T::fused(k(0.6666666666666666), t135, t383) + t375;
-            let t2280 = T::fused(
-                k(0.6666666666666666),
-                t2279,
-                T::fused(k(0.6666666666666666), t2277, k(0.3333333333333333) * t2278),
-            );
-            let t2281 = T::fused(
-                k(0.6666666666666666),
-                t2273,
-                T::fused(k(0.3333333333333333), t2274, k(0.6666666666666666) * t2275),
-            );
-            let t2282 = T::fused(
-                k(0.6666666666666666),
-                t2278 - t2277,
-                k(0.3333333333333333) * t2279,
-            );
-            let t2283 = k(1.0) / T::fused(t2280, t2280, t2282 * t2282);
-            let t2284 = T::fused(
-                k(0.6666666666666666),
-                t229,
-                T::fused(k(0.6666666666666666), t233, k(0.3333333333333333) * t235),
-            );
-            let t2285 = T::fused(
-                k(0.6666666666666666),
-                t245,
-                T::fused(k(0.6666666666666666), t246, k(0.3333333333333333) * t247),
-            );
-            let t2286 = T::fused(
-                k(0.6666666666666666),
-                t257,
-                T::fused(k(0.6666666666666666), t258, k(0.3333333333333333) * t259),
-            );
-            let t2287 = t2281 * t2276;
-            let t2288 = T::fused(
-                t2282,
-                T::fused(
-                    k(0.6666666666666666),
-                    t2286,
-                    T::fused(k(0.6666666666666666), t2284, k(0.3333333333333333) * t2285),
-                ),
-                t2287,
-            );
+            let t2271 = k(0.19245008972987526) * t2270;
+            let t2272 = k(0.9622504486493763) * t2270;
+            let t2273 = t653
+                * (t2265 - T::fused(t695, t2272, -T::fused(t661, t2271, t680 * t2271)));
+            let t2274 = k(0.03774256780481986) * t2273;
+            let t2275 = k(0.9813067629253163) * t2273;
+            let t2276 = k(0.1887128390240993) * t2273;
+            let t2277 = T::fused(t689, t2272, -T::fused(t649, t2271, t673 * t2271))
+                + T::fused(t543, t2276, -T::fused(t541, t2274, t556 * t2275));
+            let t2278 = t544 * (t2262 - t2277);
+            let t2279 = t663 * t2271;
+            let t2280 = T::fused(t625, t2271, t2279)
+                + T::fused(-k(0.9805806756909201), t2278, t2274);
+            let t2281 = T::fused(t681, t2272, T::fused(t626, t2271, t2279)) + t2280;
+            let t2282 = t664 * t2271;
+            let t2283 = t2275 + T::fused(t629, t2271, t2282);
+            let t2284 = T::fused(t682, t2272, -T::fused(t630, t2271, -t2282)) + t2283;
+            let t2285 = t665 * t2271;
+            let t2286 = T::fused(-t633, t2271, t2285)
+                - T::fused(k(0.19611613513818404), t2278, t2276);
+            let t2287 = T::fused(t683, t2272, T::fused(t634, t2271, t2285)) + t2286;
+            let t2288 = t2255
+                + T::fused(t535, t2287, -T::fused(-t527, t2281, t547 * t2284));
             let t2289 = T::fused(
-                t2280,
-                T::fused(
-                    k(0.6666666666666666),
-                    t2285 - t2284,
-                    k(0.3333333333333333) * t2286,
-                ),
-                t2287,
-            ) - t2288;
-            let t2290 = T::fused(
-                -(t2283 * t2283 * (k(2.0) * T::fused(-t2282, t2276, t2280 * t2281))),
-                T::fused(t2280, t2276, t2282 * t2281),
-                t2283 * t2289,
+                k(2.1052631578947367),
+                t2288,
+                -T::fused(t534, t2287, -T::fused(-t525, t2281, t546 * t2284)),
             );
-            let t2291 = T::fused(k(0.6666666666666666), t146, -t379);
-            let t2292 = T::fused(k(0.6666666666666666), t140, -t377);
-            let t2293 = k(1.3333333333333333) * t131;
-            let t2294 = t373 + t2293;
-            let t2295 = T::fused(
-                T::fused(
-                    -k(0.3333333333333333),
-                    t2291,
-                    k(0.6666666666666666) * (t2294 - t2292),
-                ),
-                t2280,
-                T::fused(
-                    k(0.6666666666666666),
-                    t2291,
-                    T::fused(k(0.3333333333333333), t2292, k(0.6666666666666666) * t2294),
-                ) * t2282,
+            let t2290 = k(50.0) * (t2151 + t2289);
+            let t2291 = k(263.1578947368421) * t2288;
+            let t2292 = k(40.0)
+                * (t2153 - T::fused(t538, t2287, -T::fused(t532, t2281, t550 * t2284)));
+            let t2293 = T::fused(t2153, t2292, T::fused(t2151, t2290, t2153 * t2291))
+                - T::fused(t2147, t2253, T::fused(-t2143, t2251, t2146 * t2252));
+            let t2294 = T::fused(
+                k(0.6666666666666666),
+                t2161,
+                -T::fused(k(0.6666666666666666), t2159, k(0.3333333333333333) * t2160),
             );
-            let t2296 = t2295 * t2283;
-            let t2297 = t163 - t146;
-            let t2298 = t161 + t140;
-            let t2299 = t159 - t144;
-            let t2300 = T::fused(
-                t2280,
-                T::fused(
-                    -k(0.4444444444444444),
-                    t2297,
-                    k(0.8888888888888888) * (t2299 + t2298),
-                ),
-                t2282
-                    * T::fused(
-                        k(0.8888888888888888),
-                        t2297,
-                        T::fused(
-                            -k(0.4444444444444444),
-                            t2298,
-                            k(0.8888888888888888) * t2299,
-                        ),
-                    ),
+            let t2295 = t1552 * t2294;
+            let t2296 = T::fused(
+                k(0.23570226039551584),
+                T::fused(t1504, t2295, t1514 * t2295),
+                k(0.9428090415820634) * (t1524 * t2295),
             );
-            let t2301 = t2283 * t2300;
-            let t2302 = T::fused(-k(0.6666666666666666), t163, t379);
-            let t2303 = T::fused(k(0.6666666666666666), t161, t377);
-            let t2304 = t2293 + t381;
-            let t2305 = T::fused(
-                t2280,
-                T::fused(
-                    k(0.3333333333333333),
-                    t2302,
-                    k(0.6666666666666666) * (t2304 + t2303),
-                ),
-                t2282
-                    * T::fused(
-                        -k(0.6666666666666666),
-                        t2302,
-                        T::fused(
-                            -k(0.3333333333333333),
-                            t2303,
-                            k(0.6666666666666666) * t2304,
-                        ),
-                    ),
+            let t2297 = t1832 * t2296;
+            let t2298 = k(0.23570226039551584) * t2297;
+            let t2299 = k(0.9428090415820634) * t2297;
+            let t2300 = t1552
+                * (t2294
+                    + T::fused(t1524, t2299, T::fused(t1504, t2298, t1514 * t2298)));
+            let t2301 = k(0.6666666666666666) * t2300;
+            let t2302 = k(0.3333333333333333) * t2300;
+            let t2303 = T::fused(
+                t2163,
+                t2164,
+                -(T::fused(t2161, t2301, -T::fused(t2159, t2301, t2160 * t2302)) + t2293),
             );
-            let t2306 = t2283 * t2305;
-            let t2307 = T::fused(t2306, t432, T::fused(t2296, t429, t2301 * t431))
-                + T::fused(
-                    k(8.882643960980422),
-                    (k(9.42477796076938) * t).sin(),
-                    -t2290,
-                );
-            let t2308 = T::fused(t2306, t789, T::fused(t2296, t788, t2301 * t789));
-            let t2309 = t857 * t2308;
-            let t2310 = T::fused(
-                t884,
-                t2309,
-                -T::fused(t2306, t905, T::fused(t2296, t904, t2301 * t905)),
-            );
-            let t2311 = t973 * t2310;
-            let t2312 = T::fused(
-                t1025,
-                t2309,
-                -T::fused(t2306, t1047, T::fused(t2296, t1046, t2301 * t1047)),
-            );
-            let t2313 = T::fused(t1028, t2311, -t2312);
-            let t2314 = t1106 * t2313;
-            let t2315 = T::fused(
-                t1124,
-                t2309,
-                T::fused(t2306, t1149, T::fused(t2296, t1148, t2301 * t1149)),
-            );
-            let t2316 = T::fused(t1130, t2314, -T::fused(t1127, t2311, -t2315));
-            let t2317 = t1208 * t2316;
-            let t2318 = T::fused(
-                t2317,
-                t1132,
-                -T::fused(
-                    t2314,
-                    t1030,
-                    -T::fused(t2311, t886, -T::fused(t2309, t770, t2307)),
-                ),
-            );
-            let t2319 = T::fused(
-                t1865,
-                t2317,
-                -T::fused(t1862, t2314, -T::fused(-t1855, t2309, t1858 * t2311)),
-            );
-            let t2320 = t1923 * t2319;
-            let t2321 = T::fused(
-                t1957,
-                t2317,
-                -T::fused(t1954, t2314, -T::fused(-t1947, t2309, t1951 * t2311)),
-            );
-            let t2322 = T::fused(t1962, t2320, -t2321);
-            let t2323 = t2020 * t2322;
-            let t2324 = T::fused(
-                t2060,
-                t2309,
-                T::fused(t2306, t2083, T::fused(t2296, t2082, t2301 * t2083)),
-            );
-            let t2325 = T::fused(
-                t2073,
-                t2320,
-                -T::fused(
-                    t2069,
-                    t2317,
-                    -T::fused(t2066, t2314, -T::fused(t2063, t2311, -t2324)),
-                ),
-            );
-            let t2326 = T::fused(t2076, t2323, -t2325);
-            let t2327 = t2096 * t2326;
-            let t2328 = T::fused(
-                t2130,
-                t2309,
-                -T::fused(t2306, t2202, T::fused(t2296, t2201, t2301 * t2202)),
-            );
-            let t2329 = T::fused(
-                t2151,
-                t2320,
-                -T::fused(
-                    t2140,
-                    t2317,
-                    -T::fused(t2137, t2314, -T::fused(t2133, t2311, -t2328)),
-                ),
-            );
-            let t2330 = T::fused(t2183, t2327, -T::fused(t2163, t2323, -t2329));
-            let t2331 = t2272 * t2330;
-            let t2332 = T::fused(
-                t2331,
+            let t2304 = T::fused(
+                t2184,
                 t2185,
                 -T::fused(
-                    t2327,
-                    t2078,
-                    -T::fused(t2323, t1964, -T::fused(t2320, t1867, -t2318)),
+                    t2173,
+                    t2174,
+                    -T::fused(t2170, t2171, -T::fused(t2166, t2167, -t2303)),
                 ),
             );
-            let t2333 = t427
+            let t2305 = k(1.0) / T::fused(t2216, t2217, -T::fused(t2196, t2197, -t2304));
+            let t2306 = T::fused(
+                k(0.6666666666666666),
+                t2067,
+                T::fused(-k(0.3333333333333333), t2068, k(0.6666666666666666) * t2069),
+            );
+            let t2307 = T::fused(
+                k(0.6666666666666666),
+                t2060,
+                T::fused(-k(0.3333333333333333), t2061, k(0.6666666666666666) * t2062),
+            );
+            let t2308 = T::fused(
+                -k(0.6666666666666666),
+                t2054,
+                T::fused(-k(0.3333333333333333), t2055, k(0.6666666666666666) * t2056),
+            );
+            let t2309 = T::fused(
+                -k(0.3333333333333333),
+                t2306,
+                k(0.6666666666666666) * (t2308 - t2307),
+            );
+            let t2310 = T::fused(k(1.3333333333333333), t144, -(t380 - t379));
+            let t2311 = T::fused(k(1.3333333333333333), t140, -(t377 - t376));
+            let t2312 = T::fused(k(1.3333333333333333), t146, t374 + t373);
+            let t2313 = T::fused(
+                k(0.6666666666666666),
+                t2312,
+                T::fused(k(0.6666666666666666), t2310, k(0.3333333333333333) * t2311),
+            );
+            let t2314 = T::fused(
+                k(0.6666666666666666),
+                t2306,
+                T::fused(k(0.3333333333333333), t2307, k(0.6666666666666666) * t2308),
+            );
+            let t2315 = T::fused(
+                k(0.6666666666666666),
+                t2311 - t2310,
+                k(0.3333333333333333) * t2312,
+            );
+            let t2316 = k(1.0) / T::fused(t2313, t2313, t2315 * t2315);
+            let t2317 = t398
+                + T::fused(k(0.6666666666666666), t230, k(0.3333333333333333) * t233);
+            let t2318 = t400
+                + T::fused(k(0.6666666666666666), t245, k(0.3333333333333333) * t246);
+            let t2319 = t402
+                + T::fused(k(0.6666666666666666), t257, k(0.3333333333333333) * t258);
+            let t2320 = t2314 * t2309;
+            let t2321 = T::fused(
+                t2315,
+                T::fused(
+                    k(0.6666666666666666),
+                    t2319,
+                    T::fused(k(0.6666666666666666), t2317, k(0.3333333333333333) * t2318),
+                ),
+                t2320,
+            );
+            let t2322 = T::fused(
+                t2313,
+                T::fused(
+                    k(0.6666666666666666),
+                    t2318 - t2317,
+                    k(0.3333333333333333) * t2319,
+                ),
+                t2320,
+            ) - t2321;
+            let t2323 = T::fused(
+                -(t2316 * t2316 * (k(2.0) * T::fused(-t2315, t2309, t2313 * t2314))),
+                T::fused(t2313, t2309, t2315 * t2314),
+                t2316 * t2322,
+            );
+            let t2324 = k(1.3333333333333333) * t135;
+            let t2325 = t383 - t2324;
+            let t2326 = k(1.3333333333333333) * t127;
+            let t2327 = t385 - t2326;
+            let t2328 = k(1.3333333333333333) * t131;
+            let t2329 = t387 + t2328;
+            let t2330 = T::fused(
+                T::fused(
+                    -k(0.3333333333333333),
+                    t2325,
+                    k(0.6666666666666666) * (t2329 - t2327),
+                ),
+                t2313,
+                T::fused(
+                    k(0.6666666666666666),
+                    t2325,
+                    T::fused(k(0.3333333333333333), t2327, k(0.6666666666666666) * t2329),
+                ) * t2315,
+            );
+            let t2331 = t2330 * t2316;
+            let t2332 = t163 - t146;
+            let t2333 = t161 + t140;
+            let t2334 = t159 - t144;
+            let t2335 = T::fused(
+                t2313,
+                T::fused(
+                    -k(0.4444444444444444),
+                    t2332,
+                    k(0.8888888888888888) * (t2334 + t2333),
+                ),
+                t2315
+                    * T::fused(
+                        k(0.8888888888888888),
+                        t2332,
+                        T::fused(
+                            -k(0.4444444444444444),
+                            t2333,
+                            k(0.8888888888888888) * t2334,
+                        ),
+                    ),
+            );
+            let t2336 = t2316 * t2335;
+            let t2337 = T::fused(-k(0.6666666666666666), t163, t2324);
+            let t2338 = T::fused(k(0.6666666666666666), t161, t2326);
+            let t2339 = T::fused(k(0.6666666666666666), t159, t2328);
+            let t2340 = T::fused(
+                t2313,
+                T::fused(
+                    k(0.3333333333333333),
+                    t2337,
+                    k(0.6666666666666666) * (t2339 + t2338),
+                ),
+                t2315
+                    * T::fused(
+                        -k(0.6666666666666666),
+                        t2337,
+                        T::fused(
+                            -k(0.3333333333333333),
+                            t2338,
+                            k(0.6666666666666666) * t2339,
+                        ),
+                    ),
+            );
+            let t2341 = t2316 * t2340;
+            let t2342 = T::fused(t2341, t447, T::fused(-t2331, t444, t2336 * t446))
+                - T::fused(
+                    k(8.882643960980422),
+                    (k(9.42477796076938) * t).sin(),
+                    -t2323,
+                );
+            let t2343 = T::fused(t2341, t823, T::fused(t2331, t822, t2336 * t823));
+            let t2344 = t891 * t2343;
+            let t2345 = T::fused(
+                t918,
+                t2344,
+                -T::fused(t2341, t939, T::fused(t2331, t938, t2336 * t939)),
+            );
+            let t2346 = t1007 * t2345;
+            let t2347 = T::fused(
+                t1059,
+                t2344,
+                -T::fused(t2341, t1081, T::fused(t2331, t1080, t2336 * t1081)),
+            );
+            let t2348 = T::fused(t1062, t2346, -t2347);
+            let t2349 = t1140 * t2348;
+            let t2350 = T::fused(
+                t1158,
+                t2344,
+                T::fused(t2341, t1183, T::fused(t2331, t1182, t2336 * t1183)),
+            );
+            let t2351 = T::fused(t1164, t2349, -T::fused(t1161, t2346, -t2350));
+            let t2352 = t1242 * t2351;
+            let t2353 = T::fused(
+                t2352,
+                t1166,
+                -T::fused(
+                    t2349,
+                    t1064,
+                    -T::fused(t2346, t920, -T::fused(t2344, t804, -t2342)),
+                ),
+            );
+            let t2354 = T::fused(
+                t1898,
+                t2352,
+                -T::fused(t1895, t2349, -T::fused(-t1888, t2344, t1891 * t2346)),
+            );
+            let t2355 = t1956 * t2354;
+            let t2356 = T::fused(
+                t1990,
+                t2352,
+                -T::fused(t1987, t2349, -T::fused(-t1980, t2344, t1984 * t2346)),
+            );
+            let t2357 = T::fused(t1995, t2355, -t2356);
+            let t2358 = t2053 * t2357;
+            let t2359 = T::fused(
+                t2093,
+                t2344,
+                T::fused(t2341, t2116, T::fused(t2331, t2115, t2336 * t2116)),
+            );
+            let t2360 = T::fused(
+                t2106,
+                t2355,
+                -T::fused(
+                    t2102,
+                    t2352,
+                    -T::fused(t2099, t2349, -T::fused(t2096, t2346, -t2359)),
+                ),
+            );
+            let t2361 = T::fused(t2109, t2358, -t2360);
+            let t2362 = t2129 * t2361;
+            let t2363 = T::fused(
+                t2163,
+                t2344,
+                -T::fused(t2341, t2235, T::fused(t2331, t2234, t2336 * t2235)),
+            );
+            let t2364 = T::fused(
+                t2184,
+                t2355,
+                -T::fused(
+                    t2173,
+                    t2352,
+                    -T::fused(t2170, t2349, -T::fused(t2166, t2346, -t2363)),
+                ),
+            );
+            let t2365 = T::fused(t2216, t2362, -T::fused(t2196, t2358, -t2364));
+            let t2366 = t2305 * t2365;
+            let t2367 = T::fused(
+                t2366,
+                t2218,
+                -T::fused(
+                    t2362,
+                    t2111,
+                    -T::fused(t2358, t1997, -T::fused(t2355, t1900, -t2353)),
+                ),
+            );
+            let t2368 = t442
                 * T::fused(
                     k(0.6666666666666666),
-                    t2306,
-                    T::fused(k(0.3333333333333333), t2296, k(0.6666666666666666) * t2301),
+                    t2341,
+                    T::fused(k(0.3333333333333333), t2331, k(0.6666666666666666) * t2336),
                 );
-            let t2334 = k(0.3333333333333333) * t2333;
-            let t2335 = k(0.6666666666666666) * t2333;
-            let t2336 = T::fused(
-                t2308,
-                t2309,
-                T::fused(t2306, t2335, T::fused(t2296, t2334, t2301 * t2335)),
-            );
-            let t2337 = T::fused(
-                t2319,
-                t2320,
-                -T::fused(
-                    t2316,
-                    t2317,
-                    -T::fused(t2313, t2314, -T::fused(t2310, t2311, -t2336)),
-                ),
-            );
-            let t2338 = t2332
-                / T::fused(
-                    t2330,
-                    t2331,
-                    -T::fused(t2326, t2327, -T::fused(t2322, t2323, -t2337)),
-                );
-            let t2339 = T::fused(-t2272, t2185, t2331 * t2338);
-            let t2340 = T::fused(t2327, t2338, -T::fused(t2096, t2078, t2184 * t2339));
-            let t2341 = T::fused(
-                t2323,
-                t2338,
-                -T::fused(t2164, t2339, T::fused(t2020, t1964, t2077 * t2340)),
-            );
-            let t2342 = T::fused(
-                t2152,
-                t2339,
-                T::fused(t2074, t2340, T::fused(t1923, t1867, t1963 * t2341)),
-            );
-            let t2343 = T::fused(t2320, t2338, -t2342);
-            let t2344 = T::fused(
-                t2070,
-                t2340,
-                T::fused(t1958, t2341, T::fused(t1208, t1132, t1866 * t2343)),
-            );
-            let t2345 = T::fused(t2317, t2338, -T::fused(t2141, t2339, t2344));
-            let t2346 = T::fused(
-                t1955,
-                t2341,
-                T::fused(t1863, t2343, T::fused(t1106, t1030, t1131 * t2345)),
-            );
-            let t2347 = T::fused(
-                t2314,
-                t2338,
-                -T::fused(t2138, t2339, T::fused(t2067, t2340, t2346)),
-            );
-            let t2348 = T::fused(
-                t1859,
+            let t2369 = k(0.3333333333333333) * t2368;
+            let t2370 = k(0.6666666666666666) * t2368;
+            let t2371 = T::fused(
                 t2343,
-                T::fused(t1128, t2345, T::fused(t973, t886, t1029 * t2347)),
+                t2344,
+                T::fused(t2341, t2370, T::fused(t2331, t2369, t2336 * t2370)),
             );
-            let t2349 = T::fused(
-                t2311,
-                t2338,
-                -T::fused(
-                    t2134,
-                    t2339,
-                    T::fused(t2064, t2340, T::fused(t1952, t2341, t2348)),
-                ),
-            );
-            let t2350 = T::fused(
-                t1125,
-                t2345,
-                T::fused(t1026, t2347, T::fused(t857, t770, t885 * t2349)),
-            );
-            let t2351 = T::fused(
-                t2131,
-                t2339,
-                T::fused(
-                    t2061,
-                    t2340,
-                    T::fused(t1948, t2341, T::fused(t1856, t2343, t2350)),
-                ),
-            );
-            let t2352 = T::fused(t2309, t2338, -t2351);
-            let t2353 = T::fused(
-                t1151,
-                t2345,
-                -T::fused(
-                    t1049,
-                    t2347,
-                    T::fused(t907, t2349, -T::fused(-t791, t2352, t434)),
-                ),
-            );
-            let t2354 = t326 * t2335;
-            let t2355 = t2354 - T::fused(-t310, t2334, t310 * t2335);
-            let t2356 = T::fused(
-                t1154,
-                t2345,
-                -T::fused(
-                    t1052,
-                    t2347,
-                    T::fused(t910, t2349, T::fused(t794, t2352, t437)),
-                ),
-            );
-            let t2357 = t328 * t2335;
-            let t2358 = t2357 + T::fused(-t311, t2334, t311 * t2335);
-            let t2359 = T::fused(
-                t1157,
-                t2345,
-                -T::fused(
-                    t1055,
-                    t2347,
-                    T::fused(t913, t2349, -T::fused(-t797, t2352, t440)),
-                ),
-            );
-            let t2360 = t324 * t2335;
-            let t2361 = t2360 - T::fused(-t313, t2334, t313 * t2335);
-            let t2362 = T::fused(
-                t1148,
-                t2345,
-                -T::fused(
-                    t1046,
-                    t2347,
-                    T::fused(t904, t2349, -T::fused(-t788, t2352, t429)),
-                ),
-            );
-            let t2363 = t789 * t2352;
-            let t2364 = t905 * t2349;
-            let t2365 = t1047 * t2347;
-            let t2366 = t1149 * t2345;
-            let t2367 = t2083 * t2340;
-            let t2368 = t2202 * t2339;
-            let t2369 = t2335 * t2338;
-            let t2370 = t2369
-                + (t2368 - (t2367 + (t2366 - (t2365 + (t2364 - (t431 - t2363))))));
-            let t2371 = t2369
-                + (t2368 - (t2367 + (t2366 - (t2365 + (t2364 - (t432 - t2363))))));
             let t2372 = T::fused(
-                t2347,
-                t1050 - T::fused(t197, t1064, t209 * t1065),
-                T::fused(t923, t2349, T::fused(t807, t2352, t450)),
+                t2354,
+                t2355,
+                -T::fused(
+                    t2351,
+                    t2352,
+                    -T::fused(t2348, t2349, -T::fused(t2345, t2346, -t2371)),
+                ),
             );
-            let t2373 = T::fused(
-                t2340,
-                t2166 + T::fused(t197, t2176, t209 * t2177),
-                -T::fused(t2345, t1152 - T::fused(t197, t1166, t209 * t1167), -t2372),
+            let t2373 = t2367
+                / T::fused(
+                    t2365,
+                    t2366,
+                    -T::fused(t2361, t2362, -T::fused(t2357, t2358, -t2372)),
+                );
+            let t2374 = T::fused(-t2305, t2218, t2366 * t2373);
+            let t2375 = T::fused(t2362, t2373, -T::fused(t2129, t2111, t2217 * t2374));
+            let t2376 = T::fused(
+                t2358,
+                t2373,
+                -T::fused(t2197, t2374, T::fused(t2053, t1997, t2110 * t2375)),
             );
-            let t2374 = t2355 + (t2354 - T::fused(t297, t2334, t316 * t2335));
-            let t2375 = t2358 + (t2357 - T::fused(t303, t2334, t318 * t2335));
-            let t2376 = t2361 + (t2360 - T::fused(-t308, t2334, t320 * t2335));
-            let t2377 = T::fused(t148, t2335, -T::fused(t270, t2334, t138 * t2335));
-            let t2378 = T::fused(t149, t2335, -T::fused(t271, t2334, t137 * t2335));
-            let t2379 = T::fused(t224, t2377, t281 * t2378)
-                + T::fused(t266, t2376, -T::fused(t242, t2374, t254 * t2375));
-            let t2380 = t222 * t2379;
-            let t2381 = T::fused(t217, t2378, -T::fused(t215, t2380, t216 * t2377))
-                - T::fused(t264, t2376, -T::fused(t240, t2374, t252 * t2375));
-            let t2382 = t218 * t2381;
-            let t2383 = T::fused(t206, t2382, t2377);
-            let t2384 = T::fused(-t213, t2382, t2378);
+            let t2377 = T::fused(
+                t2185,
+                t2374,
+                T::fused(t2107, t2375, T::fused(t1956, t1900, t1996 * t2376)),
+            );
+            let t2378 = T::fused(t2355, t2373, -t2377);
+            let t2379 = T::fused(
+                t2103,
+                t2375,
+                T::fused(t1991, t2376, T::fused(t1242, t1166, t1899 * t2378)),
+            );
+            let t2380 = T::fused(t2352, t2373, -T::fused(t2174, t2374, t2379));
+            let t2381 = T::fused(
+                t1988,
+                t2376,
+                T::fused(t1896, t2378, T::fused(t1140, t1064, t1165 * t2380)),
+            );
+            let t2382 = T::fused(
+                t2349,
+                t2373,
+                -T::fused(t2171, t2374, T::fused(t2100, t2375, t2381)),
+            );
+            let t2383 = T::fused(
+                t1892,
+                t2378,
+                T::fused(t1162, t2380, T::fused(t1007, t920, t1063 * t2382)),
+            );
+            let t2384 = T::fused(
+                t2346,
+                t2373,
+                -T::fused(
+                    t2167,
+                    t2374,
+                    T::fused(t2097, t2375, T::fused(t1985, t2376, t2383)),
+                ),
+            );
             let t2385 = T::fused(
-                t2338,
-                t2374 + T::fused(t197, t2383, t209 * t2384),
-                -T::fused(t2339, t2205 - T::fused(t197, t2219, t209 * t2220), t2373),
+                t1159,
+                t2380,
+                T::fused(t1060, t2382, T::fused(t891, t804, t919 * t2384)),
             );
             let t2386 = T::fused(
-                t2347,
-                t1053 - T::fused(-t201, t1064, t210 * t1065),
-                T::fused(t924, t2349, -T::fused(-t808, t2352, t451)),
+                t2164,
+                t2374,
+                T::fused(
+                    t2094,
+                    t2375,
+                    T::fused(t1981, t2376, T::fused(t1889, t2378, t2385)),
+                ),
             );
-            let t2387 = T::fused(
-                t2340,
-                t2167 + T::fused(-t201, t2176, t210 * t2177),
-                -T::fused(t2345, t1155 - T::fused(-t201, t1166, t210 * t1167), -t2386),
-            );
+            let t2387 = T::fused(t2344, t2373, -t2386);
             let t2388 = T::fused(
-                t2338,
-                t2375 + T::fused(-t201, t2383, t210 * t2384),
-                -T::fused(t2339, t2208 - T::fused(-t201, t2219, t210 * t2220), t2387),
+                t1185,
+                t2380,
+                -T::fused(
+                    t1083,
+                    t2382,
+                    T::fused(t941, t2384, -T::fused(-t825, t2387, t449)),
+                ),
             );
-            let t2389 = T::fused(
-                t2347,
-                t1056 + T::fused(-t204, t1064, t211 * t1065),
-                T::fused(t925, t2349, T::fused(t809, t2352, t452)),
-            );
-            let t2390 = T::fused(
-                t2340,
-                t2168 - T::fused(-t204, t2176, t211 * t2177),
-                -T::fused(t2345, t1158 + T::fused(-t204, t1166, t211 * t1167), -t2389),
-            );
+            let t2389 = t326 * t2370;
+            let t2390 = t2389 - T::fused(-t310, t2369, t310 * t2370);
             let t2391 = T::fused(
-                t2338,
-                t2376 - T::fused(-t204, t2383, t211 * t2384),
-                -T::fused(t2339, t2211 + T::fused(-t204, t2219, t211 * t2220), t2390),
-            );
-            let t2392 = T::fused(
-                t1165,
-                t2345,
+                t1188,
+                t2380,
                 -T::fused(
-                    t1063,
-                    t2347,
-                    T::fused(t926, t2349, T::fused(t810, t2352, t453)),
+                    t1086,
+                    t2382,
+                    T::fused(t944, t2384, T::fused(t828, t2387, t452)),
                 ),
             );
-            let t2393 = T::fused(
-                t2338,
-                T::fused(t189, t2382, t2380),
-                -T::fused(t2218, t2339, T::fused(t2175, t2340, -t2392)),
-            );
+            let t2392 = t328 * t2370;
+            let t2393 = t2392 + T::fused(-t311, t2369, t311 * t2370);
             let t2394 = T::fused(
-                t1166,
-                t2345,
+                t1191,
+                t2380,
                 -T::fused(
-                    t1064,
-                    t2347,
-                    T::fused(t921, t2349, T::fused(t805, t2352, t448)),
+                    t1089,
+                    t2382,
+                    T::fused(t947, t2384, -T::fused(-t831, t2387, t455)),
                 ),
             );
-            let t2395 = T::fused(
-                t1167,
-                t2345,
-                -T::fused(
-                    t1065,
-                    t2347,
-                    T::fused(t922, t2349, T::fused(t806, t2352, t449)),
-                ),
-            );
-            let t2396 = T::fused(
-                t2347,
-                t1093 - T::fused(t515, t1104, T::fused(-t580, t1102, t590 * t1103)),
-                T::fused(t969, t2349, -T::fused(-t853, t2352, t751)),
-            );
+            let t2395 = t324 * t2370;
+            let t2396 = t2395 - T::fused(-t313, t2369, t313 * t2370);
             let t2397 = T::fused(
-                t2345,
-                t1195 - T::fused(t515, t1206, T::fused(t580, t1204, t590 * t1205)),
-                t2396,
+                t1182,
+                t2380,
+                -T::fused(
+                    t1080,
+                    t2382,
+                    T::fused(t938, t2384, -T::fused(-t822, t2387, t444)),
+                ),
             );
-            let t2398 = T::fused(
-                t2343,
-                t2142 + T::fused(t515, t2149, -T::fused(-t580, t2147, t590 * t2148)),
-                t2397,
-            );
-            let t2399 = T::fused(
-                t2341,
-                t2153 + T::fused(t515, t2160, -T::fused(-t580, t2158, t590 * t2159)),
-                -t2398,
-            );
-            let t2400 = T::fused(
-                t2339,
-                t2248 - T::fused(t515, t2259, T::fused(-t580, t2257, t590 * t2258)),
-                -t2399,
-            );
-            let t2401 = T::fused(
-                t2347,
-                t1096 - T::fused(t534, t1104, -T::fused(-t582, t1102, t591 * t1103)),
-                T::fused(t970, t2349, T::fused(t854, t2352, t752)),
-            );
-            let t2402 = T::fused(
-                t2345,
-                t1198 - T::fused(t534, t1206, -T::fused(t582, t1204, t591 * t1205)),
-                t2401,
-            );
-            let t2403 = T::fused(
-                t2343,
-                t2143 + T::fused(t534, t2149, T::fused(-t582, t2147, t591 * t2148)),
-                t2402,
-            );
-            let t2404 = T::fused(
-                t2341,
-                t2154 + T::fused(t534, t2160, T::fused(-t582, t2158, t591 * t2159)),
-                -t2403,
-            );
-            let t2405 = T::fused(
-                t2339,
-                t2251 - T::fused(t534, t2259, -T::fused(-t582, t2257, t591 * t2258)),
-                -t2404,
-            );
-            let t2406 = T::fused(
-                t2347,
-                t1099 + T::fused(t522, t1104, -T::fused(-t584, t1102, t592 * t1103)),
-                T::fused(t971, t2349, -T::fused(-t855, t2352, t753)),
-            );
+            let t2398 = t823 * t2387;
+            let t2399 = t939 * t2384;
+            let t2400 = t1081 * t2382;
+            let t2401 = t1183 * t2380;
+            let t2402 = t2116 * t2375;
+            let t2403 = t2235 * t2374;
+            let t2404 = t2370 * t2373;
+            let t2405 = t2404
+                + (t2403 - (t2402 + (t2401 - (t2400 + (t2399 + (t446 + t2398))))));
+            let t2406 = t2404
+                + (t2403 - (t2402 + (t2401 - (t2400 + (t2399 + (t447 + t2398))))));
             let t2407 = T::fused(
-                t2345,
-                t1201 + T::fused(t522, t1206, -T::fused(t584, t1204, t592 * t1205)),
-                t2406,
+                t2382,
+                t1084 - T::fused(t197, t1098, t209 * t1099),
+                T::fused(t957, t2384, T::fused(t841, t2387, t465)),
             );
             let t2408 = T::fused(
-                t2343,
-                t2144 - T::fused(t522, t2149, T::fused(-t584, t2147, t592 * t2148)),
-                t2407,
+                t2375,
+                t2199 + T::fused(t197, t2209, t209 * t2210),
+                -T::fused(t2380, t1186 - T::fused(t197, t1200, t209 * t1201), -t2407),
             );
-            let t2409 = T::fused(
-                t2341,
-                t2155 - T::fused(t522, t2160, T::fused(-t584, t2158, t592 * t2159)),
-                -t2408,
+            let t2409 = t2390 + (t2389 - T::fused(t297, t2369, t316 * t2370));
+            let t2410 = t2393 + (t2392 - T::fused(t303, t2369, t318 * t2370));
+            let t2411 = t2396 + (t2395 - T::fused(-t308, t2369, t320 * t2370));
+            let t2412 = T::fused(t148, t2370, -T::fused(t270, t2369, t138 * t2370));
+            let t2413 = T::fused(t149, t2370, -T::fused(t271, t2369, t137 * t2370));
+            let t2414 = T::fused(t224, t2412, t281 * t2413)
+                + T::fused(t266, t2411, -T::fused(t242, t2409, t254 * t2410));
+            let t2415 = t222 * t2414;
+            let t2416 = T::fused(t217, t2413, -T::fused(t215, t2415, t216 * t2412))
+                - T::fused(t264, t2411, -T::fused(t240, t2409, t252 * t2410));
+            let t2417 = t218 * t2416;
+            let t2418 = T::fused(t206, t2417, t2412);
+            let t2419 = T::fused(-t213, t2417, t2413);
+            let t2420 = T::fused(
+                t2373,
+                t2409 + T::fused(t197, t2418, t209 * t2419),
+                -T::fused(t2374, t2238 - T::fused(t197, t2252, t209 * t2253), t2408),
             );
-            let t2410 = T::fused(
-                t2339,
-                t2254 + T::fused(t522, t2259, -T::fused(-t584, t2257, t592 * t2258)),
-                -t2409,
+            let t2421 = T::fused(
+                t2382,
+                t1087 - T::fused(-t201, t1098, t210 * t1099),
+                T::fused(t958, t2384, -T::fused(-t842, t2387, t466)),
             );
-            let t2411 = T::fused(
-                t1204,
-                t2345,
-                -T::fused(
-                    t1102,
-                    t2347,
-                    -T::fused(t966, t2349, -T::fused(-t850, t2352, t748)),
-                ),
+            let t2422 = T::fused(
+                t2375,
+                t2200 + T::fused(-t201, t2209, t210 * t2210),
+                -T::fused(t2380, t1189 - T::fused(-t201, t1200, t210 * t1201), -t2421),
             );
-            let t2412 = T::fused(
-                t1205,
-                t2345,
-                T::fused(
-                    t1103,
-                    t2347,
-                    -T::fused(t967, t2349, -T::fused(-t851, t2352, t749)),
-                ),
-            );
-            let t2413 = T::fused(
-                t1206,
-                t2345,
-                T::fused(
-                    t1104,
-                    t2347,
-                    T::fused(t968, t2349, T::fused(t852, t2352, t750)),
-                ),
-            );
-            let t2414 = t1880 * t2343;
-            let t2415 = t1977 * t2341;
-            let t2416 = t2092 * t2340;
-            let t2417 = t2265 * t2339;
-            let t2418 = T::fused(
-                t2266,
-                t2339,
-                -T::fused(
-                    t2093,
-                    t2340,
-                    T::fused(t1978, t2341, T::fused(-t1881, t2343, t1806)),
-                ),
-            );
-            let t2419 = t1439 * t2179;
-            let t2420 = t2419 + T::fused(t1450, t2180, -t2419)
-                - T::fused(-t1402, t2178, t2092);
-            let t2421 = t1439 * t2268;
-            let t2422 = t2421 + T::fused(t1450, t2269, -t2421)
-                - T::fused(-t1402, t2267, t2265);
             let t2423 = T::fused(
-                t2339,
-                t2422,
+                t2373,
+                t2410 + T::fused(-t201, t2418, t210 * t2419),
+                -T::fused(t2374, t2241 - T::fused(-t201, t2252, t210 * t2253), t2422),
+            );
+            let t2424 = T::fused(
+                t2382,
+                t1090 + T::fused(-t204, t1098, t211 * t1099),
+                T::fused(t959, t2384, T::fused(t843, t2387, t467)),
+            );
+            let t2425 = T::fused(
+                t2375,
+                t2201 - T::fused(-t204, t2209, t211 * t2210),
+                -T::fused(t2380, t1192 + T::fused(-t204, t1200, t211 * t1201), -t2424),
+            );
+            let t2426 = T::fused(
+                t2373,
+                t2411 - T::fused(-t204, t2418, t211 * t2419),
+                -T::fused(t2374, t2244 + T::fused(-t204, t2252, t211 * t2253), t2425),
+            );
+            let t2427 = T::fused(
+                t1199,
+                t2380,
                 -T::fused(
-                    t2340,
-                    t2420,
-                    -T::fused(t1983, t2341, T::fused(-t1886, t2343, t1818)),
+                    t1097,
+                    t2382,
+                    T::fused(t960, t2384, T::fused(t844, t2387, t468)),
                 ),
             );
-            let t2424 = t1440 * t2179;
-            let t2425 = t2424 + T::fused(t1452, t2180, -t2424)
-                - T::fused(t1415, t2178, t2092);
-            let t2426 = t1440 * t2268;
-            let t2427 = t2426 + T::fused(t1452, t2269, -t2426)
-                - T::fused(t1415, t2267, t2265);
             let t2428 = T::fused(
-                t2339,
-                t2427,
-                -T::fused(
-                    t2340,
-                    t2425,
-                    -T::fused(t1989, t2341, T::fused(-t1892, t2343, t1826)),
-                ),
+                t2373,
+                T::fused(t189, t2417, t2415),
+                -T::fused(t2251, t2374, T::fused(t2208, t2375, -t2427)),
             );
-            let t2429 = t1438 * t2179;
-            let t2430 = t2429 - T::fused(t1454, t2180, t2429)
-                - T::fused(t1429, t2178, t2093);
-            let t2431 = t1438 * t2268;
-            let t2432 = t2431 - T::fused(t1454, t2269, t2431)
-                - T::fused(t1429, t2267, t2266);
-            let t2433 = T::fused(
-                t2339,
-                t2432,
-                -T::fused(
-                    t2340,
-                    t2430,
-                    -T::fused(t1992, t2341, T::fused(-t1895, t2343, t1831)),
-                ),
-            );
-            let t2434 = t1884 * t2343;
-            let t2435 = t1981 * t2341;
-            let t2436 = t2179 * t2340;
-            let t2437 = t2268 * t2339;
-            let t2438 = T::fused(
-                t2269,
-                t2339,
-                -T::fused(
-                    t2180,
-                    t2340,
-                    -T::fused(t1980, t2341, T::fused(-t1883, t2343, t1813)),
-                ),
-            );
-            let t2439 = T::fused(t1329, t2179, T::fused(-t1316, t2179, t1311 * t2180));
-            let t2440 = T::fused(t1330, t2179, T::fused(-t1319, t2179, t1317 * t2180));
-            let t2441 = T::fused(t1328, t2179, T::fused(-t1322, t2179, t1323 * t2180));
-            let t2442 = T::fused(t1823, t2441, T::fused(t1820, t2439, t1341 * t2440))
-                + (t2420 + T::fused(t1457, t2179, -T::fused(-t1445, t2180, t2419)));
-            let t2443 = T::fused(t1329, t2268, T::fused(-t1316, t2268, t1311 * t2269));
-            let t2444 = T::fused(t1330, t2268, T::fused(-t1319, t2268, t1317 * t2269));
-            let t2445 = T::fused(t1328, t2268, T::fused(-t1322, t2268, t1323 * t2269));
-            let t2446 = T::fused(t1823, t2445, T::fused(t1820, t2443, t1341 * t2444))
-                + (t2422 + T::fused(t1457, t2268, -T::fused(-t1445, t2269, t2421)));
-            let t2447 = T::fused(
-                t2339,
-                t2446,
-                -T::fused(
-                    t2340,
-                    t2442,
-                    -T::fused(t1987, t2341, T::fused(-t1890, t2343, t1824)),
-                ),
-            );
-            let t2448 = T::fused(t1828, t2441, -T::fused(-t1827, t2439, t1408 * t2440))
-                + (t2425 + T::fused(t1458, t2179, -T::fused(t1446, t2180, t2424)));
-            let t2449 = T::fused(t1828, t2445, -T::fused(-t1827, t2443, t1408 * t2444))
-                + (t2427 + T::fused(t1458, t2268, -T::fused(t1446, t2269, t2426)));
-            let t2450 = T::fused(
-                t2339,
-                t2449,
-                -T::fused(
-                    t2340,
-                    t2448,
-                    -T::fused(t1990, t2341, T::fused(-t1893, t2343, t1829)),
-                ),
-            );
-            let t2451 = T::fused(t1435, t2441, -T::fused(-t1430, t2439, t1421 * t2440))
-                + (t2430 + T::fused(t1459, t2179, -T::fused(t1447, t2180, t2429)));
-            let t2452 = T::fused(t1435, t2445, -T::fused(-t1430, t2443, t1421 * t2444))
-                + (t2432 + T::fused(t1459, t2268, -T::fused(t1447, t2269, t2431)));
-            let t2453 = T::fused(
-                t2339,
-                t2452,
-                -T::fused(
-                    t2340,
-                    t2451,
-                    -T::fused(t1993, t2341, T::fused(-t1896, t2343, t1832)),
-                ),
-            );
-            let t2454 = T::fused(
-                t2339,
-                t2443,
-                -T::fused(
-                    t2340,
-                    t2439,
-                    -T::fused(t1984, t2341, T::fused(-t1887, t2343, t1819)),
-                ),
-            );
-            let t2455 = T::fused(
-                t2339,
-                t2444,
-                -T::fused(
-                    t2340,
-                    t2440,
-                    -T::fused(t1985, t2341, T::fused(-t1888, t2343, t1821)),
-                ),
-            );
-            let t2456 = T::fused(
-                t2339,
-                t2445,
-                -T::fused(
-                    t2340,
-                    t2441,
-                    -T::fused(t1986, t2341, T::fused(-t1889, t2343, t1822)),
-                ),
-            );
-            let t2457 = T::fused(
-                t1194,
-                t2345,
-                T::fused(
-                    t1092,
-                    t2347,
-                    T::fused(t956, t2349, -T::fused(-t840, t2352, t738)),
-                ),
-            );
-            let t2458 = T::fused(
-                t1197,
-                t2345,
-                T::fused(
-                    t1095,
-                    t2347,
-                    T::fused(t959, t2349, -T::fused(-t843, t2352, t741)),
-                ),
-            );
-            let t2459 = T::fused(
+            let t2429 = T::fused(
                 t1200,
-                t2345,
-                T::fused(
+                t2380,
+                -T::fused(
                     t1098,
-                    t2347,
-                    T::fused(t962, t2349, -T::fused(-t846, t2352, t744)),
+                    t2382,
+                    T::fused(t955, t2384, T::fused(t839, t2387, t463)),
                 ),
             );
-            let t2460 = t831 * t2352;
-            let t2461 = t947 * t2349;
-            let t2462 = t1083 * t2347;
-            let t2463 = t1185 * t2345;
-            let t2464 = t1907 * t2343;
-            let t2465 = t2004 * t2341;
-            let t2466 = t2238 * t2339;
-            let t2467 = t2466
-                - (t2465 - (t2464 + (t2463 + (t2462 + (t2461 - (t727 - t2460))))));
-            let t2468 = t2466
-                - (t2465 - (t2464 + (t2463 + (t2462 + (t2461 - (t728 - t2460))))));
-            let t2469 = T::fused(
-                t1186,
-                t2345,
+            let t2430 = T::fused(
+                t1201,
+                t2380,
+                -T::fused(
+                    t1099,
+                    t2382,
+                    T::fused(t956, t2384, T::fused(t840, t2387, t464)),
+                ),
+            );
+            let t2431 = T::fused(
+                t2382,
+                t1127 - T::fused(t530, t1138, T::fused(-t594, t1136, t604 * t1137)),
+                T::fused(t1003, t2384, -T::fused(-t887, t2387, t785)),
+            );
+            let t2432 = T::fused(
+                t2380,
+                t1229 - T::fused(t530, t1240, T::fused(t594, t1238, t604 * t1239)),
+                t2431,
+            );
+            let t2433 = T::fused(
+                t2378,
+                t2175 + T::fused(t530, t2182, -T::fused(-t594, t2180, t604 * t2181)),
+                t2432,
+            );
+            let t2434 = T::fused(
+                t2376,
+                t2186 + T::fused(t530, t2193, -T::fused(-t594, t2191, t604 * t2192)),
+                -t2433,
+            );
+            let t2435 = T::fused(
+                t2374,
+                t2281 - T::fused(t530, t2292, T::fused(-t594, t2290, t604 * t2291)),
+                -t2434,
+            );
+            let t2436 = T::fused(
+                t2382,
+                t1130 - T::fused(t549, t1138, -T::fused(-t596, t1136, t605 * t1137)),
+                T::fused(t1004, t2384, T::fused(t888, t2387, t786)),
+            );
+            let t2437 = T::fused(
+                t2380,
+                t1232 - T::fused(t549, t1240, -T::fused(t596, t1238, t605 * t1239)),
+                t2436,
+            );
+            let t2438 = T::fused(
+                t2378,
+                t2176 + T::fused(t549, t2182, T::fused(-t596, t2180, t605 * t2181)),
+                t2437,
+            );
+            let t2439 = T::fused(
+                t2376,
+                t2187 + T::fused(t549, t2193, T::fused(-t596, t2191, t605 * t2192)),
+                -t2438,
+            );
+            let t2440 = T::fused(
+                t2374,
+                t2284 - T::fused(t549, t2292, -T::fused(-t596, t2290, t605 * t2291)),
+                -t2439,
+            );
+            let t2441 = T::fused(
+                t2382,
+                t1133 + T::fused(t537, t1138, -T::fused(-t598, t1136, t606 * t1137)),
+                T::fused(t1005, t2384, -T::fused(-t889, t2387, t787)),
+            );
+            let t2442 = T::fused(
+                t2380,
+                t1235 + T::fused(t537, t1240, -T::fused(t598, t1238, t606 * t1239)),
+                t2441,
+            );
+            let t2443 = T::fused(
+                t2378,
+                t2177 - T::fused(t537, t2182, T::fused(-t598, t2180, t606 * t2181)),
+                t2442,
+            );
+            let t2444 = T::fused(
+                t2376,
+                t2188 - T::fused(t537, t2193, T::fused(-t598, t2191, t606 * t2192)),
+                -t2443,
+            );
+            let t2445 = T::fused(
+                t2374,
+                t2287 + T::fused(t537, t2292, -T::fused(-t598, t2290, t606 * t2291)),
+                -t2444,
+            );
+            let t2446 = T::fused(
+                t1238,
+                t2380,
+                -T::fused(
+                    t1136,
+                    t2382,
+                    -T::fused(t1000, t2384, -T::fused(-t884, t2387, t782)),
+                ),
+            );
+            let t2447 = T::fused(
+                t1239,
+                t2380,
                 T::fused(
-                    t1084,
-                    t2347,
-                    T::fused(t948, t2349, -T::fused(-t832, t2352, t729)),
+                    t1137,
+                    t2382,
+                    -T::fused(t1001, t2384, -T::fused(-t885, t2387, t783)),
                 ),
             );
+            let t2448 = T::fused(
+                t1240,
+                t2380,
+                T::fused(
+                    t1138,
+                    t2382,
+                    T::fused(t1002, t2384, T::fused(t886, t2387, t784)),
+                ),
+            );
+            let t2449 = t1913 * t2378;
+            let t2450 = t2010 * t2376;
+            let t2451 = t2125 * t2375;
+            let t2452 = t2298 * t2374;
+            let t2453 = T::fused(
+                t2299,
+                t2374,
+                -T::fused(
+                    t2126,
+                    t2375,
+                    T::fused(t2011, t2376, T::fused(-t1914, t2378, t1839)),
+                ),
+            );
+            let t2454 = t1472 * t2212;
+            let t2455 = t2454 + T::fused(t1483, t2213, -t2454)
+                - T::fused(-t1435, t2211, t2125);
+            let t2456 = t1472 * t2301;
+            let t2457 = t2456 + T::fused(t1483, t2302, -t2456)
+                - T::fused(-t1435, t2300, t2298);
+            let t2458 = T::fused(
+                t2374,
+                t2457,
+                -T::fused(
+                    t2375,
+                    t2455,
+                    -T::fused(t2016, t2376, T::fused(-t1919, t2378, t1851)),
+                ),
+            );
+            let t2459 = t1473 * t2212;
+            let t2460 = t2459 + T::fused(t1485, t2213, -t2459)
+                - T::fused(t1448, t2211, t2125);
+            let t2461 = t1473 * t2301;
+            let t2462 = t2461 + T::fused(t1485, t2302, -t2461)
+                - T::fused(t1448, t2300, t2298);
+            let t2463 = T::fused(
+                t2374,
+                t2462,
+                -T::fused(
+                    t2375,
+                    t2460,
+                    -T::fused(t2022, t2376, T::fused(-t1925, t2378, t1859)),
+                ),
+            );
+            let t2464 = t1471 * t2212;
+            let t2465 = t2464 - T::fused(t1487, t2213, t2464)
+                - T::fused(t1462, t2211, t2126);
+            let t2466 = t1471 * t2301;
+            let t2467 = t2466 - T::fused(t1487, t2302, t2466)
+                - T::fused(t1462, t2300, t2299);
+            let t2468 = T::fused(
+                t2374,
+                t2467,
+                -T::fused(
+                    t2375,
+                    t2465,
+                    -T::fused(t2025, t2376, T::fused(-t1928, t2378, t1864)),
+                ),
+            );
+            let t2469 = t1917 * t2378;
+            let t2470 = t2014 * t2376;
+            let t2471 = t2212 * t2375;
+            let t2472 = t2301 * t2374;
+            let t2473 = T::fused(
+                t2302,
+                t2374,
+                -T::fused(
+                    t2213,
+                    t2375,
+                    -T::fused(t2013, t2376, T::fused(-t1916, t2378, t1846)),
+                ),
+            );
+            let t2474 = T::fused(t1362, t2212, T::fused(-t1349, t2212, t1344 * t2213));
+            let t2475 = T::fused(t1363, t2212, T::fused(-t1352, t2212, t1350 * t2213));
+            let t2476 = T::fused(t1361, t2212, T::fused(-t1355, t2212, t1356 * t2213));
+            let t2477 = T::fused(t1856, t2476, T::fused(t1853, t2474, t1374 * t2475))
+                + (t2455 + T::fused(t1490, t2212, -T::fused(-t1478, t2213, t2454)));
+            let t2478 = T::fused(t1362, t2301, T::fused(-t1349, t2301, t1344 * t2302));
+            let t2479 = T::fused(t1363, t2301, T::fused(-t1352, t2301, t1350 * t2302));
+            let t2480 = T::fused(t1361, t2301, T::fused(-t1355, t2301, t1356 * t2302));
+            let t2481 = T::fused(t1856, t2480, T::fused(t1853, t2478, t1374 * t2479))
+                + (t2457 + T::fused(t1490, t2301, -T::fused(-t1478, t2302, t2456)));
+            let t2482 = T::fused(
+                t2374,
+                t2481,
+                -T::fused(
+                    t2375,
+                    t2477,
+                    -T::fused(t2020, t2376, T::fused(-t1923, t2378, t1857)),
+                ),
+            );
+            let t2483 = T::fused(t1861, t2476, -T::fused(-t1860, t2474, t1441 * t2475))
+                + (t2460 + T::fused(t1491, t2212, -T::fused(t1479, t2213, t2459)));
+            let t2484 = T::fused(t1861, t2480, -T::fused(-t1860, t2478, t1441 * t2479))
+                + (t2462 + T::fused(t1491, t2301, -T::fused(t1479, t2302, t2461)));
+            let t2485 = T::fused(
+                t2374,
+                t2484,
+                -T::fused(
+                    t2375,
+                    t2483,
+                    -T::fused(t2023, t2376, T::fused(-t1926, t2378, t1862)),
+                ),
+            );
+            let t2486 = T::fused(t1468, t2476, -T::fused(-t1463, t2474, t1454 * t2475))
+                + (t2465 + T::fused(t1492, t2212, -T::fused(t1480, t2213, t2464)));
+            let t2487 = T::fused(t1468, t2480, -T::fused(-t1463, t2478, t1454 * t2479))
+                + (t2467 + T::fused(t1492, t2301, -T::fused(t1480, t2302, t2466)));
+            let t2488 = T::fused(
+                t2374,
+                t2487,
+                -T::fused(
+                    t2375,
+                    t2486,
+                    -T::fused(t2026, t2376, T::fused(-t1929, t2378, t1865)),
+                ),
+            );
+            let t2489 = T::fused(
+                t2374,
+                t2478,
+                -T::fused(
+                    t2375,
+                    t2474,
+                    -T::fused(t2017, t2376, T::fused(-t1920, t2378, t1852)),
+                ),
+            );
+            let t2490 = T::fused(
+                t2374,
+                t2479,
+                -T::fused(
+                    t2375,
+                    t2475,
+                    -T::fused(t2018, t2376, T::fused(-t1921, t2378, t1854)),
+                ),
+            );
+            let t2491 = T::fused(
+                t2374,
+                t2480,
+                -T::fused(
+                    t2375,
+                    t2476,
+                    -T::fused(t2019, t2376, T::fused(-t1922, t2378, t1855)),
+                ),
+            );
+            let t2492 = T::fused(
+                t1228,
+                t2380,
+                T::fused(
+                    t1126,
+                    t2382,
+                    T::fused(t990, t2384, T::fused(t874, t2387, t772)),
+                ),
+            );
+            let t2493 = T::fused(
+                t1231,
+                t2380,
+                T::fused(
+                    t1129,
+                    t2382,
+                    T::fused(t993, t2384, -T::fused(-t877, t2387, t775)),
+                ),
+            );
+            let t2494 = T::fused(
+                t1234,
+                t2380,
+                T::fused(
+                    t1132,
+                    t2382,
+                    T::fused(t996, t2384, T::fused(t880, t2387, t778)),
+                ),
+            );
+            let t2495 = t865 * t2387;
+            let t2496 = t981 * t2384;
+            let t2497 = t1117 * t2382;
+            let t2498 = t1219 * t2380;
+            let t2499 = t1940 * t2378;
             (
-                t2005,
-                t2013,
-                t2015,
-                t2017,
-                t2082,
-                t2085,
-                t2087,
-                t2089,
-                t2147,
-                t2148,
-                t2149,
-                t2158,
-                t2159,
-                t2160,
-                t2176,
-                t2177,
-                t2201,
-                t2204,
-                t2207,
+                t2037,
+                t2038,
+                t2046,
+                t2048,
+                t2050,
+                t2115,
+                t2118,
+                t2120,
+                t2122,
+                t2180,
+                t2181,
+                t2182,
+                t2191,
+                t2192,
+                t2193,
+                t2209,
                 t2210,
-                t2219,
-                t2220,
-                t2239,
-                t2247,
-                t2250,
+                t2234,
+                t2237,
+                t2240,
+                t2243,
+                t2252,
                 t2253,
-                t2257,
-                t2258,
-                t2259,
-                t2334,
-                t2338,
-                t2339,
-                t2340,
-                t2341,
-                t2343,
-                t2345,
-                t2347,
-                t2349,
-                t2352,
-                t2353,
-                t2355,
-                t2356,
-                t2358,
-                t2359,
-                t2361,
-                t2362,
-                t2370,
-                t2371,
-                t2383,
+                t2271,
+                t2272,
+                t2280,
+                t2283,
+                t2286,
+                t2290,
+                t2291,
+                t2292,
+                t2369,
+                t2373,
+                t2374,
+                t2375,
+                t2376,
+                t2378,
+                t2380,
+                t2382,
                 t2384,
-                t2385,
+                t2387,
                 t2388,
+                t2390,
                 t2391,
                 t2393,
                 t2394,
-                t2395,
-                t2400,
+                t2396,
+                t2397,
                 t2405,
-                t2410,
-                t2411,
-                t2412,
-                t2413,
-                t2414,
-                t2415,
-                t2416,
-                t2417,
+                t2406,
                 t2418,
+                t2419,
+                t2420,
                 t2423,
+                t2426,
                 t2428,
-                t2433,
-                t2434,
+                t2429,
+                t2430,
                 t2435,
-                t2436,
-                t2437,
-                t2438,
+                t2440,
+                t2445,
+                t2446,
                 t2447,
+                t2448,
+                t2449,
                 t2450,
+                t2451,
+                t2452,
                 t2453,
-                t2454,
-                t2455,
-                t2456,
-                t2457,
                 t2458,
-                t2459,
-                t2467,
+                t2463,
                 t2468,
                 t2469,
+                t2470,
+                t2471,
+                t2472,
+                t2473,
+                t2482,
+                t2485,
+                t2488,
+                t2489,
+                t2490,
+                t2491,
+                t2492,
+                t2493,
+                t2494,
+                t2495,
+                t2496,
+                t2497,
+                t2498,
+                t2499,
             )
+        });
+        let (t2502, t2503, t2504) = gyro_sim::apart(move || {
+            let t2500 = t2037 * t2376;
+            let t2501 = t2271 * t2374;
+            let t2502 = t2501
+                - (t2500 - (t2499 + (t2498 + (t2497 + (t2496 + (t761 + t2495))))));
+            let t2503 = t2501
+                - (t2500 - (t2499 + (t2498 + (t2497 + (t2496 + (t762 + t2495))))));
+            let t2504 = T::fused(
+                t1220,
+                t2380,
+                T::fused(
+                    t1118,
+                    t2382,
+                    T::fused(t982, t2384, -T::fused(-t866, t2387, t763)),
+                ),
+            );
+            (t2502, t2503, t2504)
         });
         *out = [
             -T::fused(
-                t2338,
-                t2355,
-                T::fused(t2204, t2339, -T::fused(t2085, t2340, t2353)),
+                t2373,
+                t2390,
+                T::fused(t2237, t2374, -T::fused(t2118, t2375, t2388)),
             ),
             T::fused(
-                t2338,
-                t2358,
-                T::fused(t2207, t2339, -T::fused(t2087, t2340, t2356)),
+                t2373,
+                t2393,
+                T::fused(t2240, t2374, -T::fused(t2120, t2375, t2391)),
             ),
             T::fused(
-                t2338,
-                t2361,
-                T::fused(t2210, t2339, -T::fused(t2089, t2340, t2359)),
+                t2373,
+                t2396,
+                T::fused(t2243, t2374, -T::fused(t2122, t2375, t2394)),
             ),
             -T::fused(
-                t2334,
-                t2338,
-                T::fused(t2201, t2339, -T::fused(t2082, t2340, t2362)),
+                t2369,
+                t2373,
+                T::fused(t2234, t2374, -T::fused(t2115, t2375, t2397)),
             ),
-            -t2370,
-            -t2371,
-            -t2385,
-            t2388,
-            t2391,
-            -t2393,
-            T::fused(
-                t2338,
-                t2383,
-                T::fused(t2219, t2339, -T::fused(t2176, t2340, t2394)),
-            ),
-            -T::fused(
-                t2338,
-                t2384,
-                T::fused(t2220, t2339, -T::fused(t2177, t2340, t2395)),
-            ),
-            t2400,
             -t2405,
-            -t2410,
-            T::fused(
-                -t2257,
-                t2339,
-                T::fused(t2158, t2341, -T::fused(t2147, t2343, -t2411)),
-            ),
-            T::fused(
-                -t2258,
-                t2339,
-                T::fused(t2159, t2341, -T::fused(t2148, t2343, t2412)),
-            ),
-            T::fused(
-                t2259,
-                t2339,
-                T::fused(t2160, t2341, -T::fused(t2149, t2343, -t2413)),
-            ),
-            t2416 + (t2415 + (t1802 - t2414)) - t2417,
-            t2417 - (t2416 + (t2415 + (t1804 - t2414))),
-            -t2418,
-            -t1764,
-            -t1785,
-            t1797,
+            -t2406,
+            -t2420,
             t2423,
+            t2426,
             -t2428,
-            t2433,
-            t2437 - (t2436 - (t2435 - (t1815 + t2434))),
-            -t2438,
-            t2437 - (t2436 - (t2435 + (t1817 - t2434))),
-            t2447,
-            -t2450,
-            t2453,
-            -t2454,
-            -t2455,
-            t2456,
             T::fused(
-                t2247,
-                t2339,
-                -T::fused(t2013, t2341, -T::fused(t1916, t2343, t2457)),
+                t2373,
+                t2418,
+                T::fused(t2252, t2374, -T::fused(t2209, t2375, t2429)),
+            ),
+            -T::fused(
+                t2373,
+                t2419,
+                T::fused(t2253, t2374, -T::fused(t2210, t2375, t2430)),
+            ),
+            t2435,
+            -t2440,
+            -t2445,
+            T::fused(
+                -t2290,
+                t2374,
+                T::fused(t2191, t2376, -T::fused(t2180, t2378, -t2446)),
             ),
             T::fused(
-                -t2250,
-                t2339,
-                T::fused(t2015, t2341, -T::fused(t1918, t2343, t2458)),
+                -t2291,
+                t2374,
+                T::fused(t2192, t2376, -T::fused(t2181, t2378, t2447)),
             ),
             T::fused(
-                -t2253,
-                t2339,
-                T::fused(t2017, t2341, -T::fused(t1920, t2343, t2459)),
+                t2292,
+                t2374,
+                T::fused(t2193, t2376, -T::fused(t2182, t2378, -t2448)),
             ),
-            -t2467,
-            -t2468,
+            t2451 + (t2450 + (t1835 - t2449)) - t2452,
+            t2452 - (t2451 + (t2450 + (t1837 - t2449))),
+            -t2453,
+            -t1797,
+            -t1818,
+            t1830,
+            t2458,
+            -t2463,
+            t2468,
+            t2472 - (t2471 - (t2470 - (t1848 + t2469))),
+            -t2473,
+            t2472 - (t2471 - (t2470 + (t1850 - t2469))),
+            t2482,
+            -t2485,
+            t2488,
+            -t2489,
+            -t2490,
+            t2491,
             T::fused(
-                -t2239,
-                t2339,
-                T::fused(t2005, t2341, -T::fused(t1908, t2343, t2469)),
+                t2280,
+                t2374,
+                -T::fused(t2046, t2376, -T::fused(t1949, t2378, t2492)),
             ),
-            t2352,
-            t2349,
-            t2347,
-            t2345,
-            -t2343,
-            -t2341,
-            t2340,
-            t2339,
-            -t2338,
+            T::fused(
+                -t2283,
+                t2374,
+                T::fused(t2048, t2376, -T::fused(t1951, t2378, t2493)),
+            ),
+            T::fused(
+                -t2286,
+                t2374,
+                T::fused(t2050, t2376, -T::fused(t1953, t2378, t2494)),
+            ),
+            -t2502,
+            -t2503,
+            T::fused(
+                -t2272,
+                t2374,
+                T::fused(t2038, t2376, -T::fused(t1941, t2378, t2504)),
+            ),
+            t2387,
+            t2384,
+            t2382,
+            t2380,
+            -t2378,
+            -t2376,
+            t2375,
+            t2374,
+            -t2373,
         ];
     }
     /// Writes λ: 2845 operations (1187 ±, 1646 ×, 12 ÷) and 6 functions.
@@ -21100,7 +21150,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t22,
             t23,
             t27,
-            t28,
             t29,
             t33,
             t34,
@@ -21116,7 +21165,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t48,
             t52,
             t53,
-            t54,
             t55,
             t57,
             t58,
@@ -21131,7 +21179,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t69,
             t70,
             t74,
-            t75,
             t76,
             t79,
             t80,
@@ -21190,38 +21237,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t142,
             t143,
             t144,
+            t145,
+            t146,
+            t147,
+            t148,
+            t149,
+            t150,
+            t151,
+            t152,
             t153,
-            t155,
+            t154,
             t157,
-            t160,
-            t161,
+            t158,
             t162,
             t163,
             t164,
+            t165,
             t166,
-            t167,
-            t168,
             t169,
             t170,
             t171,
-            t172,
             t173,
             t174,
-            t175,
             t176,
             t177,
-            t178,
             t179,
             t180,
             t181,
             t182,
+            t183,
             t185,
             t186,
-            t190,
+            t188,
+            t189,
             t191,
             t192,
             t193,
             t194,
+            t195,
+            t196,
             t197,
             t198,
             t199,
@@ -21473,112 +21527,106 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 - (slide_rz - t136);
             let t141 = closing6 * (k(0.5) * (t104 * (k(2.0) * t140)));
             let t142 = T::fused(k(1.5), self.gravity + carrier_dsz, t141) + t132;
-            let t143 = k(0.6666666666666666) * t138;
-            let t144 = k(1.3333333333333333) * t137;
-            let t145 = t144 - t143;
-            let t146 = k(0.6666666666666666) * t119;
-            let t147 = k(1.3333333333333333) * t118;
-            let t148 = t147 + t146;
-            let t149 = k(1.3333333333333333) * t96;
-            let t150 = k(0.6666666666666666) * t99;
-            let t151 = t150 + t149;
-            let t152 = T::fused(
-                -k(0.3333333333333333),
-                t145,
-                k(0.6666666666666666) * (t151 + t148),
-            );
-            let t153 = k(0.6666666666666666) * t139;
-            let t154 = t144 + t153;
-            let t155 = k(0.6666666666666666) * t122;
-            let t156 = t147 - t155;
-            let t157 = k(0.6666666666666666) * t102;
-            let t158 = t157 + t149;
-            let t159 = T::fused(
-                -k(0.3333333333333333),
-                t154,
-                k(0.6666666666666666) * (t158 + t156),
-            );
-            let t160 = k(0.6666666666666666) * (t159 + t152);
-            let t161 = t138 + t139;
-            let t162 = t119 + t122;
-            let t163 = t99 - t102;
-            let t164 = T::fused(
-                -k(0.8888888888888888),
-                t161,
-                T::fused(-k(0.4444444444444444), t162, k(0.8888888888888888) * t163),
-            );
-            let t165 = k(0.6666666666666666)
-                * T::fused(
-                    k(0.4444444444444444),
-                    t161,
-                    k(0.8888888888888888) * (t163 + t162),
-                );
-            let t166 = T::fused(k(0.3333333333333333), t152, t165);
-            let t167 = T::fused(
-                k(0.6666666666666666),
-                t154,
-                T::fused(-k(0.3333333333333333), t156, k(0.6666666666666666) * t158),
-            );
-            let t168 = T::fused(k(0.3333333333333333), t159, -t165);
-            let t169 = T::fused(
-                k(0.6666666666666666),
-                t145,
-                T::fused(-k(0.3333333333333333), t148, k(0.6666666666666666) * t151),
-            );
-            let t170 = k(1.0)
-                / T::fused(t169, t168, -T::fused(-t164, t160, t167 * t166));
-            let t171 = k(2.0) * t119;
-            let t172 = k(2.0) * t99;
-            let t173 = k(2.0) * t138;
-            let t174 = T::fused(t173, t23, -T::fused(-t171, t48, t172 * t70));
-            let t175 = T::fused(t173, t19, T::fused(t171, t45, t172 * t67));
-            let t176 = k(0.6) * t175;
-            let t177 = k(2.0) * t122;
-            let t178 = k(2.0) * t102;
-            let t179 = k(2.0) * t139;
-            let t180 = T::fused(t179, t19, -T::fused(-t177, t45, t178 * t67));
-            let t181 = T::fused(t179, t23, T::fused(t177, t48, t178 * t70));
-            let t182 = k(0.8) * t181;
-            let t183 = T::fused(
+            let t143 = k(2.0) * t119;
+            let t144 = k(2.0) * t99;
+            let t145 = k(2.0) * t138;
+            let t146 = T::fused(t145, t23, -T::fused(-t143, t48, t144 * t70));
+            let t147 = T::fused(t145, t19, T::fused(t143, t45, t144 * t67));
+            let t148 = k(0.6) * t147;
+            let t149 = k(2.0) * t122;
+            let t150 = k(2.0) * t102;
+            let t151 = k(2.0) * t139;
+            let t152 = T::fused(t151, t19, -T::fused(-t149, t45, t150 * t67));
+            let t153 = T::fused(t151, t23, T::fused(t149, t48, t150 * t70));
+            let t154 = k(0.8) * t153;
+            let t155 = T::fused(
                 k(0.6),
-                T::fused(-k(0.8), t174, t176),
-                k(0.8) * T::fused(-k(0.6), t180, t182),
+                T::fused(-k(0.8), t146, t148),
+                k(0.8) * T::fused(-k(0.6), t152, t154),
             );
-            let t184 = turn1.cos();
-            let t185 = k(0.6) * t174;
-            let t186 = k(0.8) * t180;
-            let t187 = T::fused(
+            let t156 = turn1.cos();
+            let t157 = k(0.6) * t146;
+            let t158 = k(0.8) * t152;
+            let t159 = T::fused(
                 -k(0.6),
-                T::fused(k(0.8), t175, t185),
-                k(0.8) * T::fused(k(0.6), t181, t186),
+                T::fused(k(0.8), t147, t157),
+                k(0.8) * T::fused(k(0.6), t153, t158),
             );
-            let t188 = turn1.sin();
-            let t189 = -T::fused(t188, t183, t184 * t187)
-                .atan2(T::fused(-t188, t187, t184 * t183));
-            let t190 = k(2.0) * (k(0.1) - (turn1 + t189));
-            let t191 = k(2.0) * t96;
-            let t192 = k(2.0) * t118;
-            let t193 = k(2.0) * t137;
-            let t194 = T::fused(t193, t15, T::fused(t191, t65, t192 * t43));
-            let t195 = T::fused(
+            let t160 = turn1.sin();
+            let t161 = -T::fused(t160, t155, t156 * t159)
+                .atan2(T::fused(-t160, t159, t156 * t155));
+            let t162 = k(2.0) * (k(0.1) - (turn1 + t161));
+            let t163 = k(2.0) * t96;
+            let t164 = k(2.0) * t118;
+            let t165 = k(2.0) * t137;
+            let t166 = T::fused(t165, t15, T::fused(t163, t65, t164 * t43));
+            let t167 = T::fused(
                 t123,
                 T::fused(k(0.8), t119, k(0.4) * t122),
                 t103 * T::fused(-k(0.8), t99, k(0.4) * t102),
             );
-            let t196 = t104
+            let t168 = t104
                 * (k(2.0)
-                    * T::fused(-t140, T::fused(k(0.8), t138, k(0.4) * t139), t195));
-            let t197 = T::fused(
+                    * T::fused(-t140, T::fused(k(0.8), t138, k(0.4) * t139), t167));
+            let t169 = T::fused(
                 closing6,
-                k(0.5) * t196,
+                k(0.5) * t168,
                 T::fused(
                     k(0.02),
                     carrier_dwx,
-                    -T::fused(-t194, t190, k(0.005) * (carrier_wy * carrier_wz)),
+                    -T::fused(-t166, t162, k(0.005) * (carrier_wy * carrier_wz)),
                 ),
             );
-            let t198 = T::fused(k(1.3333333333333333), t102, -(t150 - t149));
-            let t199 = T::fused(k(1.3333333333333333), t122, -(t147 - t146));
+            let t170 = k(1.3333333333333333) * t96;
+            let t171 = k(0.6666666666666666) * t99;
+            let t172 = T::fused(k(1.3333333333333333), t102, -(t171 - t170));
+            let t173 = k(0.6666666666666666) * t119;
+            let t174 = k(1.3333333333333333) * t118;
+            let t175 = T::fused(k(1.3333333333333333), t122, -(t174 - t173));
+            let t176 = k(0.6666666666666666) * t138;
+            let t177 = k(1.3333333333333333) * t137;
+            let t178 = T::fused(k(1.3333333333333333), t139, t177 + t176);
+            let t179 = T::fused(
+                k(0.6666666666666666),
+                t178,
+                T::fused(k(0.6666666666666666), t172, k(0.3333333333333333) * t175),
+            );
+            let t180 = T::fused(
+                k(0.6666666666666666),
+                t175 - t172,
+                k(0.3333333333333333) * t178,
+            );
+            let t181 = k(1.0) / T::fused(t179, t179, t180 * t180);
+            let t182 = k(1.3333333333333333) * t138;
+            let t183 = k(0.6666666666666666) * t139;
+            let t184 = t183 - t182;
+            let t185 = k(1.3333333333333333) * t119;
+            let t186 = k(0.6666666666666666) * t122;
+            let t187 = t186 - t185;
+            let t188 = k(1.3333333333333333) * t99;
+            let t189 = k(0.6666666666666666) * t102;
+            let t190 = t189 + t188;
+            let t191 = T::fused(
+                T::fused(
+                    -k(0.3333333333333333),
+                    t184,
+                    k(0.6666666666666666) * (t190 - t187),
+                ),
+                t179,
+                T::fused(
+                    k(0.6666666666666666),
+                    t184,
+                    T::fused(k(0.3333333333333333), t187, k(0.6666666666666666) * t190),
+                ) * t180,
+            );
+            let t192 = shaft_rx - t75;
+            let t193 = shaft_ry - t54;
+            let t194 = shaft_rz - t28;
+            let t195 = T::fused(t23, t194, -T::fused(t70, t192, t48 * t193));
+            let t196 = T::fused(t19, t194, -T::fused(-t67, t192, t45 * t193));
+            let t197 = k(0.30151134457776363) * (t196 - t195);
+            let t198 = k(0.0002) * shaft_wz;
+            let t199 = k(0.0001) * shaft_wy;
             (
                 t2,
                 t3,
@@ -21593,7 +21641,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t22,
                 t23,
                 t27,
-                t28,
                 t29,
                 t33,
                 t34,
@@ -21609,7 +21656,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t48,
                 t52,
                 t53,
-                t54,
                 t55,
                 t57,
                 t58,
@@ -21624,7 +21670,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t69,
                 t70,
                 t74,
-                t75,
                 t76,
                 t79,
                 t80,
@@ -21683,62 +21728,71 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t142,
                 t143,
                 t144,
+                t145,
+                t146,
+                t147,
+                t148,
+                t149,
+                t150,
+                t151,
+                t152,
                 t153,
-                t155,
+                t154,
                 t157,
-                t160,
-                t161,
+                t158,
                 t162,
                 t163,
                 t164,
+                t165,
                 t166,
-                t167,
-                t168,
                 t169,
                 t170,
                 t171,
-                t172,
                 t173,
                 t174,
-                t175,
                 t176,
                 t177,
-                t178,
                 t179,
                 t180,
                 t181,
                 t182,
+                t183,
                 t185,
                 t186,
-                t190,
+                t188,
+                t189,
                 t191,
                 t192,
                 t193,
                 t194,
+                t195,
+                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t229,
-            t230,
-            t231,
-            t233,
-            t234,
-            t235,
-            t238,
-            t239,
-            t240,
-            t241,
-            t242,
-            t243,
-            t244,
-            t245,
-            t246,
-            t273,
-            t280,
-            t295,
+            t210,
+            t211,
+            t212,
+            t214,
+            t215,
+            t216,
+            t219,
+            t220,
+            t221,
+            t222,
+            t223,
+            t224,
+            t225,
+            t226,
+            t227,
+            t254,
+            t261,
+            t276,
+            t299,
+            t302,
             t326,
             t327,
             t328,
@@ -21799,276 +21853,282 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t398,
             t399,
         ) = {
-            let t200 = T::fused(k(1.3333333333333333), t139, t144 + t143);
-            let t201 = T::fused(
-                k(0.6666666666666666),
-                t200,
-                T::fused(k(0.6666666666666666), t198, k(0.3333333333333333) * t199),
-            );
-            let t202 = T::fused(
-                k(0.6666666666666666),
-                t199 - t198,
-                k(0.3333333333333333) * t200,
-            );
-            let t203 = k(1.0) / T::fused(t201, t201, t202 * t202);
-            let t204 = k(1.3333333333333333) * t138;
-            let t205 = t153 - t204;
-            let t206 = k(1.3333333333333333) * t119;
-            let t207 = t155 - t206;
-            let t208 = k(1.3333333333333333) * t99;
-            let t209 = t157 + t208;
-            let t210 = T::fused(
-                T::fused(
-                    -k(0.3333333333333333),
-                    t205,
-                    k(0.6666666666666666) * (t209 - t207),
-                ),
-                t201,
-                T::fused(
-                    k(0.6666666666666666),
-                    t205,
-                    T::fused(k(0.3333333333333333), t207, k(0.6666666666666666) * t209),
-                ) * t202,
-            );
-            let t211 = shaft_rx - t75;
-            let t212 = shaft_ry - t54;
-            let t213 = shaft_rz - t28;
-            let t214 = T::fused(t23, t213, -T::fused(t70, t211, t48 * t212));
-            let t215 = T::fused(t19, t213, -T::fused(-t67, t211, t45 * t212));
-            let t216 = k(0.30151134457776363) * (t215 - t214);
-            let t217 = k(0.0002) * shaft_wz;
-            let t218 = k(0.0001) * shaft_wy;
-            let t219 = shaft_wy * shaft_wy;
-            let t220 = shaft_wz * shaft_wz;
-            let t221 = T::fused(shaft_wx, t218 + t217, k(0.0003) * (t220 - t219))
-                - T::fused(t83, t216, T::fused(t79, t216, -t190));
-            let t222 = k(0.1) * t127;
-            let t223 = k(0.1) * t109;
-            let t224 = k(0.1) * t85;
-            let t225 = T::fused(t86, t224, k(1.4142135623730951) * (t66 - t69) * t76)
-                - T::fused(-t110, t223, k(1.4142135623730951) * (t44 + t47) * t55);
-            let t226 = T::fused(
+            let t200 = shaft_wy * shaft_wy;
+            let t201 = shaft_wz * shaft_wz;
+            let t202 = T::fused(shaft_wx, t199 + t198, k(0.0003) * (t201 - t200))
+                - T::fused(t83, t197, T::fused(t79, t197, -t162));
+            let t203 = k(0.1) * t127;
+            let t204 = k(0.1) * t109;
+            let t205 = k(0.1) * t85;
+            let t206 = T::fused(t86, t205, k(1.4142135623730951) * (t66 - t69) * t76)
+                - T::fused(-t110, t204, k(1.4142135623730951) * (t44 + t47) * t55);
+            let t207 = T::fused(
                 closing0,
-                t225 + T::fused(t128, t222, k(1.4142135623730951) * (t18 + t22) * t29),
+                t206 + T::fused(t128, t203, k(1.4142135623730951) * (t18 + t22) * t29),
                 -(T::fused(
                     -k(0.0001),
                     shaft_dwz,
                     T::fused(k(0.0002), shaft_dwy, k(0.001) * shaft_dwx),
-                ) - t221),
+                ) - t202),
             );
-            let t227 = T::fused(t224, t88, t76 * (k(1.2792042981336627) * t85))
-                - T::fused(t223, t112, t55 * (k(1.2792042981336627) * t109));
-            let t228 = T::fused(
+            let t208 = T::fused(t205, t88, t76 * (k(1.2792042981336627) * t85))
+                - T::fused(t204, t112, t55 * (k(1.2792042981336627) * t109));
+            let t209 = T::fused(
                 closing1,
-                t227 + T::fused(-t222, t130, t29 * (k(1.2792042981336627) * t127)),
-                t226,
+                t208 + T::fused(-t203, t130, t29 * (k(1.2792042981336627) * t127)),
+                t207,
             );
-            let t229 = T::fused(t19, t3, -T::fused(t67, t58, t45 * t34));
-            let t230 = T::fused(t19, t7, T::fused(t45, t36, t67 * t60));
-            let t231 = T::fused(t19, t10, -T::fused(-t45, t38, t67 * t62));
-            let t232 = T::fused(
+            let t210 = T::fused(t19, t3, -T::fused(t67, t58, t45 * t34));
+            let t211 = T::fused(t19, t7, T::fused(t45, t36, t67 * t60));
+            let t212 = T::fused(t19, t10, -T::fused(-t45, t38, t67 * t62));
+            let t213 = T::fused(
                 k(0.30151134457776363),
-                t231,
-                T::fused(k(0.9045340337332909), t229, k(0.30151134457776363) * t230),
+                t212,
+                T::fused(k(0.9045340337332909), t210, k(0.30151134457776363) * t211),
             );
-            let t233 = T::fused(t23, t3, -T::fused(-t70, t58, t48 * t34));
-            let t234 = T::fused(t23, t7, -T::fused(-t48, t36, t70 * t60));
-            let t235 = T::fused(t23, t10, T::fused(t48, t38, t70 * t62));
-            let t236 = T::fused(
+            let t214 = T::fused(t23, t3, -T::fused(-t70, t58, t48 * t34));
+            let t215 = T::fused(t23, t7, -T::fused(-t48, t36, t70 * t60));
+            let t216 = T::fused(t23, t10, T::fused(t48, t38, t70 * t62));
+            let t217 = T::fused(
                 k(0.30151134457776363),
-                t235,
-                T::fused(k(0.9045340337332909), t233, k(0.30151134457776363) * t234),
+                t216,
+                T::fused(k(0.9045340337332909), t214, k(0.30151134457776363) * t215),
             );
-            let t237 = T::fused(
+            let t218 = T::fused(
                 closing3,
-                k(0.6396021490668313) * (t236 - t232),
-                -T::fused(closing2, k(0.7071067811865476) * (t236 + t232), t228),
+                k(0.6396021490668313) * (t217 - t213),
+                -T::fused(closing2, k(0.7071067811865476) * (t217 + t213), t209),
             );
-            let t238 = t231 - t230;
-            let t239 = t235 - t234;
-            let t240 = t239 - t238;
-            let t241 = k(0.5) * t240;
-            let t242 = T::fused(t15, t7, -T::fused(t65, t60, t43 * t36));
-            let t243 = T::fused(t15, t10, -T::fused(-t65, t62, t43 * t38));
-            let t244 = t243 - t242;
-            let t245 = T::fused(
+            let t219 = t212 - t211;
+            let t220 = t216 - t215;
+            let t221 = t220 - t219;
+            let t222 = k(0.5) * t221;
+            let t223 = T::fused(t15, t7, -T::fused(t65, t60, t43 * t36));
+            let t224 = T::fused(t15, t10, -T::fused(-t65, t62, t43 * t38));
+            let t225 = t224 - t223;
+            let t226 = T::fused(
                 k(0.45226701686664544),
-                t239,
-                T::fused(-k(0.30151134457776363), t244, k(0.45226701686664544) * t238),
+                t220,
+                T::fused(-k(0.30151134457776363), t225, k(0.45226701686664544) * t219),
             );
-            let t246 = k(1.0) / T::fused(t241, t241, t245 * t245);
-            let t247 = T::fused(
-                k(0.45226701686664544) * t240,
-                t241,
-                k(0.5) * (t239 + t238) * t245,
-            ) * t246;
-            let t248 = T::fused(closing7, t247, -t237);
-            let t249 = k(0.30151134457776363)
-                * T::fused(t15, t213, T::fused(-t65, t211, t43 * t212));
-            let t250 = T::fused(-k(0.9045340337332909), t214, t249);
-            let t251 = shaft_wx * shaft_wx;
-            let t252 = k(0.0003) * shaft_wx;
-            let t253 = T::fused(
+            let t227 = k(1.0) / T::fused(t222, t222, t226 * t226);
+            let t228 = T::fused(
+                k(0.45226701686664544) * t221,
+                t222,
+                k(0.5) * (t220 + t219) * t226,
+            ) * t227;
+            let t229 = T::fused(closing7, t228, -t218);
+            let t230 = k(0.30151134457776363)
+                * T::fused(t15, t194, T::fused(-t65, t192, t43 * t193));
+            let t231 = T::fused(-k(0.9045340337332909), t195, t230);
+            let t232 = shaft_wx * shaft_wx;
+            let t233 = k(0.0003) * shaft_wx;
+            let t234 = T::fused(
                 shaft_wy,
-                t217 - t252,
-                -T::fused(k(0.0001), t220 - t251, k(0.005) * (shaft_wx * shaft_wz)),
+                t198 - t233,
+                -T::fused(k(0.0001), t201 - t232, k(0.005) * (shaft_wx * shaft_wz)),
             );
-            let t254 = T::fused(
+            let t235 = T::fused(
                 k(0.0003),
                 shaft_dwz,
                 T::fused(k(0.006), shaft_dwy, k(0.0002) * shaft_dwx),
-            ) + (t253 - T::fused(t79, t250, t83 * t250));
-            let t255 = k(0.1) * t14;
-            let t256 = k(0.4) * t22;
-            let t257 = t256 - t255;
-            let t258 = t29 * (k(1.4142135623730951) * t14);
-            let t259 = k(0.1) * t42;
-            let t260 = k(0.4) * t47;
-            let t261 = t260 + t259;
-            let t262 = t55 * (k(1.4142135623730951) * t42);
-            let t263 = k(0.1) * t64;
-            let t264 = k(0.4) * t69;
-            let t265 = t264 - t263;
-            let t266 = t76 * (k(1.4142135623730951) * t64);
-            let t267 = T::fused(-t86, t265, t266) - T::fused(-t110, t261, t262)
-                - T::fused(-t128, t257, t258);
-            let t268 = k(1.2792042981336627) * t14;
-            let t269 = k(1.2792042981336627) * t42;
-            let t270 = k(1.2792042981336627) * t64;
-            let t271 = T::fused(
-                -t265,
+            ) + (t234 - T::fused(t79, t231, t83 * t231));
+            let t236 = k(0.1) * t14;
+            let t237 = k(0.4) * t22;
+            let t238 = t237 - t236;
+            let t239 = t29 * (k(1.4142135623730951) * t14);
+            let t240 = k(0.1) * t42;
+            let t241 = k(0.4) * t47;
+            let t242 = t241 + t240;
+            let t243 = t55 * (k(1.4142135623730951) * t42);
+            let t244 = k(0.1) * t64;
+            let t245 = k(0.4) * t69;
+            let t246 = t245 - t244;
+            let t247 = t76 * (k(1.4142135623730951) * t64);
+            let t248 = T::fused(-t86, t246, t247) - T::fused(-t110, t242, t243)
+                - T::fused(-t128, t238, t239);
+            let t249 = k(1.2792042981336627) * t14;
+            let t250 = k(1.2792042981336627) * t42;
+            let t251 = k(1.2792042981336627) * t64;
+            let t252 = T::fused(
+                -t246,
                 t88,
-                t76 * T::fused(k(0.8528028654224418), t69, t270),
-            ) + T::fused(-t261, t112, t55 * T::fused(k(0.8528028654224418), t47, -t269));
-            let t272 = T::fused(
+                t76 * T::fused(k(0.8528028654224418), t69, t251),
+            ) + T::fused(-t242, t112, t55 * T::fused(k(0.8528028654224418), t47, -t250));
+            let t253 = T::fused(
                 closing1,
-                t271
+                t252
                     - T::fused(
-                        t257,
+                        t238,
                         t130,
-                        t29 * T::fused(k(0.8528028654224418), t22, t268),
+                        t29 * T::fused(k(0.8528028654224418), t22, t249),
                     ),
-                T::fused(closing0, t267, -t254),
+                T::fused(closing0, t248, -t235),
             );
-            let t273 = T::fused(t15, t3, T::fused(t65, t58, t43 * t34));
-            let t274 = T::fused(
+            let t254 = T::fused(t15, t3, T::fused(t65, t58, t43 * t34));
+            let t255 = T::fused(
                 k(0.30151134457776363),
-                t243,
-                T::fused(k(0.9045340337332909), t273, k(0.30151134457776363) * t242),
+                t224,
+                T::fused(k(0.9045340337332909), t254, k(0.30151134457776363) * t223),
             );
-            let t275 = closing2 * (k(0.7071067811865476) * t274);
-            let t276 = k(0.6396021490668313) * t274;
-            let t277 = k(0.45226701686664544) * t244;
-            let t278 = t245 * (k(0.5) * t244);
-            let t279 = T::fused(
+            let t256 = closing2 * (k(0.7071067811865476) * t255);
+            let t257 = k(0.6396021490668313) * t255;
+            let t258 = k(0.45226701686664544) * t225;
+            let t259 = t226 * (k(0.5) * t225);
+            let t260 = T::fused(
                 closing7,
-                t246
+                t227
                     * T::fused(
-                        -t241,
-                        T::fused(k(0.30151134457776363), t239, t277),
-                        t278,
+                        -t222,
+                        T::fused(k(0.30151134457776363), t220, t258),
+                        t259,
                     ),
                 T::fused(
                     closing3,
-                    T::fused(k(0.4264014327112209), t236, t276),
-                    t275 - t272,
+                    T::fused(k(0.4264014327112209), t217, t257),
+                    t256 - t253,
                 ),
             );
-            let t280 = T::fused(t256, t132, T::fused(t264, t90, t260 * t114)) + t279;
-            let t281 = T::fused(
-                -t194,
-                t248,
-                T::fused(t193, t19, -T::fused(t191, t67, t192 * t45)) * t280,
+            let t261 = T::fused(t237, t132, T::fused(t245, t90, t241 * t114)) + t260;
+            let t262 = T::fused(
+                -t166,
+                t229,
+                T::fused(t165, t19, -T::fused(t163, t67, t164 * t45)) * t261,
             );
-            let t282 = T::fused(k(0.9045340337332909), t215, -t249);
-            let t283 = T::fused(
+            let t263 = T::fused(k(0.9045340337332909), t196, -t230);
+            let t264 = T::fused(
                 shaft_wz,
-                t218 + t252,
-                T::fused(-k(0.0002), t219 - t251, k(0.005) * (shaft_wx * shaft_wy)),
+                t199 + t233,
+                T::fused(-k(0.0002), t200 - t232, k(0.005) * (shaft_wx * shaft_wy)),
             );
-            let t284 = T::fused(
+            let t265 = T::fused(
                 -k(0.006),
                 shaft_dwz,
                 T::fused(-k(0.0003), shaft_dwy, k(0.0001) * shaft_dwx),
-            ) - (t283 + T::fused(t79, t282, t83 * t282));
-            let t285 = k(0.4) * t18;
-            let t286 = t285 - t255;
-            let t287 = k(0.4) * t44;
-            let t288 = t287 + t259;
-            let t289 = k(0.4) * t66;
-            let t290 = t289 + t263;
-            let t291 = T::fused(-t86, t290, t266) - T::fused(t110, t288, t262)
-                - T::fused(t128, t286, t258);
-            let t292 = T::fused(
-                t290,
+            ) - (t264 + T::fused(t79, t263, t83 * t263));
+            let t266 = k(0.4) * t18;
+            let t267 = t266 - t236;
+            let t268 = k(0.4) * t44;
+            let t269 = t268 + t240;
+            let t270 = k(0.4) * t66;
+            let t271 = t270 + t244;
+            let t272 = T::fused(-t86, t271, t247) - T::fused(t110, t269, t243)
+                - T::fused(t128, t267, t239);
+            let t273 = T::fused(
+                t271,
                 t88,
-                t76 * T::fused(-k(0.8528028654224418), t66, t270),
-            ) - T::fused(t288, t112, t55 * T::fused(-k(0.8528028654224418), t44, t269));
-            let t293 = T::fused(
+                t76 * T::fused(-k(0.8528028654224418), t66, t251),
+            ) - T::fused(t269, t112, t55 * T::fused(-k(0.8528028654224418), t44, t250));
+            let t274 = T::fused(
                 closing1,
-                t292
+                t273
                     - T::fused(
-                        t286,
+                        t267,
                         t130,
-                        t29 * T::fused(k(0.8528028654224418), t18, t268),
+                        t29 * T::fused(k(0.8528028654224418), t18, t249),
                     ),
-                -T::fused(closing0, t291, -t284),
+                -T::fused(closing0, t272, -t265),
             );
-            let t294 = T::fused(
+            let t275 = T::fused(
                 closing7,
-                t246
-                    * T::fused(t241, T::fused(k(0.30151134457776363), t238, t277), t278),
+                t227
+                    * T::fused(t222, T::fused(k(0.30151134457776363), t219, t258), t259),
                 -T::fused(
                     closing3,
-                    T::fused(k(0.4264014327112209), t232, t276),
-                    -(t275 + t293),
+                    T::fused(k(0.4264014327112209), t213, t257),
+                    -(t256 + t274),
                 ),
             );
-            let t295 = T::fused(t285, t132, T::fused(-t289, t90, t287 * t114)) - t294;
-            let t296 = T::fused(
-                T::fused(t193, t23, -T::fused(-t191, t70, t192 * t48)),
-                t295,
-                -t281,
+            let t276 = T::fused(t266, t132, T::fused(-t270, t90, t268 * t114)) - t275;
+            let t277 = T::fused(
+                T::fused(t165, t23, -T::fused(-t163, t70, t164 * t48)),
+                t276,
+                -t262,
             );
-            let t297 = T::fused(
-                k(0.2) * t161,
+            let t278 = t99 - t102;
+            let t279 = t119 + t122;
+            let t280 = t138 + t139;
+            let t281 = T::fused(
+                k(0.2) * t280,
                 t132,
-                T::fused(-(k(0.2) * t163), t90, k(0.2) * t162 * t114),
+                T::fused(-(k(0.2) * t278), t90, k(0.2) * t279 * t114),
             );
-            let t298 = k(0.2) * t102;
-            let t299 = k(0.2) * t122;
-            let t300 = k(0.2) * t139;
-            let t301 = T::fused(t300, t142, -T::fused(t298, t106, t299 * t125));
-            let t302 = t301 + (t297 + t296 - T::fused(closing8, t210 * t203, t197));
-            let t303 = T::fused(t173, t15, -T::fused(t172, t65, t171 * t43));
+            let t282 = k(0.2) * t102;
+            let t283 = k(0.2) * t122;
+            let t284 = k(0.2) * t139;
+            let t285 = T::fused(t284, t142, -T::fused(t282, t106, t283 * t125));
+            let t286 = t285 + (t281 + t277 - T::fused(closing8, t191 * t181, t169));
+            let t287 = t177 - t176;
+            let t288 = t174 + t173;
+            let t289 = t171 + t170;
+            let t290 = T::fused(
+                -k(0.3333333333333333),
+                t287,
+                k(0.6666666666666666) * (t289 + t288),
+            );
+            let t291 = t177 + t183;
+            let t292 = t174 - t186;
+            let t293 = t189 + t170;
+            let t294 = T::fused(
+                -k(0.3333333333333333),
+                t291,
+                k(0.6666666666666666) * (t293 + t292),
+            );
+            let t295 = k(0.6666666666666666) * (t294 + t290);
+            let t296 = T::fused(
+                -k(0.8888888888888888),
+                t280,
+                T::fused(-k(0.4444444444444444), t279, k(0.8888888888888888) * t278),
+            );
+            let t297 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.4444444444444444),
+                    t280,
+                    k(0.8888888888888888) * (t278 + t279),
+                );
+            let t298 = T::fused(k(0.3333333333333333), t290, t297);
+            let t299 = T::fused(
+                k(0.6666666666666666),
+                t291,
+                T::fused(-k(0.3333333333333333), t292, k(0.6666666666666666) * t293),
+            );
+            let t300 = T::fused(k(0.3333333333333333), t294, -t297);
+            let t301 = T::fused(
+                k(0.6666666666666666),
+                t287,
+                T::fused(-k(0.3333333333333333), t288, k(0.6666666666666666) * t289),
+            );
+            let t302 = k(1.0)
+                / T::fused(t301, t300, -T::fused(-t296, t295, t299 * t298));
+            let t303 = T::fused(t145, t15, -T::fused(t144, t65, t143 * t43));
             let t304 = T::fused(
                 t123,
-                T::fused(-k(0.8), t118, t299),
-                t103 * T::fused(k(0.8), t96, t298),
+                T::fused(-k(0.8), t118, t283),
+                t103 * T::fused(k(0.8), t96, t282),
             );
             let t305 = k(0.5)
                 * (t104
-                    * (k(2.0) * T::fused(-t140, T::fused(k(0.8), t137, t300), t304)));
+                    * (k(2.0) * T::fused(-t140, T::fused(k(0.8), t137, t284), t304)));
             let t306 = T::fused(
                 closing6,
                 t305,
                 -T::fused(
                     k(0.03),
                     carrier_dwy,
-                    -T::fused(-t303, t190, k(0.005) * (carrier_wx * carrier_wz)),
+                    -T::fused(-t303, t162, k(0.005) * (carrier_wx * carrier_wz)),
                 ),
             );
             let t307 = t137 - t139;
             let t308 = t118 + t122;
             let t309 = t96 - t102;
             let t310 = T::fused(
-                t201,
+                t179,
                 T::fused(
                     -k(0.4444444444444444),
                     t307,
                     k(0.8888888888888888) * (t309 + t308),
                 ),
-                t202
+                t180
                     * T::fused(
                         k(0.8888888888888888),
                         t307,
@@ -22085,9 +22145,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 k(0.2) * (t118 - t122) * t114,
             );
             let t312 = T::fused(k(0.2) * (t137 + t139), t132, -t311)
-                - T::fused(t174, t295, -T::fused(-t303, t248, t175 * t280));
-            let t313 = t301 + (t312 + T::fused(closing8, t203 * t310, -t306));
-            let t314 = T::fused(t179, t15, -T::fused(-t178, t65, t177 * t43));
+                - T::fused(t146, t276, -T::fused(-t303, t229, t147 * t261));
+            let t313 = t285 + (t312 + T::fused(closing8, t181 * t310, -t306));
+            let t314 = T::fused(t151, t15, -T::fused(-t150, t65, t149 * t43));
             let t315 = T::fused(
                 -t123,
                 T::fused(k(0.2), t119, k(0.4) * t118),
@@ -22102,20 +22162,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 T::fused(
                     k(0.025),
                     carrier_dwz,
-                    T::fused(-t314, t190, k(0.01) * (carrier_wx * carrier_wy)),
+                    T::fused(-t314, t162, k(0.01) * (carrier_wx * carrier_wy)),
                 ),
             );
-            let t318 = T::fused(-k(0.6666666666666666), t137, t204);
-            let t319 = T::fused(k(0.6666666666666666), t118, t206);
-            let t320 = T::fused(k(0.6666666666666666), t96, t208);
+            let t318 = T::fused(-k(0.6666666666666666), t137, t182);
+            let t319 = T::fused(k(0.6666666666666666), t118, t185);
+            let t320 = T::fused(k(0.6666666666666666), t96, t188);
             let t321 = T::fused(
-                t201,
+                t179,
                 T::fused(
                     k(0.3333333333333333),
                     t318,
                     k(0.6666666666666666) * (t320 + t319),
                 ),
-                t202
+                t180
                     * T::fused(
                         -k(0.6666666666666666),
                         t318,
@@ -22130,22 +22190,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t323 = k(0.2) * (t118 + t119);
             let t324 = k(0.2) * (t137 - t138);
             let t325 = T::fused(t324, t132, -T::fused(-t322, t90, t323 * t114))
-                - T::fused(t181, t295, -T::fused(-t314, t248, t180 * t280));
+                - T::fused(t153, t276, -T::fused(-t314, t229, t152 * t261));
             let t326 = T::fused(t324, t142, T::fused(-t322, t106, t323 * t125))
-                + (t325 - T::fused(closing8, t203 * t321, t317));
+                + (t325 - T::fused(closing8, t181 * t321, t317));
             let t327 = T::fused(
+                t300 * t302,
                 t326,
-                t168 * t170,
-                -T::fused(t302, t160 * t170, t313 * (t166 * t170)),
+                -T::fused(t295 * t302, t286, t298 * t302 * t313),
             );
-            let t328 = k(0.6666666666666666) * t164;
+            let t328 = k(0.6666666666666666) * t296;
             let t329 = T::fused(
-                t302,
-                t170 * (k(0.6666666666666666) * (t167 + t169)),
-                t313 * (t170 * T::fused(k(0.3333333333333333), t169, t328)),
+                t302 * (k(0.6666666666666666) * (t299 + t301)),
+                t286,
+                t302 * T::fused(k(0.3333333333333333), t301, t328) * t313,
             );
-            let t330 = t182 - t185;
-            let t331 = t176 - t186;
+            let t330 = t154 - t157;
+            let t331 = t148 - t158;
             let t332 = k(1.0) / T::fused(t330, t330, t331 * t331);
             let t333 = slide_e0 * slide_e2;
             let t334 = slide_e1 * slide_e3;
@@ -22266,24 +22326,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             let t398 = nut_e0 * nut_e0;
             let t399 = k(0.5) - T::fused(nut_e1, nut_e1, t398);
             (
-                t229,
-                t230,
-                t231,
-                t233,
-                t234,
-                t235,
-                t238,
-                t239,
-                t240,
-                t241,
-                t242,
-                t243,
-                t244,
-                t245,
-                t246,
-                t273,
-                t280,
-                t295,
+                t210,
+                t211,
+                t212,
+                t214,
+                t215,
+                t216,
+                t219,
+                t220,
+                t221,
+                t222,
+                t223,
+                t224,
+                t225,
+                t226,
+                t227,
+                t254,
+                t261,
+                t276,
+                t299,
+                t302,
                 t326,
                 t327,
                 t328,
@@ -23031,9 +23093,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t658,
             t659,
             t661,
-            t674,
-            t677,
-            t680,
+            t742,
+            t745,
+            t748,
             t765,
             t766,
             t768,
@@ -23146,260 +23208,260 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                         puck_dsz,
                         T::fused(self.gravity, self.puck_mass, t660),
                     )) + t659;
-            let t662 = k(0.3849001794597505) * t637;
-            let t663 = T::fused(k(1.9245008972987525), t445, t662);
-            let t664 = k(0.3849001794597505) * t634;
-            let t665 = k(0.3849001794597505) * t629;
-            let t666 = T::fused(k(1.9245008972987525), t456, t665);
-            let t667 = T::fused(
-                -k(0.1887128390240993),
-                t663,
-                T::fused(
-                    -k(0.9813067629253163),
-                    T::fused(-k(1.9245008972987525), t451, t664),
-                    k(0.03774256780481986) * t666,
-                ),
-            );
-            let t668 = t445 - t638;
-            let t669 = t456 + t627;
-            let t670 = k(0.19245008972987526)
-                * T::fused(
-                    -k(0.07263560560673482),
-                    t668,
-                    T::fused(
-                        k(0.3777051491550211),
-                        t451 + t635,
-                        k(0.014527121121346966) * t669,
-                    ),
-                );
-            let t671 = T::fused(k(0.9622504486493763), t667, t670);
-            let t672 = T::fused(k(1.9245008972987525), t638, t662);
-            let t673 = T::fused(-k(1.9245008972987525), t627, t665);
-            let t674 = T::fused(
-                k(0.19611613513818404),
-                t672,
-                k(0.9805806756909201) * t673,
-            );
-            let t675 = T::fused(
-                -k(0.1887128390240993),
-                t672,
-                T::fused(
-                    -k(0.9813067629253163),
-                    T::fused(k(1.9245008972987525), t635, t664),
-                    k(0.03774256780481986) * t673,
-                ),
-            );
-            let t676 = T::fused(k(0.9622504486493763), t675, -t670);
-            let t677 = T::fused(
-                k(0.19611613513818404),
-                t663,
-                k(0.9805806756909201) * t666,
-            );
-            let t678 = k(0.19245008972987526) * (t675 + t667);
-            let t679 = T::fused(
-                k(0.07548513560963972),
-                t668,
-                k(0.3774256780481986) * t669,
-            );
-            let t680 = k(1.0) / T::fused(t679, t678, T::fused(-t674, t671, t677 * t676));
-            let t681 = T::fused(t650, t660, -T::fused(t630, t654, t645 * t657))
+            let t662 = T::fused(t650, t660, -T::fused(t630, t654, t645 * t657))
                 + T::fused(t649, t660, -T::fused(-t628, t654, t644 * t657));
-            let t682 = (k(10.0)
+            let t663 = (k(10.0)
                 * T::fused(
                     k(0.9622504486493763),
                     puck_wz,
                     k(0.19245008972987526) * (puck_wx + puck_wy),
                 ))
                 .tanh();
-            let t683 = k(0.009622504486493762) * t682;
-            let t684 = T::fused(
+            let t664 = k(0.009622504486493762) * t663;
+            let t665 = T::fused(
                 k(0.004),
                 puck_dwx,
-                -T::fused(k(0.002), puck_wy * puck_wz, -T::fused(-k(0.1), t681, t683)),
+                -T::fused(k(0.002), puck_wy * puck_wz, -T::fused(-k(0.1), t662, t664)),
             );
-            let t685 = k(0.2) * t35;
-            let t686 = T::fused(t10, t27, T::fused(t62, t74, t38 * t52));
-            let t687 = T::fused(t7, t27, T::fused(-t60, t74, t36 * t52));
-            let t688 = k(0.05) * (t687 - t686);
-            let t689 = T::fused(
+            let t666 = k(0.2) * t35;
+            let t667 = T::fused(t10, t27, T::fused(t62, t74, t38 * t52));
+            let t668 = T::fused(t7, t27, T::fused(-t60, t74, t36 * t52));
+            let t669 = k(0.05) * (t668 - t667);
+            let t670 = T::fused(
                 t79,
-                t688,
-                T::fused(-k(0.02), t2, k(0.05) * T::fused(k(0.4), t59, t685)),
+                t669,
+                T::fused(-k(0.02), t2, k(0.05) * T::fused(k(0.4), t59, t666)),
             );
-            let t690 = T::fused(
+            let t671 = T::fused(
                 k(0.004),
                 sleeve_dwx,
-                T::fused(k(0.002), sleeve_wy * sleeve_wz, T::fused(t83, t688, t689)),
+                T::fused(k(0.002), sleeve_wy * sleeve_wz, T::fused(t83, t669, t670)),
             );
-            let t691 = k(0.1) * (t6 - t9);
-            let t692 = k(0.1) * (t35 - t37);
-            let t693 = k(0.1) * (t59 + t61);
-            let t694 = T::fused(
+            let t672 = k(0.1) * (t6 - t9);
+            let t673 = k(0.1) * (t35 - t37);
+            let t674 = k(0.1) * (t59 + t61);
+            let t675 = T::fused(
                 closing0,
-                T::fused(t128, t691, T::fused(t110, t692, t86 * t693)),
-                -t690,
+                T::fused(t128, t672, T::fused(t110, t673, t86 * t674)),
+                -t671,
             );
-            let t695 = T::fused(
+            let t676 = T::fused(
                 closing1,
-                T::fused(-t691, t130, T::fused(-t692, t112, t693 * t88)),
-                t694,
+                T::fused(-t672, t130, T::fused(-t673, t112, t674 * t88)),
+                t675,
             );
-            let t696 = T::fused(
+            let t677 = T::fused(
                 closing3,
                 T::fused(
                     -k(0.19284730395996752),
-                    t239,
-                    T::fused(-k(0.19284730395996752), t238, k(0.128564869306645) * t244),
+                    t220,
+                    T::fused(-k(0.19284730395996752), t219, k(0.128564869306645) * t225),
                 ),
-                -T::fused(closing2, k(0.21320071635561044) * t240, -t695),
+                -T::fused(closing2, k(0.21320071635561044) * t221, -t676),
             );
-            let t697 = t235 + t234;
-            let t698 = t231 + t230;
-            let t699 = T::fused(
-                -t241,
+            let t678 = t216 + t215;
+            let t679 = t212 + t211;
+            let t680 = T::fused(
+                -t222,
                 T::fused(
                     -k(0.45226701686664544),
-                    t697,
+                    t678,
                     T::fused(
                         -k(0.45226701686664544),
-                        t698,
-                        k(0.30151134457776363) * (t243 + t242),
+                        t679,
+                        k(0.30151134457776363) * (t224 + t223),
                     ),
                 ),
-                t245 * (k(0.5) * (t698 - t697)),
+                t226 * (k(0.5) * (t679 - t678)),
             );
-            let t700 = T::fused(
+            let t681 = T::fused(
                 k(0.4) * t9,
                 t659,
                 T::fused(k(0.4) * t61, t623, k(0.4) * t37 * t656),
             );
-            let t701 = t700 - T::fused(closing7, t246 * t699, -t696);
-            let t702 = k(0.4) * t57;
-            let t703 = k(0.05) * T::fused(t3, t27, -T::fused(-t58, t74, t34 * t52));
-            let t704 = T::fused(-k(0.1), t686, t703);
-            let t705 = T::fused(
+            let t682 = t681 - T::fused(closing7, t227 * t680, -t677);
+            let t683 = k(0.4) * t57;
+            let t684 = k(0.05) * T::fused(t3, t27, -T::fused(-t58, t74, t34 * t52));
+            let t685 = T::fused(-k(0.1), t667, t684);
+            let t686 = T::fused(
                 t83,
-                t704,
-                T::fused(t79, t704, -T::fused(-k(0.02), t6, k(0.05) * (t53 + t702))),
+                t685,
+                T::fused(t79, t685, -T::fused(-k(0.02), t6, k(0.05) * (t53 + t683))),
             );
-            let t706 = k(0.1) * t2;
-            let t707 = k(0.2) * t9;
-            let t708 = t707 - t706;
-            let t709 = k(0.1) * t33;
-            let t710 = k(0.2) * t37;
-            let t711 = t710 + t709;
-            let t712 = k(0.1) * t57;
-            let t713 = k(0.2) * t61;
-            let t714 = t713 - t712;
-            let t715 = T::fused(
+            let t687 = k(0.1) * t2;
+            let t688 = k(0.2) * t9;
+            let t689 = t688 - t687;
+            let t690 = k(0.1) * t33;
+            let t691 = k(0.2) * t37;
+            let t692 = t691 + t690;
+            let t693 = k(0.1) * t57;
+            let t694 = k(0.2) * t61;
+            let t695 = t694 - t693;
+            let t696 = T::fused(
                 closing0,
-                T::fused(-t128, t708, T::fused(-t110, t711, t86 * t714)),
+                T::fused(-t128, t689, T::fused(-t110, t692, t86 * t695)),
                 T::fused(
                     k(0.003),
                     sleeve_dwy,
-                    -T::fused(k(0.001), sleeve_wx * sleeve_wz, t705),
+                    -T::fused(k(0.001), sleeve_wx * sleeve_wz, t686),
                 ),
             );
-            let t716 = T::fused(
+            let t697 = T::fused(
                 closing1,
-                T::fused(t708, t130, T::fused(t711, t112, t714 * t88)),
-                t715,
+                T::fused(t689, t130, T::fused(t692, t112, t695 * t88)),
+                t696,
             );
-            let t717 = k(0.30151134457776363) * t233;
-            let t718 = T::fused(k(0.9045340337332909), t235, -t717);
-            let t719 = k(0.30151134457776363) * t229;
-            let t720 = T::fused(k(0.9045340337332909), t231, -t719);
-            let t721 = k(0.30151134457776363) * t273;
-            let t722 = T::fused(
+            let t698 = k(0.30151134457776363) * t214;
+            let t699 = T::fused(k(0.9045340337332909), t216, -t698);
+            let t700 = k(0.30151134457776363) * t210;
+            let t701 = T::fused(k(0.9045340337332909), t212, -t700);
+            let t702 = k(0.30151134457776363) * t254;
+            let t703 = T::fused(
+                -k(0.6396021490668313),
+                t699,
+                T::fused(
+                    -k(0.6396021490668313),
+                    t701,
+                    k(0.4264014327112209) * T::fused(k(0.9045340337332909), t224, -t702),
+                ),
+            );
+            let t704 = T::fused(
+                t222,
+                T::fused(
+                    -k(0.45226701686664544),
+                    t214,
+                    T::fused(-k(0.45226701686664544), t210, t702),
+                ),
+                t226 * (k(0.5) * (t214 - t210)),
+            );
+            let t705 = closing7 * (t227 * t704);
+            let t706 = t705
+                + T::fused(
+                    closing3,
+                    t703,
+                    T::fused(closing2, k(0.7071067811865476) * (t701 - t699), t697),
+                );
+            let t707 = T::fused(t688, t659, T::fused(t694, t623, t691 * t656)) + t706;
+            let t708 = T::fused(
+                -t682,
+                T::fused(t3, t648, T::fused(t58, t625, t34 * t643)),
+                t707 * T::fused(t7, t648, -T::fused(t60, t625, t36 * t643)),
+            );
+            let t709 = T::fused(k(0.1), t668, -t684);
+            let t710 = T::fused(
+                k(0.001),
+                sleeve_wx * sleeve_wy,
+                -T::fused(t83, t709, T::fused(k(0.02), t9, t79 * t709)),
+            );
+            let t711 = k(0.2) * t6;
+            let t712 = t687 - t711;
+            let t713 = t690 + t666;
+            let t714 = k(0.2) * t59;
+            let t715 = t693 + t714;
+            let t716 = T::fused(
+                closing0,
+                T::fused(-t128, t712, T::fused(t110, t713, t86 * t715)),
+                -T::fused(k(0.005), sleeve_dwz, -t710),
+            );
+            let t717 = T::fused(
+                closing1,
+                T::fused(t712, t130, T::fused(-t713, t112, t715 * t88)),
+                t716,
+            );
+            let t718 = T::fused(-k(0.9045340337332909), t215, t698);
+            let t719 = T::fused(-k(0.9045340337332909), t211, t700);
+            let t720 = T::fused(
                 -k(0.6396021490668313),
                 t718,
                 T::fused(
                     -k(0.6396021490668313),
+                    t719,
+                    k(0.4264014327112209) * T::fused(-k(0.9045340337332909), t223, t702),
+                ),
+            );
+            let t721 = t705
+                + T::fused(
+                    closing3,
                     t720,
-                    k(0.4264014327112209) * T::fused(k(0.9045340337332909), t243, -t721),
-                ),
-            );
-            let t723 = T::fused(
-                t241,
-                T::fused(
-                    -k(0.45226701686664544),
-                    t233,
-                    T::fused(-k(0.45226701686664544), t229, t721),
-                ),
-                t245 * (k(0.5) * (t233 - t229)),
-            );
-            let t724 = closing7 * (t246 * t723);
-            let t725 = t724
-                + T::fused(
-                    closing3,
-                    t722,
-                    T::fused(closing2, k(0.7071067811865476) * (t720 - t718), t716),
+                    T::fused(closing2, k(0.7071067811865476) * (t719 - t718), t717),
                 );
-            let t726 = T::fused(t707, t659, T::fused(t713, t623, t710 * t656)) + t725;
-            let t727 = T::fused(
-                -t701,
-                T::fused(t3, t648, T::fused(t58, t625, t34 * t643)),
-                t726 * T::fused(t7, t648, -T::fused(t60, t625, t36 * t643)),
-            );
-            let t728 = T::fused(k(0.1), t687, -t703);
-            let t729 = T::fused(
-                k(0.001),
-                sleeve_wx * sleeve_wy,
-                -T::fused(t83, t728, T::fused(k(0.02), t9, t79 * t728)),
-            );
-            let t730 = k(0.2) * t6;
-            let t731 = t706 - t730;
-            let t732 = t709 + t685;
-            let t733 = k(0.2) * t59;
-            let t734 = t712 + t733;
-            let t735 = T::fused(
-                closing0,
-                T::fused(-t128, t731, T::fused(t110, t732, t86 * t734)),
-                -T::fused(k(0.005), sleeve_dwz, -t729),
-            );
-            let t736 = T::fused(
-                closing1,
-                T::fused(t731, t130, T::fused(-t732, t112, t734 * t88)),
-                t735,
-            );
-            let t737 = T::fused(-k(0.9045340337332909), t234, t717);
-            let t738 = T::fused(-k(0.9045340337332909), t230, t719);
-            let t739 = T::fused(
-                -k(0.6396021490668313),
-                t737,
-                T::fused(
-                    -k(0.6396021490668313),
-                    t738,
-                    k(0.4264014327112209) * T::fused(-k(0.9045340337332909), t242, t721),
-                ),
-            );
-            let t740 = t724
-                + T::fused(
-                    closing3,
-                    t739,
-                    T::fused(closing2, k(0.7071067811865476) * (t738 - t737), t736),
-                );
-            let t741 = T::fused(
-                T::fused(-k(0.4), t2, t730),
+            let t722 = T::fused(
+                T::fused(-k(0.4), t2, t711),
                 t659,
-                T::fused(-(t733 + t702), t623, T::fused(k(0.4), t33, t685) * t656),
+                T::fused(-(t714 + t683), t623, T::fused(k(0.4), t33, t666) * t656),
             );
-            let t742 = t741 - t740;
-            let t743 = T::fused(
-                t742,
+            let t723 = t722 - t721;
+            let t724 = T::fused(
+                t723,
                 T::fused(t10, t648, -T::fused(-t62, t625, t38 * t643)),
-                -t727,
+                -t708,
             );
-            let t744 = k(0.2) * t627;
-            let t745 = k(0.2) * t635;
-            let t746 = T::fused(
-                T::fused(k(0.4), t629, t744),
+            let t725 = k(0.2) * t627;
+            let t726 = k(0.2) * t635;
+            let t727 = T::fused(
+                T::fused(k(0.4), t629, t725),
                 t623,
-                T::fused(k(0.4), t634, -t745) * t656,
+                T::fused(k(0.4), t634, -t726) * t656,
             );
-            let t747 = k(0.2) * t638;
-            let t748 = T::fused(t747, t661, T::fused(-t744, t655, t745 * t658))
-                - (T::fused(T::fused(k(0.4), t637, -t747), t659, t746) + t743 - t684);
+            let t728 = k(0.2) * t638;
+            let t729 = T::fused(t728, t661, T::fused(-t725, t655, t726 * t658))
+                - (T::fused(T::fused(k(0.4), t637, -t728), t659, t727) + t724 - t665);
+            let t730 = k(0.3849001794597505) * t637;
+            let t731 = T::fused(k(1.9245008972987525), t445, t730);
+            let t732 = k(0.3849001794597505) * t634;
+            let t733 = k(0.3849001794597505) * t629;
+            let t734 = T::fused(k(1.9245008972987525), t456, t733);
+            let t735 = T::fused(
+                -k(0.1887128390240993),
+                t731,
+                T::fused(
+                    -k(0.9813067629253163),
+                    T::fused(-k(1.9245008972987525), t451, t732),
+                    k(0.03774256780481986) * t734,
+                ),
+            );
+            let t736 = t445 - t638;
+            let t737 = t456 + t627;
+            let t738 = k(0.19245008972987526)
+                * T::fused(
+                    -k(0.07263560560673482),
+                    t736,
+                    T::fused(
+                        k(0.3777051491550211),
+                        t451 + t635,
+                        k(0.014527121121346966) * t737,
+                    ),
+                );
+            let t739 = T::fused(k(0.9622504486493763), t735, t738);
+            let t740 = T::fused(k(1.9245008972987525), t638, t730);
+            let t741 = T::fused(-k(1.9245008972987525), t627, t733);
+            let t742 = T::fused(
+                k(0.19611613513818404),
+                t740,
+                k(0.9805806756909201) * t741,
+            );
+            let t743 = T::fused(
+                -k(0.1887128390240993),
+                t740,
+                T::fused(
+                    -k(0.9813067629253163),
+                    T::fused(k(1.9245008972987525), t635, t732),
+                    k(0.03774256780481986) * t741,
+                ),
+            );
+            let t744 = T::fused(k(0.9622504486493763), t743, -t738);
+            let t745 = T::fused(
+                k(0.19611613513818404),
+                t731,
+                k(0.9805806756909201) * t734,
+            );
+            let t746 = k(0.19245008972987526) * (t743 + t735);
+            let t747 = T::fused(
+                k(0.07548513560963972),
+                t736,
+                k(0.3774256780481986) * t737,
+            );
+            let t748 = k(1.0) / T::fused(t747, t746, T::fused(-t742, t739, t745 * t744));
             let t749 = k(0.1) * T::fused(t648, t660, T::fused(-t625, t654, t643 * t657));
             let t750 = k(0.2) * t637;
             let t751 = k(0.2) * t634;
@@ -23410,7 +23472,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 T::fused(
                     k(0.005),
                     puck_dwy,
-                    T::fused(k(0.001), puck_wx * puck_wz, t683 + t749),
+                    T::fused(k(0.001), puck_wx * puck_wz, t664 + t749),
                 ),
             );
             let t754 = T::fused(
@@ -23419,12 +23481,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t753,
             );
             let t755 = T::fused(
-                -t701,
+                -t682,
                 T::fused(t3, t649, -T::fused(t58, t628, t34 * t644)),
-                t726 * T::fused(t7, t649, T::fused(t60, t628, t36 * t644)),
+                t707 * T::fused(t7, t649, T::fused(t60, t628, t36 * t644)),
             );
             let t756 = T::fused(
-                t742,
+                t723,
                 T::fused(t10, t649, T::fused(-t62, t628, t38 * t644)),
                 -t755,
             );
@@ -23437,26 +23499,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 T::fused(
                     k(0.001),
                     puck_wx * puck_wy,
-                    T::fused(k(0.048112522432468816), t682, -t749),
+                    T::fused(k(0.048112522432468816), t663, -t749),
                 ),
             );
             let t760 = T::fused(
                 closing4,
-                T::fused(t747, t384, T::fused(t745, t372, t744 * t360)),
+                T::fused(t728, t384, T::fused(t726, t372, t725 * t360)),
                 -t759,
             );
             let t761 = T::fused(
                 closing5,
-                T::fused(-t747, t387, T::fused(-t745, t377, t744 * t365)),
+                T::fused(-t728, t387, T::fused(-t726, t377, t725 * t365)),
                 t760,
             );
             let t762 = T::fused(
-                -t701,
+                -t682,
                 T::fused(t3, t650, -T::fused(-t58, t630, t34 * t645)),
-                t726 * T::fused(t7, t650, T::fused(-t60, t630, t36 * t645)),
+                t707 * T::fused(t7, t650, T::fused(-t60, t630, t36 * t645)),
             );
             let t763 = T::fused(
-                t742,
+                t723,
                 T::fused(t10, t650, T::fused(t62, t630, t38 * t645)),
                 -t762,
             );
@@ -23467,15 +23529,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             );
             let t765 = t764 - t763 + t761;
             let t766 = T::fused(
+                t746 * t748,
                 t765,
-                t678 * t680,
-                -T::fused(-t748, t671 * t680, t758 * (t676 * t680)),
+                -T::fused(-(t739 * t748), t729, t744 * t748 * t758),
             );
-            let t767 = k(0.19245008972987526) * t679;
+            let t767 = k(0.19245008972987526) * t747;
             let t768 = T::fused(
-                -t748,
-                t680 * T::fused(k(0.9622504486493763), t677, t767),
-                t758 * (t680 * T::fused(k(0.9622504486493763), t674, -t767)),
+                -(t748 * T::fused(k(0.9622504486493763), t745, t767)),
+                t729,
+                t748 * T::fused(k(0.9622504486493763), t742, -t767) * t758,
             );
             (
                 t604,
@@ -23496,9 +23558,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
                 t658,
                 t659,
                 t661,
-                t674,
-                t677,
-                t680,
+                t742,
+                t745,
+                t748,
                 t765,
                 t766,
                 t768,
@@ -23509,11 +23571,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             -t125,
             -t142,
             t327,
-            T::fused(t326, t170 * T::fused(k(0.3333333333333333), t167, -t328), -t329),
+            T::fused(t302 * T::fused(k(0.3333333333333333), t299, -t328), t326, -t329),
             t90,
             t114,
             -t132,
-            T::fused(-(t331 * t332), t295, t330 * t332 * t280),
+            T::fused(-(t331 * t332), t276, t330 * t332 * t261),
             closing0,
             closing1,
             closing2,
@@ -23540,7 +23602,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             t619 * t620 * t493,
             T::fused(-k(0.19245008972987526), t658 + t655, k(0.9622504486493763) * t661),
             t766,
-            T::fused(t765, t680 * (k(0.19245008972987526) * (t674 + t677)), -t768),
+            T::fused(t748 * (k(0.19245008972987526) * (t742 + t745)), t765, -t768),
             t623,
             t656,
             -t659,
@@ -23770,30 +23832,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             t163,
             t164,
             t165,
+            t166,
             t167,
             t168,
+            t169,
             t170,
             t171,
+            t172,
             t173,
-            t174,
-            t176,
-            t178,
+            t179,
             t180,
             t181,
             t182,
             t183,
             t184,
-            t185,
-            t186,
+            t187,
             t188,
             t189,
-            t190,
             t191,
             t192,
-            t193,
             t194,
             t195,
-            t196,
             t197,
             t198,
             t199,
@@ -24112,67 +24171,73 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             );
             let t162 = t161 + t153;
             let t163 = k(0.6666666666666666) * t162;
-            let t164 = k(0.6666666666666666) * t158;
-            let t165 = k(1.3333333333333333) * t157;
-            let t166 = t165 - t164;
-            let t167 = k(0.6666666666666666) * t142;
-            let t168 = k(1.3333333333333333) * t141;
-            let t169 = t168 + t167;
-            let t170 = k(1.3333333333333333) * t124;
-            let t171 = k(0.6666666666666666) * t127;
-            let t172 = t171 + t170;
-            let t173 = T::fused(
-                -k(0.3333333333333333),
-                t166,
-                k(0.6666666666666666) * (t172 + t169),
+            let t164 = k(2.0) * t142;
+            let t165 = k(2.0) * t127;
+            let t166 = k(2.0) * t158;
+            let t167 = T::fused(t166, t56, -T::fused(-t164, t49, t165 * t40));
+            let t168 = T::fused(t166, t54, T::fused(t164, t45, t165 * t35));
+            let t169 = k(2.0) * t145;
+            let t170 = k(2.0) * t130;
+            let t171 = k(2.0) * t159;
+            let t172 = T::fused(t171, t54, -T::fused(-t169, t45, t170 * t35));
+            let t173 = T::fused(t171, t56, T::fused(t169, t49, t170 * t40));
+            let t174 = T::fused(
+                k(0.6),
+                T::fused(-k(0.8), t167, k(0.6) * t168),
+                k(0.8) * T::fused(-k(0.6), t172, k(0.8) * t173),
             );
-            let t174 = k(0.6666666666666666) * t159;
-            let t175 = t165 + t174;
-            let t176 = k(0.6666666666666666) * t145;
-            let t177 = t168 - t176;
-            let t178 = k(0.6666666666666666) * t130;
-            let t179 = t178 + t170;
-            let t180 = T::fused(
-                -k(0.3333333333333333),
-                t175,
-                k(0.6666666666666666) * (t179 + t177),
+            let t175 = turn1.cos();
+            let t176 = T::fused(
+                -k(0.6),
+                T::fused(k(0.8), t168, k(0.6) * t167),
+                k(0.8) * T::fused(k(0.6), t173, k(0.8) * t172),
             );
-            let t181 = k(0.6666666666666666) * (t180 + t173);
-            let t182 = t158 + t159;
-            let t183 = t142 + t145;
-            let t184 = t127 - t130;
+            let t177 = turn1.sin();
+            let t178 = -T::fused(t177, t174, t175 * t176)
+                .atan2(T::fused(-t177, t176, t175 * t174));
+            let t179 = k(0.1) - (turn1 + t178);
+            let t180 = k(2.0) * t179;
+            let t181 = k(2.0) * t124;
+            let t182 = k(2.0) * t141;
+            let t183 = k(2.0) * t157;
+            let t184 = T::fused(t183, t52, T::fused(t181, t29, t182 * t43));
             let t185 = T::fused(
-                -k(0.8888888888888888),
-                t182,
-                T::fused(-k(0.4444444444444444), t183, k(0.8888888888888888) * t184),
+                t146,
+                T::fused(k(0.8), t142, k(0.4) * t145),
+                t131 * T::fused(-k(0.8), t127, k(0.4) * t130),
             );
-            let t186 = T::fused(
-                k(0.4444444444444444),
-                t182,
-                k(0.8888888888888888) * (t184 + t183),
+            let t186 = t132
+                * (k(2.0)
+                    * T::fused(-t160, T::fused(k(0.8), t158, k(0.4) * t159), t185));
+            let t187 = T::fused(
+                closing6,
+                k(0.5) * t186,
+                T::fused(
+                    k(0.02),
+                    carrier_dwx,
+                    -T::fused(-t184, t180, k(0.005) * (carrier_wy * carrier_wz)),
+                ),
             );
-            let t187 = k(0.6666666666666666) * t186;
-            let t188 = T::fused(k(0.3333333333333333), t173, t187);
-            let t189 = T::fused(
+            let t188 = k(1.3333333333333333) * t124;
+            let t189 = k(0.6666666666666666) * t127;
+            let t190 = T::fused(k(1.3333333333333333), t130, -(t189 - t188));
+            let t191 = k(0.6666666666666666) * t142;
+            let t192 = k(1.3333333333333333) * t141;
+            let t193 = T::fused(k(1.3333333333333333), t145, -(t192 - t191));
+            let t194 = k(0.6666666666666666) * t158;
+            let t195 = k(1.3333333333333333) * t157;
+            let t196 = T::fused(k(1.3333333333333333), t159, t195 + t194);
+            let t197 = T::fused(
                 k(0.6666666666666666),
-                t175,
-                T::fused(-k(0.3333333333333333), t177, k(0.6666666666666666) * t179),
+                t196,
+                T::fused(k(0.6666666666666666), t190, k(0.3333333333333333) * t193),
             );
-            let t190 = T::fused(k(0.3333333333333333), t180, -t187);
-            let t191 = T::fused(
+            let t198 = T::fused(
                 k(0.6666666666666666),
-                t166,
-                T::fused(-k(0.3333333333333333), t169, k(0.6666666666666666) * t172),
+                t193 - t190,
+                k(0.3333333333333333) * t196,
             );
-            let t192 = k(1.0)
-                / T::fused(t191, t190, -T::fused(-t185, t181, t189 * t188));
-            let t193 = k(2.0) * t142;
-            let t194 = k(2.0) * t127;
-            let t195 = k(2.0) * t158;
-            let t196 = T::fused(t195, t56, -T::fused(-t193, t49, t194 * t40));
-            let t197 = T::fused(t195, t54, T::fused(t193, t45, t194 * t35));
-            let t198 = k(2.0) * t145;
-            let t199 = k(2.0) * t130;
+            let t199 = k(1.0) / T::fused(t197, t197, t198 * t198);
             (
                 t0,
                 t1,
@@ -24272,348 +24337,339 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 t163,
                 t164,
                 t165,
+                t166,
                 t167,
                 t168,
+                t169,
                 t170,
                 t171,
+                t172,
                 t173,
-                t174,
-                t176,
-                t178,
+                t179,
                 t180,
                 t181,
                 t182,
                 t183,
                 t184,
-                t185,
-                t186,
+                t187,
                 t188,
                 t189,
-                t190,
                 t191,
                 t192,
-                t193,
                 t194,
                 t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (t356, t358, t359, t360, t376, t389, t397, t398, t399) = {
-            let t200 = k(2.0) * t159;
-            let t201 = T::fused(t200, t54, -T::fused(-t198, t45, t199 * t35));
-            let t202 = T::fused(t200, t56, T::fused(t198, t49, t199 * t40));
-            let t203 = T::fused(
-                k(0.6),
-                T::fused(-k(0.8), t196, k(0.6) * t197),
-                k(0.8) * T::fused(-k(0.6), t201, k(0.8) * t202),
-            );
-            let t204 = turn1.cos();
-            let t205 = T::fused(
-                -k(0.6),
-                T::fused(k(0.8), t197, k(0.6) * t196),
-                k(0.8) * T::fused(k(0.6), t202, k(0.8) * t201),
-            );
-            let t206 = turn1.sin();
-            let t207 = -T::fused(t206, t203, t204 * t205)
-                .atan2(T::fused(-t206, t205, t204 * t203));
-            let t208 = k(0.1) - (turn1 + t207);
-            let t209 = k(2.0) * t208;
-            let t210 = k(2.0) * t124;
-            let t211 = k(2.0) * t141;
-            let t212 = k(2.0) * t157;
-            let t213 = T::fused(t212, t52, T::fused(t210, t29, t211 * t43));
-            let t214 = T::fused(
-                t146,
-                T::fused(k(0.8), t142, k(0.4) * t145),
-                t131 * T::fused(-k(0.8), t127, k(0.4) * t130),
-            );
-            let t215 = t132
-                * (k(2.0)
-                    * T::fused(-t160, T::fused(k(0.8), t158, k(0.4) * t159), t214));
-            let t216 = T::fused(
-                closing6,
-                k(0.5) * t215,
-                T::fused(
-                    k(0.02),
-                    carrier_dwx,
-                    -T::fused(-t213, t209, k(0.005) * (carrier_wy * carrier_wz)),
-                ),
-            );
-            let t217 = T::fused(k(1.3333333333333333), t130, -(t171 - t170));
-            let t218 = T::fused(k(1.3333333333333333), t145, -(t168 - t167));
-            let t219 = T::fused(k(1.3333333333333333), t159, t165 + t164);
-            let t220 = T::fused(
-                k(0.6666666666666666),
-                t219,
-                T::fused(k(0.6666666666666666), t217, k(0.3333333333333333) * t218),
-            );
-            let t221 = T::fused(
-                k(0.6666666666666666),
-                t218 - t217,
-                k(0.3333333333333333) * t219,
-            );
-            let t222 = k(1.0) / T::fused(t220, t220, t221 * t221);
-            let t223 = k(1.3333333333333333) * t158;
-            let t224 = t174 - t223;
-            let t225 = k(1.3333333333333333) * t142;
-            let t226 = t176 - t225;
-            let t227 = k(1.3333333333333333) * t127;
-            let t228 = t178 + t227;
-            let t229 = T::fused(
+            let t200 = k(1.3333333333333333) * t158;
+            let t201 = k(0.6666666666666666) * t159;
+            let t202 = t201 - t200;
+            let t203 = k(1.3333333333333333) * t142;
+            let t204 = k(0.6666666666666666) * t145;
+            let t205 = t204 - t203;
+            let t206 = k(1.3333333333333333) * t127;
+            let t207 = k(0.6666666666666666) * t130;
+            let t208 = t207 + t206;
+            let t209 = T::fused(
                 T::fused(
                     -k(0.3333333333333333),
-                    t224,
-                    k(0.6666666666666666) * (t228 - t226),
+                    t202,
+                    k(0.6666666666666666) * (t208 - t205),
                 ),
-                t220,
+                t197,
                 T::fused(
                     k(0.6666666666666666),
-                    t224,
-                    T::fused(k(0.3333333333333333), t226, k(0.6666666666666666) * t228),
-                ) * t221,
+                    t202,
+                    T::fused(k(0.3333333333333333), t205, k(0.6666666666666666) * t208),
+                ) * t198,
             );
-            let t230 = shaft_rx - t107;
-            let t231 = shaft_ry - t92;
-            let t232 = shaft_rz - t75;
-            let t233 = T::fused(t56, t232, -T::fused(t40, t230, t49 * t231));
-            let t234 = T::fused(t54, t232, -T::fused(-t35, t230, t45 * t231));
-            let t235 = k(0.30151134457776363) * (t234 - t233);
-            let t236 = k(0.0002) * shaft_wz;
-            let t237 = k(0.0001) * shaft_wy;
-            let t238 = shaft_wy * shaft_wy;
-            let t239 = shaft_wz * shaft_wz;
-            let t240 = T::fused(shaft_wx, t237 + t236, k(0.0003) * (t239 - t238))
-                - T::fused(t114, t235, T::fused(t111, t235, -t209));
-            let t241 = k(0.1) * t149;
-            let t242 = k(0.1) * t134;
-            let t243 = k(0.1) * t115;
-            let t244 = T::fused(t116, t243, k(1.4142135623730951) * (t34 - t39) * t108)
-                - T::fused(-t135, t242, k(1.4142135623730951) * (t44 + t48) * t93);
-            let t245 = T::fused(
+            let t210 = shaft_rx - t107;
+            let t211 = shaft_ry - t92;
+            let t212 = shaft_rz - t75;
+            let t213 = T::fused(t56, t212, -T::fused(t40, t210, t49 * t211));
+            let t214 = T::fused(t54, t212, -T::fused(-t35, t210, t45 * t211));
+            let t215 = k(0.30151134457776363) * (t214 - t213);
+            let t216 = k(0.0002) * shaft_wz;
+            let t217 = k(0.0001) * shaft_wy;
+            let t218 = shaft_wy * shaft_wy;
+            let t219 = shaft_wz * shaft_wz;
+            let t220 = T::fused(shaft_wx, t217 + t216, k(0.0003) * (t219 - t218))
+                - T::fused(t114, t215, T::fused(t111, t215, -t180));
+            let t221 = k(0.1) * t149;
+            let t222 = k(0.1) * t134;
+            let t223 = k(0.1) * t115;
+            let t224 = T::fused(t116, t223, k(1.4142135623730951) * (t34 - t39) * t108)
+                - T::fused(-t135, t222, k(1.4142135623730951) * (t44 + t48) * t93);
+            let t225 = T::fused(
                 closing0,
-                t244 + T::fused(t150, t241, k(1.4142135623730951) * (t53 + t55) * t76),
+                t224 + T::fused(t150, t221, k(1.4142135623730951) * (t53 + t55) * t76),
                 -(T::fused(
                     -k(0.0001),
                     shaft_dwz,
                     T::fused(k(0.0002), shaft_dwy, k(0.001) * shaft_dwx),
-                ) - t240),
+                ) - t220),
             );
-            let t246 = T::fused(t243, t118, t108 * (k(1.2792042981336627) * t115))
-                - T::fused(t242, t137, t93 * (k(1.2792042981336627) * t134));
-            let t247 = T::fused(
+            let t226 = T::fused(t223, t118, t108 * (k(1.2792042981336627) * t115))
+                - T::fused(t222, t137, t93 * (k(1.2792042981336627) * t134));
+            let t227 = T::fused(
                 closing1,
-                t246 + T::fused(-t241, t152, t76 * (k(1.2792042981336627) * t149)),
-                t245,
+                t226 + T::fused(-t221, t152, t76 * (k(1.2792042981336627) * t149)),
+                t225,
             );
-            let t248 = T::fused(t54, t65, T::fused(t45, t83, t35 * t98));
-            let t249 = T::fused(
+            let t228 = T::fused(t54, t65, T::fused(t45, t83, t35 * t98));
+            let t229 = T::fused(
                 k(0.9045340337332909),
                 T::fused(t54, t61, -T::fused(t35, t96, t45 * t81)),
-                k(0.30151134457776363) * t248,
+                k(0.30151134457776363) * t228,
             );
-            let t250 = T::fused(t54, t68, -T::fused(-t45, t85, t35 * t100));
-            let t251 = T::fused(k(0.30151134457776363), t250, t249);
-            let t252 = T::fused(t56, t65, -T::fused(-t49, t83, t40 * t98));
-            let t253 = T::fused(
+            let t230 = T::fused(t54, t68, -T::fused(-t45, t85, t35 * t100));
+            let t231 = T::fused(k(0.30151134457776363), t230, t229);
+            let t232 = T::fused(t56, t65, -T::fused(-t49, t83, t40 * t98));
+            let t233 = T::fused(
                 k(0.9045340337332909),
                 T::fused(t56, t61, -T::fused(-t40, t96, t49 * t81)),
-                k(0.30151134457776363) * t252,
+                k(0.30151134457776363) * t232,
             );
-            let t254 = T::fused(t56, t68, T::fused(t49, t85, t40 * t100));
-            let t255 = T::fused(k(0.30151134457776363), t254, t253);
-            let t256 = T::fused(
+            let t234 = T::fused(t56, t68, T::fused(t49, t85, t40 * t100));
+            let t235 = T::fused(k(0.30151134457776363), t234, t233);
+            let t236 = T::fused(
                 closing3,
-                k(0.6396021490668313) * (t255 - t251),
-                -T::fused(closing2, k(0.7071067811865476) * (t255 + t251), t247),
+                k(0.6396021490668313) * (t235 - t231),
+                -T::fused(closing2, k(0.7071067811865476) * (t235 + t231), t227),
             );
-            let t257 = t250 - t248;
-            let t258 = t254 - t252;
-            let t259 = t258 - t257;
-            let t260 = k(0.5) * t259;
-            let t261 = T::fused(t52, t65, -T::fused(t29, t98, t43 * t83));
-            let t262 = T::fused(t52, t68, -T::fused(-t29, t100, t43 * t85));
-            let t263 = t262 - t261;
-            let t264 = T::fused(
+            let t237 = t230 - t228;
+            let t238 = t234 - t232;
+            let t239 = t238 - t237;
+            let t240 = k(0.5) * t239;
+            let t241 = T::fused(t52, t65, -T::fused(t29, t98, t43 * t83));
+            let t242 = T::fused(t52, t68, -T::fused(-t29, t100, t43 * t85));
+            let t243 = t242 - t241;
+            let t244 = T::fused(
                 k(0.45226701686664544),
-                t258,
-                T::fused(-k(0.30151134457776363), t263, k(0.45226701686664544) * t257),
+                t238,
+                T::fused(-k(0.30151134457776363), t243, k(0.45226701686664544) * t237),
             );
-            let t265 = k(1.0) / T::fused(t260, t260, t264 * t264);
-            let t266 = T::fused(
-                k(0.45226701686664544) * t259,
-                t260,
-                k(0.5) * (t258 + t257) * t264,
-            ) * t265;
-            let t267 = T::fused(closing7, t266, -t256);
-            let t268 = k(0.30151134457776363)
-                * T::fused(t52, t232, T::fused(-t29, t230, t43 * t231));
-            let t269 = T::fused(-k(0.9045340337332909), t233, t268);
-            let t270 = shaft_wx * shaft_wx;
-            let t271 = k(0.0003) * shaft_wx;
-            let t272 = T::fused(
+            let t245 = k(1.0) / T::fused(t240, t240, t244 * t244);
+            let t246 = T::fused(
+                k(0.45226701686664544) * t239,
+                t240,
+                k(0.5) * (t238 + t237) * t244,
+            ) * t245;
+            let t247 = T::fused(closing7, t246, -t236);
+            let t248 = k(0.30151134457776363)
+                * T::fused(t52, t212, T::fused(-t29, t210, t43 * t211));
+            let t249 = T::fused(-k(0.9045340337332909), t213, t248);
+            let t250 = shaft_wx * shaft_wx;
+            let t251 = k(0.0003) * shaft_wx;
+            let t252 = T::fused(
                 shaft_wy,
-                t236 - t271,
-                -T::fused(k(0.0001), t239 - t270, k(0.005) * (shaft_wx * shaft_wz)),
+                t216 - t251,
+                -T::fused(k(0.0001), t219 - t250, k(0.005) * (shaft_wx * shaft_wz)),
             );
-            let t273 = T::fused(
+            let t253 = T::fused(
                 k(0.0003),
                 shaft_dwz,
                 T::fused(k(0.006), shaft_dwy, k(0.0002) * shaft_dwx),
-            ) + (t272 - T::fused(t111, t269, t114 * t269));
-            let t274 = k(0.1) * t51;
-            let t275 = k(0.4) * t55;
-            let t276 = t275 - t274;
-            let t277 = t76 * (k(1.4142135623730951) * t51);
-            let t278 = k(0.1) * t42;
-            let t279 = k(0.4) * t48;
-            let t280 = t279 + t278;
-            let t281 = t93 * (k(1.4142135623730951) * t42);
-            let t282 = k(0.1) * t28;
-            let t283 = k(0.4) * t39;
-            let t284 = t283 - t282;
-            let t285 = t108 * (k(1.4142135623730951) * t28);
-            let t286 = T::fused(-t116, t284, t285) - T::fused(-t135, t280, t281)
-                - T::fused(-t150, t276, t277);
-            let t287 = k(1.2792042981336627) * t51;
-            let t288 = k(1.2792042981336627) * t42;
-            let t289 = k(1.2792042981336627) * t28;
-            let t290 = T::fused(
-                -t284,
+            ) + (t252 - T::fused(t111, t249, t114 * t249));
+            let t254 = k(0.1) * t51;
+            let t255 = k(0.4) * t55;
+            let t256 = t255 - t254;
+            let t257 = t76 * (k(1.4142135623730951) * t51);
+            let t258 = k(0.1) * t42;
+            let t259 = k(0.4) * t48;
+            let t260 = t259 + t258;
+            let t261 = t93 * (k(1.4142135623730951) * t42);
+            let t262 = k(0.1) * t28;
+            let t263 = k(0.4) * t39;
+            let t264 = t263 - t262;
+            let t265 = t108 * (k(1.4142135623730951) * t28);
+            let t266 = T::fused(-t116, t264, t265) - T::fused(-t135, t260, t261)
+                - T::fused(-t150, t256, t257);
+            let t267 = k(1.2792042981336627) * t51;
+            let t268 = k(1.2792042981336627) * t42;
+            let t269 = k(1.2792042981336627) * t28;
+            let t270 = T::fused(
+                -t264,
                 t118,
-                t108 * T::fused(k(0.8528028654224418), t39, t289),
-            ) + T::fused(-t280, t137, t93 * T::fused(k(0.8528028654224418), t48, -t288));
-            let t291 = T::fused(
+                t108 * T::fused(k(0.8528028654224418), t39, t269),
+            ) + T::fused(-t260, t137, t93 * T::fused(k(0.8528028654224418), t48, -t268));
+            let t271 = T::fused(
                 closing1,
-                t290
+                t270
                     - T::fused(
-                        t276,
+                        t256,
                         t152,
-                        t76 * T::fused(k(0.8528028654224418), t55, t287),
+                        t76 * T::fused(k(0.8528028654224418), t55, t267),
                     ),
-                T::fused(closing0, t286, -t273),
+                T::fused(closing0, t266, -t253),
             );
-            let t292 = T::fused(
+            let t272 = T::fused(
                 k(0.9045340337332909),
                 T::fused(t52, t61, T::fused(t29, t96, t43 * t81)),
-                k(0.30151134457776363) * t261,
+                k(0.30151134457776363) * t241,
             );
-            let t293 = T::fused(k(0.30151134457776363), t262, t292);
-            let t294 = closing2 * (k(0.7071067811865476) * t293);
-            let t295 = k(0.6396021490668313) * t293;
-            let t296 = k(0.45226701686664544) * t263;
-            let t297 = t264 * (k(0.5) * t263);
-            let t298 = T::fused(
+            let t273 = T::fused(k(0.30151134457776363), t242, t272);
+            let t274 = closing2 * (k(0.7071067811865476) * t273);
+            let t275 = k(0.6396021490668313) * t273;
+            let t276 = k(0.45226701686664544) * t243;
+            let t277 = t244 * (k(0.5) * t243);
+            let t278 = T::fused(
                 closing7,
-                t265
+                t245
                     * T::fused(
-                        -t260,
-                        T::fused(k(0.30151134457776363), t258, t296),
-                        t297,
+                        -t240,
+                        T::fused(k(0.30151134457776363), t238, t276),
+                        t277,
                     ),
                 T::fused(
                     closing3,
-                    T::fused(k(0.4264014327112209), t255, t295),
-                    t294 - t291,
+                    T::fused(k(0.4264014327112209), t235, t275),
+                    t274 - t271,
                 ),
             );
-            let t299 = T::fused(t275, t153, T::fused(t283, t119, t279 * t138)) + t298;
-            let t300 = T::fused(
-                -t213,
-                t267,
-                T::fused(t212, t54, -T::fused(t210, t35, t211 * t45)) * t299,
+            let t279 = T::fused(t255, t153, T::fused(t263, t119, t259 * t138)) + t278;
+            let t280 = T::fused(
+                -t184,
+                t247,
+                T::fused(t183, t54, -T::fused(t181, t35, t182 * t45)) * t279,
             );
-            let t301 = T::fused(k(0.9045340337332909), t234, -t268);
-            let t302 = T::fused(
+            let t281 = T::fused(k(0.9045340337332909), t214, -t248);
+            let t282 = T::fused(
                 shaft_wz,
-                t237 + t271,
-                T::fused(-k(0.0002), t238 - t270, k(0.005) * (shaft_wx * shaft_wy)),
+                t217 + t251,
+                T::fused(-k(0.0002), t218 - t250, k(0.005) * (shaft_wx * shaft_wy)),
             );
-            let t303 = T::fused(
+            let t283 = T::fused(
                 -k(0.006),
                 shaft_dwz,
                 T::fused(-k(0.0003), shaft_dwy, k(0.0001) * shaft_dwx),
-            ) - (t302 + T::fused(t111, t301, t114 * t301));
-            let t304 = k(0.4) * t53;
-            let t305 = t304 - t274;
-            let t306 = k(0.4) * t44;
-            let t307 = t306 + t278;
-            let t308 = k(0.4) * t34;
-            let t309 = t308 + t282;
-            let t310 = T::fused(-t116, t309, t285) - T::fused(t135, t307, t281)
-                - T::fused(t150, t305, t277);
-            let t311 = T::fused(
-                t309,
+            ) - (t282 + T::fused(t111, t281, t114 * t281));
+            let t284 = k(0.4) * t53;
+            let t285 = t284 - t254;
+            let t286 = k(0.4) * t44;
+            let t287 = t286 + t258;
+            let t288 = k(0.4) * t34;
+            let t289 = t288 + t262;
+            let t290 = T::fused(-t116, t289, t265) - T::fused(t135, t287, t261)
+                - T::fused(t150, t285, t257);
+            let t291 = T::fused(
+                t289,
                 t118,
-                t108 * T::fused(-k(0.8528028654224418), t34, t289),
-            ) - T::fused(t307, t137, t93 * T::fused(-k(0.8528028654224418), t44, t288));
-            let t312 = T::fused(
+                t108 * T::fused(-k(0.8528028654224418), t34, t269),
+            ) - T::fused(t287, t137, t93 * T::fused(-k(0.8528028654224418), t44, t268));
+            let t292 = T::fused(
                 closing1,
-                t311
+                t291
                     - T::fused(
-                        t305,
+                        t285,
                         t152,
-                        t76 * T::fused(k(0.8528028654224418), t53, t287),
+                        t76 * T::fused(k(0.8528028654224418), t53, t267),
                     ),
-                -T::fused(closing0, t310, -t303),
+                -T::fused(closing0, t290, -t283),
             );
-            let t313 = T::fused(
+            let t293 = T::fused(
                 closing7,
-                t265
-                    * T::fused(t260, T::fused(k(0.30151134457776363), t257, t296), t297),
+                t245
+                    * T::fused(t240, T::fused(k(0.30151134457776363), t237, t276), t277),
                 -T::fused(
                     closing3,
-                    T::fused(k(0.4264014327112209), t251, t295),
-                    -(t294 + t312),
+                    T::fused(k(0.4264014327112209), t231, t275),
+                    -(t274 + t292),
                 ),
             );
-            let t314 = T::fused(t304, t153, T::fused(-t308, t119, t306 * t138)) - t313;
-            let t315 = T::fused(
-                T::fused(t212, t56, -T::fused(-t210, t40, t211 * t49)),
-                t314,
-                -t300,
+            let t294 = T::fused(t284, t153, T::fused(-t288, t119, t286 * t138)) - t293;
+            let t295 = T::fused(
+                T::fused(t183, t56, -T::fused(-t181, t40, t182 * t49)),
+                t294,
+                -t280,
             );
-            let t316 = T::fused(
-                k(0.2) * t182,
+            let t296 = t127 - t130;
+            let t297 = t142 + t145;
+            let t298 = t158 + t159;
+            let t299 = T::fused(
+                k(0.2) * t298,
                 t153,
-                T::fused(-(k(0.2) * t184), t119, k(0.2) * t183 * t138),
+                T::fused(-(k(0.2) * t296), t119, k(0.2) * t297 * t138),
             );
-            let t317 = k(0.2) * t130;
-            let t318 = k(0.2) * t145;
-            let t319 = k(0.2) * t159;
-            let t320 = T::fused(t319, t162, -T::fused(t317, t133, t318 * t147));
-            let t321 = t320 + (t316 + t315 - T::fused(closing8, t229 * t222, t216));
-            let t322 = T::fused(t195, t52, -T::fused(t194, t29, t193 * t43));
+            let t300 = k(0.2) * t130;
+            let t301 = k(0.2) * t145;
+            let t302 = k(0.2) * t159;
+            let t303 = T::fused(t302, t162, -T::fused(t300, t133, t301 * t147));
+            let t304 = t303 + (t299 + t295 - T::fused(closing8, t209 * t199, t187));
+            let t305 = t195 - t194;
+            let t306 = t192 + t191;
+            let t307 = t189 + t188;
+            let t308 = T::fused(
+                -k(0.3333333333333333),
+                t305,
+                k(0.6666666666666666) * (t307 + t306),
+            );
+            let t309 = t195 + t201;
+            let t310 = t192 - t204;
+            let t311 = t207 + t188;
+            let t312 = T::fused(
+                -k(0.3333333333333333),
+                t309,
+                k(0.6666666666666666) * (t311 + t310),
+            );
+            let t313 = k(0.6666666666666666) * (t312 + t308);
+            let t314 = T::fused(
+                -k(0.8888888888888888),
+                t298,
+                T::fused(-k(0.4444444444444444), t297, k(0.8888888888888888) * t296),
+            );
+            let t315 = T::fused(
+                k(0.4444444444444444),
+                t298,
+                k(0.8888888888888888) * (t296 + t297),
+            );
+            let t316 = k(0.6666666666666666) * t315;
+            let t317 = T::fused(k(0.3333333333333333), t308, t316);
+            let t318 = T::fused(
+                k(0.6666666666666666),
+                t309,
+                T::fused(-k(0.3333333333333333), t310, k(0.6666666666666666) * t311),
+            );
+            let t319 = T::fused(k(0.3333333333333333), t312, -t316);
+            let t320 = T::fused(
+                k(0.6666666666666666),
+                t305,
+                T::fused(-k(0.3333333333333333), t306, k(0.6666666666666666) * t307),
+            );
+            let t321 = k(1.0)
+                / T::fused(t320, t319, -T::fused(-t314, t313, t318 * t317));
+            let t322 = T::fused(t166, t52, -T::fused(t165, t29, t164 * t43));
             let t323 = T::fused(
                 t146,
-                T::fused(-k(0.8), t141, t318),
-                t131 * T::fused(k(0.8), t124, t317),
+                T::fused(-k(0.8), t141, t301),
+                t131 * T::fused(k(0.8), t124, t300),
             );
             let t324 = k(0.5)
                 * (t132
-                    * (k(2.0) * T::fused(-t160, T::fused(k(0.8), t157, t319), t323)));
+                    * (k(2.0) * T::fused(-t160, T::fused(k(0.8), t157, t302), t323)));
             let t325 = T::fused(
                 closing6,
                 t324,
                 -T::fused(
                     k(0.03),
                     carrier_dwy,
-                    -T::fused(-t322, t209, k(0.005) * (carrier_wx * carrier_wz)),
+                    -T::fused(-t322, t180, k(0.005) * (carrier_wx * carrier_wz)),
                 ),
             );
             let t326 = t157 - t159;
             let t327 = t141 + t145;
             let t328 = t124 - t130;
             let t329 = T::fused(
-                t220,
+                t197,
                 T::fused(
                     -k(0.4444444444444444),
                     t326,
                     k(0.8888888888888888) * (t328 + t327),
                 ),
-                t221
+                t198
                     * T::fused(
                         k(0.8888888888888888),
                         t326,
@@ -24630,9 +24686,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 k(0.2) * (t141 - t145) * t138,
             );
             let t331 = T::fused(k(0.2) * (t157 + t159), t153, -t330)
-                - T::fused(t196, t314, -T::fused(-t322, t267, t197 * t299));
-            let t332 = t320 + (t331 + T::fused(closing8, t222 * t329, -t325));
-            let t333 = T::fused(t200, t52, -T::fused(-t199, t29, t198 * t43));
+                - T::fused(t167, t294, -T::fused(-t322, t247, t168 * t279));
+            let t332 = t303 + (t331 + T::fused(closing8, t199 * t329, -t325));
+            let t333 = T::fused(t171, t52, -T::fused(-t170, t29, t169 * t43));
             let t334 = T::fused(
                 -t146,
                 T::fused(k(0.2), t142, k(0.4) * t141),
@@ -24647,20 +24703,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
                 T::fused(
                     k(0.025),
                     carrier_dwz,
-                    T::fused(-t333, t209, k(0.01) * (carrier_wx * carrier_wy)),
+                    T::fused(-t333, t180, k(0.01) * (carrier_wx * carrier_wy)),
                 ),
             );
-            let t337 = T::fused(-k(0.6666666666666666), t157, t223);
-            let t338 = T::fused(k(0.6666666666666666), t141, t225);
-            let t339 = T::fused(k(0.6666666666666666), t124, t227);
+            let t337 = T::fused(-k(0.6666666666666666), t157, t200);
+            let t338 = T::fused(k(0.6666666666666666), t141, t203);
+            let t339 = T::fused(k(0.6666666666666666), t124, t206);
             let t340 = T::fused(
-                t220,
+                t197,
                 T::fused(
                     k(0.3333333333333333),
                     t337,
                     k(0.6666666666666666) * (t339 + t338),
                 ),
-                t221
+                t198
                     * T::fused(
                         -k(0.6666666666666666),
                         t337,
@@ -24675,37 +24731,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t342 = k(0.2) * (t141 + t142);
             let t343 = k(0.2) * (t157 - t158);
             let t344 = T::fused(t343, t153, -T::fused(-t341, t119, t342 * t138))
-                - T::fused(t202, t314, -T::fused(-t333, t267, t201 * t299));
+                - T::fused(t173, t294, -T::fused(-t333, t247, t172 * t279));
             let t345 = T::fused(t343, t162, T::fused(-t341, t133, t342 * t147));
-            let t346 = t345 + (t344 - T::fused(closing8, t222 * t340, t336));
+            let t346 = t345 + (t344 - T::fused(closing8, t199 * t340, t336));
             let t347 = T::fused(
+                t319 * t321,
                 t346,
-                t190 * t192,
-                -T::fused(t321, t181 * t192, t332 * (t188 * t192)),
+                -T::fused(t313 * t321, t304, t317 * t321 * t332),
             );
-            let t348 = k(0.6666666666666666) * t185;
+            let t348 = k(0.6666666666666666) * t314;
             let t349 = T::fused(
-                t321,
-                t192 * (k(0.6666666666666666) * (t189 + t191)),
-                t332 * (t192 * T::fused(k(0.3333333333333333), t191, t348)),
+                t321 * (k(0.6666666666666666) * (t318 + t320)),
+                t304,
+                t321 * T::fused(k(0.3333333333333333), t320, t348) * t332,
             );
             let t350 = T::fused(
+                t321 * T::fused(k(0.3333333333333333), t318, -t348),
                 t346,
-                t192 * T::fused(k(0.3333333333333333), t189, -t348),
                 -t349,
             );
-            let t351 = T::fused(t186, t350, -T::fused(t185, t347, t320));
-            let t352 = T::fused(t180, t350, T::fused(-t189, t347, t320));
-            let t353 = T::fused(t173, t350, T::fused(-t191, t347, t345));
+            let t351 = T::fused(t315, t350, -T::fused(t314, t347, t303));
+            let t352 = T::fused(t312, t350, T::fused(-t318, t347, t303));
+            let t353 = T::fused(t308, t350, T::fused(-t320, t347, t345));
             let t354 = carrier_ry - T::fused(-k(0.2), t141 - t142, carrier_ry);
             let t355 = carrier_rz - T::fused(-k(0.2), t157 + t158, carrier_rz);
             let t356 = T::fused(-t162, t354, t147 * t355)
-                - T::fused(t199, t353, -T::fused(-t210, t351, t194 * t352));
+                - T::fused(t170, t353, -T::fused(-t181, t351, t165 * t352));
             let t357 = carrier_rx - T::fused(k(0.2), t124 - t127, carrier_rx);
             let t358 = T::fused(-t133, t355, t162 * t357)
-                - T::fused(t198, t353, T::fused(-t211, t351, t193 * t352));
+                - T::fused(t169, t353, T::fused(-t182, t351, t164 * t352));
             let t359 = T::fused(-t147, t357, t133 * t354)
-                + T::fused(t200, t353, T::fused(t212, t351, t195 * t352));
+                + T::fused(t171, t353, T::fused(t183, t351, t166 * t352));
             let t360 = k(0.6666666666666666) * t359;
             let t361 = T::fused(
                 puck_wz,
@@ -24836,7 +24892,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for AllJoints<T> {
             let t386 = k(0.6) - t385;
             let t387 = T::fused(
                 k(0.5),
-                T::fused(t386, k(30.0) * t386, t208 * t209),
+                T::fused(t386, k(30.0) * t386, t179 * t180),
                 carrier_rz * (k(1.5) * self.gravity),
             );
             let t388 = T::fused(

@@ -3834,7 +3834,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t91 = T::fused(
                 -k(0.6),
                 t84,
-                T::fused(t90, t84, T::fused(-t83, t45, t88 * t82)),
+                T::fused(t84, t90, T::fused(-t45, t83, t82 * t88)),
             );
             let t92 = T::fused(k(0.002), t78, k(0.004) * t79);
             let t93 = k(2.0) * t77;

@@ -11,7 +11,7 @@
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 1301 operations by rotations of the bodies; 1315 operations by relative Euler parameters
+//! * accelerations: 1334 operations by rotations of the bodies; 1334 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -24,7 +24,7 @@
 //! | gamma | γ | 111 | 183 | 1 | 295 | 0 of 18 | 1125 | 295 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 87 | 113 | 1 | 201 | 0 of 18 | 493 | 202 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 541 | 749 | 11 | 1301 | 0 of 22 | 7.4e10 | 1304 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 550 | 773 | 11 | 1334 | 0 of 22 | 7.4e10 | 1335 |
 //! | multipliers | λ, the accelerations being known | 107 | 170 | 4 | 281 | 0 of 18 | 1698 | 282 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 23 | 76 | 76 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
@@ -1679,7 +1679,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             -(k(0.01076) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1301 operations (541 ±, 749 ×, 11 ÷) and 1 functions.
+    /// Solves eq. (17): 1334 operations (550 ±, 773 ×, 11 ÷) and 1 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1714,66 +1714,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t19,
             t20,
             t21,
+            t22,
             t23,
             t24,
             t25,
             t26,
             t27,
+            t28,
+            t29,
+            t32,
             t37,
-            t42,
-            t44,
-            t49,
-            t50,
-            t51,
-            t54,
-            t56,
+            t43,
+            t46,
+            t47,
+            t48,
+            t53,
+            t55,
             t59,
-            t60,
+            t61,
             t63,
-            t64,
-            t65,
-            t66,
             t67,
             t69,
-            t71,
-            t74,
+            t72,
+            t73,
             t76,
-            t81,
+            t77,
+            t78,
+            t79,
+            t80,
             t82,
-            t85,
-            t86,
+            t84,
             t87,
-            t89,
-            t92,
+            t90,
             t93,
+            t94,
             t95,
-            t96,
-            t99,
+            t97,
             t100,
             t101,
+            t102,
             t103,
+            t104,
+            t105,
             t106,
+            t108,
             t111,
-            t112,
-            t113,
             t115,
+            t116,
+            t117,
+            t118,
+            t119,
             t121,
-            t122,
-            t123,
-            t124,
+            t126,
+            t127,
             t128,
-            t131,
-            t132,
-            t146,
-            t150,
-            t154,
-            t167,
-            t189,
-            t190,
-            t192,
-            t193,
+            t129,
+            t133,
+            t136,
+            t137,
+            t151,
+            t155,
+            t159,
+            t172,
+            t178,
+            t194,
             t195,
-            t196,
+            t197,
             t198,
             t199,
         ) = {
@@ -1795,253 +1801,249 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             let t15 = rocker_wy * rocker_wy;
             let t16 = T::fused(rocker_wz, rocker_wz, t15);
             let t17 = rocker_e0 * rocker_e0;
-            let t18 = rocker_wx * rocker_wy;
-            let t19 = rocker_e0 * rocker_e3;
-            let t20 = rocker_e1 * rocker_e2;
-            let t21 = t20 - t19;
-            let t22 = T::fused(
-                k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17)),
-                t16,
-                k(2.0) * t21 * t18,
-            );
-            let t23 = rocker_wx * rocker_wz;
-            let t24 = rocker_e0 * rocker_e2;
-            let t25 = rocker_e1 * rocker_e3;
-            let t26 = t25 + t24;
-            let t27 = k(0.2) * T::fused(k(2.0) * t26, t23, t22);
-            let t28 = crank_e0 * crank_e0;
-            let t29 = k(0.5) - T::fused(crank_e3, crank_e3, t28);
-            let t30 = crank_wy * crank_wy;
-            let t31 = T::fused(crank_wx, crank_wx, t30);
-            let t32 = t31 * (k(0.5) / t29);
-            let t33 = crank_e0 * crank_e2;
-            let t34 = crank_e1 * crank_e3;
-            let t35 = k(2.0) * (t34 - t33);
-            let t36 = crank_wx * crank_wz;
-            let t37 = T::fused(-t35, t32, t36);
-            let t38 = t34 + t33;
-            let t39 = k(0.2) * t38;
-            let t40 = coupler_e0 * coupler_e1;
-            let t41 = coupler_e2 * coupler_e3;
-            let t42 = t41 - t40;
-            let t43 = T::fused(k(4.905), t42, k(0.02095) * t9);
-            let t44 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
-            let t45 = k(2.0) * t44;
-            let t46 = crank_e0 * crank_e1;
-            let t47 = crank_e2 * crank_e3;
-            let t48 = t47 - t46;
-            let t49 = k(2.0) * t48;
-            let t50 = k(2.0) * t38;
-            let t51 = t41 + t40;
-            let t52 = k(2.0) * t51;
-            let t53 = k(2.0) * t29;
-            let t54 = T::fused(t53, t52, -T::fused(-t49, t45, t50 * t8));
-            let t55 = T::fused(-k(4.905), t44, k(0.02095) * t4);
-            let t56 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
-            let t57 = k(2.0) * t56;
-            let t58 = k(2.0) * t42;
-            let t59 = T::fused(t53, t57, T::fused(t49, t58, t50 * t13));
-            let t60 = T::fused(t54, t43, t59 * t55);
-            let t61 = k(2.0) * (t6 + t5);
-            let t62 = k(2.0) * (t11 - t10);
-            let t63 = T::fused(t53, t62, -T::fused(-t50, t3, t49 * t61));
-            let t64 = k(5e-5) * t63;
-            let t65 = k(0.0835) * t54;
-            let t66 = k(0.0835) * t59;
-            let t67 = k(1.0) / T::fused(t59, t66, T::fused(t63, t64, t54 * t65));
-            let t68 = t67 * t60;
-            let t69 = T::fused(-t65, t68, t43);
-            let t70 = t65 * t67;
-            let t71 = k(1.0) / T::fused(-t65, t70, k(0.0835));
-            let t72 = t71 * t69;
-            let t73 = t64 * t67;
-            let t74 = t65 * t73;
-            let t75 = T::fused(crank_wz, crank_wz, t30);
-            let t76 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t28));
-            let t77 = crank_wx * crank_wy;
-            let t78 = crank_e0 * crank_e3;
-            let t79 = crank_e1 * crank_e2;
-            let t80 = t79 - t78;
-            let t81 = k(2.0) * t80;
-            let t82 = T::fused(t50, t36, T::fused(t76, t75, t81 * t77));
-            let t83 = k(0.1) * t82;
-            let t84 = t83 + t14;
-            let t85 = k(0.5) * t12;
-            let t86 = k(0.5) * t7;
-            let t87 = T::fused(t85, t54, t86 * t59);
-            let t88 = t67 * t87;
-            let t89 = T::fused(-t65, t88, t85);
-            let t90 = t71 * t89;
-            let t91 = T::fused(-t64, t88, t74 * t90);
-            let t92 = k(0.25) * T::fused(t58, t9, -T::fused(t61, t1, t45 * t4));
-            let t93 = k(2.0) * (t79 + t78);
-            let t94 = k(0.5) - T::fused(crank_e2, crank_e2, t28);
-            let t95 = k(2.0) * t94;
-            let t96 = T::fused(t49, t36, -T::fused(t93, t75, t95 * t77));
-            let t97 = k(0.1) * t96;
-            let t98 = t97 + t92;
-            let t99 = k(0.5) * t42;
-            let t100 = k(0.5) * t44;
-            let t101 = T::fused(-t99, t54, t100 * t59);
-            let t102 = t67 * t101;
-            let t103 = T::fused(t65, t102, t99);
-            let t104 = t71 * t103;
-            let t105 = T::fused(t64, t102, t74 * t104);
-            let t106 = k(0.25) * T::fused(t57, t9, -T::fused(-t62, t1, t52 * t4));
-            let t107 = t47 + t46;
-            let t108 = k(2.0) * t107;
-            let t109 = k(0.1) * T::fused(t53, t36, -T::fused(-t35, t75, t108 * t77));
-            let t110 = t109 + t106;
-            let t111 = k(0.5) * t56;
-            let t112 = k(0.5) * t51;
-            let t113 = T::fused(-t111, t54, t112 * t59);
-            let t114 = t67 * t113;
-            let t115 = T::fused(t65, t114, t111);
-            let t116 = t71 * t115;
-            let t117 = T::fused(t64, t114, t74 * t116);
-            let t118 = k(1.0) / T::fused(t59, t59, t63 * t63);
-            let t119 = crank_wy * crank_wz;
-            let t120 = T::fused(
-                t36,
-                T::fused(t35, t52, -T::fused(t76, t8, t93 * t45)),
-                t119 * T::fused(t108, t52, T::fused(t95, t45, t81 * t8)),
-            );
-            let t121 = T::fused(t35, t62, T::fused(t76, t3, t93 * t61));
-            let t122 = T::fused(t35, t57, -T::fused(-t76, t13, t93 * t58));
-            let t123 = T::fused(t108, t62, -T::fused(t81, t3, t95 * t61));
-            let t124 = T::fused(t108, t57, -T::fused(-t95, t58, t81 * t13));
+            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
+            let t19 = rocker_wx * rocker_wy;
+            let t20 = rocker_e0 * rocker_e3;
+            let t21 = rocker_e1 * rocker_e2;
+            let t22 = t21 - t20;
+            let t23 = k(2.0) * t22;
+            let t24 = rocker_wx * rocker_wz;
+            let t25 = rocker_e0 * rocker_e2;
+            let t26 = rocker_e1 * rocker_e3;
+            let t27 = t26 + t25;
+            let t28 = k(2.0) * t27;
+            let t29 = k(0.2) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
+            let t30 = crank_wx * crank_wz;
+            let t31 = crank_e0 * crank_e0;
+            let t32 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t31));
+            let t33 = crank_wy * crank_wz;
+            let t34 = crank_e0 * crank_e3;
+            let t35 = crank_e1 * crank_e2;
+            let t36 = t35 - t34;
+            let t37 = k(2.0) * t36;
+            let t38 = crank_wy * crank_wy;
+            let t39 = T::fused(crank_wx, crank_wx, t38);
+            let t40 = crank_e0 * crank_e2;
+            let t41 = crank_e1 * crank_e3;
+            let t42 = t41 + t40;
+            let t43 = k(2.0) * t42;
+            let t44 = T::fused(t43, t39, -T::fused(-t32, t30, t37 * t33));
+            let t45 = k(0.5) - T::fused(crank_e2, crank_e2, t31);
+            let t46 = k(2.0) * t45;
+            let t47 = k(2.0) * (t35 + t34);
+            let t48 = T::fused(-t32, t46, t37 * t47);
+            let t49 = k(1.0) / t48;
+            let t50 = crank_e0 * crank_e1;
+            let t51 = crank_e2 * crank_e3;
+            let t52 = t51 - t50;
+            let t53 = k(2.0) * t52;
+            let t54 = T::fused(t53, t39, T::fused(-t47, t30, t46 * t33));
+            let t55 = T::fused(t46 * t49, t44, t37 * t49 * t54);
+            let t56 = k(0.2) * t42;
+            let t57 = coupler_e0 * coupler_e1;
+            let t58 = coupler_e2 * coupler_e3;
+            let t59 = t58 - t57;
+            let t60 = T::fused(k(4.905), t59, k(0.02095) * t9);
+            let t61 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
+            let t62 = k(2.0) * t61;
+            let t63 = t58 + t57;
+            let t64 = k(2.0) * t63;
+            let t65 = k(0.5) - T::fused(crank_e3, crank_e3, t31);
+            let t66 = k(2.0) * t65;
+            let t67 = T::fused(t66, t64, -T::fused(-t53, t62, t43 * t8));
+            let t68 = T::fused(-k(4.905), t61, k(0.02095) * t4);
+            let t69 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
+            let t70 = k(2.0) * t69;
+            let t71 = k(2.0) * t59;
+            let t72 = T::fused(t66, t70, T::fused(t53, t71, t43 * t13));
+            let t73 = T::fused(t67, t60, t72 * t68);
+            let t74 = k(2.0) * (t6 + t5);
+            let t75 = k(2.0) * (t11 - t10);
+            let t76 = T::fused(t66, t75, -T::fused(-t43, t3, t53 * t74));
+            let t77 = k(5e-5) * t76;
+            let t78 = k(0.0835) * t67;
+            let t79 = k(0.0835) * t72;
+            let t80 = k(1.0) / T::fused(t72, t79, T::fused(t76, t77, t67 * t78));
+            let t81 = t80 * t73;
+            let t82 = T::fused(-t78, t81, t60);
+            let t83 = t78 * t80;
+            let t84 = k(1.0) / T::fused(-t78, t83, k(0.0835));
+            let t85 = t84 * t82;
+            let t86 = t77 * t80;
+            let t87 = t78 * t86;
+            let t88 = T::fused(crank_wz, crank_wz, t38);
+            let t89 = crank_wx * crank_wy;
+            let t90 = T::fused(t43, t30, T::fused(t32, t88, t37 * t89));
+            let t91 = k(0.1) * t90;
+            let t92 = t91 + t14;
+            let t93 = k(0.5) * t12;
+            let t94 = k(0.5) * t7;
+            let t95 = T::fused(t93, t67, t94 * t72);
+            let t96 = t80 * t95;
+            let t97 = T::fused(-t78, t96, t93);
+            let t98 = t84 * t97;
+            let t99 = T::fused(-t77, t96, t87 * t98);
+            let t100 = k(0.25) * T::fused(t71, t9, -T::fused(t74, t1, t62 * t4));
+            let t101 = T::fused(t53, t30, -T::fused(t47, t88, t46 * t89));
+            let t102 = k(0.1) * t101;
+            let t103 = t102 + t100;
+            let t104 = k(0.5) * t59;
+            let t105 = k(0.5) * t61;
+            let t106 = T::fused(-t104, t67, t105 * t72);
+            let t107 = t80 * t106;
+            let t108 = T::fused(t78, t107, t104);
+            let t109 = t84 * t108;
+            let t110 = T::fused(t77, t107, t87 * t109);
+            let t111 = k(0.25) * T::fused(t70, t9, -T::fused(-t75, t1, t64 * t4));
+            let t112 = k(2.0) * (t41 - t40);
+            let t113 = t51 + t50;
+            let t114 = k(2.0) * t113;
+            let t115 = k(0.1) * T::fused(t66, t30, -T::fused(-t112, t88, t114 * t89));
+            let t116 = t115 + t111;
+            let t117 = k(0.5) * t69;
+            let t118 = k(0.5) * t63;
+            let t119 = T::fused(-t117, t67, t118 * t72);
+            let t120 = t80 * t119;
+            let t121 = T::fused(t78, t120, t117);
+            let t122 = t84 * t121;
+            let t123 = T::fused(t77, t120, t87 * t122);
+            let t124 = k(1.0) / T::fused(t72, t72, t76 * t76);
             let t125 = T::fused(
+                t30,
+                T::fused(t112, t64, -T::fused(t32, t8, t47 * t62)),
+                t33 * T::fused(t114, t64, T::fused(t46, t62, t37 * t8)),
+            );
+            let t126 = T::fused(t112, t75, T::fused(t32, t3, t47 * t74));
+            let t127 = T::fused(t112, t70, -T::fused(-t32, t13, t47 * t71));
+            let t128 = T::fused(t114, t75, -T::fused(t37, t3, t46 * t74));
+            let t129 = T::fused(t114, t70, -T::fused(-t46, t71, t37 * t13));
+            let t130 = T::fused(
                 -crank_wy,
-                T::fused(coupler_wz, t121, coupler_wx * t122),
-                crank_wx * T::fused(coupler_wz, t123, coupler_wx * t124),
+                T::fused(coupler_wz, t126, coupler_wx * t127),
+                crank_wx * T::fused(coupler_wz, t128, coupler_wx * t129),
             );
-            let t126 = T::fused(
+            let t131 = T::fused(
                 coupler_wy * coupler_wz,
-                t59,
-                T::fused(-t4, t63, T::fused(coupler_wx, coupler_wx, t0) * t54),
+                t72,
+                T::fused(-t4, t76, T::fused(coupler_wx, coupler_wx, t0) * t67),
             );
-            let t127 = T::fused(k(2.0), t125, t126) + T::fused(t31, t54, t120);
-            let t128 = t127 * (t59 * t118);
-            let t129 = t71 * t74;
-            let t130 = T::fused(t74, t129, -T::fused(-t64, t73, k(5e-5)));
-            let t131 = t63 * t118 * t127;
-            let t132 = t66 * t70;
-            let t133 = T::fused(t66, t73, t132 * t129);
-            let t134 = T::fused(-t130, t128, t133 * t131)
-                + T::fused(t117, t110, T::fused(t91, t84, t105 * t98));
-            let t135 = T::fused(t132, t90, T::fused(-t66, t88, t86));
-            let t136 = T::fused(t132, t104, -T::fused(-t66, t102, t100));
-            let t137 = T::fused(t132, t116, -T::fused(-t66, t114, t112));
-            let t138 = T::fused(t132, t71 * t132, -T::fused(-t66, t66 * t67, k(0.0835)));
-            let t139 = T::fused(-t133, t128, t138 * t131)
-                + T::fused(t137, t110, T::fused(t135, t84, t136 * t98));
-            let t140 = T::fused(
-                t63,
-                t134 + T::fused(-t64, t68, t74 * t72),
-                t59 * (t139 + T::fused(t132, t72, T::fused(-t66, t68, t55))),
+            let t132 = T::fused(k(2.0), t130, t131) + T::fused(t39, t67, t125);
+            let t133 = t132 * (t72 * t124);
+            let t134 = t84 * t87;
+            let t135 = T::fused(t87, t134, -T::fused(-t77, t86, k(5e-5)));
+            let t136 = t76 * t124 * t132;
+            let t137 = t79 * t83;
+            let t138 = T::fused(t79, t86, t137 * t134);
+            let t139 = T::fused(-t135, t133, t138 * t136)
+                + T::fused(t123, t116, T::fused(t99, t92, t110 * t103));
+            let t140 = T::fused(t137, t98, T::fused(-t79, t96, t94));
+            let t141 = T::fused(t137, t109, -T::fused(-t79, t107, t105));
+            let t142 = T::fused(t137, t122, -T::fused(-t79, t120, t118));
+            let t143 = T::fused(t137, t84 * t137, -T::fused(-t79, t79 * t80, k(0.0835)));
+            let t144 = T::fused(-t138, t133, t143 * t136)
+                + T::fused(t142, t116, T::fused(t140, t92, t141 * t103));
+            let t145 = T::fused(
+                t76,
+                t139 + T::fused(-t77, t81, t87 * t85),
+                t72 * (t144 + T::fused(t137, t85, T::fused(-t79, t81, t68))),
             );
-            let t141 = T::fused(-t101, t88, t103 * t90);
-            let t142 = T::fused(t101, t102, t103 * t104);
-            let t143 = T::fused(t113, t102, t115 * t104);
-            let t144 = T::fused(-t105, t128, t136 * t131)
-                - (t98 - T::fused(t143, t110, T::fused(t141, t84, t142 * t98)));
-            let t145 = t144 + T::fused(t103, t72, -T::fused(t101, t68, k(9.81)));
-            let t146 = k(0.2) * t94;
-            let t147 = T::fused(t87, t88, t89 * t90);
-            let t148 = T::fused(-t113, t88, t115 * t90);
-            let t149 = T::fused(-t91, t128, t135 * t131)
-                - (t84 - T::fused(t148, t110, T::fused(t147, t84, t141 * t98)));
-            let t150 = k(0.2) * t80;
-            let t151 = t150 * (t149 + T::fused(t87, t68, t89 * t72));
-            let t152 = T::fused(t113, t114, t115 * t116);
-            let t153 = T::fused(-t117, t128, t137 * t131)
-                - (t110 - T::fused(t152, t110, T::fused(t148, t84, t143 * t98)));
-            let t154 = k(0.2) * t107;
-            let t155 = t154 * (t153 + T::fused(-t113, t68, t115 * t72));
-            let t156 = T::fused(t146, k(3.924) - t145, t151) - t155
-                - T::fused(k(0.00133), t77, t155 - T::fused(-t146, t145, t151) + t140);
-            let t157 = T::fused(t154, t148, T::fused(-t150, t147, t146 * t141));
-            let t158 = T::fused(t63, t91, t59 * t135);
-            let t159 = t150 + t157 + t158;
-            let t160 = T::fused(t154, t143, T::fused(-t150, t141, t146 * t142));
-            let t161 = T::fused(t63, t105, t59 * t136);
-            let t162 = t146 - t160 - t161;
-            let t163 = T::fused(
-                -(t159 + T::fused(k(0.28), t80, t157)),
-                t83,
-                (t162 - T::fused(-k(0.28), t94, t160)) * t97,
-            );
-            let t164 = T::fused(t154, t152, T::fused(-t150, t148, t146 * t143));
-            let t165 = T::fused(t63, t117, t59 * t137);
-            let t166 = t154 - t164 - t165;
-            let t167 = T::fused(-t108, t32, t119);
+            let t146 = T::fused(-t106, t96, t108 * t98);
+            let t147 = T::fused(t106, t107, t108 * t109);
+            let t148 = T::fused(t119, t107, t121 * t109);
+            let t149 = T::fused(-t110, t133, t141 * t136)
+                - (t103 - T::fused(t148, t116, T::fused(t146, t92, t147 * t103)));
+            let t150 = t149 + T::fused(t108, t85, -T::fused(t106, t81, k(9.81)));
+            let t151 = k(0.2) * t45;
+            let t152 = T::fused(t95, t96, t97 * t98);
+            let t153 = T::fused(-t119, t96, t121 * t98);
+            let t154 = T::fused(-t99, t133, t140 * t136)
+                - (t92 - T::fused(t153, t116, T::fused(t152, t92, t146 * t103)));
+            let t155 = k(0.2) * t36;
+            let t156 = t155 * (t154 + T::fused(t95, t81, t97 * t85));
+            let t157 = T::fused(t119, t120, t121 * t122);
+            let t158 = T::fused(-t123, t133, t142 * t136)
+                - (t116 - T::fused(t157, t116, T::fused(t153, t92, t148 * t103)));
+            let t159 = k(0.2) * t113;
+            let t160 = t159 * (t158 + T::fused(-t119, t81, t121 * t85));
+            let t161 = T::fused(t151, k(3.924) - t150, t156) - t160
+                - T::fused(k(0.00133), t89, t160 - T::fused(-t151, t150, t156) + t145);
+            let t162 = T::fused(t159, t153, T::fused(-t155, t152, t151 * t146));
+            let t163 = T::fused(t76, t99, t72 * t140);
+            let t164 = t155 + t162 + t163;
+            let t165 = T::fused(t159, t148, T::fused(-t155, t146, t151 * t147));
+            let t166 = T::fused(t76, t110, t72 * t141);
+            let t167 = t151 - t165 - t166;
             let t168 = T::fused(
-                t63,
-                T::fused(t130, t121, t133 * t122),
-                t59 * T::fused(t133, t121, t138 * t122),
+                -(t164 + T::fused(k(0.28), t36, t162)),
+                t91,
+                (t167 - T::fused(-k(0.28), t45, t165)) * t102,
             );
-            let t169 = T::fused(
-                -t150,
-                T::fused(t91, t121, t135 * t122),
-                t146 * T::fused(t105, t121, t136 * t122),
+            let t169 = T::fused(t159, t157, T::fused(-t155, t153, t151 * t148));
+            let t170 = T::fused(t76, t123, t72 * t142);
+            let t171 = t159 - t169 - t170;
+            let t172 = T::fused(t44, t47 * t49, t54 * (t32 * t49));
+            let t173 = T::fused(
+                t76,
+                T::fused(t135, t126, t138 * t127),
+                t72 * T::fused(t138, t126, t143 * t127),
             );
-            let t170 = T::fused(t154, T::fused(t117, t121, t137 * t122), t169);
-            let t171 = T::fused(
-                t63,
-                T::fused(t130, t123, t133 * t124),
-                t59 * T::fused(t133, t123, t138 * t124),
+            let t174 = T::fused(
+                -t155,
+                T::fused(t99, t126, t140 * t127),
+                t151 * T::fused(t110, t126, t141 * t127),
             );
-            let t172 = k(0.2) * t48;
-            let t173 = k(0.2) * t29;
-            let t174 = T::fused(t91, t123, t135 * t124);
-            let t175 = T::fused(t105, t123, t136 * t124);
-            let t176 = T::fused(t117, t123, t137 * t124);
-            let t177 = T::fused(t154, t176, T::fused(-t150, t174, t146 * t175))
-                - T::fused(t173, t165, T::fused(t39, t158, t172 * t161));
-            let t178 = T::fused(t173, t164, T::fused(t39, t157, t172 * t160));
-            let t179 = t39 - T::fused(t173, t148, T::fused(t39, t147, t172 * t141))
-                + t174;
-            let t180 = t172 - T::fused(t173, t143, T::fused(t39, t141, t172 * t142))
-                + t175;
-            let t181 = t173 - T::fused(t173, t152, T::fused(t39, t148, t172 * t143))
-                + t176;
-            let t182 = T::fused(t154, t181, T::fused(-t150, t179, t146 * t180))
-                + T::fused(t173, t166, T::fused(-t39, t159, t172 * t162));
-            let t183 = T::fused(
-                -(t170 + (t170 + t168)),
-                t167,
-                (t182 - t178 - (t178 - t177 - t171)) * t37,
+            let t175 = T::fused(t159, T::fused(t123, t126, t142 * t127), t174);
+            let t176 = T::fused(
+                t76,
+                T::fused(t135, t128, t138 * t129),
+                t72 * T::fused(t138, t128, t143 * t129),
             );
-            let t184 = t183 + T::fused(t166 - T::fused(-k(0.28), t107, t164), t109, t163)
-                + t156;
-            let t185 = T::fused(
-                t63,
-                T::fused(t63, t130, t59 * t133),
-                t59 * T::fused(t63, t133, t59 * t138),
-            );
-            let t186 = T::fused(t154, t164, T::fused(-t150, t157, t146 * t160));
-            let t187 = T::fused(
-                k(2.0),
-                T::fused(t154, t165, T::fused(-t150, t158, t146 * t161)),
-                t186,
-            );
+            let t177 = k(0.2) * t52;
+            let t178 = k(0.2) * t65;
+            let t179 = T::fused(t99, t128, t140 * t129);
+            let t180 = T::fused(t110, t128, t141 * t129);
+            let t181 = T::fused(t123, t128, t142 * t129);
+            let t182 = T::fused(t159, t181, T::fused(-t155, t179, t151 * t180))
+                - T::fused(t178, t170, T::fused(t56, t163, t177 * t166));
+            let t183 = T::fused(t178, t169, T::fused(t56, t162, t177 * t165));
+            let t184 = t56 - T::fused(t178, t153, T::fused(t56, t152, t177 * t146))
+                + t179;
+            let t185 = t177 - T::fused(t178, t148, T::fused(t56, t146, t177 * t147))
+                + t180;
+            let t186 = t178 - T::fused(t178, t157, T::fused(t56, t153, t177 * t148))
+                + t181;
+            let t187 = T::fused(t159, t186, T::fused(-t155, t184, t151 * t185))
+                + T::fused(t178, t171, T::fused(-t56, t164, t177 * t167));
             let t188 = T::fused(
-                k(2.0),
-                T::fused(t154, t166, T::fused(t150, t159, t146 * t162)),
-                -t186,
+                -(t175 + (t175 + t173)),
+                t172,
+                (t187 - t183 - (t183 - t182 - t176)) * t55,
             );
-            let t189 = k(1.0)
-                / (t188 + (k(0.014) + (k(0.00135) - (t187 - (k(0.01) - t185)))));
-            let t190 = t189 * t184;
-            let t191 = T::fused(t39, t37, t150 * t190);
-            let t192 = t83 + t191;
-            let t193 = t84 + (t191 + t192);
-            let t194 = T::fused(-t172, t37, t146 * t190);
-            let t195 = t97 - t194;
-            let t196 = t98 - (t194 - t195);
-            let t197 = T::fused(-t173, t37, t154 * t190);
-            let t198 = t109 - t197;
-            let t199 = t110 - (t197 - t198);
+            let t189 = t188 - T::fused(t171 - T::fused(-k(0.28), t113, t169), t115, t168)
+                - t161;
+            let t190 = T::fused(
+                t76,
+                T::fused(t76, t135, t72 * t138),
+                t72 * T::fused(t76, t138, t72 * t143),
+            );
+            let t191 = T::fused(t159, t169, T::fused(-t155, t162, t151 * t165));
+            let t192 = T::fused(
+                k(2.0),
+                T::fused(t159, t170, T::fused(-t155, t163, t151 * t166)),
+                t191,
+            );
+            let t193 = T::fused(
+                k(2.0),
+                T::fused(t159, t171, T::fused(t155, t164, t151 * t167)),
+                -t191,
+            );
+            let t194 = k(1.0)
+                / (t193 + (k(0.014) + (k(0.00135) - (t192 - (k(0.01) - t190)))));
+            let t195 = t194 * t189;
+            let t196 = T::fused(t56, t55, t155 * t195);
+            let t197 = t91 - t196;
+            let t198 = t92 - (t196 - t197);
+            let t199 = T::fused(-t177, t55, t151 * t195);
             (
                 t7,
                 t12,
@@ -2053,478 +2055,497 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
                 t19,
                 t20,
                 t21,
+                t22,
                 t23,
                 t24,
                 t25,
                 t26,
                 t27,
+                t28,
+                t29,
+                t32,
                 t37,
-                t42,
-                t44,
-                t49,
-                t50,
-                t51,
-                t54,
-                t56,
+                t43,
+                t46,
+                t47,
+                t48,
+                t53,
+                t55,
                 t59,
-                t60,
+                t61,
                 t63,
-                t64,
-                t65,
-                t66,
                 t67,
                 t69,
-                t71,
-                t74,
+                t72,
+                t73,
                 t76,
-                t81,
+                t77,
+                t78,
+                t79,
+                t80,
                 t82,
-                t85,
-                t86,
+                t84,
                 t87,
-                t89,
-                t92,
+                t90,
                 t93,
+                t94,
                 t95,
-                t96,
-                t99,
+                t97,
                 t100,
                 t101,
+                t102,
                 t103,
+                t104,
+                t105,
                 t106,
+                t108,
                 t111,
-                t112,
-                t113,
                 t115,
+                t116,
+                t117,
+                t118,
+                t119,
                 t121,
-                t122,
-                t123,
-                t124,
+                t126,
+                t127,
                 t128,
-                t131,
-                t132,
-                t146,
-                t150,
-                t154,
-                t167,
-                t189,
-                t190,
-                t192,
-                t193,
+                t129,
+                t133,
+                t136,
+                t137,
+                t151,
+                t155,
+                t159,
+                t172,
+                t178,
+                t194,
                 t195,
-                t196,
+                t197,
                 t198,
                 t199,
             )
         };
         let (
-            t211,
-            t213,
+            t217,
+            t218,
             t221,
-            t224,
-            t253,
-            t291,
-            t298,
+            t226,
+            t227,
+            t234,
+            t263,
             t301,
-            t307,
-            t335,
-            t336,
-            t355,
-            t356,
-            t357,
-            t358,
-            t360,
-            t362,
-            t364,
+            t308,
+            t311,
+            t317,
+            t345,
+            t346,
             t365,
+            t366,
+            t367,
             t368,
-            t376,
-            t377,
+            t370,
+            t372,
+            t374,
+            t375,
             t378,
-            t379,
-            t380,
-            t382,
-            t383,
-            t384,
-            t385,
             t386,
+            t387,
+            t388,
+            t389,
+            t390,
+            t392,
+            t393,
+            t394,
+            t395,
+            t396,
         ) = {
-            let t200 = t128 + T::fused(t63, t190, T::fused(-t121, t167, t123 * t37));
-            let t201 = t131 - T::fused(t59, t190, T::fused(-t122, t167, t124 * t37));
-            let t202 = T::fused(-t74, t200, t132 * t201)
-                + T::fused(t115, t199, T::fused(t89, t193, t103 * t196));
-            let t203 = t71 * (t69 + t202);
-            let t204 = T::fused(t66, t201, T::fused(-t64, t200, t65 * t203))
-                + T::fused(t113, t199, T::fused(-t87, t193, t101 * t196));
-            let t205 = t67 * (t60 - t204);
-            let t206 = T::fused(t54, t205, t203);
-            let t207 = T::fused(t59, t205, t201);
-            let t208 = T::fused(t85, t206, t86 * t207);
-            let t209 = t193 - t208;
-            let t210 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
-            let t211 = T::fused(rocker_wx, rocker_wx, t15) * (k(0.5) / t210);
-            let t212 = k(2.0) * (t25 - t24);
-            let t213 = T::fused(-t212, t211, t23);
-            let t214 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
-            let t215 = rocker_e0 * rocker_e1;
-            let t216 = rocker_e2 * rocker_e3;
-            let t217 = t216 - t215;
-            let t218 = T::fused(
-                k(2.0) * t217,
-                t23,
-                -T::fused(k(2.0) * (t20 + t19), t16, k(2.0) * t214 * t18),
+            let t200 = t102 + t199;
+            let t201 = t103 + (t199 + t200);
+            let t202 = T::fused(-t178, t55, t159 * t195);
+            let t203 = t115 + t202;
+            let t204 = t116 + (t202 + t203);
+            let t205 = t133 - T::fused(t76, t195, T::fused(-t126, t172, t128 * t55));
+            let t206 = t136 + T::fused(t72, t195, T::fused(-t127, t172, t129 * t55));
+            let t207 = T::fused(-t87, t205, t137 * t206)
+                + T::fused(t121, t204, T::fused(t97, t198, t108 * t201));
+            let t208 = t84 * (t82 + t207);
+            let t209 = T::fused(t79, t206, T::fused(-t77, t205, t78 * t208))
+                + T::fused(t119, t204, T::fused(-t95, t198, t106 * t201));
+            let t210 = t80 * (t73 - t209);
+            let t211 = T::fused(t67, t210, t208);
+            let t212 = T::fused(t72, t210, t206);
+            let t213 = T::fused(t93, t211, t94 * t212);
+            let t214 = t198 - t213;
+            let t215 = rocker_wy * rocker_wz;
+            let t216 = T::fused(rocker_wx, rocker_wx, t15);
+            let t217 = T::fused(t28, t216, -T::fused(-t18, t24, t23 * t215));
+            let t218 = k(2.0) * (t21 + t20);
+            let t219 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
+            let t220 = k(2.0) * t219;
+            let t221 = k(1.0) / T::fused(-t23, t218, t18 * t220);
+            let t222 = rocker_e0 * rocker_e1;
+            let t223 = rocker_e2 * rocker_e3;
+            let t224 = t223 - t222;
+            let t225 = k(2.0) * t224;
+            let t226 = T::fused(t225, t216, T::fused(-t218, t24, t220 * t215));
+            let t227 = T::fused(t220 * t221, t217, t23 * t221 * t226);
+            let t228 = k(0.2) * T::fused(t225, t24, -T::fused(t218, t16, t220 * t19));
+            let t229 = t223 + t222;
+            let t230 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
+            let t231 = T::fused(
+                k(2.0) * t230,
+                t24,
+                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t229 * t19),
             );
-            let t219 = k(0.2) * t218;
-            let t220 = t216 + t215;
-            let t221 = k(2.0) * t220;
-            let t222 = k(0.2)
-                * T::fused(k(2.0) * t210, t23, -T::fused(-t212, t16, t221 * t18));
-            let t223 = T::fused(
-                k(0.32) * t220,
-                t222,
-                T::fused(-(k(0.32) * t21), t27, k(0.32) * t214 * t219),
-            );
-            let t224 = k(23.364485981308412)
-                * (t223 - T::fused(-k(3.1392), t214, k(0.01076) * t18));
-            let t225 = k(0.4) * t21;
-            let t226 = T::fused(k(0.4) * t26, t213, t225 * t224);
-            let t227 = t27 + t226;
-            let t228 = t226 + t227 + (t208 - t209) + (t27 - t14);
-            let t229 = T::fused(t12, t54, t7 * t59);
-            let t230 = t229 * t67;
-            let t231 = T::fused(-t65, t230, t12);
-            let t232 = t231 * t71;
+            let t232 = k(0.2) * t231;
             let t233 = T::fused(
-                t63,
-                T::fused(-t64, t230, t232 * t74),
-                t59 * T::fused(t232, t132, T::fused(-t66, t230, t7)),
+                k(0.32) * t229,
+                t232,
+                T::fused(-(k(0.32) * t22), t29, k(0.32) * t219 * t228),
             );
-            let t234 = T::fused(
-                -t150,
-                T::fused(t232, t89, -T::fused(-t230, t87, k(1.0))),
-                t146 * T::fused(-t230, t101, t232 * t103),
+            let t234 = k(23.364485981308412)
+                * (t233 - T::fused(-k(3.1392), t219, k(0.01076) * t19));
+            let t235 = k(0.4) * t22;
+            let t236 = T::fused(k(0.4) * t27, t227, t235 * t234);
+            let t237 = t29 + t236;
+            let t238 = t236 + t237 + (t213 - t214) + (t29 - t14);
+            let t239 = T::fused(t12, t67, t7 * t72);
+            let t240 = t239 * t80;
+            let t241 = T::fused(-t78, t240, t12);
+            let t242 = t241 * t84;
+            let t243 = T::fused(
+                t76,
+                T::fused(-t77, t240, t242 * t87),
+                t72 * T::fused(t242, t137, T::fused(-t79, t240, t7)),
             );
-            let t235 = T::fused(t154, T::fused(-t230, t113, t232 * t115), t234);
-            let t236 = (t235 + (t235 + t233)) * t189;
-            let t237 = t150 * t236;
-            let t238 = k(2.0) * t237;
-            let t239 = t146 * t236;
-            let t240 = k(2.0) * t239;
-            let t241 = t154 * t236;
-            let t242 = k(2.0) * t241;
-            let t243 = t63 * t236;
-            let t244 = t59 * t236;
-            let t245 = T::fused(t74, t243, t132 * t244)
-                + T::fused(t115, t242, T::fused(-t89, t238, t103 * t240));
-            let t246 = t71 * (t231 + t245);
-            let t247 = T::fused(t66, t244, T::fused(t64, t243, t65 * t246))
-                + T::fused(t113, t242, T::fused(t87, t238, t101 * t240));
-            let t248 = t67 * (t229 - t247);
-            let t249 = T::fused(t54, t248, t246);
-            let t250 = T::fused(t59, t248, t244);
-            let t251 = T::fused(t85, t249, t86 * t250);
-            let t252 = t238 + t251;
-            let t253 = k(18.69158878504673) * t21;
-            let t254 = t225 * t253;
-            let t255 = k(1.0) / T::fused(k(2.0), t254, t251 + t252);
-            let t256 = T::fused(-t99, t206, t100 * t207);
-            let t257 = t196 + t256;
-            let t258 = k(0.4) * t214;
-            let t259 = T::fused(-(k(0.4) * t217), t213, t258 * t224);
-            let t260 = t219 - t259;
-            let t261 = T::fused(-t99, t249, t100 * t250);
-            let t262 = t240 + t261;
-            let t263 = t258 * t253;
-            let t264 = T::fused(k(2.0), t263, t261 + t262);
-            let t265 = t255 * t264;
-            let t266 = T::fused(
-                t265,
-                t228,
-                -(t259 - t260 + (t256 + t257) - (t219 - t92)),
+            let t244 = T::fused(
+                -t155,
+                T::fused(t242, t97, -T::fused(-t240, t95, k(1.0))),
+                t151 * T::fused(-t240, t106, t242 * t108),
             );
-            let t267 = T::fused(-t42, t54, t44 * t59);
-            let t268 = t67 * t267;
-            let t269 = T::fused(t65, t268, t42);
-            let t270 = t71 * t269;
-            let t271 = T::fused(
-                t63,
-                T::fused(t64, t268, t74 * t270),
-                t59 * T::fused(t132, t270, -T::fused(-t66, t268, t44)),
+            let t245 = T::fused(t159, T::fused(-t240, t119, t242 * t121), t244);
+            let t246 = (t245 + (t245 + t243)) * t194;
+            let t247 = t155 * t246;
+            let t248 = k(2.0) * t247;
+            let t249 = t151 * t246;
+            let t250 = k(2.0) * t249;
+            let t251 = t159 * t246;
+            let t252 = k(2.0) * t251;
+            let t253 = t76 * t246;
+            let t254 = t72 * t246;
+            let t255 = T::fused(t87, t253, t137 * t254)
+                + T::fused(t121, t252, T::fused(-t97, t248, t108 * t250));
+            let t256 = t84 * (t241 + t255);
+            let t257 = T::fused(t79, t254, T::fused(t77, t253, t78 * t256))
+                + T::fused(t119, t252, T::fused(t95, t248, t106 * t250));
+            let t258 = t80 * (t239 - t257);
+            let t259 = T::fused(t67, t258, t256);
+            let t260 = T::fused(t72, t258, t254);
+            let t261 = T::fused(t93, t259, t94 * t260);
+            let t262 = t248 + t261;
+            let t263 = k(18.69158878504673) * t22;
+            let t264 = t235 * t263;
+            let t265 = k(1.0) / T::fused(k(2.0), t264, t261 + t262);
+            let t266 = T::fused(-t104, t211, t105 * t212);
+            let t267 = t201 + t266;
+            let t268 = k(0.4) * t219;
+            let t269 = T::fused(-(k(0.4) * t224), t227, t268 * t234);
+            let t270 = t228 - t269;
+            let t271 = T::fused(-t104, t259, t105 * t260);
+            let t272 = t250 + t271;
+            let t273 = t268 * t263;
+            let t274 = T::fused(k(2.0), t273, t271 + t272);
+            let t275 = t265 * t274;
+            let t276 = T::fused(
+                t275,
+                t238,
+                -(t269 - t270 + (t266 + t267) - (t228 - t100)),
             );
-            let t272 = T::fused(
-                -t150,
-                T::fused(-t87, t268, t89 * t270),
-                t146 * T::fused(t103, t270, -T::fused(-t101, t268, k(1.0))),
+            let t277 = T::fused(-t59, t67, t61 * t72);
+            let t278 = t80 * t277;
+            let t279 = T::fused(t78, t278, t59);
+            let t280 = t84 * t279;
+            let t281 = T::fused(
+                t76,
+                T::fused(t77, t278, t87 * t280),
+                t72 * T::fused(t137, t280, -T::fused(-t79, t278, t61)),
             );
-            let t273 = T::fused(t154, T::fused(t113, t268, t115 * t270), t272);
-            let t274 = t189 * (t273 + (t273 + t271));
-            let t275 = t150 * t274;
-            let t276 = k(2.0) * t275;
-            let t277 = t146 * t274;
-            let t278 = k(2.0) * t277;
-            let t279 = t154 * t274;
-            let t280 = k(2.0) * t279;
-            let t281 = t63 * t274;
-            let t282 = t59 * t274;
-            let t283 = T::fused(t74, t281, t132 * t282)
-                + T::fused(t115, t280, T::fused(-t89, t276, t103 * t278));
-            let t284 = t71 * (t269 + t283);
-            let t285 = T::fused(t66, t282, T::fused(t64, t281, t65 * t284))
-                + T::fused(t113, t280, T::fused(t87, t276, t101 * t278));
-            let t286 = t67 * (t267 + t285);
-            let t287 = T::fused(-t54, t286, t284);
-            let t288 = T::fused(-t59, t286, t282);
-            let t289 = T::fused(-t99, t287, t100 * t288);
-            let t290 = t278 + t289;
-            let t291 = k(18.69158878504673) * t214;
-            let t292 = t258 * t291;
-            let t293 = k(1.0)
-                / T::fused(t264, t265, -T::fused(k(2.0), t292, -(t289 + t290)));
-            let t294 = T::fused(-t111, t206, t112 * t207);
-            let t295 = t199 + t294;
-            let t296 = k(0.4) * t220;
-            let t297 = T::fused(-(k(0.4) * t210), t213, t296 * t224);
-            let t298 = t222 - t297;
-            let t299 = T::fused(-t111, t249, t112 * t250);
-            let t300 = t242 + t299;
-            let t301 = t296 * t253;
-            let t302 = T::fused(k(2.0), t301, t299 + t300);
-            let t303 = t255 * t302;
-            let t304 = T::fused(
-                t303,
-                t228,
-                -(t297 - t298 + (t294 + t295) - (t222 - t106)),
+            let t282 = T::fused(
+                -t155,
+                T::fused(-t95, t278, t97 * t280),
+                t151 * T::fused(t108, t280, -T::fused(-t106, t278, k(1.0))),
             );
-            let t305 = T::fused(-t111, t287, t112 * t288);
-            let t306 = t280 + t305;
-            let t307 = t296 * t291;
-            let t308 = T::fused(t264, t303, -T::fused(k(2.0), t307, -(t305 + t306)));
-            let t309 = t293 * t308;
-            let t310 = T::fused(t309, t266, -t304);
-            let t311 = T::fused(-t56, t54, t51 * t59);
-            let t312 = t67 * t311;
-            let t313 = T::fused(t65, t312, t56);
-            let t314 = t71 * t313;
-            let t315 = T::fused(
-                t63,
-                T::fused(t64, t312, t74 * t314),
-                t59 * T::fused(t132, t314, -T::fused(-t66, t312, t51)),
+            let t283 = T::fused(t159, T::fused(t119, t278, t121 * t280), t282);
+            let t284 = t194 * (t283 + (t283 + t281));
+            let t285 = t155 * t284;
+            let t286 = k(2.0) * t285;
+            let t287 = t151 * t284;
+            let t288 = k(2.0) * t287;
+            let t289 = t159 * t284;
+            let t290 = k(2.0) * t289;
+            let t291 = t76 * t284;
+            let t292 = t72 * t284;
+            let t293 = T::fused(t87, t291, t137 * t292)
+                + T::fused(t121, t290, T::fused(-t97, t286, t108 * t288));
+            let t294 = t84 * (t279 + t293);
+            let t295 = T::fused(t79, t292, T::fused(t77, t291, t78 * t294))
+                + T::fused(t119, t290, T::fused(t95, t286, t106 * t288));
+            let t296 = t80 * (t277 + t295);
+            let t297 = T::fused(-t67, t296, t294);
+            let t298 = T::fused(-t72, t296, t292);
+            let t299 = T::fused(-t104, t297, t105 * t298);
+            let t300 = t288 + t299;
+            let t301 = k(18.69158878504673) * t219;
+            let t302 = t268 * t301;
+            let t303 = k(1.0)
+                / T::fused(t274, t275, -T::fused(k(2.0), t302, -(t299 + t300)));
+            let t304 = T::fused(-t117, t211, t118 * t212);
+            let t305 = t204 + t304;
+            let t306 = k(0.4) * t229;
+            let t307 = T::fused(-(k(0.4) * t230), t227, t306 * t234);
+            let t308 = t232 - t307;
+            let t309 = T::fused(-t117, t259, t118 * t260);
+            let t310 = t252 + t309;
+            let t311 = t306 * t263;
+            let t312 = T::fused(k(2.0), t311, t309 + t310);
+            let t313 = t265 * t312;
+            let t314 = T::fused(
+                t313,
+                t238,
+                -(t307 - t308 + (t304 + t305) - (t232 - t111)),
             );
-            let t316 = T::fused(
-                -t150,
-                T::fused(-t87, t312, t89 * t314),
-                t146 * T::fused(t101, t312, t103 * t314),
+            let t315 = T::fused(-t117, t297, t118 * t298);
+            let t316 = t290 + t315;
+            let t317 = t306 * t301;
+            let t318 = T::fused(t274, t313, -T::fused(k(2.0), t317, -(t315 + t316)));
+            let t319 = t303 * t318;
+            let t320 = T::fused(t319, t276, -t314);
+            let t321 = T::fused(-t69, t67, t63 * t72);
+            let t322 = t80 * t321;
+            let t323 = T::fused(t78, t322, t69);
+            let t324 = t84 * t323;
+            let t325 = T::fused(
+                t76,
+                T::fused(t77, t322, t87 * t324),
+                t72 * T::fused(t137, t324, -T::fused(-t79, t322, t63)),
             );
-            let t317 = T::fused(
-                t154,
-                T::fused(t115, t314, -T::fused(-t113, t312, k(1.0))),
-                t316,
+            let t326 = T::fused(
+                -t155,
+                T::fused(-t95, t322, t97 * t324),
+                t151 * T::fused(t106, t322, t108 * t324),
             );
-            let t318 = t189 * (t317 + (t317 + t315));
-            let t319 = t150 * t318;
-            let t320 = k(2.0) * t319;
-            let t321 = t146 * t318;
-            let t322 = k(2.0) * t321;
-            let t323 = t154 * t318;
-            let t324 = k(2.0) * t323;
-            let t325 = t63 * t318;
-            let t326 = t59 * t318;
-            let t327 = T::fused(t74, t325, t132 * t326)
-                + T::fused(t115, t324, T::fused(-t89, t320, t103 * t322));
-            let t328 = t71 * (t313 + t327);
-            let t329 = T::fused(t66, t326, T::fused(t64, t325, t65 * t328))
-                + T::fused(t113, t324, T::fused(t87, t320, t101 * t322));
-            let t330 = t67 * (t311 + t329);
-            let t331 = T::fused(-t54, t330, t328);
-            let t332 = T::fused(-t59, t330, t326);
-            let t333 = T::fused(-t111, t331, t112 * t332);
-            let t334 = t324 + t333;
-            let t335 = k(18.69158878504673) * t220;
-            let t336 = t296 * t335;
-            let t337 = T::fused(
-                t308,
-                t309,
-                -T::fused(t302, t303, -T::fused(k(2.0), t336, -(t333 + t334))),
+            let t327 = T::fused(
+                t159,
+                T::fused(t121, t324, -T::fused(-t119, t322, k(1.0))),
+                t326,
             );
-            let t338 = k(1.0) / t337;
-            let t339 = T::fused(t95, crank_wz, t49 * crank_wy);
-            let t340 = T::fused(-t81, crank_wz, t50 * crank_wy);
-            let t341 = k(1.0) / T::fused(t76, t76, t93 * t93);
-            let t342 = t339 * t340;
-            let t343 = T::fused(
-                t341 * t341 * (k(2.0) * T::fused(-t93, t339, t76 * t340)),
-                T::fused(t76, t339, t93 * t340),
-                t341 * (T::fused(t76, t96, -t342) + T::fused(t93, t82, t342)),
+            let t328 = t194 * (t327 + (t327 + t325));
+            let t329 = t155 * t328;
+            let t330 = k(2.0) * t329;
+            let t331 = t151 * t328;
+            let t332 = k(2.0) * t331;
+            let t333 = t159 * t328;
+            let t334 = k(2.0) * t333;
+            let t335 = t76 * t328;
+            let t336 = t72 * t328;
+            let t337 = T::fused(t87, t335, t137 * t336)
+                + T::fused(t121, t334, T::fused(-t97, t330, t108 * t332));
+            let t338 = t84 * (t323 + t337);
+            let t339 = T::fused(t79, t336, T::fused(t77, t335, t78 * t338))
+                + T::fused(t119, t334, T::fused(t95, t330, t106 * t332));
+            let t340 = t80 * (t321 + t339);
+            let t341 = T::fused(-t67, t340, t338);
+            let t342 = T::fused(-t72, t340, t336);
+            let t343 = T::fused(-t117, t341, t118 * t342);
+            let t344 = t334 + t343;
+            let t345 = k(18.69158878504673) * t229;
+            let t346 = t306 * t345;
+            let t347 = T::fused(
+                t318,
+                t319,
+                -T::fused(t312, t313, -T::fused(k(2.0), t346, -(t343 + t344))),
             );
-            let t344 = t341 * T::fused(-t76, t95, t81 * t93);
-            let t345 = T::fused(T::fused(t76, t49, t50 * t93) * t341, t37, t344 * t190);
-            let t346 = t344 * t236;
-            let t347 = t255 * t346;
-            let t348 = T::fused(
-                t347,
-                t228,
-                t345 - T::fused(k(1.8), (k(3.0) * t).sin(), -t343),
+            let t348 = k(1.0) / t347;
+            let t349 = T::fused(t46, crank_wz, t53 * crank_wy);
+            let t350 = T::fused(-t37, crank_wz, t43 * crank_wy);
+            let t351 = k(1.0) / T::fused(t32, t32, t47 * t47);
+            let t352 = t349 * t350;
+            let t353 = T::fused(
+                t351 * t351 * (k(2.0) * T::fused(-t47, t349, t32 * t350)),
+                T::fused(t32, t349, t47 * t350),
+                t351 * (T::fused(t32, t101, -t352) + T::fused(t47, t90, t352)),
             );
-            let t349 = T::fused(t344, t274, t264 * t347);
-            let t350 = t293 * t349;
-            let t351 = T::fused(t308, t350, -T::fused(t344, t318, t302 * t347));
-            let t352 = t338 * t351;
-            let t353 = t344 * t189;
-            let t354 = T::fused(
-                t351,
-                t352,
-                -T::fused(t349, t350, -T::fused(-t344, t353, t346 * t347)),
-            );
-            let t355 = T::fused(t352, t310, -T::fused(t350, t266, -t348)) / t354;
-            let t356 = T::fused(-t338, t310, t352 * t355);
-            let t357 = T::fused(t350, t355, -T::fused(t293, t266, t309 * t356));
+            let t354 = t351 * t48;
+            let t355 = T::fused(T::fused(t32, t53, t43 * t47) * t351, t55, t354 * t195);
+            let t356 = t354 * t246;
+            let t357 = t265 * t356;
             let t358 = T::fused(
-                t347,
-                t355,
-                -T::fused(t303, t356, T::fused(t255, t228, t265 * t357)),
+                t357,
+                t238,
+                -(t355 + T::fused(k(1.8), (k(3.0) * t).sin(), -t353)),
             );
-            let t359 = t150 * t353;
-            let t360 = T::fused(
-                t355,
-                t359,
-                T::fused(t319, t356, T::fused(t275, t357, T::fused(-t237, t358, t192))),
-            );
-            let t361 = t146 * t353;
-            let t362 = T::fused(
-                t355,
-                t361,
-                T::fused(t321, t356, T::fused(t277, t357, -T::fused(t239, t358, t195))),
-            );
-            let t363 = t154 * t353;
+            let t359 = T::fused(t354, t284, t274 * t357);
+            let t360 = t303 * t359;
+            let t361 = T::fused(t318, t360, -T::fused(t354, t328, t312 * t357));
+            let t362 = t348 * t361;
+            let t363 = t354 * t194;
             let t364 = T::fused(
-                t355,
+                t361,
+                t362,
+                -T::fused(t359, t360, -T::fused(-t354, t363, t356 * t357)),
+            );
+            let t365 = T::fused(t362, t320, -T::fused(t360, t276, -t358)) / t364;
+            let t366 = T::fused(-t348, t320, t362 * t365);
+            let t367 = T::fused(t360, t365, -T::fused(t303, t276, t319 * t366));
+            let t368 = T::fused(
+                t357,
+                t365,
+                -T::fused(t313, t366, T::fused(t265, t238, t275 * t367)),
+            );
+            let t369 = t155 * t363;
+            let t370 = T::fused(
+                t365,
+                t369,
+                T::fused(t329, t366, T::fused(t285, t367, T::fused(-t247, t368, t197))),
+            );
+            let t371 = t151 * t363;
+            let t372 = T::fused(
+                t365,
+                t371,
+                T::fused(t331, t366, T::fused(t287, t367, -T::fused(t249, t368, t200))),
+            );
+            let t373 = t159 * t363;
+            let t374 = T::fused(
+                t365,
+                t373,
+                T::fused(t333, t366, T::fused(t289, t367, -T::fused(t251, t368, t203))),
+            );
+            let t375 = T::fused(
                 t363,
-                T::fused(t323, t356, T::fused(t279, t357, -T::fused(t241, t358, t198))),
+                t365,
+                T::fused(t328, t366, T::fused(t284, t367, -T::fused(t246, t368, t195))),
             );
-            let t365 = T::fused(
-                t353,
-                t355,
-                T::fused(t318, t356, T::fused(t274, t357, T::fused(-t236, t358, t190))),
+            let t376 = T::fused(
+                t367,
+                t286 + T::fused(t93, t297, t94 * t298),
+                T::fused(-t262, t368, t214),
             );
-            let t366 = T::fused(
-                t357,
-                t276 + T::fused(t85, t287, t86 * t288),
-                T::fused(-t252, t358, t209),
+            let t377 = k(2.0) * t369;
+            let t378 = k(2.0) * t371;
+            let t379 = k(2.0) * t373;
+            let t380 = t76 * t363;
+            let t381 = t72 * t363;
+            let t382 = T::fused(t87, t380, t137 * t381)
+                + T::fused(t121, t379, T::fused(-t97, t377, t108 * t378));
+            let t383 = t84 * t382;
+            let t384 = T::fused(t79, t381, T::fused(t77, t380, t78 * t383))
+                + T::fused(t119, t379, T::fused(t95, t377, t106 * t378));
+            let t385 = t80 * t384;
+            let t386 = T::fused(-t67, t385, t383);
+            let t387 = T::fused(-t72, t385, t381);
+            let t388 = T::fused(
+                t365,
+                t377 + T::fused(t93, t386, t94 * t387),
+                T::fused(t366, t330 + T::fused(t93, t341, t94 * t342), t376),
             );
-            let t367 = k(2.0) * t359;
-            let t368 = k(2.0) * t361;
-            let t369 = k(2.0) * t363;
-            let t370 = t63 * t353;
-            let t371 = t59 * t353;
-            let t372 = T::fused(t74, t370, t132 * t371)
-                + T::fused(t115, t369, T::fused(-t89, t367, t103 * t368));
-            let t373 = t71 * t372;
-            let t374 = T::fused(t66, t371, T::fused(t64, t370, t65 * t373))
-                + T::fused(t113, t369, T::fused(t87, t367, t101 * t368));
-            let t375 = t67 * t374;
-            let t376 = T::fused(-t54, t375, t373);
-            let t377 = T::fused(-t59, t375, t371);
-            let t378 = T::fused(
-                t355,
-                t367 + T::fused(t85, t376, t86 * t377),
-                T::fused(t356, t320 + T::fused(t85, t331, t86 * t332), t366),
+            let t389 = T::fused(
+                t366,
+                t332 + T::fused(-t104, t341, t105 * t342),
+                T::fused(t300, t367, -T::fused(t272, t368, t267)),
             );
-            let t379 = T::fused(
-                t356,
-                t322 + T::fused(-t99, t331, t100 * t332),
-                T::fused(t290, t357, -T::fused(t262, t358, t257)),
+            let t390 = T::fused(
+                t365,
+                t379 + T::fused(-t117, t386, t118 * t387),
+                T::fused(t344, t366, T::fused(t316, t367, -T::fused(t310, t368, t305))),
             );
-            let t380 = T::fused(
-                t355,
-                t369 + T::fused(-t111, t376, t112 * t377),
-                T::fused(t334, t356, T::fused(t306, t357, -T::fused(t300, t358, t295))),
+            let t391 = T::fused(
+                t367,
+                T::fused(-t76, t296, t291),
+                -T::fused(t368, T::fused(t76, t258, t253), -T::fused(-t76, t210, t205)),
             );
-            let t381 = T::fused(
-                t357,
-                T::fused(-t63, t286, t281),
-                -T::fused(t358, T::fused(t63, t248, t243), -T::fused(-t63, t205, t200)),
+            let t392 = T::fused(
+                t365,
+                T::fused(-t76, t385, t380),
+                T::fused(t366, T::fused(-t76, t340, t335), t391),
             );
-            let t382 = T::fused(
-                t355,
-                T::fused(-t63, t375, t370),
-                T::fused(t356, T::fused(-t63, t330, t325), t381),
+            let t393 = T::fused(
+                t365,
+                t386,
+                T::fused(t341, t366, T::fused(t297, t367, -T::fused(t259, t368, t211))),
             );
-            let t383 = T::fused(
-                t355,
-                t376,
-                T::fused(t331, t356, T::fused(t287, t357, -T::fused(t249, t358, t206))),
+            let t394 = T::fused(
+                t365,
+                t387,
+                T::fused(t342, t366, T::fused(t298, t367, -T::fused(t260, t368, t212))),
             );
-            let t384 = T::fused(
-                t355,
-                t377,
-                T::fused(t332, t356, T::fused(t288, t357, -T::fused(t250, t358, t207))),
+            let t395 = T::fused(
+                t366,
+                t235 * t345,
+                T::fused(t367, t235 * t301, T::fused(t264, t368, t237)),
             );
-            let t385 = T::fused(
-                t356,
-                t225 * t335,
-                T::fused(t357, t225 * t291, T::fused(t254, t358, t227)),
-            );
-            let t386 = T::fused(
-                t356,
-                t258 * t335,
-                T::fused(t292, t357, -T::fused(-t263, t358, t260)),
+            let t396 = T::fused(
+                t366,
+                t268 * t345,
+                T::fused(t302, t367, -T::fused(-t273, t368, t270)),
             );
             (
-                t211,
-                t213,
+                t217,
+                t218,
                 t221,
-                t224,
-                t253,
-                t291,
-                t298,
+                t226,
+                t227,
+                t234,
+                t263,
                 t301,
-                t307,
-                t335,
-                t336,
-                t355,
-                t356,
-                t357,
-                t358,
-                t360,
-                t362,
-                t364,
+                t308,
+                t311,
+                t317,
+                t345,
+                t346,
                 t365,
+                t366,
+                t367,
                 t368,
-                t376,
-                t377,
+                t370,
+                t372,
+                t374,
+                t375,
                 t378,
-                t379,
-                t380,
-                t382,
-                t383,
-                t384,
-                t385,
                 t386,
+                t387,
+                t388,
+                t389,
+                t390,
+                t392,
+                t393,
+                t394,
+                t395,
+                t396,
             )
         };
         *out = [
-            t360,
-            -t362,
-            t364,
-            t167,
-            -t37,
+            t370,
+            -t372,
+            t374,
+            -t172,
+            t55,
+            t375,
+            t388,
+            -T::fused(t365, t378 + T::fused(-t104, t386, t105 * t387), t389),
+            t390,
+            -t392,
+            -t393,
+            t394,
+            t395,
+            -t396,
+            T::fused(t346, t366, T::fused(t317, t367, -T::fused(-t311, t368, t308))),
+            T::fused(t217, t218 * t221, t226 * (t18 * t221)),
+            -t227,
+            T::fused(t345, t366, T::fused(t301, t367, T::fused(t263, t368, t234))),
+            -t368,
+            t367,
+            -t366,
             t365,
-            t378,
-            -T::fused(t355, t368 + T::fused(-t99, t376, t100 * t377), t379),
-            t380,
-            -t382,
-            -t383,
-            t384,
-            t385,
-            -t386,
-            T::fused(t336, t356, T::fused(t307, t357, -T::fused(-t301, t358, t298))),
-            T::fused(-t221, t211, rocker_wy * rocker_wz),
-            -t213,
-            T::fused(t335, t356, T::fused(t291, t357, T::fused(t253, t358, t224))),
-            -t358,
-            t357,
-            -t356,
-            t355,
         ];
     }
     /// Writes λ: 281 operations (107 ±, 170 ×, 4 ÷).
@@ -2581,100 +2602,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = coupler_dsz - closing2;
         let t5 = T::fused(k(0.4), crank_dsz, t4);
-        let t6 = crank_e0 * crank_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t6));
-        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t6));
-        let t9 = crank_e0 * crank_e3;
-        let t10 = crank_e1 * crank_e2;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = k(2.0) * (t10 - t9);
-        let t13 = k(1.0) / T::fused(-t8, t7, t12 * t11);
-        let t14 = coupler_e0 * coupler_e0;
-        let t15 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t14));
-        let t16 = coupler_e0 * coupler_e3;
-        let t17 = coupler_e1 * coupler_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = coupler_e0 * coupler_e2;
-        let t20 = coupler_e1 * coupler_e3;
+        let t6 = coupler_e0 * coupler_e0;
+        let t7 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t6));
+        let t8 = crank_e0 * crank_e0;
+        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
+        let t10 = coupler_e0 * coupler_e3;
+        let t11 = coupler_e1 * coupler_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = crank_e0 * crank_e3;
+        let t14 = crank_e1 * crank_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = coupler_e0 * coupler_e2;
+        let t17 = coupler_e1 * coupler_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = crank_e0 * crank_e2;
+        let t20 = crank_e1 * crank_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = crank_e0 * crank_e2;
-        let t23 = crank_e1 * crank_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = k(5e-5) * coupler_dwx;
-        let t26 = t20 + t19;
-        let t27 = k(0.5) * t26;
-        let t28 = coupler_e0 * coupler_e1;
-        let t29 = coupler_e2 * coupler_e3;
-        let t30 = t29 - t28;
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(
+        let t22 = k(5e-5) * coupler_dwx;
+        let t23 = t17 + t16;
+        let t24 = k(0.5) * t23;
+        let t25 = coupler_e0 * coupler_e1;
+        let t26 = coupler_e2 * coupler_e3;
+        let t27 = t26 - t25;
+        let t28 = k(0.5) * t27;
+        let t29 = T::fused(
             closing1,
-            t31,
+            t28,
             -T::fused(
                 -closing0,
-                t27,
+                t24,
                 T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
             ),
         );
-        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t14);
-        let t34 = k(0.5) * t33;
-        let t35 = T::fused(t4, t34, -T::fused(t0, t27, t2 * t31))
-            - T::fused(closing2, t34, -t32);
-        let t36 = t17 - t16;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - T::fused(coupler_e2, coupler_e2, t14);
-        let t39 = k(2.0) * t38;
-        let t40 = t29 + t28;
-        let t41 = k(2.0) * t40;
-        let t42 = T::fused(
-            t25,
-            T::fused(t24, t21, T::fused(t8, t15, t11 * t18)),
-            T::fused(t24, t41, -T::fused(t8, t37, t11 * t39)) * t35,
+        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t6);
+        let t31 = k(0.5) * t30;
+        let t32 = T::fused(t4, t31, -T::fused(t0, t24, t2 * t28))
+            - T::fused(closing2, t31, -t29);
+        let t33 = t11 - t10;
+        let t34 = k(2.0) * t33;
+        let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t6);
+        let t36 = k(2.0) * t35;
+        let t37 = t26 + t25;
+        let t38 = k(2.0) * t37;
+        let t39 = T::fused(
+            t22,
+            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
+            T::fused(t21, t38, -T::fused(t9, t34, t15 * t36)) * t32,
         );
-        let t43 = k(0.5) * t36;
-        let t44 = k(0.5) * t38;
-        let t45 = T::fused(
+        let t40 = k(0.5) * t33;
+        let t41 = k(0.5) * t35;
+        let t42 = T::fused(
             closing1,
-            t44,
+            t41,
             T::fused(
                 -closing0,
-                t43,
+                t40,
                 T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
             ),
         );
-        let t46 = k(0.5) * t40;
-        let t47 = T::fused(t4, t46, -T::fused(-t0, t43, t2 * t44))
-            - T::fused(closing2, t46, -t45);
-        let t48 = k(2.0) * t26;
-        let t49 = k(2.0) * t30;
-        let t50 = k(2.0) * t33;
-        let t51 = T::fused(
-            T::fused(t24, t50, -T::fused(-t8, t48, t11 * t49)),
-            t47,
-            -t42,
+        let t43 = k(0.5) * t37;
+        let t44 = T::fused(t4, t43, -T::fused(-t0, t40, t2 * t41))
+            - T::fused(closing2, t43, -t42);
+        let t45 = k(2.0) * t23;
+        let t46 = k(2.0) * t27;
+        let t47 = k(2.0) * t30;
+        let t48 = T::fused(
+            T::fused(t21, t47, -T::fused(-t9, t45, t15 * t46)),
+            t44,
+            -t39,
         );
-        let t52 = T::fused(k(2e-5), crank_dwx, -t51);
+        let t49 = T::fused(k(2e-5), crank_dwx, -t48);
+        let t50 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
+        let t51 = k(2.0) * (t14 - t13);
+        let t52 = k(1.0) / T::fused(-t9, t50, t51 * t15);
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = t54 - t53;
         let t56 = k(2.0) * t55;
-        let t57 = t23 + t22;
+        let t57 = t20 + t19;
         let t58 = k(2.0) * t57;
-        let t59 = T::fused(t8, t56, t58 * t11) / T::fused(t8, t8, t11 * t11);
+        let t59 = T::fused(t9, t56, t58 * t15) / T::fused(t9, t9, t15 * t15);
         let t60 = k(2.0) * (t54 + t53);
         let t61 = T::fused(
-            t25,
-            T::fused(t60, t21, -T::fused(t12, t15, t7 * t18)),
-            T::fused(t60, t41, T::fused(t7, t39, t12 * t37)) * t35,
+            t22,
+            T::fused(t60, t18, -T::fused(t51, t7, t50 * t12)),
+            T::fused(t60, t38, T::fused(t50, t36, t51 * t34)) * t32,
         );
         let t62 = T::fused(
-            T::fused(t60, t50, -T::fused(-t7, t49, t12 * t48)),
-            t47,
+            T::fused(t60, t47, -T::fused(-t50, t46, t51 * t45)),
+            t44,
             -t61,
         );
         let t63 = k(0.2) * t57;
         let t64 = k(0.2) * t55;
-        let t65 = k(0.5) - T::fused(crank_e3, crank_e3, t6);
+        let t65 = k(0.5) - T::fused(crank_e3, crank_e3, t8);
         let t66 = k(0.2) * t65;
         let t67 = T::fused(t4, t66, -T::fused(t0, t63, t2 * t64)) - t62
             - T::fused(
@@ -2710,24 +2731,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t85 = T::fused(t71, t84, -T::fused(t69, t81, t70 * t82))
             + T::fused(closing2, t84, -t83);
         let t86 = k(2.0) * t65;
-        let t87 = T::fused(t86, t50, T::fused(t56, t49, t58 * t48));
-        let t88 = T::fused(t86, t21, -T::fused(-t58, t15, t56 * t18));
+        let t87 = T::fused(t86, t47, T::fused(t56, t46, t58 * t45));
+        let t88 = T::fused(t86, t18, -T::fused(-t58, t7, t56 * t12));
         let t89 = k(1.0) / T::fused(t87, t87, t88 * t88);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            T::fused(-t68, t7 * t13, t52 * (t11 * t13)),
-            T::fused(-t68, t12 * t13, t52 * (t8 * t13)),
+            T::fused(-(t50 * t52), t68, t15 * t52 * t49),
+            T::fused(-(t51 * t52), t68, t9 * t52 * t49),
             -t69,
             -t70,
             -t71,
-            T::fused(-t80, t74 * t79, t85 * (t77 * t79)),
-            T::fused(-t80, t78 * t79, t85 * (t75 * t79)),
+            T::fused(-t80, t74 * t79, t77 * t79 * t85),
+            T::fused(-t80, t78 * t79, t75 * t79 * t85),
             -t0,
             -t2,
             -t4,
-            -T::fused(t25, t87 * t89, t88 * t89 * t47),
+            -T::fused(t22, t87 * t89, t88 * t89 * t44),
             closing0,
             closing1,
             closing2,

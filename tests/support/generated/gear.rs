@@ -13,7 +13,7 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 211 operations by rotations of the bodies; 211 operations by relative Euler parameters
+//! * accelerations: 227 operations by rotations of the bodies; 227 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -26,7 +26,7 @@
 //! | gamma | γ | 55 | 103 | 2 | 160 | 6 of 11 | 594 | 160 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 29 | 55 | 2 | 86 | 0 of 11 | 166 | 88 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 6 of 12 | 35 | 26 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 132 | 5 | 211 | 6 of 13 | 2979 | 214 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 148 | 5 | 227 | 6 of 13 | 3849 | 228 |
 //! | multipliers | λ, the accelerations being known | 32 | 75 | 4 | 111 | 0 of 11 | 444 | 113 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 | 49 | 49 |
 //! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 | 87 | 52 |
@@ -903,7 +903,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             k(0.025) * (wheel_wx * wheel_wy),
         ];
     }
-    /// Solves eq. (17): 211 operations (74 ±, 132 ×, 5 ÷) and 3 functions.
+    /// Solves eq. (17): 227 operations (74 ±, 148 ×, 5 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -921,102 +921,102 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wy = y[24];
         let wheel_wz = y[25];
         let turn1 = y[28];
-        let t0 = pinion_e0 * pinion_e0;
-        let t1 = pinion_wy * pinion_wy;
-        let t2 = T::fused(pinion_wx, pinion_wx, t1)
-            * (k(0.5) / (k(0.5) - T::fused(pinion_e3, pinion_e3, t0)));
-        let t3 = pinion_e0 * pinion_e1;
-        let t4 = pinion_e2 * pinion_e3;
-        let t5 = pinion_e0 * pinion_e2;
-        let t6 = pinion_e1 * pinion_e3;
-        let t7 = pinion_wx * pinion_wz;
-        let t8 = T::fused(-(k(2.0) * (t6 - t5)), t2, t7);
-        let t9 = wheel_e0 * wheel_e2;
-        let t10 = wheel_e1 * wheel_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = wheel_e0 * wheel_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t12));
-        let t14 = T::fused(t11, wheel_wz, t13 * wheel_wx);
-        let t15 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t12));
-        let t16 = wheel_e0 * wheel_e3;
-        let t17 = wheel_e1 * wheel_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = wheel_e0 * wheel_e1;
-        let t20 = wheel_e2 * wheel_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = T::fused(-t18, wheel_wz, t21 * wheel_wx);
-        let t23 = k(2.0) * (t20 + t19);
-        let t24 = k(1.0) / T::fused(t15, t15, t23 * t23);
-        let t25 = wheel_wx * wheel_wy;
-        let t26 = wheel_wz * wheel_wz;
-        let t27 = T::fused(wheel_wx, wheel_wx, t26);
-        let t28 = wheel_wy * wheel_wz;
-        let t29 = t14 * t22;
-        let t30 = T::fused(-t23, T::fused(t21, t28, T::fused(t18, t25, t15 * t27)), t29);
-        let t31 = T::fused(
-            t15,
-            T::fused(t13, t28, T::fused(-t11, t25, t23 * t27)),
-            -t29,
+        let t0 = pinion_wx * pinion_wz;
+        let t1 = pinion_e0 * pinion_e0;
+        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t1));
+        let t3 = pinion_wy * pinion_wz;
+        let t4 = pinion_e0 * pinion_e3;
+        let t5 = pinion_e1 * pinion_e2;
+        let t6 = k(2.0) * (t5 - t4);
+        let t7 = pinion_wy * pinion_wy;
+        let t8 = T::fused(pinion_wx, pinion_wx, t7);
+        let t9 = k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3);
+        let t10 = T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3));
+        let t11 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t1));
+        let t12 = k(2.0) * (t5 + t4);
+        let t13 = T::fused(-t2, t11, t6 * t12);
+        let t14 = k(1.0) / t13;
+        let t15 = k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3);
+        let t16 = T::fused(t15, t8, T::fused(-t12, t0, t11 * t3));
+        let t17 = T::fused(t10, t11 * t14, t16 * (t6 * t14));
+        let t18 = k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3);
+        let t19 = wheel_e0 * wheel_e0;
+        let t20 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t19));
+        let t21 = T::fused(t18, wheel_wz, t20 * wheel_wx);
+        let t22 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t19));
+        let t23 = k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2);
+        let t24 = wheel_e0 * wheel_e1;
+        let t25 = wheel_e2 * wheel_e3;
+        let t26 = k(2.0) * (t25 - t24);
+        let t27 = T::fused(-t23, wheel_wz, t26 * wheel_wx);
+        let t28 = k(2.0) * (t25 + t24);
+        let t29 = k(1.0) / T::fused(t22, t22, t28 * t28);
+        let t30 = wheel_wx * wheel_wy;
+        let t31 = wheel_wz * wheel_wz;
+        let t32 = T::fused(wheel_wx, wheel_wx, t31);
+        let t33 = wheel_wy * wheel_wz;
+        let t34 = t21 * t27;
+        let t35 = T::fused(-t28, T::fused(t26, t33, T::fused(t23, t30, t22 * t32)), t34);
+        let t36 = T::fused(
+            t22,
+            T::fused(t20, t33, T::fused(-t18, t30, t28 * t32)),
+            -t34,
         );
-        let t32 = T::fused(
-            -(t24 * t24 * (k(2.0) * T::fused(t23, t14, t15 * t22))),
-            T::fused(-t15, t14, t23 * t22),
-            t24 * (t31 + t30),
+        let t37 = T::fused(
+            -(t29 * t29 * (k(2.0) * T::fused(t28, t21, t22 * t27))),
+            T::fused(-t22, t21, t28 * t27),
+            t29 * (t36 + t35),
         );
-        let t33 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
-        let t34 = k(2.0) * (t4 - t3);
-        let t35 = T::fused(t33, pinion_wz, t34 * pinion_wy);
-        let t36 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
-        let t37 = pinion_e0 * pinion_e3;
-        let t38 = pinion_e1 * pinion_e2;
-        let t39 = k(2.0) * (t38 - t37);
-        let t40 = k(2.0) * (t6 + t5);
-        let t41 = T::fused(-t39, pinion_wz, t40 * pinion_wy);
-        let t42 = k(2.0) * (t38 + t37);
-        let t43 = k(1.0) / T::fused(t36, t36, t42 * t42);
-        let t44 = T::fused(pinion_wz, pinion_wz, t1);
-        let t45 = pinion_wx * pinion_wy;
-        let t46 = t35 * t41;
-        let t47 = T::fused(t42, T::fused(t40, t7, T::fused(t36, t44, t39 * t45)), t46);
-        let t48 = T::fused(t36, T::fused(t34, t7, -T::fused(t42, t44, t33 * t45)), -t46);
-        let t49 = T::fused(
-            t43 * t43 * (k(2.0) * T::fused(-t42, t35, t36 * t41)),
-            T::fused(t36, t35, t42 * t41),
-            t43 * (t48 + t47),
+        let t38 = T::fused(t11, pinion_wz, t15 * pinion_wy);
+        let t39 = T::fused(-t6, pinion_wz, t9 * pinion_wy);
+        let t40 = k(1.0) / T::fused(t2, t2, t12 * t12);
+        let t41 = T::fused(pinion_wz, pinion_wz, t7);
+        let t42 = pinion_wx * pinion_wy;
+        let t43 = t38 * t39;
+        let t44 = T::fused(t12, T::fused(t9, t0, T::fused(t2, t41, t6 * t42)), t43);
+        let t45 = T::fused(t2, T::fused(t15, t0, -T::fused(t12, t41, t11 * t42)), -t43);
+        let t46 = T::fused(
+            t40 * t40 * (k(2.0) * T::fused(-t12, t38, t2 * t39)),
+            T::fused(t2, t38, t12 * t39),
+            t40 * (t45 + t44),
         );
-        let t50 = t43 * T::fused(-t36, t33, t39 * t42);
-        let t51 = T::fused(
-            k(2.5) * (T::fused(t36, t34, t40 * t42) * t43),
-            t8,
-            k(87.5) * t50,
+        let t47 = t40 * t13;
+        let t48 = T::fused(
+            -(k(2.5) * (T::fused(t2, t15, t9 * t12) * t40)),
+            t17,
+            k(87.5) * t47,
         );
-        let t52 = turn1.cos();
-        let t53 = turn1.sin();
-        let t54 = T::fused(t15, t53, t23 * t52).atan2(T::fused(-t15, t52, t23 * t53));
-        let t55 = k(8.0) * (k(0.2) + (turn1 + t54));
-        let t56 = T::fused(-t15, t13, t21 * t23) * t24;
-        let t57 = T::fused(wheel_wy, wheel_wy, t26)
-            * (k(0.5) / (k(0.5) - T::fused(wheel_e1, wheel_e1, t12)));
-        let t58 = T::fused(-(k(2.0) * (t17 - t16)), t57, t25);
-        let t59 = T::fused(-t56, t55, t24 * T::fused(t15, t11, t18 * t23) * t58);
-        let t60 = k(125.0) * t50;
-        let t61 = k(20.0) * t56;
-        let t62 = (t59 + t51 + T::fused(k(2.5), t49, -t32))
-            / T::fused(k(2.5) * t50, t60, t56 * t61);
+        let t49 = turn1.cos();
+        let t50 = turn1.sin();
+        let t51 = T::fused(t22, t50, t28 * t49).atan2(T::fused(-t22, t49, t28 * t50));
+        let t52 = k(8.0) * (k(0.2) + (turn1 + t51));
+        let t53 = T::fused(-t22, t20, t26 * t28);
+        let t54 = t53 * t29;
+        let t55 = T::fused(wheel_wy, wheel_wy, t31);
+        let t56 = wheel_wx * wheel_wz;
+        let t57 = T::fused(t26, t56, -T::fused(t23, t55, t22 * t30));
+        let t58 = k(1.0) / t53;
+        let t59 = T::fused(t20, t56, -T::fused(-t18, t55, t28 * t30));
+        let t60 = T::fused(-(t20 * t58), t57, t26 * t58 * t59);
+        let t61 = T::fused(t54, t52, t29 * T::fused(t22, t18, t23 * t28) * t60);
+        let t62 = k(125.0) * t47;
+        let t63 = k(20.0) * t54;
+        let t64 = (t61 - t48 - T::fused(k(2.5), t46, -t37))
+            / T::fused(k(2.5) * t47, t62, t54 * t63);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-(k(2.0) * (t4 + t3)), t2, pinion_wy * pinion_wz),
-            -t8,
-            T::fused(-t60, t62, k(35.0)),
+            -T::fused(t12 * t14, t10, t2 * t14 * t16),
+            t17,
+            T::fused(t62, t64, k(35.0)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -T::fused(t61, t62, t55),
-            T::fused(-(k(2.0) * (t10 + t9)), t57, wheel_wx * wheel_wz),
-            -t58,
-            -t62,
+            T::fused(t63, t64, -t52),
+            T::fused(-t59, t22 * t58, t57 * (t28 * t58)),
+            t60,
+            t64,
         ];
     }
     /// Writes λ: 111 operations (32 ±, 75 ×, 4 ÷).
@@ -1095,13 +1095,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             -(k(2.0) * pinion_dsx),
             -(k(2.0) * pinion_dsy),
             -(k(2.0) * pinion_dsz),
-            T::fused(t8, t5 * t7, t10 * (t1 * t7)),
-            T::fused(t8, t2 * t7, t10 * (t6 * t7)),
+            T::fused(t8, t5 * t7, t1 * t7 * t10),
+            T::fused(t8, t2 * t7, t6 * t7 * t10),
             -(k(4.0) * wheel_dsx),
             -(k(4.0) * wheel_dsy),
             -(k(4.0) * wheel_dsz),
-            T::fused(t19, t16 * t18, t21 * (t12 * t18)),
-            T::fused(t19, t13 * t18, t21 * (t17 * t18)),
+            T::fused(t19, t16 * t18, t12 * t18 * t21),
+            T::fused(t19, t13 * t18, t17 * t18 * t21),
             closing0,
         ];
     }

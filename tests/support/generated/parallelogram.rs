@@ -13,7 +13,7 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 1195 operations by rotations of the bodies; 1209 operations by relative Euler parameters
+//! * accelerations: 1281 operations by rotations of the bodies; 1281 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -26,7 +26,7 @@
 //! | gamma | γ | 101 | 166 | 0 | 267 | 0 of 17 | 872 | 267 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 110 | 0 | 193 | 0 of 17 | 431 | 193 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 477 | 709 | 9 | 1195 | 0 of 21 | 6.8e9 | 1198 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 527 | 745 | 9 | 1281 | 0 of 21 | 1.8e10 | 1282 |
 //! | multipliers | λ, the accelerations being known | 104 | 171 | 3 | 278 | 0 of 17 | 1653 | 278 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 | 53 | 53 |
@@ -41,7 +41,7 @@
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
-//! All of it holds but with a probability below 1e-143.
+//! All of it holds but with a probability below 1e-142.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
 
 /// The mechanism `parallelogram`.
@@ -1623,7 +1623,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             -(k(0.00496) * (rocker_wx * rocker_wy)),
         ];
     }
-    /// Solves eq. (17): 1195 operations (477 ±, 709 ×, 9 ÷).
+    /// Solves eq. (17): 1281 operations (527 ±, 745 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1648,57 +1648,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t3,
             t7,
-            t11,
+            t12,
             t14,
+            t15,
             t16,
+            t17,
+            t18,
             t19,
+            t20,
+            t21,
             t22,
             t23,
+            t24,
             t25,
+            t26,
+            t27,
             t28,
-            t31,
-            t35,
-            t36,
-            t40,
-            t41,
-            t42,
-            t43,
-            t46,
-            t47,
-            t48,
-            t52,
-            t53,
+            t29,
+            t54,
             t55,
-            t57,
             t58,
-            t59,
             t60,
-            t61,
             t62,
-            t63,
-            t67,
-            t70,
-            t73,
+            t66,
+            t68,
+            t71,
+            t72,
+            t75,
+            t76,
+            t77,
             t78,
             t79,
-            t88,
-            t91,
+            t81,
+            t83,
+            t86,
+            t90,
             t93,
             t95,
-            t98,
+            t99,
             t100,
-            t104,
-            t106,
-            t141,
-            t144,
-            t151,
-            t152,
+            t103,
+            t105,
+            t109,
+            t112,
+            t113,
+            t116,
+            t118,
+            t123,
+            t124,
+            t125,
+            t126,
+            t130,
+            t132,
+            t133,
+            t134,
+            t135,
+            t140,
+            t148,
             t153,
-            t154,
-            t155,
             t157,
+            t159,
+            t160,
+            t161,
             t162,
             t163,
             t164,
@@ -1706,6 +1718,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t166,
             t167,
             t168,
+            t169,
+            t170,
             t171,
             t172,
             t173,
@@ -1714,350 +1728,352 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t176,
             t177,
             t178,
-            t181,
+            t179,
             t184,
-            t189,
-            t190,
-            t191,
-            t192,
+            t186,
+            t187,
+            t188,
             t193,
             t194,
             t195,
-            t196,
-            t197,
-            t198,
             t199,
         ) = {
-            let t0 = crank_wy * crank_wy;
-            let t1 = T::fused(crank_wz, crank_wz, t0);
-            let t2 = crank_e0 * crank_e0;
-            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
-            let t4 = crank_wx * crank_wy;
-            let t5 = crank_e0 * crank_e3;
-            let t6 = crank_e1 * crank_e2;
-            let t7 = k(2.0) * (t6 - t5);
-            let t8 = crank_wx * crank_wz;
-            let t9 = crank_e0 * crank_e2;
-            let t10 = crank_e1 * crank_e3;
-            let t11 = k(2.0) * (t10 + t9);
-            let t12 = T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
-            let t13 = k(0.1) * t12;
-            let t14 = k(2.0) * (t6 + t5);
-            let t15 = k(0.5) - T::fused(crank_e2, crank_e2, t2);
-            let t16 = k(2.0) * t15;
-            let t17 = crank_e0 * crank_e1;
-            let t18 = crank_e2 * crank_e3;
-            let t19 = k(2.0) * (t18 - t17);
-            let t20 = T::fused(t19, t8, -T::fused(t14, t1, t16 * t4));
-            let t21 = k(0.1) * t20;
-            let t22 = k(2.0) * (t10 - t9);
-            let t23 = k(2.0) * (t18 + t17);
-            let t24 = k(0.5) - T::fused(crank_e3, crank_e3, t2);
-            let t25 = k(2.0) * t24;
-            let t26 = T::fused(t25, t8, -T::fused(-t22, t1, t23 * t4));
-            let t27 = k(0.1) * t26;
-            let t28 = T::fused(t22, t27, -T::fused(-t3, t13, t14 * t21));
-            let t29 = coupler_e0 * coupler_e1;
-            let t30 = coupler_e2 * coupler_e3;
-            let t31 = t30 - t29;
-            let t32 = coupler_wx * coupler_wz;
-            let t33 = T::fused(k(3.924), t31, k(0.01995) * t32);
-            let t34 = coupler_e0 * coupler_e0;
-            let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t34);
-            let t36 = k(2.0) * t35;
-            let t37 = coupler_e0 * coupler_e3;
-            let t38 = coupler_e1 * coupler_e2;
-            let t39 = t38 - t37;
-            let t40 = k(2.0) * t39;
-            let t41 = t30 + t29;
-            let t42 = k(2.0) * t41;
-            let t43 = T::fused(t25, t42, -T::fused(-t19, t36, t11 * t40));
-            let t44 = coupler_wx * coupler_wy;
-            let t45 = T::fused(-k(3.924), t35, k(0.01995) * t44);
-            let t46 = k(0.5) - T::fused(coupler_e3, coupler_e3, t34);
+            let t0 = coupler_wz * coupler_wz;
+            let t1 = T::fused(coupler_wy, coupler_wy, t0);
+            let t2 = coupler_e0 * coupler_e0;
+            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
+            let t4 = coupler_wx * coupler_wy;
+            let t5 = coupler_e0 * coupler_e3;
+            let t6 = coupler_e1 * coupler_e2;
+            let t7 = t6 - t5;
+            let t8 = k(2.0) * t7;
+            let t9 = coupler_wx * coupler_wz;
+            let t10 = coupler_e0 * coupler_e2;
+            let t11 = coupler_e1 * coupler_e3;
+            let t12 = t11 + t10;
+            let t13 = k(2.0) * t12;
+            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
+            let t15 = rocker_wy * rocker_wy;
+            let t16 = T::fused(rocker_wz, rocker_wz, t15);
+            let t17 = rocker_e0 * rocker_e0;
+            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
+            let t19 = rocker_wx * rocker_wy;
+            let t20 = rocker_e0 * rocker_e3;
+            let t21 = rocker_e1 * rocker_e2;
+            let t22 = t21 - t20;
+            let t23 = k(2.0) * t22;
+            let t24 = rocker_wx * rocker_wz;
+            let t25 = rocker_e0 * rocker_e2;
+            let t26 = rocker_e1 * rocker_e3;
+            let t27 = t26 + t25;
+            let t28 = k(2.0) * t27;
+            let t29 = k(0.15) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
+            let t30 = crank_wx * crank_wz;
+            let t31 = crank_e0 * crank_e3;
+            let t32 = crank_e1 * crank_e2;
+            let t33 = k(2.0) * (t32 + t31);
+            let t34 = crank_wy * crank_wz;
+            let t35 = crank_e0 * crank_e0;
+            let t36 = k(0.5) - T::fused(crank_e2, crank_e2, t35);
+            let t37 = k(2.0) * t36;
+            let t38 = crank_wy * crank_wy;
+            let t39 = T::fused(crank_wx, crank_wx, t38);
+            let t40 = crank_e0 * crank_e1;
+            let t41 = crank_e2 * crank_e3;
+            let t42 = t41 - t40;
+            let t43 = k(2.0) * t42;
+            let t44 = T::fused(t43, t39, T::fused(-t33, t30, t37 * t34));
+            let t45 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t35));
+            let t46 = t32 - t31;
             let t47 = k(2.0) * t46;
-            let t48 = k(2.0) * t31;
-            let t49 = coupler_e0 * coupler_e2;
-            let t50 = coupler_e1 * coupler_e3;
+            let t48 = k(1.0) / T::fused(-t45, t37, t47 * t33);
+            let t49 = crank_e0 * crank_e2;
+            let t50 = crank_e1 * crank_e3;
             let t51 = t50 + t49;
             let t52 = k(2.0) * t51;
-            let t53 = T::fused(t25, t47, T::fused(t19, t48, t11 * t52));
-            let t54 = T::fused(t43, t33, t53 * t45);
-            let t55 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t34));
-            let t56 = t38 + t37;
-            let t57 = k(2.0) * t56;
-            let t58 = k(2.0) * (t50 - t49);
-            let t59 = T::fused(t25, t58, -T::fused(-t11, t55, t19 * t57));
-            let t60 = k(5e-5) * t59;
-            let t61 = k(0.07) * t43;
-            let t62 = k(0.07) * t53;
-            let t63 = k(1.0) / T::fused(t53, t62, T::fused(t59, t60, t43 * t61));
-            let t64 = t63 * t54;
-            let t65 = T::fused(-t61, t64, t33);
-            let t66 = t61 * t63;
-            let t67 = k(1.0) / T::fused(-t61, t66, k(0.07));
-            let t68 = t67 * t65;
-            let t69 = t60 * t63;
-            let t70 = t61 * t69;
-            let t71 = k(1.0) / T::fused(t53, t53, t59 * t59);
-            let t72 = T::fused(t22, t42, -T::fused(t3, t40, t14 * t36));
-            let t73 = T::fused(t23, t42, T::fused(t16, t36, t7 * t40));
-            let t74 = crank_wy * crank_wz;
-            let t75 = T::fused(crank_wx, crank_wx, t0);
-            let t76 = T::fused(t22, t58, T::fused(t3, t55, t14 * t57));
-            let t77 = T::fused(t22, t47, -T::fused(-t3, t52, t14 * t48));
-            let t78 = T::fused(t23, t58, -T::fused(t7, t55, t16 * t57));
-            let t79 = T::fused(t23, t47, -T::fused(-t16, t48, t7 * t52));
-            let t80 = T::fused(
-                -crank_wy,
-                T::fused(coupler_wz, t76, coupler_wx * t77),
-                crank_wx * T::fused(coupler_wz, t78, coupler_wx * t79),
-            );
-            let t81 = coupler_wz * coupler_wz;
-            let t82 = T::fused(
-                coupler_wy * coupler_wz,
-                t53,
-                T::fused(-t44, t59, T::fused(coupler_wx, coupler_wx, t81) * t43),
-            );
-            let t83 = T::fused(k(2.0), t80, t82)
-                + T::fused(t75, t43, T::fused(t8, t72, t74 * t73));
-            let t84 = t83 * (t53 * t71);
-            let t85 = t67 * t70;
-            let t86 = T::fused(t70, t85, -T::fused(-t60, t69, k(5e-5)));
-            let t87 = t59 * t71 * t83;
-            let t88 = t62 * t66;
-            let t89 = T::fused(t62, t69, t88 * t85);
-            let t90 = T::fused(coupler_wy, coupler_wy, t81);
-            let t91 = k(0.25) * T::fused(t52, t32, T::fused(t55, t90, t40 * t44));
-            let t92 = T::fused(k(0.2), t12, t91);
-            let t93 = k(0.25) * T::fused(t48, t32, -T::fused(t57, t90, t36 * t44));
-            let t94 = T::fused(k(0.2), t20, t93);
-            let t95 = k(0.25) * T::fused(t47, t32, -T::fused(-t58, t90, t42 * t44));
-            let t96 = T::fused(k(0.2), t26, t95);
-            let t97 = T::fused(t42, t96, T::fused(-t40, t92, t36 * t94));
-            let t98 = k(0.2) * t53;
-            let t99 = t63 * t98;
-            let t100 = t61 * t99;
-            let t101 = t67 * t100;
-            let t102 = T::fused(t60, t99, t70 * t101);
-            let t103 = T::fused(t47, t96, T::fused(t52, t92, t48 * t94));
-            let t104 = k(0.2) * t43;
-            let t105 = t63 * t104;
-            let t106 = T::fused(-t61, t105, k(0.2));
-            let t107 = t67 * t106;
-            let t108 = T::fused(-t60, t105, t70 * t107);
-            let t109 = T::fused(t102, t97, t108 * t103) + T::fused(-t86, t84, t89 * t87);
-            let t110 = T::fused(t88, t67 * t88, -T::fused(-t62, t62 * t63, k(0.07)));
-            let t111 = T::fused(t88, t101, -T::fused(-t62, t99, k(0.2)));
-            let t112 = T::fused(-t62, t105, t88 * t107);
-            let t113 = T::fused(t111, t97, t112 * t103)
-                + T::fused(-t89, t84, t110 * t87);
-            let t114 = T::fused(
-                t59,
-                t109 + T::fused(-t60, t64, t70 * t68),
-                t53 * (t113 + T::fused(t88, t68, T::fused(-t62, t64, t45))),
-            );
-            let t115 = T::fused(t58, t96, -T::fused(-t55, t92, t57 * t94));
-            let t116 = T::fused(t98, t99, t100 * t101);
-            let t117 = T::fused(-t104, t99, t106 * t101);
-            let t118 = T::fused(-t102, t84, t111 * t87)
-                + T::fused(-k(0.8), t97, T::fused(t116, t97, t117 * t103));
-            let t119 = T::fused(
-                -t78,
-                T::fused(-k(15.696), t56, k(0.8) * t115),
-                t73 * (t118 + T::fused(t100, t68, -T::fused(k(15.696), t35, t98 * t64))),
-            );
-            let t120 = T::fused(t104, t105, t106 * t107);
-            let t121 = T::fused(-t108, t84, t112 * t87)
-                + T::fused(-k(0.8), t103, T::fused(t117, t97, t120 * t103));
+            let t53 = T::fused(t52, t39, -T::fused(-t45, t30, t47 * t34));
+            let t54 = T::fused(t47 * t48, t44, t37 * t48 * t53);
+            let t55 = k(0.2) * t51;
+            let t56 = coupler_e0 * coupler_e1;
+            let t57 = coupler_e2 * coupler_e3;
+            let t58 = t57 - t56;
+            let t59 = T::fused(k(3.924), t58, k(0.01995) * t9);
+            let t60 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
+            let t61 = k(2.0) * t60;
+            let t62 = t57 + t56;
+            let t63 = k(2.0) * t62;
+            let t64 = k(0.5) - T::fused(crank_e3, crank_e3, t35);
+            let t65 = k(2.0) * t64;
+            let t66 = T::fused(t65, t63, -T::fused(-t43, t61, t52 * t8));
+            let t67 = T::fused(-k(3.924), t60, k(0.01995) * t4);
+            let t68 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
+            let t69 = k(2.0) * t68;
+            let t70 = k(2.0) * t58;
+            let t71 = T::fused(t65, t69, T::fused(t43, t70, t52 * t13));
+            let t72 = T::fused(t66, t59, t71 * t67);
+            let t73 = k(2.0) * (t6 + t5);
+            let t74 = k(2.0) * (t11 - t10);
+            let t75 = T::fused(t65, t74, -T::fused(-t52, t3, t43 * t73));
+            let t76 = k(5e-5) * t75;
+            let t77 = k(0.07) * t66;
+            let t78 = k(0.07) * t71;
+            let t79 = k(1.0) / T::fused(t71, t78, T::fused(t75, t76, t66 * t77));
+            let t80 = t79 * t72;
+            let t81 = T::fused(-t77, t80, t59);
+            let t82 = t77 * t79;
+            let t83 = k(1.0) / T::fused(-t77, t82, k(0.07));
+            let t84 = t83 * t81;
+            let t85 = t76 * t79;
+            let t86 = t77 * t85;
+            let t87 = T::fused(crank_wz, crank_wz, t38);
+            let t88 = crank_wx * crank_wy;
+            let t89 = T::fused(t52, t30, T::fused(t45, t87, t47 * t88));
+            let t90 = T::fused(k(0.2), t89, t14);
+            let t91 = k(0.4) * t12;
+            let t92 = k(0.4) * t7;
+            let t93 = T::fused(t66, t91, t71 * t92);
+            let t94 = t79 * t93;
+            let t95 = T::fused(-t77, t94, t91);
+            let t96 = t83 * t95;
+            let t97 = T::fused(-t76, t94, t86 * t96);
+            let t98 = T::fused(t43, t30, -T::fused(t33, t87, t37 * t88));
+            let t99 = k(0.25) * T::fused(t70, t9, -T::fused(t73, t1, t61 * t4));
+            let t100 = T::fused(k(0.2), t98, t99);
+            let t101 = k(0.4) * t58;
+            let t102 = k(0.4) * t60;
+            let t103 = T::fused(-t66, t101, t71 * t102);
+            let t104 = t79 * t103;
+            let t105 = T::fused(t77, t104, t101);
+            let t106 = t83 * t105;
+            let t107 = T::fused(t76, t104, t86 * t106);
+            let t108 = k(2.0) * (t50 - t49);
+            let t109 = t41 + t40;
+            let t110 = k(2.0) * t109;
+            let t111 = T::fused(t65, t30, -T::fused(-t108, t87, t110 * t88));
+            let t112 = k(0.25) * T::fused(t69, t9, -T::fused(-t74, t1, t63 * t4));
+            let t113 = T::fused(k(0.2), t111, t112);
+            let t114 = k(0.4) * t68;
+            let t115 = k(0.4) * t62;
+            let t116 = T::fused(-t66, t114, t71 * t115);
+            let t117 = t79 * t116;
+            let t118 = T::fused(t77, t117, t114);
+            let t119 = t83 * t118;
+            let t120 = T::fused(t76, t117, t86 * t119);
+            let t121 = k(1.0) / T::fused(t71, t71, t75 * t75);
             let t122 = T::fused(
-                t79,
-                t121 + T::fused(t106, t68, T::fused(-k(15.696), t31, t104 * t64)),
-                t119,
+                t30,
+                T::fused(t108, t63, -T::fused(t45, t8, t33 * t61)),
+                t34 * T::fused(t110, t63, T::fused(t37, t61, t47 * t8)),
             );
-            let t123 = T::fused(
-                k(0.1),
-                T::fused(-k(9.81), t15, t122),
-                T::fused(k(0.00398), t4, T::fused(k(0.2), t122, t114)),
+            let t123 = T::fused(t108, t74, T::fused(t45, t3, t33 * t73));
+            let t124 = T::fused(t108, t69, -T::fused(-t45, t13, t33 * t70));
+            let t125 = T::fused(t110, t74, -T::fused(t47, t3, t37 * t73));
+            let t126 = T::fused(t110, t69, -T::fused(-t37, t70, t47 * t13));
+            let t127 = T::fused(
+                -crank_wy,
+                T::fused(coupler_wz, t123, coupler_wx * t124),
+                crank_wx * T::fused(coupler_wz, t125, coupler_wx * t126),
             );
-            let t124 = T::fused(
-                t59,
-                T::fused(t72, t102, t108 * t77),
-                t53 * T::fused(t72, t111, t112 * t77),
+            let t128 = T::fused(
+                coupler_wy * coupler_wz,
+                t71,
+                T::fused(-t4, t75, T::fused(coupler_wx, coupler_wx, t0) * t66),
             );
-            let t125 = T::fused(
-                t73,
-                T::fused(t72, t116, t117 * t77),
-                t79 * T::fused(t72, t117, t120 * t77),
-            );
-            let t126 = T::fused(t23, t27, T::fused(-t7, t13, t16 * t21));
-            let t127 = T::fused(t73, t116, t79 * t117);
-            let t128 = T::fused(t73, t117, t79 * t120);
-            let t129 = T::fused(t73, t127, t79 * t128);
-            let t130 = T::fused(t73, t102, t79 * t108);
-            let t131 = T::fused(t73, t111, t79 * t112);
-            let t132 = T::fused(t59, t130, t53 * t131);
-            let t133 = T::fused(-k(0.2), t129, k(0.16)) - t132;
-            let t134 = T::fused(
-                -T::fused(k(0.1), t125, T::fused(k(0.2), t125, t124)),
-                t28,
-                (t133 + T::fused(-k(0.1), t129, k(0.13))) * t126,
-            );
-            let t135 = T::fused(t25, t27, T::fused(t11, t13, t19 * t21));
-            let t136 = T::fused(t43, t127, t53 * t128);
-            let t137 = T::fused(
-                t59,
-                T::fused(t43, t102, t53 * t108),
-                t53 * T::fused(t43, t111, t53 * t112),
-            );
-            let t138 = k(0.2) * t136;
-            let t139 = t138 + t137;
-            let t140 = t75 * (k(0.5) / t24);
-            let t141 = T::fused(-t23, t140, t74);
+            let t129 = T::fused(k(2.0), t127, t128) + T::fused(t39, t66, t122);
+            let t130 = t129 * (t71 * t121);
+            let t131 = t83 * t86;
+            let t132 = T::fused(t86, t131, -T::fused(-t76, t85, k(5e-5)));
+            let t133 = t75 * t121 * t129;
+            let t134 = t78 * t82;
+            let t135 = T::fused(t78, t85, t134 * t131);
+            let t136 = T::fused(-t132, t130, t135 * t133)
+                + T::fused(t120, t113, T::fused(t97, t90, t107 * t100));
+            let t137 = T::fused(t134, t96, T::fused(-t78, t94, t92));
+            let t138 = T::fused(t134, t106, -T::fused(-t78, t104, t102));
+            let t139 = T::fused(t134, t119, -T::fused(-t78, t117, t115));
+            let t140 = T::fused(t134, t83 * t134, -T::fused(-t78, t78 * t79, k(0.07)));
+            let t141 = T::fused(-t135, t130, t140 * t133)
+                + T::fused(t139, t113, T::fused(t137, t90, t138 * t100));
             let t142 = T::fused(
-                t59,
-                T::fused(t86, t76, t89 * t77),
-                t53 * T::fused(t89, t76, t110 * t77),
+                t75,
+                t136 + T::fused(-t76, t80, t86 * t84),
+                t71 * (t141 + T::fused(t134, t84, T::fused(-t78, t80, t67))),
             );
-            let t143 = T::fused(t130, t76, t131 * t77);
-            let t144 = T::fused(-t22, t140, t8);
-            let t145 = T::fused(
-                t59,
-                T::fused(t78, t86, t79 * t89),
-                t53 * T::fused(t78, t89, t79 * t110),
+            let t143 = T::fused(t93, t94, t95 * t96);
+            let t144 = T::fused(-t103, t94, t105 * t96);
+            let t145 = T::fused(-t116, t94, t118 * t96);
+            let t146 = T::fused(
+                -k(0.8),
+                t90,
+                T::fused(t145, t113, T::fused(t143, t90, t144 * t100)),
             );
-            let t146 = T::fused(t78, t130, t79 * t131);
-            let t147 = T::fused(k(0.01), t136, k(0.1) * (t139 + (t138 - t146)))
-                + (T::fused(k(0.04), t136, k(0.2) * (t137 - t146)) - t145);
-            let t148 = T::fused(
-                T::fused(k(0.1), t143, T::fused(k(0.2), t143, t142)),
-                t141,
-                t147 * t144,
+            let t147 = T::fused(-t97, t130, t137 * t133) + t146
+                + T::fused(t93, t80, t95 * t84);
+            let t148 = k(0.4) * t46;
+            let t149 = T::fused(t103, t104, t105 * t106);
+            let t150 = T::fused(t116, t104, t118 * t106);
+            let t151 = T::fused(
+                -k(0.8),
+                t100,
+                T::fused(t150, t113, T::fused(t144, t90, t149 * t100)),
             );
-            let t149 = T::fused(
-                t59,
-                T::fused(t59, t86, t53 * t89),
-                t53 * T::fused(t59, t89, t53 * t110),
+            let t152 = T::fused(-t107, t130, t138 * t133) + t151
+                + T::fused(t105, t84, -T::fused(t103, t80, k(7.848)));
+            let t153 = k(0.4) * t36;
+            let t154 = T::fused(t116, t117, t118 * t119);
+            let t155 = T::fused(
+                -k(0.8),
+                t113,
+                T::fused(t154, t113, T::fused(t145, t90, t150 * t100)),
             );
-            let t150 = k(0.013)
-                + (k(0.004)
-                    - (T::fused(k(0.04), t129, k(0.4) * t132) - (k(0.032) - t149)));
-            let t151 = k(1.0) / (T::fused(-k(0.01), t129, k(0.2) * t133) + t150);
-            let t152 = t151
-                * (t148 + T::fused(T::fused(k(0.1), t136, t139), t135, -t134) + t123);
-            let t153 = T::fused(k(0.1), t152, t126);
-            let t154 = T::fused(k(0.1), t144, t135);
-            let t155 = T::fused(t51, t43, t39 * t53);
-            let t156 = t155 * t63;
-            let t157 = T::fused(-t61, t156, t51);
-            let t158 = t157 * t67;
-            let t159 = T::fused(
-                t59,
-                T::fused(-t60, t156, t158 * t70),
-                t53 * T::fused(t158, t88, T::fused(-t62, t156, t39)),
+            let t156 = T::fused(-t120, t130, t139 * t133) + t155
+                + T::fused(-t116, t80, t118 * t84);
+            let t157 = k(0.4) * t109;
+            let t158 = T::fused(
+                k(0.00398),
+                t88,
+                T::fused(t157, t156, T::fused(-t148, t147, t153 * t152)) + t142,
             );
-            let t160 = T::fused(
-                -t55,
-                t78,
-                t73 * T::fused(t158, t100, T::fused(-t156, t98, t40)),
+            let t159 = k(0.2) * t46;
+            let t160 = k(0.2) * t36;
+            let t161 = k(0.2) * t109;
+            let t162 = T::fused(
+                t161,
+                t156,
+                -T::fused(t159, t147, t160 * (k(4.905) - t152)),
+            ) + t158;
+            let t163 = k(0.1) * t89;
+            let t164 = T::fused(t161, t145, T::fused(-t159, t143, t160 * t144));
+            let t165 = T::fused(t75, t97, t71 * t137);
+            let t166 = T::fused(t157, t145, T::fused(-t148, t143, t153 * t144));
+            let t167 = T::fused(k(0.32), t46, t166) + t165;
+            let t168 = k(0.1) * t98;
+            let t169 = T::fused(t161, t150, T::fused(-t159, t144, t160 * t149));
+            let t170 = T::fused(t75, t107, t71 * t138);
+            let t171 = T::fused(t157, t150, T::fused(-t148, t144, t153 * t149));
+            let t172 = T::fused(-k(0.32), t36, t171) + t170;
+            let t173 = T::fused(
+                t167 + T::fused(k(0.26), t46, t164),
+                t163,
+                (t172 + T::fused(-k(0.26), t36, t169)) * t168,
             );
-            let t161 = T::fused(
-                T::fused(t158, t106, -T::fused(-t156, t104, t52)),
-                t79,
-                t160,
+            let t174 = k(0.1) * t111;
+            let t175 = T::fused(t161, t154, T::fused(-t159, t145, t160 * t150));
+            let t176 = T::fused(t75, t120, t71 * t139);
+            let t177 = T::fused(t157, t154, T::fused(-t148, t145, t153 * t150));
+            let t178 = T::fused(-k(0.32), t109, t177) + t176;
+            let t179 = T::fused(t44, t45 * t48, t53 * (t33 * t48));
+            let t180 = T::fused(
+                t75,
+                T::fused(t132, t123, t135 * t124),
+                t71 * T::fused(t135, t123, t140 * t124),
             );
-            let t162 = T::fused(k(0.1), t161, T::fused(k(0.2), t161, t159)) * t151;
-            let t163 = k(0.1) * t162;
-            let t164 = rocker_wy * rocker_wy;
-            let t165 = T::fused(rocker_wz, rocker_wz, t164);
-            let t166 = rocker_e0 * rocker_e0;
-            let t167 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t166));
-            let t168 = rocker_wx * rocker_wy;
-            let t169 = rocker_e0 * rocker_e3;
-            let t170 = rocker_e1 * rocker_e2;
-            let t171 = t170 - t169;
-            let t172 = k(2.0) * t171;
-            let t173 = rocker_wx * rocker_wz;
-            let t174 = rocker_e0 * rocker_e2;
-            let t175 = rocker_e1 * rocker_e3;
-            let t176 = t175 + t174;
-            let t177 = k(2.0) * t176;
-            let t178 = k(0.15) * T::fused(t177, t173, T::fused(t167, t165, t172 * t168));
-            let t179 = T::fused(k(0.2), t152, t153);
-            let t180 = T::fused(k(0.2), t144, t154);
-            let t181 = t115 + T::fused(t59, t180, T::fused(t76, t28, t78 * t179));
-            let t182 = t97 + T::fused(t43, t180, T::fused(t72, t28, t73 * t179));
-            let t183 = t103 + T::fused(t53, t180, T::fused(t77, t28, t79 * t179));
-            let t184 = t84 - T::fused(t59, t152, -T::fused(-t76, t141, t78 * t144));
-            let t185 = t87 + T::fused(t53, t152, -T::fused(-t77, t141, t79 * t144));
-            let t186 = T::fused(-t70, t184, t88 * t185)
-                + T::fused(t100, t182, t106 * t183);
-            let t187 = t67 * (t65 + t186);
-            let t188 = T::fused(t62, t185, T::fused(-t60, t184, t61 * t187))
-                - T::fused(-t98, t182, t104 * t183);
-            let t189 = t63 * (t54 - t188);
-            let t190 = T::fused(t53, t189, t185);
-            let t191 = T::fused(k(0.25), t190, t182);
-            let t192 = T::fused(t43, t189, t187);
-            let t193 = T::fused(-k(0.25), t192, t183);
-            let t194 = T::fused(t52, t193, -T::fused(-t55, t181, t40 * t191));
-            let t195 = k(0.5) * t51;
-            let t196 = k(0.5) * t39;
-            let t197 = k(2.0) * (t170 + t169);
-            let t198 = k(0.5) - T::fused(rocker_e2, rocker_e2, t166);
-            let t199 = k(2.0) * t198;
+            let t181 = T::fused(t97, t123, t137 * t124);
+            let t182 = T::fused(t107, t123, t138 * t124);
+            let t183 = T::fused(t120, t123, t139 * t124);
+            let t184 = T::fused(t161, t183, T::fused(-t159, t181, t160 * t182))
+                + (T::fused(t157, t183, T::fused(-t148, t181, t153 * t182)) + t180);
+            let t185 = T::fused(
+                t75,
+                T::fused(t132, t125, t135 * t126),
+                t71 * T::fused(t135, t125, t140 * t126),
+            );
+            let t186 = k(0.4) * t51;
+            let t187 = k(0.4) * t42;
+            let t188 = k(0.4) * t64;
+            let t189 = T::fused(t97, t125, t137 * t126);
+            let t190 = T::fused(t107, t125, t138 * t126);
+            let t191 = T::fused(t120, t125, t139 * t126);
+            let t192 = T::fused(t157, t191, T::fused(-t148, t189, t153 * t190))
+                - T::fused(t188, t176, T::fused(t186, t165, t187 * t170));
+            let t193 = t192 - T::fused(t188, t177, T::fused(t186, t166, t187 * t171))
+                + t185;
+            let t194 = k(0.2) * t42;
+            let t195 = k(0.2) * t64;
+            let t196 = T::fused(
+                -k(0.32),
+                t51,
+                T::fused(t188, t145, T::fused(t186, t143, t187 * t144)),
+            );
+            let t197 = T::fused(
+                -k(0.32),
+                t42,
+                T::fused(t188, t150, T::fused(t186, t144, t187 * t149)),
+            );
+            let t198 = T::fused(
+                -k(0.32),
+                t64,
+                T::fused(t188, t154, T::fused(t186, t145, t187 * t150)),
+            );
+            let t199 = T::fused(
+                t161,
+                t198 - t191,
+                T::fused(-t159, t196 - t189, t160 * (t197 - t190)),
+            );
             (
-                t3,
                 t7,
-                t11,
+                t12,
                 t14,
+                t15,
                 t16,
+                t17,
+                t18,
                 t19,
+                t20,
+                t21,
                 t22,
                 t23,
+                t24,
                 t25,
+                t26,
+                t27,
                 t28,
-                t31,
-                t35,
-                t36,
-                t40,
-                t41,
-                t42,
-                t43,
-                t46,
-                t47,
-                t48,
-                t52,
-                t53,
+                t29,
+                t54,
                 t55,
-                t57,
                 t58,
-                t59,
                 t60,
-                t61,
                 t62,
-                t63,
-                t67,
-                t70,
-                t73,
+                t66,
+                t68,
+                t71,
+                t72,
+                t75,
+                t76,
+                t77,
                 t78,
                 t79,
-                t88,
-                t91,
+                t81,
+                t83,
+                t86,
+                t90,
                 t93,
                 t95,
-                t98,
+                t99,
                 t100,
-                t104,
-                t106,
-                t141,
-                t144,
-                t151,
-                t152,
+                t103,
+                t105,
+                t109,
+                t112,
+                t113,
+                t116,
+                t118,
+                t123,
+                t124,
+                t125,
+                t126,
+                t130,
+                t132,
+                t133,
+                t134,
+                t135,
+                t140,
+                t148,
                 t153,
-                t154,
-                t155,
                 t157,
+                t159,
+                t160,
+                t161,
                 t162,
                 t163,
                 t164,
@@ -2065,6 +2081,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
                 t166,
                 t167,
                 t168,
+                t169,
+                t170,
                 t171,
                 t172,
                 t173,
@@ -2073,351 +2091,407 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
                 t176,
                 t177,
                 t178,
-                t181,
+                t179,
                 t184,
-                t189,
-                t190,
-                t191,
-                t192,
+                t186,
+                t187,
+                t188,
                 t193,
                 t194,
                 t195,
-                t196,
-                t197,
-                t198,
                 t199,
             )
         };
         let (
+            t206,
             t207,
-            t215,
-            t216,
+            t209,
+            t211,
             t219,
-            t233,
+            t220,
+            t221,
+            t222,
+            t225,
+            t234,
             t235,
-            t238,
+            t236,
+            t237,
+            t244,
+            t258,
+            t259,
             t261,
+            t263,
+            t271,
             t272,
-            t274,
-            t277,
-            t282,
-            t285,
-            t288,
-            t289,
-            t292,
-            t293,
-            t304,
-            t309,
+            t275,
+            t300,
+            t301,
+            t303,
+            t305,
+            t313,
             t314,
-            t315,
             t317,
-            t319,
-            t320,
-            t322,
-            t324,
-            t325,
+            t323,
             t326,
-            t327,
             t328,
             t329,
-            t330,
-            t331,
-            t333,
             t334,
             t335,
-            t336,
-            t337,
+            t347,
+            t348,
+            t349,
+            t350,
+            t352,
+            t354,
+            t359,
+            t360,
+            t361,
+            t363,
+            t364,
+            t365,
+            t367,
+            t368,
+            t369,
+            t370,
+            t371,
+            t372,
+            t373,
+            t374,
         ) = {
-            let t200 = rocker_e0 * rocker_e1;
-            let t201 = rocker_e2 * rocker_e3;
-            let t202 = t201 - t200;
-            let t203 = k(2.0) * t202;
-            let t204 = k(0.15)
-                * T::fused(t203, t173, -T::fused(t197, t165, t199 * t168));
-            let t205 = k(2.0) * (t175 - t174);
-            let t206 = t201 + t200;
-            let t207 = k(2.0) * t206;
-            let t208 = k(0.5) - T::fused(rocker_e3, rocker_e3, t166);
-            let t209 = k(2.0) * t208;
-            let t210 = k(0.15)
-                * T::fused(t209, t173, -T::fused(-t205, t165, t207 * t168));
-            let t211 = T::fused(t205, t210, -T::fused(-t167, t178, t197 * t204));
-            let t212 = T::fused(t207, t210, T::fused(-t172, t178, t199 * t204));
-            let t213 = T::fused(
-                k(0.09),
-                t212,
-                -T::fused(-k(1.7658), t198, k(0.00496) * t168),
+            let t200 = t199 + T::fused(t195, t178, T::fused(t55, t167, t194 * t172))
+                + T::fused(t195, t175, T::fused(t55, t164, t194 * t169));
+            let t201 = T::fused(t184, t179, (t200 - t193) * t54)
+                - T::fused(t178 + T::fused(-k(0.26), t109, t175), t174, t173);
+            let t202 = T::fused(
+                t75,
+                T::fused(t75, t132, t71 * t135),
+                t71 * T::fused(t75, t135, t71 * t140),
             );
-            let t214 = T::fused(-k(8.108108108108109), t213, t212);
-            let t215 = T::fused(rocker_wx, rocker_wx, t164) * (k(0.5) / t208);
-            let t216 = T::fused(-t205, t215, t173);
-            let t217 = T::fused(
-                k(0.15),
-                t216,
-                T::fused(t209, t210, T::fused(t177, t178, t203 * t204)),
+            let t203 = T::fused(
+                k(2.0),
+                T::fused(t157, t176, T::fused(-t148, t165, t153 * t170)),
+                T::fused(t157, t177, T::fused(-t148, t166, t153 * t171)),
             );
-            let t218 = T::fused(t177, t217, -T::fused(-t167, t211, t172 * t214));
-            let t219 = k(54.054054054054056) * t213;
-            let t220 = k(0.3) * t171;
-            let t221 = T::fused(k(0.3) * t176, t216, t220 * t219) + t218
-                + (T::fused(t195, t192, t196 * t190) - t194);
-            let t222 = t221 + (t178 - t91);
-            let t223 = k(0.3) * t162;
-            let t224 = t78 * t223;
-            let t225 = t73 * t223;
-            let t226 = t79 * t223;
-            let t227 = t59 * t162;
-            let t228 = t53 * t162;
-            let t229 = T::fused(t70, t227, t88 * t228)
-                + T::fused(t100, t225, t106 * t226);
-            let t230 = t67 * (t157 + t229);
-            let t231 = T::fused(t62, t228, T::fused(t60, t227, t61 * t230))
-                - T::fused(-t98, t225, t104 * t226);
-            let t232 = t63 * (t155 - t231);
-            let t233 = T::fused(t53, t232, t228);
-            let t234 = T::fused(k(0.25), t233, t225);
-            let t235 = T::fused(t43, t232, t230);
-            let t236 = T::fused(-k(0.25), t235, t226);
-            let t237 = T::fused(t52, t236, -T::fused(-t55, t224, t40 * t234));
-            let t238 = k(32.432432432432435) * t171;
-            let t239 = k(4.864864864864865) * t171;
-            let t240 = t172 * t239;
-            let t241 = T::fused(t220, t238, t240)
-                + (T::fused(t195, t235, t196 * t233) - t237);
-            let t242 = k(1.0) / t241;
-            let t243 = T::fused(t48, t193, T::fused(-t57, t181, t36 * t191));
-            let t244 = k(0.5) * t31;
-            let t245 = k(0.5) * t35;
-            let t246 = T::fused(t203, t217, T::fused(-t197, t211, t199 * t214));
-            let t247 = k(0.3) * t198;
-            let t248 = T::fused(-(k(0.3) * t202), t216, t247 * t219) - t246
-                + (T::fused(-t244, t192, t245 * t190) + t243);
-            let t249 = T::fused(t48, t236, T::fused(-t57, t224, t36 * t234));
-            let t250 = t199 * t239;
-            let t251 = T::fused(t247, t238, t250)
-                + (T::fused(-t244, t235, t245 * t233) + t249);
-            let t252 = t242 * t251;
-            let t253 = T::fused(t252, t222, -(t248 - (t204 - t93)));
-            let t254 = T::fused(-t31, t43, t35 * t53);
-            let t255 = t63 * t254;
-            let t256 = T::fused(t61, t255, t31);
-            let t257 = t67 * t256;
-            let t258 = T::fused(
-                t59,
-                T::fused(t60, t255, t70 * t257),
-                t53 * T::fused(t88, t257, -T::fused(-t62, t255, t35)),
+            let t204 = T::fused(
+                k(2.0),
+                T::fused(t161, t178, T::fused(-t159, t167, t160 * t172)),
+                T::fused(t161, t175, T::fused(-t159, t164, t160 * t169)),
             );
-            let t259 = T::fused(
-                t57,
-                t78,
-                t73 * T::fused(t100, t257, -T::fused(-t98, t255, t36)),
+            let t205 = k(1.0)
+                / (t204 - (k(0.013) + (k(0.004) - (t203 - (k(0.032) - t202)))));
+            let t206 = t205 * (t201 - t162);
+            let t207 = t163 - T::fused(t55, t54, t159 * t206);
+            let t208 = t90 - (T::fused(t186, t54, t148 * t206) - t207);
+            let t209 = t168 + T::fused(-t194, t54, t160 * t206);
+            let t210 = t100 + (T::fused(-t187, t54, t153 * t206) + t209);
+            let t211 = t174 + T::fused(-t195, t54, t161 * t206);
+            let t212 = t113 + (T::fused(-t188, t54, t157 * t206) + t211);
+            let t213 = t130 - T::fused(t75, t206, T::fused(-t123, t179, t125 * t54));
+            let t214 = t133 + T::fused(t71, t206, T::fused(-t124, t179, t126 * t54));
+            let t215 = T::fused(-t86, t213, t134 * t214)
+                + T::fused(t118, t212, T::fused(t95, t208, t105 * t210));
+            let t216 = t83 * (t81 + t215);
+            let t217 = T::fused(t78, t214, T::fused(-t76, t213, t77 * t216))
+                + T::fused(t116, t212, T::fused(-t93, t208, t103 * t210));
+            let t218 = t79 * (t72 - t217);
+            let t219 = T::fused(t66, t218, t216);
+            let t220 = k(0.5) * t12;
+            let t221 = T::fused(t71, t218, t214);
+            let t222 = k(0.5) * t7;
+            let t223 = T::fused(t220, t219, t222 * t221);
+            let t224 = t208 - t223;
+            let t225 = k(2.0) * (t21 + t20);
+            let t226 = rocker_wy * rocker_wz;
+            let t227 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
+            let t228 = k(2.0) * t227;
+            let t229 = T::fused(rocker_wx, rocker_wx, t15);
+            let t230 = rocker_e0 * rocker_e1;
+            let t231 = rocker_e2 * rocker_e3;
+            let t232 = t231 - t230;
+            let t233 = k(2.0) * t232;
+            let t234 = T::fused(t233, t229, T::fused(-t225, t24, t228 * t226));
+            let t235 = k(1.0) / T::fused(-t18, t228, t23 * t225);
+            let t236 = T::fused(t28, t229, -T::fused(-t18, t24, t23 * t226));
+            let t237 = T::fused(t23 * t235, t234, t228 * t235 * t236);
+            let t238 = k(0.15) * T::fused(t233, t24, -T::fused(t225, t16, t228 * t19));
+            let t239 = t231 + t230;
+            let t240 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
+            let t241 = T::fused(
+                k(2.0) * t240,
+                t24,
+                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t239 * t19),
             );
-            let t260 = T::fused(
-                t79,
-                T::fused(t106, t257, -T::fused(t104, t255, t48)),
-                t259,
+            let t242 = k(0.15) * t241;
+            let t243 = T::fused(
+                k(0.18) * t239,
+                t242,
+                T::fused(-(k(0.18) * t22), t29, k(0.18) * t227 * t238),
             );
-            let t261 = t151 * T::fused(k(0.1), t260, T::fused(k(0.2), t260, t258));
-            let t262 = k(0.3) * t261;
-            let t263 = t78 * t262;
-            let t264 = t73 * t262;
-            let t265 = t79 * t262;
-            let t266 = t59 * t261;
-            let t267 = t53 * t261;
-            let t268 = T::fused(t70, t266, t88 * t267)
-                + T::fused(t100, t264, t106 * t265);
-            let t269 = t67 * (t256 + t268);
-            let t270 = T::fused(t62, t267, T::fused(t60, t266, t61 * t269))
-                - T::fused(-t98, t264, t104 * t265);
-            let t271 = t63 * (t254 + t270);
-            let t272 = T::fused(-t53, t271, t267);
-            let t273 = T::fused(k(0.25), t272, t264);
-            let t274 = T::fused(-t43, t271, t269);
-            let t275 = T::fused(-k(0.25), t274, t265);
-            let t276 = T::fused(t48, t275, T::fused(-t57, t263, t36 * t273));
-            let t277 = k(32.432432432432435) * t198;
-            let t278 = k(4.864864864864865) * t198;
-            let t279 = t199 * t278;
-            let t280 = T::fused(t247, t277, t279)
-                - (T::fused(-t244, t274, t245 * t272) + t276);
-            let t281 = k(1.0) / T::fused(t251, t252, -t280);
-            let t282 = T::fused(t47, t193, T::fused(t58, t181, t42 * t191));
-            let t283 = k(0.5) * t46;
-            let t284 = k(0.5) * t41;
-            let t285 = T::fused(t209, t217, T::fused(t205, t211, t207 * t214));
-            let t286 = k(0.3) * t206;
-            let t287 = T::fused(-(k(0.3) * t208), t216, t286 * t219) - t285
-                + (T::fused(-t283, t192, t284 * t190) + t282);
-            let t288 = T::fused(t47, t236, T::fused(t58, t224, t42 * t234));
-            let t289 = t207 * t239;
-            let t290 = T::fused(t286, t238, t289)
-                + (T::fused(-t283, t235, t284 * t233) + t288);
-            let t291 = t242 * t290;
-            let t292 = T::fused(t47, t275, T::fused(t58, t263, t42 * t273));
-            let t293 = t207 * t278;
-            let t294 = T::fused(t286, t277, t293)
-                - (T::fused(-t283, t274, t284 * t272) + t292);
-            let t295 = T::fused(t251, t291, -t294);
-            let t296 = t281 * t295;
-            let t297 = T::fused(-t46, t43, t41 * t53);
-            let t298 = t63 * t297;
-            let t299 = T::fused(t61, t298, t46);
-            let t300 = t67 * t299;
-            let t301 = T::fused(
-                t59,
-                T::fused(t60, t298, t70 * t300),
-                t53 * T::fused(t88, t300, -T::fused(-t62, t298, t41)),
+            let t244 = k(54.054054054054056)
+                * (t243 - T::fused(-k(1.7658), t227, k(0.00496) * t19));
+            let t245 = k(0.3) * t22;
+            let t246 = T::fused(-(k(0.3) * t27), t237, t245 * t244);
+            let t247 = t29 + t246;
+            let t248 = t246 + t247 + (t223 - t224) + (t29 - t14);
+            let t249 = T::fused(t12, t66, t7 * t71);
+            let t250 = t249 * t79;
+            let t251 = T::fused(-t77, t250, t12);
+            let t252 = t251 * t83;
+            let t253 = T::fused(
+                t75,
+                T::fused(-t76, t250, t252 * t86),
+                t71 * T::fused(t252, t134, T::fused(-t78, t250, t7)),
             );
-            let t302 = T::fused(
-                -t58,
-                t78,
-                t73 * T::fused(t100, t300, -T::fused(-t98, t298, t42)),
-            );
-            let t303 = T::fused(
-                t79,
-                T::fused(t106, t300, -T::fused(t104, t298, t47)),
-                t302,
-            );
-            let t304 = t151 * T::fused(k(0.1), t303, T::fused(k(0.2), t303, t301));
-            let t305 = k(0.3) * t304;
-            let t306 = t78 * t305;
-            let t307 = t73 * t305;
-            let t308 = t79 * t305;
-            let t309 = t59 * t304;
-            let t310 = t53 * t304;
-            let t311 = T::fused(t70, t309, t88 * t310)
-                + T::fused(t100, t307, t106 * t308);
-            let t312 = t67 * (t299 + t311);
-            let t313 = T::fused(t62, t310, T::fused(t60, t309, t61 * t312))
-                - T::fused(-t98, t307, t104 * t308);
-            let t314 = t63 * (t297 + t313);
-            let t315 = T::fused(-t53, t314, t310);
-            let t316 = T::fused(k(0.25), t315, t307);
-            let t317 = T::fused(-t43, t314, t312);
-            let t318 = T::fused(-k(0.25), t317, t308);
-            let t319 = T::fused(t47, t318, T::fused(t58, t306, t42 * t316));
-            let t320 = k(32.432432432432435) * t206;
-            let t321 = k(4.864864864864865) * t206;
-            let t322 = t207 * t321;
-            let t323 = T::fused(t286, t320, t322)
-                - (T::fused(-t283, t317, t284 * t315) + t319);
-            let t324 = T::fused(
-                t296,
-                t253,
-                -T::fused(t291, t222, -(t287 - (t210 - t95))),
-            ) / T::fused(t295, t296, -T::fused(t290, t291, -t323));
-            let t325 = T::fused(-t281, t253, t296 * t324);
-            let t326 = T::fused(t291, t324, -T::fused(t242, t222, t252 * t325));
-            let t327 = T::fused(
-                t326,
-                t7 * t163,
-                -T::fused(t11, t154, -T::fused(-t3, t28, t7 * t153)),
-            );
-            let t328 = k(0.1) * t261;
-            let t329 = k(0.1) * t304;
-            let t330 = T::fused(
-                t326,
-                t16 * t163,
-                T::fused(t19, t154, T::fused(-t14, t28, t16 * t153)),
-            );
-            let t331 = T::fused(
-                t326,
-                t23 * t163,
-                T::fused(t25, t154, T::fused(t22, t28, t23 * t153)),
-            );
-            let t332 = T::fused(
-                t325,
-                T::fused(t52, t275, -T::fused(-t55, t263, t40 * t273)),
-                -T::fused(t237, t326, t194),
-            );
-            let t333 = T::fused(
-                t324,
-                T::fused(t52, t318, -T::fused(-t55, t306, t40 * t316)),
-                -t332,
-            );
-            let t334 = T::fused(
-                t324,
-                T::fused(t48, t318, T::fused(-t57, t306, t36 * t316)),
-                -T::fused(t276, t325, -T::fused(t249, t326, t243)),
-            );
-            let t335 = T::fused(
-                t325,
-                T::fused(-t59, t271, t266),
-                -T::fused(t326, T::fused(t59, t232, t227), -T::fused(-t59, t189, t184)),
-            );
-            let t336 = T::fused(
-                t324,
-                t172 * t321,
-                -T::fused(t325, t172 * t278, T::fused(t240, t326, t218)),
-            );
-            let t337 = T::fused(
-                t324,
-                t199 * t321,
-                -T::fused(t279, t325, -T::fused(-t250, t326, t246)),
-            );
-            (
-                t207,
-                t215,
-                t216,
-                t219,
-                t233,
-                t235,
-                t238,
-                t261,
-                t272,
-                t274,
-                t277,
-                t282,
-                t285,
-                t288,
+            let t254 = T::fused(t252, t95, -T::fused(-t250, t93, k(1.0)));
+            let t255 = T::fused(-t250, t103, t252 * t105);
+            let t256 = T::fused(-t250, t116, t252 * t118);
+            let t257 = T::fused(t161, t256, T::fused(-t159, t254, t160 * t255))
+                + (T::fused(t157, t256, T::fused(-t148, t254, t153 * t255)) + t253);
+            let t258 = t257 * t205;
+            let t259 = t159 * t258;
+            let t260 = T::fused(t148, t258, t259);
+            let t261 = t160 * t258;
+            let t262 = T::fused(t153, t258, t261);
+            let t263 = t161 * t258;
+            let t264 = T::fused(t157, t258, t263);
+            let t265 = t75 * t258;
+            let t266 = t71 * t258;
+            let t267 = T::fused(t86, t265, t134 * t266)
+                + T::fused(t118, t264, T::fused(-t95, t260, t105 * t262));
+            let t268 = t83 * (t251 - t267);
+            let t269 = T::fused(t78, t266, -T::fused(-t76, t265, t77 * t268))
+                + T::fused(t116, t264, T::fused(t93, t260, t103 * t262));
+            let t270 = t79 * (t249 + t269);
+            let t271 = T::fused(t66, t270, t268);
+            let t272 = T::fused(-t71, t270, t266);
+            let t273 = T::fused(-t220, t271, t222 * t272);
+            let t274 = t260 + t273;
+            let t275 = k(32.432432432432435) * t22;
+            let t276 = t245 * t275;
+            let t277 = k(1.0) / T::fused(k(2.0), t276, -(t273 + t274));
+            let t278 = k(0.5) * t58;
+            let t279 = k(0.5) * t60;
+            let t280 = T::fused(-t278, t219, t279 * t221);
+            let t281 = t210 + t280;
+            let t282 = k(0.3) * t227;
+            let t283 = T::fused(k(0.3) * t232, t237, t282 * t244);
+            let t284 = t238 - t283;
+            let t285 = T::fused(t278, t271, t279 * t272);
+            let t286 = t262 + t285;
+            let t287 = t282 * t275;
+            let t288 = T::fused(k(2.0), t287, -(t285 + t286));
+            let t289 = t277 * t288;
+            let t290 = T::fused(
                 t289,
-                t292,
-                t293,
-                t304,
-                t309,
-                t314,
-                t315,
-                t317,
-                t319,
-                t320,
-                t322,
-                t324,
-                t325,
-                t326,
-                t327,
-                t328,
-                t329,
-                t330,
+                t248,
+                -(t283 - t284 + (t280 + t281) - (t238 - t99)),
+            );
+            let t291 = T::fused(-t58, t66, t60 * t71);
+            let t292 = t79 * t291;
+            let t293 = T::fused(t77, t292, t58);
+            let t294 = t83 * t293;
+            let t295 = T::fused(
+                t75,
+                T::fused(t76, t292, t86 * t294),
+                t71 * T::fused(t134, t294, -T::fused(-t78, t292, t60)),
+            );
+            let t296 = T::fused(-t93, t292, t95 * t294);
+            let t297 = T::fused(t105, t294, -T::fused(-t103, t292, k(1.0)));
+            let t298 = T::fused(t116, t292, t118 * t294);
+            let t299 = T::fused(t161, t298, T::fused(-t159, t296, t160 * t297))
+                + (T::fused(t157, t298, T::fused(-t148, t296, t153 * t297)) + t295);
+            let t300 = t205 * t299;
+            let t301 = t159 * t300;
+            let t302 = T::fused(t148, t300, t301);
+            let t303 = t160 * t300;
+            let t304 = T::fused(t153, t300, t303);
+            let t305 = t161 * t300;
+            let t306 = T::fused(t157, t300, t305);
+            let t307 = t75 * t300;
+            let t308 = t71 * t300;
+            let t309 = T::fused(t86, t307, t134 * t308)
+                + T::fused(t118, t306, T::fused(-t95, t302, t105 * t304));
+            let t310 = t83 * (t293 - t309);
+            let t311 = T::fused(t78, t308, -T::fused(-t76, t307, t77 * t310))
+                + T::fused(t116, t306, T::fused(t93, t302, t103 * t304));
+            let t312 = t79 * (t291 - t311);
+            let t313 = T::fused(-t66, t312, t310);
+            let t314 = T::fused(t71, t312, t308);
+            let t315 = T::fused(t278, t313, t279 * t314);
+            let t316 = t304 + t315;
+            let t317 = k(32.432432432432435) * t227;
+            let t318 = t282 * t317;
+            let t319 = k(1.0)
+                / T::fused(t288, t289, -T::fused(k(2.0), t318, t315 + t316));
+            let t320 = k(0.5) * t68;
+            let t321 = k(0.5) * t62;
+            let t322 = T::fused(-t320, t219, t321 * t221);
+            let t323 = t212 + t322;
+            let t324 = k(0.3) * t239;
+            let t325 = T::fused(k(0.3) * t240, t237, t324 * t244);
+            let t326 = t242 - t325;
+            let t327 = T::fused(t320, t271, t321 * t272);
+            let t328 = t264 + t327;
+            let t329 = t324 * t275;
+            let t330 = T::fused(k(2.0), t329, -(t327 + t328));
+            let t331 = t277 * t330;
+            let t332 = T::fused(
                 t331,
-                t333,
-                t334,
-                t335,
+                t248,
+                -(t325 - t326 + (t322 + t323) - (t242 - t112)),
+            );
+            let t333 = T::fused(t320, t313, t321 * t314);
+            let t334 = t306 + t333;
+            let t335 = t324 * t317;
+            let t336 = T::fused(t288, t331, -T::fused(k(2.0), t335, t333 + t334));
+            let t337 = t319 * t336;
+            let t338 = T::fused(-t68, t66, t62 * t71);
+            let t339 = t79 * t338;
+            let t340 = T::fused(t77, t339, t68);
+            let t341 = t83 * t340;
+            let t342 = T::fused(
+                t75,
+                T::fused(t76, t339, t86 * t341),
+                t71 * T::fused(t134, t341, -T::fused(-t78, t339, t62)),
+            );
+            let t343 = T::fused(-t93, t339, t95 * t341);
+            let t344 = T::fused(t103, t339, t105 * t341);
+            let t345 = T::fused(t118, t341, -T::fused(-t116, t339, k(1.0)));
+            let t346 = T::fused(t161, t345, T::fused(-t159, t343, t160 * t344))
+                + (T::fused(t157, t345, T::fused(-t148, t343, t153 * t344)) + t342);
+            let t347 = t205 * t346;
+            let t348 = t159 * t347;
+            let t349 = T::fused(t148, t347, t348);
+            let t350 = t160 * t347;
+            let t351 = T::fused(t153, t347, t350);
+            let t352 = t161 * t347;
+            let t353 = T::fused(t157, t347, t352);
+            let t354 = t75 * t347;
+            let t355 = t71 * t347;
+            let t356 = T::fused(t86, t354, t134 * t355)
+                + T::fused(t118, t353, T::fused(-t95, t349, t105 * t351));
+            let t357 = t83 * (t340 - t356);
+            let t358 = T::fused(t78, t355, -T::fused(-t76, t354, t77 * t357))
+                + T::fused(t116, t353, T::fused(t93, t349, t103 * t351));
+            let t359 = t79 * (t338 - t358);
+            let t360 = T::fused(-t66, t359, t357);
+            let t361 = T::fused(t71, t359, t355);
+            let t362 = T::fused(t320, t360, t321 * t361);
+            let t363 = t353 + t362;
+            let t364 = k(32.432432432432435) * t239;
+            let t365 = t324 * t364;
+            let t366 = T::fused(
                 t336,
                 t337,
+                -T::fused(t330, t331, -T::fused(k(2.0), t365, t362 + t363)),
+            );
+            let t367 = T::fused(t337, t290, -t332) / t366;
+            let t368 = T::fused(-t319, t290, t337 * t367);
+            let t369 = T::fused(t331, t367, -T::fused(t277, t248, t289 * t368));
+            let t370 = T::fused(
+                t368,
+                t302 + T::fused(-t220, t313, t222 * t314),
+                -T::fused(t274, t369, t224),
+            );
+            let t371 = T::fused(
+                t367,
+                t351 + T::fused(t278, t360, t279 * t361),
+                -T::fused(t316, t368, T::fused(-t286, t369, t281)),
+            );
+            let t372 = T::fused(
+                t368,
+                T::fused(t75, t312, t307),
+                -T::fused(t369, T::fused(-t75, t270, t265), T::fused(-t75, t218, t213)),
+            );
+            let t373 = T::fused(
+                t367,
+                t245 * t364,
+                -T::fused(t368, t245 * t317, T::fused(t276, t369, t247)),
+            );
+            let t374 = T::fused(
+                t367,
+                t282 * t364,
+                -T::fused(t318, t368, -T::fused(-t287, t369, t284)),
+            );
+            (
+                t206,
+                t207,
+                t209,
+                t211,
+                t219,
+                t220,
+                t221,
+                t222,
+                t225,
+                t234,
+                t235,
+                t236,
+                t237,
+                t244,
+                t258,
+                t259,
+                t261,
+                t263,
+                t271,
+                t272,
+                t275,
+                t300,
+                t301,
+                t303,
+                t305,
+                t313,
+                t314,
+                t317,
+                t323,
+                t326,
+                t328,
+                t329,
+                t334,
+                t335,
+                t347,
+                t348,
+                t349,
+                t350,
+                t352,
+                t354,
+                t359,
+                t360,
+                t361,
+                t363,
+                t364,
+                t365,
+                t367,
+                t368,
+                t369,
+                t370,
+                t371,
+                t372,
+                t373,
+                t374,
             )
         };
         *out = [
-            T::fused(-t324, t7 * t329, T::fused(t325, t7 * t328, -t327)),
-            T::fused(t324, t16 * t329, -T::fused(t325, t16 * t328, -t330)),
-            T::fused(-t324, t23 * t329, T::fused(t325, t23 * t328, -t331)),
-            t141,
-            -t144,
-            T::fused(-t304, t324, T::fused(t261, t325, -T::fused(t162, t326, t152))),
-            t333,
-            t334,
-            T::fused(-t319, t324, T::fused(t292, t325, -T::fused(t288, t326, t282))),
-            T::fused(t324, T::fused(-t59, t314, t309), -t335),
-            T::fused(t317, t324, -T::fused(t274, t325, -T::fused(t235, t326, t192))),
-            T::fused(-t315, t324, T::fused(t272, t325, -T::fused(t233, t326, t190))),
-            -t336,
-            t337,
-            T::fused(-t322, t324, T::fused(t293, t325, -T::fused(-t289, t326, t285))),
-            T::fused(-t207, t215, rocker_wy * rocker_wz),
-            -t216,
-            T::fused(-t320, t324, T::fused(t277, t325, T::fused(t238, t326, t219))),
-            -t326,
-            t325,
-            t324,
+            T::fused(t348, t367, -T::fused(t301, t368, -T::fused(t259, t369, t207))),
+            T::fused(-t350, t367, T::fused(t303, t368, T::fused(-t261, t369, t209))),
+            T::fused(t352, t367, -T::fused(t305, t368, T::fused(-t263, t369, t211))),
+            -t179,
+            t54,
+            T::fused(t347, t367, -T::fused(t300, t368, T::fused(-t258, t369, t206))),
+            T::fused(t367, t349 + T::fused(-t220, t360, t222 * t361), -t370),
+            -t371,
+            T::fused(t363, t367, -T::fused(t334, t368, T::fused(-t328, t369, t323))),
+            T::fused(-t367, T::fused(t75, t359, t354), t372),
+            T::fused(t360, t367, -T::fused(t313, t368, -T::fused(t271, t369, t219))),
+            T::fused(t361, t367, -T::fused(t314, t368, T::fused(-t272, t369, t221))),
+            -t373,
+            t374,
+            T::fused(-t365, t367, T::fused(t335, t368, -T::fused(-t329, t369, t326))),
+            -T::fused(t234, t18 * t235, t236 * (t225 * t235)),
+            t237,
+            T::fused(-t364, t367, T::fused(t317, t368, T::fused(t275, t369, t244))),
+            -t369,
+            t368,
+            t367,
         ];
     }
     /// Writes λ: 278 operations (104 ±, 171 ×, 3 ÷).
@@ -2473,95 +2547,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t3 = T::fused(k(0.5), crank_dsy, k(4.905)) + t2;
         let t4 = T::fused(k(0.8), coupler_dsz, -closing2);
         let t5 = T::fused(k(0.5), crank_dsz, t4);
-        let t6 = crank_e0 * crank_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t6));
-        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t6));
-        let t9 = crank_e0 * crank_e3;
-        let t10 = crank_e1 * crank_e2;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = k(2.0) * (t10 - t9);
-        let t13 = k(1.0) / T::fused(-t8, t7, t12 * t11);
-        let t14 = coupler_e0 * coupler_e0;
-        let t15 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t14));
-        let t16 = coupler_e0 * coupler_e3;
-        let t17 = coupler_e1 * coupler_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = coupler_e0 * coupler_e2;
-        let t20 = coupler_e1 * coupler_e3;
+        let t6 = coupler_e0 * coupler_e0;
+        let t7 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t6));
+        let t8 = crank_e0 * crank_e0;
+        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
+        let t10 = coupler_e0 * coupler_e3;
+        let t11 = coupler_e1 * coupler_e2;
+        let t12 = k(2.0) * (t11 + t10);
+        let t13 = crank_e0 * crank_e3;
+        let t14 = crank_e1 * crank_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = coupler_e0 * coupler_e2;
+        let t17 = coupler_e1 * coupler_e3;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = crank_e0 * crank_e2;
+        let t20 = crank_e1 * crank_e3;
         let t21 = k(2.0) * (t20 - t19);
-        let t22 = crank_e0 * crank_e2;
-        let t23 = crank_e1 * crank_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = k(5e-5) * coupler_dwx;
-        let t26 = t20 + t19;
-        let t27 = k(0.5) * t26;
-        let t28 = coupler_e0 * coupler_e1;
-        let t29 = coupler_e2 * coupler_e3;
-        let t30 = t29 - t28;
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(
+        let t22 = k(5e-5) * coupler_dwx;
+        let t23 = t17 + t16;
+        let t24 = k(0.5) * t23;
+        let t25 = coupler_e0 * coupler_e1;
+        let t26 = coupler_e2 * coupler_e3;
+        let t27 = t26 - t25;
+        let t28 = k(0.5) * t27;
+        let t29 = T::fused(
             closing1,
-            t31,
+            t28,
             -T::fused(
                 -closing0,
-                t27,
+                t24,
                 T::fused(-k(0.02), coupler_dwy, k(0.01995) * (coupler_wx * coupler_wz)),
             ),
         );
-        let t33 = k(0.5) - T::fused(coupler_e3, coupler_e3, t14);
-        let t34 = k(0.5) * t33;
-        let t35 = T::fused(t4, t34, -T::fused(t0, t27, t2 * t31))
-            - T::fused(closing2, t34, -t32);
-        let t36 = t17 - t16;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - T::fused(coupler_e2, coupler_e2, t14);
-        let t39 = k(2.0) * t38;
-        let t40 = t29 + t28;
-        let t41 = k(2.0) * t40;
-        let t42 = T::fused(
-            t25,
-            T::fused(t24, t21, T::fused(t8, t15, t11 * t18)),
-            T::fused(t24, t41, -T::fused(t8, t37, t11 * t39)) * t35,
+        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t6);
+        let t31 = k(0.5) * t30;
+        let t32 = T::fused(t4, t31, -T::fused(t0, t24, t2 * t28))
+            - T::fused(closing2, t31, -t29);
+        let t33 = t11 - t10;
+        let t34 = k(2.0) * t33;
+        let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t6);
+        let t36 = k(2.0) * t35;
+        let t37 = t26 + t25;
+        let t38 = k(2.0) * t37;
+        let t39 = T::fused(
+            t22,
+            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
+            T::fused(t21, t38, -T::fused(t9, t34, t15 * t36)) * t32,
         );
-        let t43 = k(0.5) * t36;
-        let t44 = k(0.5) * t38;
-        let t45 = T::fused(
+        let t40 = k(0.5) * t33;
+        let t41 = k(0.5) * t35;
+        let t42 = T::fused(
             closing1,
-            t44,
+            t41,
             T::fused(
                 -closing0,
-                t43,
+                t40,
                 T::fused(k(0.02), coupler_dwz, k(0.01995) * (coupler_wx * coupler_wy)),
             ),
         );
-        let t46 = k(0.5) * t40;
-        let t47 = T::fused(t4, t46, -T::fused(-t0, t43, t2 * t44))
-            - T::fused(closing2, t46, -t45);
-        let t48 = k(2.0) * t26;
-        let t49 = k(2.0) * t30;
-        let t50 = k(2.0) * t33;
-        let t51 = T::fused(
-            T::fused(t24, t50, -T::fused(-t8, t48, t11 * t49)),
-            t47,
-            -t42,
+        let t43 = k(0.5) * t37;
+        let t44 = T::fused(t4, t43, -T::fused(-t0, t40, t2 * t41))
+            - T::fused(closing2, t43, -t42);
+        let t45 = k(2.0) * t23;
+        let t46 = k(2.0) * t27;
+        let t47 = k(2.0) * t30;
+        let t48 = T::fused(
+            T::fused(t21, t47, -T::fused(-t9, t45, t15 * t46)),
+            t44,
+            -t39,
         );
-        let t52 = T::fused(k(2e-5), crank_dwx, -t51);
+        let t49 = T::fused(k(2e-5), crank_dwx, -t48);
+        let t50 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
+        let t51 = k(2.0) * (t14 - t13);
+        let t52 = k(1.0) / T::fused(-t9, t50, t51 * t15);
         let t53 = crank_e0 * crank_e1;
         let t54 = crank_e2 * crank_e3;
         let t55 = k(2.0) * (t54 + t53);
         let t56 = T::fused(
-            t25,
-            T::fused(t55, t21, -T::fused(t12, t15, t7 * t18)),
-            T::fused(t55, t41, T::fused(t7, t39, t12 * t37)) * t35,
+            t22,
+            T::fused(t55, t18, -T::fused(t51, t7, t50 * t12)),
+            T::fused(t55, t38, T::fused(t50, t36, t51 * t34)) * t32,
         );
         let t57 = T::fused(
-            T::fused(t55, t50, -T::fused(-t7, t49, t12 * t48)),
-            t47,
+            T::fused(t55, t47, -T::fused(-t50, t46, t51 * t45)),
+            t44,
             -t56,
         );
-        let t58 = t23 + t22;
+        let t58 = t20 + t19;
         let t59 = t54 - t53;
-        let t60 = k(0.5) - T::fused(crank_e3, crank_e3, t6);
+        let t60 = k(0.5) - T::fused(crank_e3, crank_e3, t8);
         let t61 = T::fused(
             t4,
             k(0.4) * t60,
@@ -2604,24 +2678,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t81 = k(2.0) * t60;
         let t82 = k(2.0) * t59;
         let t83 = k(2.0) * t58;
-        let t84 = T::fused(t81, t50, T::fused(t82, t49, t83 * t48));
-        let t85 = T::fused(t81, t21, -T::fused(-t83, t15, t82 * t18));
+        let t84 = T::fused(t81, t47, T::fused(t82, t46, t83 * t45));
+        let t85 = T::fused(t81, t18, -T::fused(-t83, t7, t82 * t12));
         let t86 = k(1.0) / T::fused(t84, t84, t85 * t85);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            T::fused(-t52, t8 * t13, t63 * (t12 * t13)),
-            T::fused(-t63, t7 * t13, t52 * (t11 * t13)),
+            T::fused(-(t9 * t52), t49, t51 * t52 * t63),
+            T::fused(-(t50 * t52), t63, t15 * t52 * t49),
             -t64,
             -t65,
             -t66,
-            T::fused(-t75, t69 * t74, t80 * (t73 * t74)),
-            T::fused(-t80, t68 * t74, t75 * (t72 * t74)),
+            T::fused(-t75, t69 * t74, t73 * t74 * t80),
+            T::fused(-(t68 * t74), t80, t75 * (t72 * t74)),
             -t0,
             -t2,
             -t4,
-            -T::fused(t25, t84 * t86, t85 * t86 * t47),
+            -T::fused(t22, t84 * t86, t85 * t86 * t44),
             closing0,
             closing1,
             closing2,
