@@ -1,0 +1,129 @@
+//! One-step methods for first-order systems: the contract that all of them keep.
+//!
+//! | method | order | for |
+//! |---|---|---|
+//! | [`Kutta4`] | 4, fixed steps | the paper's settings; [`Rk4`] is its bare step, for small machines |
+//! | [`Tsit5`] | 5(4) | moderate tolerances |
+//! | [`Dop853`] | 8(5, 3) | fine tolerances; the cheapest on smooth motions from 1e-5 on |
+//! | [`Rodas4`] | 4(3), L-stable | stiff scenes; needs a [`Differentiable`](crate::Differentiable) system |
+//!
+//! A method holds its own work space, whose size is in the type of the state: nothing is allocated. It knows neither mechanisms nor
+//! corrections; [`Solver`](crate::Solver) brings them together.
+
+mod dop853;
+mod kutta4;
+mod lu;
+mod rk4;
+mod rodas4;
+mod tsit5;
+
+pub use dop853::Dop853;
+pub use kutta4::Kutta4;
+pub use rk4::Rk4;
+pub use rodas4::Rodas4;
+pub use tsit5::Tsit5;
+
+use crate::{Ode, Real, Scalar, Storage};
+
+/// A one-step method: a step of a given length from a given state, and the states within it.
+pub trait Method<O: Ode> {
+    /// Order p: over a given time the error of fixed steps h shrinks like hᵖ.
+    const ORDER: u32;
+    /// The largest |hλ| of a decaying motion (real λ) that the method follows without growing; infinite for L-stable ones.
+    const STABILITY: f64;
+
+    /// Work space for states like this one.
+    fn new(system: &O, y: &O::State) -> Self;
+    /// Steps from `y` at `t` to [`Method::end`] at `t + h`, and counts what it evaluates. Where `resumes` is said, `t` and `y` are
+    /// those of the last attempt, or its end exactly as it was after [`Method::carry`] has said that it is known there: what has been
+    /// found out there is used again.
+    fn attempt(
+        &mut self,
+        system: &O,
+        t: O::Scalar,
+        h: O::Scalar,
+        y: &O::State,
+        resumes: bool,
+        work: &mut Work,
+    );
+    /// Where the last attempt ended.
+    fn end(&self) -> &O::State;
+    /// Makes the end of the last attempt the start of the next; returns whether the slope there is known already.
+    fn carry(&mut self) -> bool;
+    /// Prepares [`Method::between`] within the last attempt, before it is carried.
+    fn prepare(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, work: &mut Work);
+    /// Writes the state at `t + θ h` within the step that was prepared, 0 ≤ θ ≤ 1.
+    fn between(&self, theta: O::Scalar, out: &mut O::State);
+    /// Numerator and denominator, squared, of an estimate of the fastest rate |λ| of the system that the last attempt has seen; both zero
+    /// where it has seen none.
+    fn rate(&self) -> [O::Scalar; 2];
+}
+
+/// A method that estimates its own error.
+pub trait Embedded<O: Ode<Scalar: Real>>: Method<O> {
+    /// The estimate shrinks like h to the power of this.
+    const ERROR_ORDER: u32;
+
+    /// The estimated error of the last attempt in units of what is tolerated, that of the worst element, and its index. The weights say
+    /// what is tolerated of each element. Infinite where the attempt has led to what is not finite.
+    fn error(&self, h: O::Scalar, weights: &O::State) -> (O::Scalar, usize);
+}
+
+/// What the steps have cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Evaluations of the right-hand side.
+    pub evaluations: u64,
+    /// Evaluations of the Jacobian, each with a factorisation.
+    pub jacobians: u64,
+}
+
+/// Writes `y + h Σ a k`.
+#[inline(always)]
+fn combine<T: Scalar, S: Storage<T>, const N: usize>(out: &mut S, y: &S, h: T, terms: [(f64, &S); N]) {
+    let terms = terms.map(|(a, k)| (T::constant(a), k.as_ref()));
+    let y = y.as_ref();
+    for (i, out) in out.as_mut().iter_mut().enumerate() {
+        *out = T::fused(h, sum(&terms, i), y[i]);
+    }
+}
+
+/// `Σ a k` of one element, from coefficients.
+#[inline(always)]
+fn sum_at<T: Scalar, S: Storage<T>, const N: usize>(terms: [(f64, &S); N], i: usize) -> T {
+    sum(&terms.map(|(a, k)| (T::constant(a), k.as_ref())), i)
+}
+
+#[inline(always)]
+fn sum<T: Scalar, const N: usize>(terms: &[(T, &[T]); N], i: usize) -> T {
+    let mut sum = T::constant(0.0);
+    for (index, (a, k)) in terms.iter().enumerate() {
+        sum = if index == 0 { *a * k[i] } else { T::fused(*a, k[i], sum) };
+    }
+    sum
+}
+
+/// The largest of the elements' errors over their weights, and its index.
+#[inline(always)]
+fn worst<T: Real, S: Storage<T>>(weights: &S, error: impl Fn(usize) -> T) -> (T, usize) {
+    let mut worst = (T::constant(0.0), 0);
+    for (i, weight) in weights.as_ref().iter().enumerate() {
+        let error = (error(i) / *weight).abs();
+        if !error.is_finite() {
+            return (T::constant(f64::INFINITY), i);
+        }
+        if error > worst.0 {
+            worst = (error, i);
+        }
+    }
+    worst
+}
+
+/// The squares of the lengths of differences, of slopes and of the states that they belong to: a rate.
+#[inline]
+fn rate<T: Scalar, S: Storage<T>>(slopes: [&S; 2], states: [&S; 2]) -> [T; 2] {
+    [slopes, states].map(|[a, b]| {
+        let differences = a.as_ref().iter().zip(b.as_ref()).map(|(a, b)| *a - *b);
+        differences.fold(T::constant(0.0), |sum, d| T::fused(d, d, sum))
+    })
+}

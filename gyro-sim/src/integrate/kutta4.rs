@@ -1,0 +1,86 @@
+//! The classical fourth-order method (Kutta 1901; Hairer, Nørsett and Wanner, *Solving ODEs I*, table II.1.2), with dense output of order 3 by
+//! Hermite's cubic.
+
+use super::{Method, Work, combine, rate};
+use crate::{Ode, Scalar};
+
+/// Work space of the method.
+#[derive(Clone, Debug)]
+pub struct Kutta4<O: Ode> {
+    k: [O::State; 4],
+    /// The arguments of the second and the third slope, which belong to the same time.
+    stages: [O::State; 2],
+    end: O::State,
+    /// Coefficients of 1, θ, θ², θ³ of the interpolant.
+    dense: [O::State; 4],
+}
+
+impl<O: Ode> Method<O> for Kutta4<O> {
+    const ORDER: u32 = 4;
+    const STABILITY: f64 = 2.785;
+
+    fn new(_: &O, y: &O::State) -> Self {
+        let copies = |_| y.clone();
+        Self {
+            k: core::array::from_fn(copies),
+            stages: core::array::from_fn(copies),
+            end: y.clone(),
+            dense: core::array::from_fn(copies),
+        }
+    }
+
+    #[rustfmt::skip]
+    fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
+        let half = t + h * O::Scalar::constant(0.5);
+        let (k, [second, third]) = (&mut self.k, &mut self.stages);
+        if !resumes {
+            system.derivative(t, y, &mut k[0]);
+        }
+        work.evaluations += 3 + u64::from(!resumes);
+        combine(second, y, h, [(0.5, &k[0])]);
+        system.derivative(half, second, &mut k[1]);
+        combine(third, y, h, [(0.5, &k[1])]);
+        system.derivative(half, third, &mut k[2]);
+        combine(&mut self.end, y, h, [(1.0, &k[2])]);
+        system.derivative(t + h, &self.end, &mut k[3]);
+        combine(&mut self.end, y, h, [
+            (1.0 / 6.0, &k[0]), (1.0 / 3.0, &k[1]), (1.0 / 3.0, &k[2]), (1.0 / 6.0, &k[3]),
+        ]);
+    }
+
+    fn end(&self) -> &O::State {
+        &self.end
+    }
+
+    fn carry(&mut self) -> bool {
+        false
+    }
+
+    fn prepare(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, work: &mut Work) {
+        let [constant, linear, square, cube] = &mut self.dense;
+        // The cube's place is free until the slope at the end has been used.
+        system.derivative(t + h, &self.end, cube);
+        work.evaluations += 1;
+        constant.as_mut().copy_from_slice(y.as_ref());
+        for (i, y) in y.as_ref().iter().enumerate() {
+            let change = self.end.as_ref()[i] - *y;
+            let (from, to) = (h * self.k[0].as_ref()[i], h * cube.as_ref()[i]);
+            let (left, right) = (change - from, to - change);
+            linear.as_mut()[i] = from;
+            square.as_mut()[i] = left + left - right;
+            cube.as_mut()[i] = right - left;
+        }
+    }
+
+    fn between(&self, theta: O::Scalar, out: &mut O::State) {
+        let [constant, linear, square, cube] = self.dense.each_ref().map(|part| part.as_ref());
+        for (i, out) in out.as_mut().iter_mut().enumerate() {
+            let inner = O::Scalar::fused(theta, cube[i], square[i]);
+            *out = O::Scalar::fused(theta, O::Scalar::fused(theta, inner, linear[i]), constant[i]);
+        }
+    }
+
+    fn rate(&self) -> [O::Scalar; 2] {
+        rate([&self.k[2], &self.k[1]], [&self.stages[1], &self.stages[0]])
+    }
+}
