@@ -74,8 +74,8 @@ mod violation;
 pub use apart::apart;
 pub use error::Error;
 pub use mechanism::{
-    Charted, Coordinate, Energy, Equations, JointForm, JointInfo, JointSpace, Mechanism, Ode, OutputInfo,
-    Owner, Partition, Ports, RowInfo, Storage,
+    Charted, Coordinate, Differentiable, Energy, Equations, JointForm, JointInfo, JointJacobian, JointSpace,
+    Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo, Storage,
 };
 pub use partition::{Direct, Partitioned};
 pub use rk4::Rk4;

@@ -23,6 +23,17 @@ pub trait Ode {
     fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State);
 }
 
+/// A system with its Jacobian, for implicit methods and linearisation.
+pub trait Differentiable: Ode {
+    /// ∂f/∂y, n × n for a state of n numbers, row by row.
+    type Jacobian: Storage<Self::Scalar>;
+
+    /// Zeroed buffer.
+    fn jacobian_buffer(&self) -> Self::Jacobian;
+    /// Writes ∂f/∂y, row by row, and ∂f/∂t.
+    fn jacobian(&self, t: Self::Scalar, y: &Self::State, dfdy: &mut Self::Jacobian, dfdt: &mut Self::State);
+}
+
 /// A mechanism in maximal coordinates, as its solvers and observers see it.
 pub trait Mechanism: Ode {
     /// One scalar for each joint row.
@@ -180,6 +191,40 @@ impl<M: JointSpace> Ode for JointForm<'_, M> {
     }
     fn derivative(&self, t: Self::Scalar, x: &Self::State, dx: &mut Self::State) {
         self.0.joint_derivative(t, x, dx);
+    }
+}
+
+/// A tree whose joint form `ẋ = f(t, x)` comes with its derivatives, for implicit methods and linearisation.
+pub trait JointJacobian: JointSpace {
+    /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
+    type Jacobian: Storage<Self::Scalar>;
+    /// ∂f/∂(inputs), n × m for m inputs, row by row.
+    type InputJacobian: Storage<Self::Scalar>;
+
+    /// Zeroed buffer.
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian;
+    /// Zeroed buffer.
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian;
+    /// Writes ∂f/∂x, row by row, and ∂f/∂t of [`JointSpace::joint_derivative`].
+    fn joint_jacobian(
+        &self,
+        t: Self::Scalar,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    );
+    /// Writes ∂f/∂(inputs), row by row.
+    fn joint_input_jacobian(&self, t: Self::Scalar, x: &Self::Joints, out: &mut Self::InputJacobian);
+}
+
+impl<M: JointJacobian> Differentiable for JointForm<'_, M> {
+    type Jacobian = M::Jacobian;
+
+    fn jacobian_buffer(&self) -> Self::Jacobian {
+        self.0.joint_jacobian_buffer()
+    }
+    fn jacobian(&self, t: Self::Scalar, x: &Self::State, dfdx: &mut Self::Jacobian, dfdt: &mut Self::State) {
+        self.0.joint_jacobian(t, x, dfdx, dfdt);
     }
 }
 
