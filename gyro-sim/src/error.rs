@@ -43,6 +43,41 @@ pub enum Error {
         /// Whose constraint was violated most.
         owner: Owner,
     },
+    /// The tolerance cannot be met however short the step.
+    StepTooShort {
+        /// Time, s.
+        t: f64,
+        /// The step that would have to be tried next, s.
+        step: f64,
+        /// Index of the element of the state whose error is largest.
+        index: u16,
+    },
+    /// The budget of steps is used up.
+    TooManySteps {
+        /// Time, s.
+        t: f64,
+        /// Number of steps taken, rejected ones included.
+        steps: u64,
+    },
+    /// Stability keeps the steps of an explicit method so short that the budget would not suffice: the scene is stiff for it. An
+    /// L-stable method such as [`Rodas4`](crate::Rodas4) is not limited so.
+    Stiff {
+        /// Time, s.
+        t: f64,
+        /// The fastest rate met so far, 1/s.
+        rate: f64,
+        /// The step that stability allows, s.
+        step: f64,
+    },
+    /// The tolerances are no positive numbers, or finer than the number type can resolve.
+    Tolerance {
+        /// Relative tolerance.
+        relative: f64,
+        /// Absolute tolerance.
+        absolute: f64,
+        /// The smallest relative tolerance.
+        smallest: f64,
+    },
 }
 
 impl fmt::Display for Error {
@@ -64,6 +99,22 @@ impl fmt::Display for Error {
                 f,
                 "at t = {t} s the constraints of {owner:?} need a change of {change:e} where {limit:e} is safe: it may lead to \
                  another branch"
+            ),
+            Self::StepTooShort { t, step, index } => {
+                write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
+            }
+            Self::TooManySteps { t, steps } => {
+                write!(f, "at t = {t} s the budget of {steps} steps is used up")
+            }
+            Self::Stiff { t, rate, step } => write!(
+                f,
+                "at t = {t} s the scene is stiff for this method: a rate of {rate:e}/s allows steps of {step:e} s; use an \
+                 L-stable method"
+            ),
+            Self::Tolerance { relative, absolute, smallest } => write!(
+                f,
+                "tolerances of {relative:e} (relative) and {absolute:e} (absolute) cannot be met: at least {smallest:e} and more \
+                 than 0"
             ),
         }
     }

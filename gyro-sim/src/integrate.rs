@@ -32,8 +32,6 @@ pub trait Method<O: Ode> {
     /// The largest |hλ| of a decaying motion (real λ) that the method follows without growing; infinite for L-stable ones.
     const STABILITY: f64;
 
-    /// Work space for states like this one.
-    fn new(system: &O, y: &O::State) -> Self;
     /// Steps from `y` at `t` to [`Method::end`] at `t + h`, and counts what it evaluates. Where `resumes` is said, `t` and `y` are
     /// those of the last attempt, or its end exactly as it was after [`Method::carry`] has said that it is known there: what has been
     /// found out there is used again.

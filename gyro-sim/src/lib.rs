@@ -56,29 +56,36 @@ extern crate self as gyro_sim;
 
 mod apart;
 pub mod charts;
+pub mod correct;
+mod dual;
 mod error;
 pub mod fused;
 #[cfg(feature = "generated")]
 pub mod generated;
+pub mod integrate;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 mod mechanism;
-mod partition;
 pub mod pivoting;
-mod rk4;
 mod scalar;
+mod solver;
 pub mod spline;
 mod turns;
 mod violation;
 
 pub use apart::apart;
+pub use correct::{
+    Baumgarte, ClosedForm, Corrected, Correction, Direct, MassWeighted, Maximal, Partitioned, Partitioning,
+    Uncorrected, When,
+};
+pub use dual::{ByDuals, Dual};
 pub use error::Error;
+pub use integrate::{Dop853, Kutta4, Rk4, Rodas4, Tsit5};
 pub use mechanism::{
     Charted, Coordinate, Differentiable, Energy, Equations, JointForm, JointInfo, JointJacobian, JointSpace,
-    Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo, Storage,
+    Mechanism, Ode, OutputInfo, Owner, Partition, Ports, Projection, RowInfo, Storage,
 };
-pub use partition::{Direct, Partitioned};
-pub use rk4::Rk4;
 pub use scalar::{Real, Scalar};
+pub use solver::{Control, Solver, Statistics};
 pub use turns::{JointCoordinate, Turns};
 pub use violation::{Violation, violation};

@@ -276,6 +276,13 @@ pub trait Equations: Mechanism {
     );
 }
 
+/// The projection onto the constraints in the metric of the masses.
+pub trait Projection: Equations {
+    /// Writes δ = (δr, δπ') body after body, of `[M Φ_πᵀ; Φ_π 0] [δ; μ] = [0; rows]` at the state as it stands, on the constraints or off them:
+    /// the smallest change in the metric of the masses by which Φ, or the velocity residual, changes by `rows` to first order.
+    fn project(&self, t: Self::Scalar, y: &Self::State, rows: &Self::Rows, out: &mut Self::Velocities);
+}
+
 /// What goes in at every step and what comes out besides the motion: a mechanism's inputs (motor torques) and the outputs
 /// that its page asks for.
 pub trait Ports: Mechanism {

@@ -2,28 +2,26 @@
 //! Wanner, *Solving Ordinary Differential Equations I* (2nd ed. 1993), section II.5 and appendix; coefficients as in their code DOP853.
 
 use super::{Embedded, Method, Work, combine, rate, sum_at};
-use crate::{Ode, Real, Scalar, Storage};
+use crate::{Ode, Real, Scalar};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
-pub struct Dop853<O: Ode> {
+pub struct Dop853<S, T> {
     /// Twelve slopes of the step; the slope at its end and three more of the dense output.
-    k: [O::State; 16],
+    k: [S; 16],
     /// The argument of the twelfth slope.
-    stage: O::State,
-    end: O::State,
+    stage: S,
+    end: S,
     /// The interpolant's start and coefficients.
-    dense: [O::State; 8],
+    dense: [S; 8],
     /// Whether the first slope will be that of the last step's end.
     is_carried: bool,
-    rate: [O::Scalar; 2],
+    rate: [T; 2],
 }
 
-impl<O: Ode> Method<O> for Dop853<O> {
-    const ORDER: u32 = 8;
-    const STABILITY: f64 = 6.1;
-
-    fn new(_: &O, y: &O::State) -> Self {
+impl<S: Clone, T: Scalar> Dop853<S, T> {
+    /// Work space for states like this one.
+    pub fn new(y: &S) -> Self {
         let copies = |_| y.clone();
         Self {
             k: core::array::from_fn(copies),
@@ -31,9 +29,14 @@ impl<O: Ode> Method<O> for Dop853<O> {
             end: y.clone(),
             dense: core::array::from_fn(copies),
             is_carried: false,
-            rate: [O::Scalar::constant(0.0); 2],
+            rate: [T::constant(0.0); 2],
         }
     }
+}
+
+impl<O: Ode> Method<O> for Dop853<O::State, O::Scalar> {
+    const ORDER: u32 = 8;
+    const STABILITY: f64 = 6.1;
 
     #[rustfmt::skip]
     fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
@@ -215,7 +218,7 @@ impl<O: Ode> Method<O> for Dop853<O> {
     }
 }
 
-impl<O: Ode<Scalar: Real>> Embedded<O> for Dop853<O> {
+impl<O: Ode<Scalar: Real>> Embedded<O> for Dop853<O::State, O::Scalar> {
     const ERROR_ORDER: u32 = 8;
 
     /// The estimates of orders 5 and 3 together, `h e₅² / √(e₅² + e₃²/100)`: asymptotically of order 8.

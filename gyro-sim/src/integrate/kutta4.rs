@@ -6,20 +6,18 @@ use crate::{Ode, Scalar};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
-pub struct Kutta4<O: Ode> {
-    k: [O::State; 4],
+pub struct Kutta4<S> {
+    k: [S; 4],
     /// The arguments of the second and the third slope, which belong to the same time.
-    stages: [O::State; 2],
-    end: O::State,
+    stages: [S; 2],
+    end: S,
     /// Coefficients of 1, θ, θ², θ³ of the interpolant.
-    dense: [O::State; 4],
+    dense: [S; 4],
 }
 
-impl<O: Ode> Method<O> for Kutta4<O> {
-    const ORDER: u32 = 4;
-    const STABILITY: f64 = 2.785;
-
-    fn new(_: &O, y: &O::State) -> Self {
+impl<S: Clone> Kutta4<S> {
+    /// Work space for states like this one.
+    pub fn new(y: &S) -> Self {
         let copies = |_| y.clone();
         Self {
             k: core::array::from_fn(copies),
@@ -28,6 +26,11 @@ impl<O: Ode> Method<O> for Kutta4<O> {
             dense: core::array::from_fn(copies),
         }
     }
+}
+
+impl<O: Ode> Method<O> for Kutta4<O::State> {
+    const ORDER: u32 = 4;
+    const STABILITY: f64 = 2.785;
 
     #[rustfmt::skip]
     fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {

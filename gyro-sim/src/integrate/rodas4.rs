@@ -8,47 +8,34 @@ use crate::{Differentiable, Real, Scalar, Storage};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
-pub struct Rodas4<O: Differentiable> {
-    jacobian: O::Jacobian,
-    factors: O::Jacobian,
-    pivots: O::State,
+pub struct Rodas4<S, J> {
+    jacobian: J,
+    factors: J,
+    pivots: S,
     /// ∂f/∂t.
-    time_slope: O::State,
+    time_slope: S,
     /// f where the step starts.
-    first: O::State,
-    slope: O::State,
-    stage: O::State,
+    first: S,
+    slope: S,
+    stage: S,
     /// What the stages change; the last one is the error estimate.
-    u: [O::State; 6],
-    end: O::State,
+    u: [S; 6],
+    end: S,
     /// Where the interpolant starts, and its inner coefficients.
-    dense: [O::State; 3],
+    dense: [S; 3],
 }
 
 /// The diagonal coefficient γ.
 const GAMMA: f64 = 0.25;
 
-impl<O: Differentiable<Scalar: Real>> Rodas4<O> {
-    /// Factorises `I/(γh) − ∂f/∂y`.
-    fn factorise(&mut self, h: O::Scalar) {
-        let n = self.pivots.as_ref().len();
-        let diagonal = O::Scalar::constant(1.0) / (O::Scalar::constant(GAMMA) * h);
-        let factors = self.factors.as_mut();
-        for (factor, element) in factors.iter_mut().zip(self.jacobian.as_ref()) {
-            *factor = -*element;
-        }
-        for element in factors.iter_mut().step_by(n + 1) {
-            *element = *element + diagonal;
-        }
-        lu::factorise(factors, self.pivots.as_mut());
-    }
-}
-
-impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O> {
-    const ORDER: u32 = 4;
-    const STABILITY: f64 = f64::INFINITY;
-
-    fn new(system: &O, y: &O::State) -> Self {
+impl<S: Clone, J> Rodas4<S, J> {
+    /// Work space for states like this one of such a system.
+    pub fn new<O>(system: &O, y: &S) -> Self
+    where
+        O: Differentiable<State = S, Jacobian = J>,
+        S: Storage<O::Scalar>,
+        J: Storage<O::Scalar>,
+    {
         let copies = |_| y.clone();
         Self {
             jacobian: system.jacobian_buffer(),
@@ -63,6 +50,29 @@ impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O> {
             dense: core::array::from_fn(copies),
         }
     }
+
+    /// Factorises `I/(γh) − ∂f/∂y`.
+    fn factorise<T: Real>(&mut self, h: T)
+    where
+        S: Storage<T>,
+        J: Storage<T>,
+    {
+        let n = self.pivots.as_ref().len();
+        let diagonal = T::constant(1.0) / (T::constant(GAMMA) * h);
+        let factors = self.factors.as_mut();
+        for (factor, element) in factors.iter_mut().zip(self.jacobian.as_ref()) {
+            *factor = -*element;
+        }
+        for element in factors.iter_mut().step_by(n + 1) {
+            *element = *element + diagonal;
+        }
+        lu::factorise(factors, self.pivots.as_mut());
+    }
+}
+
+impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O::State, O::Jacobian> {
+    const ORDER: u32 = 4;
+    const STABILITY: f64 = f64::INFINITY;
 
     #[rustfmt::skip]
     fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
@@ -168,7 +178,7 @@ impl<O: Differentiable<Scalar: Real>> Method<O> for Rodas4<O> {
     }
 }
 
-impl<O: Differentiable<Scalar: Real>> Embedded<O> for Rodas4<O> {
+impl<O: Differentiable<Scalar: Real>> Embedded<O> for Rodas4<O::State, O::Jacobian> {
     const ERROR_ORDER: u32 = 4;
 
     fn error(&self, _: O::Scalar, weights: &O::State) -> (O::Scalar, usize) {

@@ -2,24 +2,22 @@
 //! assumption*, Computers & Mathematics with Applications 62 (2011), 770–775, with its interpolant of order 4.
 
 use super::{Embedded, Method, Work, combine, rate, sum_at, worst};
-use crate::{Ode, Real, Scalar, Storage};
+use crate::{Ode, Real, Scalar};
 
 /// Work space of the method.
 #[derive(Clone, Debug)]
-pub struct Tsit5<O: Ode> {
-    k: [O::State; 7],
+pub struct Tsit5<S> {
+    k: [S; 7],
     /// The argument of the sixth slope.
-    stage: O::State,
-    end: O::State,
+    stage: S,
+    end: S,
     /// Coefficients of θ, θ², θ³, θ⁴ of the interpolant, and where it starts.
-    dense: [O::State; 5],
+    dense: [S; 5],
 }
 
-impl<O: Ode> Method<O> for Tsit5<O> {
-    const ORDER: u32 = 5;
-    const STABILITY: f64 = 3.5;
-
-    fn new(_: &O, y: &O::State) -> Self {
+impl<S: Clone> Tsit5<S> {
+    /// Work space for states like this one.
+    pub fn new(y: &S) -> Self {
         let copies = |_| y.clone();
         Self {
             k: core::array::from_fn(copies),
@@ -28,6 +26,11 @@ impl<O: Ode> Method<O> for Tsit5<O> {
             dense: core::array::from_fn(copies),
         }
     }
+}
+
+impl<O: Ode> Method<O> for Tsit5<O::State> {
+    const ORDER: u32 = 5;
+    const STABILITY: f64 = 3.5;
 
     #[rustfmt::skip]
     fn attempt(&mut self, system: &O, t: O::Scalar, h: O::Scalar, y: &O::State, resumes: bool, work: &mut Work) {
@@ -110,7 +113,7 @@ impl<O: Ode> Method<O> for Tsit5<O> {
     }
 }
 
-impl<O: Ode<Scalar: Real>> Embedded<O> for Tsit5<O> {
+impl<O: Ode<Scalar: Real>> Embedded<O> for Tsit5<O::State> {
     const ERROR_ORDER: u32 = 5;
 
     #[rustfmt::skip]

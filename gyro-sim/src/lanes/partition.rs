@@ -1,9 +1,9 @@
 //! Direct integration and coordinate partitioning of all lanes at once: what [`crate::Direct`] and [`crate::Partitioned`] do, lane by lane.
 
 use super::{Failures, Lanes, are_finite, keep};
-use crate::partition::{CONVERGED_EPSILONS, Corrected, MAX_ITERATIONS};
+use crate::correct::{CONVERGED_EPSILONS, MAX_ITERATIONS};
 use crate::violation::constraint_violation;
-use crate::{Charted, Error, Mechanism, Ode, Owner, Real, Rk4, Scalar, Storage, charts};
+use crate::{Charted, Corrected, Error, Mechanism, Ode, Owner, Real, Rk4, Scalar, Storage, charts};
 
 /// *Direct integration*, of maximal coordinates or, as [`JointForm`](crate::JointForm), of joint coordinates.
 #[derive(Clone, Debug)]

@@ -1,0 +1,111 @@
+//! Corrections: ways back onto the constraints `Φ = 0` and `Φ_r s + Φ_π' w' = ν` that integration leaves.
+//!
+//! | correction | what it keeps |
+//! |---|---|
+//! | [`Partitioning`] | the independent coordinates as they were integrated (eqs. (18) to (20)); any mechanism |
+//! | [`ClosedForm`] | the joint coordinates; trees, no iteration |
+//! | [`MassWeighted`] | as much of everything as it can: the smallest change in the metric of the masses; any mechanism |
+//! | [`Baumgarte`] | nothing: the accelerations steer back; a system, not a correction |
+//! | [`Uncorrected`] | all of it: direct integration, and systems that have nothing to correct |
+
+mod baumgarte;
+mod closed_form;
+mod mass_weighted;
+mod partition;
+
+pub use baumgarte::Baumgarte;
+pub use closed_form::ClosedForm;
+pub use mass_weighted::MassWeighted;
+pub use partition::{Corrected, Direct, Partitioned, Partitioning};
+
+use crate::{Error, Mechanism, Ode, Real, Scalar};
+
+/// A system that integrates the maximal state of a mechanism.
+pub trait Maximal: Ode {
+    /// The mechanism.
+    type Mechanism: Mechanism<Scalar = Self::Scalar, State = Self::State>;
+
+    /// The mechanism.
+    fn mechanism(&self) -> &Self::Mechanism;
+}
+
+impl<M: Mechanism> Maximal for M {
+    type Mechanism = M;
+
+    fn mechanism(&self) -> &M {
+        self
+    }
+}
+
+impl<M: Mechanism> Maximal for Corrected<'_, M> {
+    type Mechanism = M;
+
+    fn mechanism(&self) -> &M {
+        self.0
+    }
+}
+
+/// A way back onto the constraints.
+pub trait Correction<O: Ode> {
+    /// Corrects positions and velocities.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error>;
+    /// The largest violation of a position constraint, lengths in units of the mechanism's size.
+    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar;
+    /// How often the choice of independent coordinates has changed, where there is one.
+    fn switches(&self) -> u64 {
+        0
+    }
+}
+
+/// No correction.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Uncorrected;
+
+impl<O: Ode> Correction<O> for Uncorrected {
+    fn correct(&mut self, _: &O, _: O::Scalar, _: &mut O::State) -> Result<(), Error> {
+        Ok(())
+    }
+    fn violation(&mut self, _: &O, _: O::Scalar, _: &O::State) -> O::Scalar {
+        O::Scalar::constant(0.0)
+    }
+}
+
+/// When a correction is due.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// After so many steps; 1 is after every step.
+    Steps(u32),
+    /// After each step that leaves a violation of a position constraint larger than this, lengths in units of the mechanism's size.
+    Violation(f64),
+}
+
+impl Default for When {
+    fn default() -> Self {
+        Self::Steps(1)
+    }
+}
+
+/// Newton–Raphson converges quadratically from the drift of a few steps: one or two iterations. Ten mean that it does not.
+pub(crate) const MAX_ITERATIONS: u32 = 10;
+
+/// The positions count as corrected when no row exceeds this many roundings: of one, or of the largest coordinate in units
+/// of the mechanism's size, because a point row is a difference of positions.
+pub(crate) const CONVERGED_EPSILONS: f64 = 16.0;
+
+/// The largest coordinate of a mass centre in units of the mechanism's size.
+fn reach<M: Mechanism<Scalar: Real>>(mechanism: &M, y: &M::State) -> M::Scalar {
+    let bodies = y.as_ref().chunks_exact(7).take(mechanism.n_bodies());
+    let coordinates = bodies.flat_map(|body| body.iter().take(3));
+    let zero = M::Scalar::constant(0.0);
+    coordinates.fold(zero, |largest, r| if r.abs() > largest { r.abs() } else { largest }) / mechanism.size()
+}
+
+fn check_finite<T: Real>(t: T, state: &[T]) -> Result<(), Error> {
+    match (0u16..).zip(state).find(|(_, x)| !x.is_finite()) {
+        Some((index, _)) => Err(Error::NotFinite { t: t.to_f64(), index }),
+        None => Ok(()),
+    }
+}

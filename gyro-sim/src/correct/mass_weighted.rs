@@ -1,0 +1,117 @@
+//! Projection onto the constraints in the metric of the masses.
+
+use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, reach};
+use crate::violation::{Violation, constraint_violation};
+use crate::{Error, Owner, Projection, Real, Scalar};
+
+/// The nearest state that satisfies the constraints: of all changes that do, the smallest as the masses weigh it, δᵀ M δ, first of the
+/// positions, then of the velocities. What is integrated well, because it moves much mass, is changed least.
+#[derive(Clone, Debug)]
+pub struct MassWeighted<M: Projection> {
+    phi: M::Constraints,
+    rows: M::Rows,
+    change: M::Velocities,
+}
+
+/// Farther than so many radians, or lengths of the mechanism's size, is no correction but another pose.
+const FARTHEST: f64 = 0.5;
+
+impl<M: Projection<Scalar: Real>> MassWeighted<M> {
+    /// Work space for a mechanism.
+    pub fn new(mechanism: &M) -> Self {
+        Self { phi: mechanism.constraints(), rows: mechanism.rows(), change: mechanism.velocities() }
+    }
+
+    /// Corrects positions and velocities.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.correct_positions(mechanism, t, y)?;
+        mechanism.velocity_residual(t, y, &mut self.rows);
+        negate(self.rows.as_mut());
+        mechanism.project(t, y, &self.rows, &mut self.change);
+        let velocities = y.as_mut().iter_mut().skip(7 * mechanism.n_bodies());
+        for (velocity, change) in velocities.zip(self.change.as_ref()) {
+            *velocity = *velocity + *change;
+        }
+        check_finite(t, y.as_ref())
+    }
+
+    fn correct_positions(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
+        let mut worst = Violation { value: tolerance, owner: None };
+        for _ in 0..=MAX_ITERATIONS {
+            normalise(&mut y.as_mut()[..7 * mechanism.n_bodies()]);
+            mechanism.phi(t, y, &mut self.phi);
+            worst = constraint_violation(mechanism, self.phi.as_ref(), |x| x);
+            if worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y) {
+                return Ok(());
+            }
+            self.rows.as_mut().iter_mut().zip(self.phi.as_ref()).for_each(|(row, phi)| *row = -*phi);
+            mechanism.project(t, y, &self.rows, &mut self.change);
+            self.refuse_jump(mechanism, t, worst.owner)?;
+            for (position, change) in y.as_mut().chunks_exact_mut(7).zip(self.change.as_ref().chunks_exact(6))
+            {
+                displace(position, change);
+            }
+        }
+        let owner = worst.owner.unwrap_or(Owner::Body(0));
+        Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })
+    }
+
+    /// What is not finite is left to be noticed later.
+    fn refuse_jump(&self, mechanism: &M, t: M::Scalar, owner: Option<Owner>) -> Result<(), Error> {
+        let limit = M::Scalar::constant(FARTHEST);
+        for (index, change) in self.change.as_ref().iter().enumerate() {
+            let change = if index % 6 < 3 { *change / mechanism.size() } else { *change }.abs();
+            if change > limit {
+                let owner = owner.unwrap_or(Owner::Body(0));
+                return Err(Error::Jump { t: t.to_f64(), change: change.to_f64(), limit: FARTHEST, owner });
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<O: Maximal<Mechanism = M>, M> Correction<O> for MassWeighted<M>
+where
+    M: Projection<Scalar = O::Scalar, State = O::State>,
+    O::Scalar: Real,
+{
+    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
+        self.correct(system.mechanism(), t, y)
+    }
+    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
+        system.mechanism().phi(t, y, &mut self.phi);
+        constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    }
+}
+
+fn negate<T: Scalar>(numbers: &mut [T]) {
+    numbers.iter_mut().for_each(|x| *x = -*x);
+}
+
+/// Makes unit vectors of all Euler parameters of `(r, p)` body after body.
+fn normalise<T: Scalar>(positions: &mut [T]) {
+    for body in positions.chunks_exact_mut(7) {
+        let p = &mut body[3..];
+        let square = p.iter().fold(T::constant(0.0), |sum, e| T::fused(*e, *e, sum));
+        let scale = T::constant(1.0) / square.sqrt();
+        p.iter_mut().for_each(|e| *e = *e * scale);
+    }
+}
+
+/// `r + δr` and `p + ½ G(p)ᵀ δπ'` of one body.
+fn displace<T: Scalar>(position: &mut [T], change: &[T]) {
+    let [r0, r1, r2, e0, e1, e2, e3] = position else { return };
+    let [d0, d1, d2, x, y, z] = change else { return };
+    (*r0, *r1, *r2) = (*r0 + *d0, *r1 + *d1, *r2 + *d2);
+    let half = T::constant(0.5);
+    let (x, y, z) = (half * *x, half * *y, half * *z);
+    let p = [*e0, *e1, *e2, *e3];
+    *e0 = p[0] - p[1] * x - p[2] * y - p[3] * z;
+    *e1 = p[1] + p[0] * x - p[3] * y + p[2] * z;
+    *e2 = p[2] + p[3] * x + p[0] * y - p[1] * z;
+    *e3 = p[3] - p[2] * x + p[1] * y + p[0] * z;
+}

@@ -1,0 +1,211 @@
+//! The paper's two algorithms: direct integration and coordinate partitioning.
+
+use super::{CONVERGED_EPSILONS, Correction, MAX_ITERATIONS, Maximal, check_finite, reach};
+use crate::violation::{Violation, constraint_violation};
+use crate::{Error, Mechanism, Ode, Owner, Partition, Real, Rk4, Scalar, Storage};
+
+/// *Direct integration*: eq. (17) alone. Violations of the constraints grow, as the paper says.
+#[derive(Clone, Debug)]
+pub struct Direct<S> {
+    rk4: Rk4<S>,
+}
+
+impl<S: Clone> Direct<S> {
+    /// A solver for states like this one.
+    pub fn new(state: &S) -> Self {
+        Self { rk4: Rk4::new(state) }
+    }
+
+    /// Advances `y` from `t` by `n_steps` steps of length `h`.
+    ///
+    /// # Errors
+    /// [`Error::NotFinite`] if the state is not finite afterwards.
+    pub fn advance<O>(
+        &mut self,
+        system: &O,
+        t: O::Scalar,
+        h: O::Scalar,
+        n_steps: u32,
+        y: &mut S,
+    ) -> Result<(), Error>
+    where
+        O: Ode<State = S, Scalar: Real>,
+        S: Storage<O::Scalar>,
+    {
+        for step in 0..n_steps {
+            self.rk4.step(system, t + h * O::Scalar::constant(f64::from(step)), h, y);
+        }
+        check_finite(t + h * O::Scalar::constant(f64::from(n_steps)), y.as_ref())
+    }
+}
+
+/// *Coordinate partitioning* as a correction: dependent positions by Newton–Raphson, dependent velocities by eq. (19). The choice of
+/// independent coordinates follows the motion.
+#[derive(Clone, Debug)]
+pub struct Partitioning<M: Partition> {
+    independent: M::Independent,
+    phi: M::Constraints,
+    switches: u64,
+}
+
+/// A mechanism whose state is corrected every few steps: the system of [`Mechanism::corrected_derivative`].
+#[derive(Clone, Copy, Debug)]
+pub struct Corrected<'a, M>(pub &'a M);
+
+impl<M: Mechanism> Ode for Corrected<'_, M> {
+    type Scalar = M::Scalar;
+    type State = M::State;
+
+    fn start(&self) -> Self::State {
+        self.0.start()
+    }
+    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
+        self.0.corrected_derivative(t, y, dy);
+    }
+}
+
+impl<M: Partition> Partitioning<M> {
+    /// Begins with the best choice of independent coordinates at a state.
+    pub fn new(mechanism: &M, t: M::Scalar, y: &M::State) -> Self {
+        Self::with_independent(mechanism, mechanism.independent(t, y))
+    }
+
+    /// Begins with the given choice of independent coordinates.
+    pub fn with_independent(mechanism: &M, independent: M::Independent) -> Self {
+        Self { independent, phi: mechanism.constraints(), switches: 0 }
+    }
+
+    /// Chooses the independent coordinates and corrects the dependent ones.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.switches += u64::from(mechanism.follow(t, y, &mut self.independent));
+        self.correct_with_current_choice(mechanism, t, y)
+    }
+
+    /// Corrects the dependent coordinates without looking whether the choice is still a good one: to show what a fixed
+    /// choice does, or to choose by other means.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn correct_with_current_choice(
+        &mut self,
+        mechanism: &M,
+        t: M::Scalar,
+        y: &mut M::State,
+    ) -> Result<(), Error> {
+        self.correct_positions(mechanism, t, y)?;
+        mechanism.solve_velocities(t, &self.independent, y)?;
+        check_finite(t, y.as_ref())
+    }
+
+    /// How often the choice of independent coordinates has changed, counted joint by joint.
+    pub fn switches(&self) -> u64 {
+        self.switches
+    }
+
+    /// The present choice of independent coordinates.
+    pub fn independent(&self) -> &M::Independent {
+        &self.independent
+    }
+
+    fn correct_positions(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        let tolerance = M::Scalar::EPSILON * M::Scalar::constant(CONVERGED_EPSILONS);
+        let mut worst = Violation { value: tolerance, owner: None };
+        for _ in 0..MAX_ITERATIONS {
+            mechanism.newton_step(t, &self.independent, y)?;
+            mechanism.phi(t, y, &mut self.phi);
+            worst = constraint_violation(mechanism, self.phi.as_ref(), |x| x);
+            if worst.value <= tolerance || worst.value <= tolerance * reach(mechanism, y) {
+                return Ok(());
+            }
+        }
+        let owner = worst.owner.unwrap_or(Owner::Body(0));
+        Err(Error::NoConvergence { t: t.to_f64(), violation: worst.value.to_f64(), owner })
+    }
+}
+
+impl<O: Maximal<Mechanism = M>, M: Partition<Scalar = O::Scalar, State = O::State>> Correction<O>
+    for Partitioning<M>
+{
+    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
+        self.correct(system.mechanism(), t, y)
+    }
+    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
+        system.mechanism().phi(t, y, &mut self.phi);
+        constraint_violation(system.mechanism(), self.phi.as_ref(), |x| x).value
+    }
+    fn switches(&self) -> u64 {
+        self.switches
+    }
+}
+
+/// The paper's algorithm: RK4 and, after a number of steps, [`Partitioning`].
+#[derive(Clone, Debug)]
+pub struct Partitioned<M: Partition> {
+    direct: Direct<M::State>,
+    partitioning: Partitioning<M>,
+}
+
+impl<M: Partition> Partitioned<M> {
+    /// A solver that starts with the best choice of independent coordinates at `state` and time zero.
+    pub fn new(mechanism: &M, state: &M::State) -> Self {
+        Self::with_independent(mechanism, state, mechanism.independent(M::Scalar::constant(0.0), state))
+    }
+
+    /// A solver that starts with the given choice of independent coordinates.
+    pub fn with_independent(mechanism: &M, state: &M::State, independent: M::Independent) -> Self {
+        Self {
+            direct: Direct::new(state),
+            partitioning: Partitioning::with_independent(mechanism, independent),
+        }
+    }
+
+    /// Advances `y` from `t` by `n_steps` steps of length `h` and corrects it.
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn advance(
+        &mut self,
+        mechanism: &M,
+        t: M::Scalar,
+        h: M::Scalar,
+        n_steps: u32,
+        y: &mut M::State,
+    ) -> Result<(), Error> {
+        self.direct.advance(&Corrected(mechanism), t, h, n_steps, y)?;
+        self.correct(mechanism, t + h * M::Scalar::constant(f64::from(n_steps)), y)
+    }
+
+    /// See [`Partitioning::correct`].
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        self.partitioning.correct(mechanism, t, y)
+    }
+
+    /// See [`Partitioning::correct_with_current_choice`].
+    ///
+    /// # Errors
+    /// [`Error`], with `y` as it was when the failure was noticed.
+    pub fn correct_with_current_choice(
+        &mut self,
+        mechanism: &M,
+        t: M::Scalar,
+        y: &mut M::State,
+    ) -> Result<(), Error> {
+        self.partitioning.correct_with_current_choice(mechanism, t, y)
+    }
+
+    /// How often the choice of independent coordinates has changed, counted joint by joint.
+    pub fn switches(&self) -> u64 {
+        self.partitioning.switches()
+    }
+
+    /// The present choice of independent coordinates.
+    pub fn independent(&self) -> &M::Independent {
+        self.partitioning.independent()
+    }
+}
