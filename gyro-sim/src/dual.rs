@@ -98,20 +98,15 @@ impl<T: Scalar, const N: usize> Scalar for Dual<T, N> {
 /// A system with its Jacobian by [`Dual`] numbers, `N` columns at a time: for systems that come without one.
 #[derive(Clone, Copy, Debug)]
 pub struct ByDuals<'a, O, D, J, const N: usize> {
-    system: &'a O,
-    in_duals: &'a D,
+    system: O,
+    in_duals: D,
     zeros: &'a J,
 }
 
 impl<'a, O, D, J, const N: usize> ByDuals<'a, O, D, J, N> {
     /// The same system twice, in plain and in dual numbers, and a zeroed buffer for the Jacobian, n × n numbers for a state of n.
-    pub fn new(system: &'a O, in_duals: &'a D, zeros: &'a J) -> Self {
+    pub fn new(system: O, in_duals: D, zeros: &'a J) -> Self {
         Self { system, in_duals, zeros }
-    }
-
-    /// The system in plain numbers.
-    pub fn system(&self) -> &'a O {
-        self.system
     }
 }
 

@@ -211,6 +211,23 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         (0..n).try_for_each(|_| self.step(system, h))
     }
 
+    /// Corrects the state now, whether that is due or not.
+    ///
+    /// # Errors
+    /// [`Error`], with the state as it was before.
+    pub fn correct<O>(&mut self, system: &O) -> Result<(), Error>
+    where
+        O: Ode<Scalar = T, State = S>,
+        C: Correction<O>,
+    {
+        self.trial.as_mut().copy_from_slice(self.y.as_ref());
+        self.correction.correct(system, self.t, &mut self.trial)?;
+        core::mem::swap(&mut self.y, &mut self.trial);
+        self.statistics.corrections += 1;
+        (self.since_correction, self.is_untouched) = (0, false);
+        Ok(())
+    }
+
     /// Writes the state at a time within the last step, corrected like the states between steps are.
     ///
     /// # Errors

@@ -1,6 +1,7 @@
 //! Failures in words, with names instead of indices.
 
-use gyro_sim::{Error, Mechanism, Owner};
+use crate::Coordinates;
+use gyro_sim::{Coordinate, Error, Mechanism, Owner};
 use std::{fmt, io};
 
 /// Why a run has ended early.
@@ -31,10 +32,34 @@ impl std::error::Error for Failure {}
 
 /// An error of the solvers in words: when, whose and how much, and what to try.
 pub fn describe<M: Mechanism>(mechanism: &M, error: &Error) -> String {
+    describe_in(mechanism, Coordinates::Maximal, error)
+}
+
+/// The same for a motion in these coordinates.
+pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error: &Error) -> String {
+    let element = |index: &u16| match coordinates {
+        Coordinates::Maximal => element(mechanism, usize::from(*index)),
+        Coordinates::Joint => joint_element(mechanism, usize::from(*index)),
+    };
     match error {
         Error::NotFinite { t, index } => format!(
             "at t = {t} s {} is no longer finite; try a smaller --step or --correct-every",
-            element(mechanism, usize::from(*index))
+            element(index)
+        ),
+        Error::StepTooShort { t, step, index } => format!(
+            "at t = {t} s {} would need steps as short as {step:e} s for this --tolerance; try a larger one",
+            element(index)
+        ),
+        Error::TooManySteps { t, steps } => format!(
+            "at t = {t} s the budget of {steps} steps is used up; try a larger --tolerance, or --integrator rodas4 if the scene is \
+             stiff"
+        ),
+        Error::Stiff { t, rate, step } => format!(
+            "at t = {t} s this scene is stiff for this method: a rate of {rate:.4e}/s allows it steps of no more than {step:.3e} s; \
+             use --integrator rodas4"
+        ),
+        Error::Tolerance { relative, smallest, .. } => format!(
+            "a tolerance of {relative:e} cannot be met: at least {smallest:.1e} in this precision, and finite"
         ),
         Error::NoConvergence { t, violation, owner } => format!(
             "at t = {t} s the constraints of {} cannot be met: {violation:e} remains after Newton's iterations; \
@@ -81,6 +106,24 @@ fn element<M: Mechanism>(mechanism: &M, index: usize) -> String {
         return "the work done or the count of a joint's turns".to_owned();
     };
     format!("the {what} of body `{}`", mechanism.body_name(body))
+}
+
+/// What an element of the joint state is: the coordinates of each joint, then their rates.
+fn joint_element<M: Mechanism>(mechanism: &M, index: usize) -> String {
+    let sizes = |of: fn(&Coordinate) -> usize| {
+        let joints = (0..mechanism.n_joints()).map(|joint| mechanism.joint(joint));
+        joints.flat_map(move |joint| {
+            let size = joint.coordinates.iter().map(of).sum();
+            std::iter::repeat_n(joint.name.to_owned(), size)
+        })
+    };
+    let positions = sizes(|coordinate| if *coordinate == Coordinate::Orientation { 4 } else { 1 });
+    let rates = sizes(|coordinate| if *coordinate == Coordinate::Orientation { 3 } else { 1 });
+    let all = positions.map(|name| ("position", name)).chain(rates.map(|name| ("rate", name)));
+    match all.into_iter().nth(index) {
+        Some((what, name)) => format!("the {what} of joint `{name}`"),
+        None => "a free body's motion or the work done".to_owned(),
+    }
 }
 
 #[cfg(test)]

@@ -9,18 +9,21 @@
 //! ```
 #![deny(missing_docs)]
 
+mod approach;
 pub mod child;
 mod failure;
 mod input;
+pub mod motion;
 pub mod protocol;
 mod run;
 mod sample;
 mod schedule;
 mod summary;
 
-pub use failure::{Failure, describe};
+pub use approach::{Approach, Coordinates, Correction, Integrator, When};
+pub use failure::{Failure, describe, describe_in};
 pub use input::Input;
-pub use run::{Event, Start, run};
+pub use run::{Event, Start, run, run_by};
 pub use sample::{BodySample, JointSample, Sample};
 pub use schedule::{Impossible, Schedule, Segment, Settings};
 pub use summary::{Summary, Tracker, energy_error};

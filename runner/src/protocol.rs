@@ -3,7 +3,9 @@
 //! Numbers are printed with as many digits as it takes to read the same number back. The command line writes one
 //! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output.
 
-use crate::{BodySample, Input, JointSample, Sample, Settings, Start, Summary};
+use crate::{Approach, BodySample, Input, JointSample, Sample, Settings, Start, Summary};
+use gyro_sim::Statistics;
+use gyro_sim::integrate::Work;
 use std::fmt::Write as _;
 use std::str::{FromStr, SplitAsciiWhitespace};
 
@@ -12,6 +14,8 @@ use std::str::{FromStr, SplitAsciiWhitespace};
 pub struct Request {
     /// When to step, correct and sample.
     pub settings: Settings,
+    /// By which method.
+    pub approach: Approach,
     /// Values of the mechanism's parameters, in their order.
     pub parameters: Vec<f64>,
     /// Where to start.
@@ -51,6 +55,11 @@ impl Request {
         if let Some(every) = correct_every {
             let _ = writeln!(text, "correct_every {every:?}");
         }
+        let Approach { integrator, tolerance, coordinates, correction, when, budget } = self.approach;
+        let _ = writeln!(text, "integrator {integrator}\ncoordinates {coordinates}\ncorrection {correction}");
+        let _ = tolerance.map(|tolerance| writeln!(text, "tolerance {tolerance:?}"));
+        let _ = when.map(|when| writeln!(text, "when {when}"));
+        let _ = budget.map(|budget| writeln!(text, "budget {budget}"));
         line(&mut text, "parameters", &self.parameters);
         line(&mut text, "positions", &self.start.positions);
         line(&mut text, "velocities", &self.start.velocities);
@@ -71,7 +80,8 @@ impl Request {
     /// The line that is not understood.
     pub fn parse(text: &str) -> Result<Self, Garbled> {
         let settings = Settings { t_end: 0.0, step: 0.0, correct_every: None, sample_every: 0.0 };
-        let mut request = Self { settings, parameters: Vec::new(), start: Start::default() };
+        let approach = Approach::default();
+        let mut request = Self { settings, approach, parameters: Vec::new(), start: Start::default() };
         for line in text.lines() {
             request.take(line).ok_or_else(|| Garbled(line.to_owned()))?;
         }
@@ -86,6 +96,12 @@ impl Request {
                 self.settings = Settings { t_end, step, sample_every, ..self.settings };
             }
             "correct_every" => self.settings.correct_every = Some(values.parse().ok()?),
+            "integrator" => self.approach.integrator = values.parse().ok()?,
+            "tolerance" => self.approach.tolerance = Some(values.parse().ok()?),
+            "coordinates" => self.approach.coordinates = values.parse().ok()?,
+            "correction" => self.approach.correction = values.parse().ok()?,
+            "when" => self.approach.when = Some(values.parse().ok()?),
+            "budget" => self.approach.budget = Some(values.parse().ok()?),
             "parameters" => self.parameters = list(values)?,
             "positions" => self.start.positions = list(values)?,
             "velocities" => self.start.velocities = list(values)?,
@@ -105,16 +121,18 @@ impl Reply {
         match self {
             Self::Sample(sample) => sample_line(sample),
             Self::Progress(t) => format!("progress {t:?}"),
-            Self::Done(s) => format!(
-                "done {} {} {:?} {:?} {:?} {:?} {:?}",
-                s.steps,
-                s.chart_switches,
-                s.position_violation,
-                s.velocity_violation,
-                s.norm_violation,
-                s.energy_drift,
-                s.run_time_s
-            ),
+            Self::Done(s) => {
+                let Statistics { accepted, rejected, corrections, work, limited_by_stability, .. } =
+                    s.statistics;
+                let mut text = format!("done {} {}", s.steps, s.chart_switches);
+                words(&mut text, "", &[s.position_violation, s.velocity_violation, s.norm_violation]);
+                words(&mut text, "", &[s.energy_drift, s.run_time_s]);
+                words(&mut text, "", &[accepted, rejected, corrections, work.evaluations, work.jacobians]);
+                words(&mut text, "", &[limited_by_stability]);
+                let Statistics { fastest_rate, shortest_step, longest_step, .. } = s.statistics;
+                words(&mut text, "", &[fastest_rate, shortest_step, longest_step]);
+                text
+            }
             Self::Failed(words) => format!("failed {}", words.replace('\n', " ")),
         }
     }
@@ -166,6 +184,16 @@ impl Words<'_> {
             norm_violation: self.next()?,
             energy_drift: self.next()?,
             run_time_s: self.next()?,
+            statistics: Statistics {
+                accepted: self.next()?,
+                rejected: self.next()?,
+                corrections: self.next()?,
+                work: Work { evaluations: self.next()?, jacobians: self.next()? },
+                limited_by_stability: self.next()?,
+                fastest_rate: self.next()?,
+                shortest_step: self.next()?,
+                longest_step: self.next()?,
+            },
         })
     }
 
@@ -259,6 +287,7 @@ fn list<T: FromStr>(text: &str) -> Option<Vec<T>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{Coordinates, Correction, Integrator, When};
 
     const AWKWARD: [f64; 7] = [0.1, -1.0 / 3.0, 5e-324, -0.0, f64::MAX, 1e-300, 0.300_000_000_000_000_04];
 
@@ -267,6 +296,14 @@ mod tests {
         for correct_every in [None, Some(5e-4)] {
             let request = Request {
                 settings: Settings { t_end: 0.1 + 0.2, step: 1e-4, correct_every, sample_every: 1.0 / 3.0 },
+                approach: Approach {
+                    integrator: Integrator::Dop853,
+                    tolerance: correct_every.map(|every: f64| every / 3.0),
+                    coordinates: Coordinates::Joint,
+                    correction: Correction::Baumgarte(AWKWARD[0]),
+                    when: correct_every.map(When::Violation),
+                    budget: correct_every.map(|_| 7),
+                },
                 parameters: vec![1.0 / 7.0],
                 start: Start {
                     positions: AWKWARD.to_vec(),

@@ -1,9 +1,13 @@
 //! The loop.
 
 use crate::input::{any_varies, set};
+use crate::motion::{self, Kit, Motion};
 use crate::sample::Observer;
-use crate::{Failure, Input, Sample, Schedule, Segment, Settings, Summary, Tracker, describe};
-use gyro_sim::{Direct, Error, Partition, Partitioned, Ports, Scalar, Turns};
+use crate::{
+    Approach, Coordinates, Correction, Failure, Input, Integrator, Sample, Schedule, Segment, Settings,
+    Summary, Tracker, describe, describe_in,
+};
+use gyro_sim::{Error, Partition, Ports, Scalar, Turns};
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -41,32 +45,58 @@ const STEPS_BETWEEN_READINGS: u64 = 8;
 /// Time between two [`Event::Progress`].
 const PROGRESS_EVERY: Duration = Duration::from_millis(100);
 
-/// Runs a mechanism to a schedule and hands what happens to `tell`.
+/// Runs a mechanism to a schedule by the paper's method, RK4 and coordinate partitioning, and hands what happens to `tell`.
 ///
 /// The first sample is the start as given, uncorrected. Where an input varies it is set anew before every step. An error of
 /// `tell` ends the run.
 ///
 /// # Errors
 /// [`Failure::Run`] if a solver fails or the start does not fit the mechanism; [`Failure::Output`] from `tell`.
-pub fn run<M: Partition + Ports>(
+pub fn run<M: Partition + Ports + 'static>(
     mechanism: &mut M,
     settings: &Settings,
     start: &Start,
+    tell: impl FnMut(Event<'_>) -> io::Result<()>,
+) -> Result<Summary, Failure> {
+    run_by(mechanism, &motion::Any, (settings, &Approach::default()), start, tell)
+}
+
+/// The same by any approach for which there is a kit.
+///
+/// Under error control samples are interpolated, and inputs must not vary.
+///
+/// # Errors
+/// As [`run`]; [`Failure::Run`] also if the approach does not suit the mechanism.
+pub fn run_by<M: Partition + Ports + 'static>(
+    mechanism: &mut M,
+    kit: &dyn Kit<M>,
+    (settings, approach): (&Settings, &Approach),
+    start: &Start,
     mut tell: impl FnMut(Event<'_>) -> io::Result<()>,
 ) -> Result<Summary, Failure> {
+    let settings = scheduled(settings, approach);
     settings.check().map_err(|e| Failure::Run(e.to_string()))?;
+    check(approach, start)?;
     let y = state(mechanism, start)?;
     refuse_singular(mechanism, &y)?;
-    let mut run = Run::new(mechanism, y, start);
+    set(mechanism, &start.inputs, 0.0);
+    let motion = kit.begin(mechanism, approach, &y).map_err(Failure::Run)?;
+    let mut run = Run::new(mechanism, motion, y, start);
     let mut tracker = Tracker::default();
     let mut last_told = Instant::now();
-    let sample = run.sample(0.0);
+    let in_words =
+        |mechanism: &M, error: Error| Failure::Run(describe_in(mechanism, approach.coordinates, &error));
+    let sample = run.sample(0.0).map_err(|e| in_words(run.mechanism, e))?;
     tracker.add(&sample);
     tell(Event::Sample(&sample))?;
-    for segment in Schedule::new(settings) {
-        run.advance(&segment).map_err(|e| Failure::Run(describe(run.mechanism, &e)))?;
+    for segment in Schedule::new(&settings) {
+        let advanced = match approach.tolerance {
+            None => run.advance(&segment),
+            Some(_) => run.advance_beyond(segment.to, settings.t_end),
+        };
+        advanced.map_err(|e| in_words(run.mechanism, e))?;
         if segment.samples {
-            let sample = run.sample(segment.to);
+            let sample = run.sample(segment.to).map_err(|e| in_words(run.mechanism, e))?;
             tracker.add(&sample);
             tell(Event::Sample(&sample))?;
         }
@@ -75,8 +105,35 @@ pub fn run<M: Partition + Ports>(
             last_told = Instant::now();
         }
     }
+    run.finish();
     tracker.finish(&mut run.summary);
     Ok(run.summary)
+}
+
+/// The schedule of an approach: its own corrections, or none to be scheduled, do not divide the run.
+fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
+    let has_moments = approach.coordinates == Coordinates::Maximal
+        && !matches!(approach.correction, Correction::None | Correction::Baumgarte(_))
+        && approach.when.is_none()
+        && approach.tolerance.is_none();
+    // Under error control only samples divide it.
+    let step = if approach.tolerance.is_some() { settings.t_end } else { settings.step };
+    Settings { correct_every: settings.correct_every.filter(|_| has_moments), step, ..*settings }
+}
+
+fn check(approach: &Approach, start: &Start) -> Result<(), Failure> {
+    if approach.tolerance.is_none() {
+        return Ok(());
+    }
+    if approach.integrator == Integrator::Rk4 {
+        let words = "rk4 has no error estimate: give it a --step instead of a --tolerance, or use tsit5, dop853 or rodas4";
+        return Err(Failure::Run(words.to_owned()));
+    }
+    if any_varies(&start.inputs) {
+        let words = "inputs that vary are held over each step, so steps have to be fixed: give a --step instead of a --tolerance";
+        return Err(Failure::Run(words.to_owned()));
+    }
+    Ok(())
 }
 
 /// In a singular pose accelerations are not defined: better to say so than to integrate what is not finite.
@@ -91,25 +148,28 @@ fn refuse_singular<M: Partition>(mechanism: &M, start: &M::State) -> Result<(), 
 /// The state under way, with its solvers.
 struct Run<'a, M: Partition + Ports> {
     mechanism: &'a mut M,
+    motion: Box<dyn Motion<M>>,
     inputs: &'a [Input],
     steps_at_once: u64,
+    /// The maximal state when it was last looked at.
     y: M::State,
-    direct: Direct<M::State>,
-    partitioned: Partitioned<M>,
     turns: Turns<M>,
+    /// When the turns were last read, s.
+    read_at: f64,
     observer: Observer<'a, M>,
     summary: Summary,
 }
 
 impl<'a, M: Partition + Ports> Run<'a, M> {
-    fn new(mechanism: &'a mut M, y: M::State, start: &'a Start) -> Self {
+    fn new(mechanism: &'a mut M, mut motion: Box<dyn Motion<M>>, y: M::State, start: &'a Start) -> Self {
+        start.inputs.iter().for_each(|input| motion.set_input(input.index, input.at(0.0)));
         let angles: Vec<M::Scalar> = start.angles.iter().map(|&a| Scalar::constant(a)).collect();
         Self {
+            motion,
             inputs: &start.inputs,
             steps_at_once: if any_varies(&start.inputs) { 1 } else { STEPS_BETWEEN_READINGS },
-            direct: Direct::new(&y),
-            partitioned: Partitioned::new(mechanism, &y),
             turns: Turns::new(mechanism, Scalar::constant(0.0), &y, &angles),
+            read_at: 0.0,
             observer: Observer::new(mechanism, &start.observed_bodies),
             mechanism,
             y,
@@ -117,44 +177,76 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
         }
     }
 
+    /// Equal steps, and a correction where the schedule has one.
     fn advance(&mut self, segment: &Segment) -> Result<(), Error> {
-        let began = Instant::now();
-        self.integrate(segment)?;
-        if segment.corrects {
-            self.partitioned.correct(self.mechanism, Scalar::constant(segment.to), &mut self.y)?;
-        }
-        self.summary.run_time_s += began.elapsed().as_secs_f64();
-        self.summary.steps += segment.n_steps;
-        self.summary.chart_switches = self.partitioned.switches();
-        Ok(())
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
-    fn integrate(&mut self, segment: &Segment) -> Result<(), Error> {
+        #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
         let h = (segment.to - segment.from) / segment.n_steps as f64;
         let mut done = 0;
         while done < segment.n_steps {
-            let n_steps = (segment.n_steps - done).min(self.steps_at_once) as u32;
-            let (t, dt) = (segment.from + done as f64 * h, f64::from(n_steps) * h);
-            set(self.mechanism, self.inputs, t);
-            self.direct.advance(
-                self.mechanism,
-                Scalar::constant(t),
-                Scalar::constant(h),
-                n_steps,
-                &mut self.y,
-            )?;
-            self.turns.update(self.mechanism, Scalar::constant(t + dt), Scalar::constant(dt), &self.y);
-            done += u64::from(n_steps);
+            let n_steps = (segment.n_steps - done).min(self.steps_at_once);
+            self.set_inputs();
+            let began = Instant::now();
+            for _ in 0..n_steps {
+                self.motion.step(self.mechanism, h)?;
+            }
+            self.summary.run_time_s += began.elapsed().as_secs_f64();
+            done += n_steps;
+            self.read_turns(self.motion.time())?;
+        }
+        if segment.corrects {
+            let began = Instant::now();
+            self.motion.correct(self.mechanism)?;
+            self.summary.run_time_s += began.elapsed().as_secs_f64();
         }
         Ok(())
     }
 
-    /// The state may have been corrected since the turns were read: they are read again, no time having passed.
-    fn sample(&mut self, t: f64) -> Sample {
+    /// Steps under error control until a time is passed.
+    fn advance_beyond(&mut self, t: f64, t_end: f64) -> Result<(), Error> {
+        while self.motion.time() < t {
+            let began = Instant::now();
+            self.motion.step_towards(self.mechanism, t_end)?;
+            self.summary.run_time_s += began.elapsed().as_secs_f64();
+            if self.motion.time() <= t {
+                self.read_turns(self.motion.time())?;
+            }
+        }
+        Ok(())
+    }
+
+    fn set_inputs(&mut self) {
+        let t = self.motion.time();
         set(self.mechanism, self.inputs, t);
-        self.turns.update(self.mechanism, Scalar::constant(t), Scalar::constant(0.0), &self.y);
-        self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.summary.chart_switches)
+        if any_varies(self.inputs) {
+            for input in self.inputs {
+                self.motion.set_input(input.index, input.at(t));
+            }
+        }
+    }
+
+    /// Between two readings the mean rate predicts each angle to within half a turn.
+    fn read_turns(&mut self, t: f64) -> Result<(), Error> {
+        self.motion.at(self.mechanism, t, &mut self.y)?;
+        let dt = t - self.read_at;
+        self.turns.update(self.mechanism, Scalar::constant(t), Scalar::constant(dt), &self.y);
+        self.read_at = t;
+        Ok(())
+    }
+
+    /// The state may have been corrected since the turns were read: they are read again.
+    fn sample(&mut self, t: f64) -> Result<Sample, Error> {
+        set(self.mechanism, self.inputs, t);
+        if t > 0.0 {
+            self.read_turns(t)?;
+        }
+        Ok(self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches()))
+    }
+
+    fn finish(&mut self) {
+        let statistics = self.motion.statistics();
+        self.summary.steps = statistics.accepted;
+        self.summary.chart_switches = self.motion.chart_switches();
+        self.summary.statistics = statistics;
     }
 }
 

@@ -1,6 +1,7 @@
 //! How good a run was.
 
 use crate::Sample;
+use gyro_sim::Statistics;
 
 /// The figures of a whole run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,6 +20,8 @@ pub struct Summary {
     pub energy_drift: f64,
     /// Seconds spent stepping and correcting, without samples and their output.
     pub run_time_s: f64,
+    /// What the steps have cost and met.
+    pub statistics: Statistics,
 }
 
 /// Follows violations and energy from sample to sample.

@@ -34,7 +34,7 @@ impl Differentiable for Chirp<f64> {
     }
     fn jacobian(&self, t: f64, y: &[f64; 2], dfdy: &mut [f64; 4], dfdt: &mut [f64; 2]) {
         let duals = Chirp::<Dual<f64, 3>>(PhantomData);
-        ByDuals::new(self, &duals, &[0.0; 4]).jacobian(t, y, dfdy, dfdt);
+        ByDuals::new(*self, duals, &[0.0; 4]).jacobian(t, y, dfdy, dfdt);
     }
 }
 

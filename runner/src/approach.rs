@@ -1,0 +1,211 @@
+//! Which integrator, in which coordinates, with which correction.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// How a motion is computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Approach {
+    /// The method.
+    pub integrator: Integrator,
+    /// Error tolerated in each step, relative and absolute alike; with `None` the steps have a fixed length.
+    pub tolerance: Option<f64>,
+    /// What is integrated.
+    pub coordinates: Coordinates,
+    /// How constraints are kept.
+    pub correction: Correction,
+    /// When; `None` stands for the interval of the [`Settings`](crate::Settings) at fixed steps and for every step under error control.
+    pub when: Option<When>,
+    /// Steps after which the run is given up, under error control; `None` for the solver's own.
+    pub budget: Option<u64>,
+}
+
+/// The method.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Integrator {
+    /// Kutta's classical method of order 4, fixed steps.
+    #[default]
+    Rk4,
+    /// Tsitouras's pair of orders 5 and 4.
+    Tsit5,
+    /// Dormand and Prince's method of order 8.
+    Dop853,
+    /// Rodas: L-stable, of order 4.
+    Rodas4,
+}
+
+/// What is integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Coordinates {
+    /// Positions and Euler parameters of all bodies, the paper's.
+    #[default]
+    Maximal,
+    /// Joint coordinates and their rates: trees only, generated code only.
+    Joint,
+}
+
+/// How constraints are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Correction {
+    /// The paper's coordinate partitioning.
+    #[default]
+    Partition,
+    /// To joint coordinates and back.
+    ClosedForm,
+    /// The smallest change as the masses weigh it.
+    MassWeighted,
+    /// Baumgarte's stabilisation at this rate, 1/s: in the accelerations, so at all times.
+    Baumgarte(f64),
+    /// Not at all: direct integration.
+    None,
+}
+
+/// When to correct.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum When {
+    /// After so many steps.
+    Steps(u32),
+    /// After each step that leaves a larger violation, lengths in units of the mechanism's size.
+    Violation(f64),
+}
+
+macro_rules! names {
+    ($type:ident: $($name:literal => $variant:ident),+) => {
+        impl $type {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),+];
+
+            /// Its name on the command line and in reports.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name),+
+                }
+            }
+        }
+
+        impl fmt::Display for $type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl FromStr for $type {
+            type Err = ();
+
+            fn from_str(name: &str) -> Result<Self, ()> {
+                Self::ALL.iter().copied().find(|one| one.name() == name).ok_or(())
+            }
+        }
+    };
+}
+
+names!(Integrator: "rk4" => Rk4, "tsit5" => Tsit5, "dop853" => Dop853, "rodas4" => Rodas4);
+names!(Coordinates: "maximal" => Maximal, "joint" => Joint);
+
+impl fmt::Display for Correction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Partition => f.write_str("partition"),
+            Self::ClosedForm => f.write_str("closed-form"),
+            Self::MassWeighted => f.write_str("mass-weighted"),
+            Self::Baumgarte(rate) => write!(f, "baumgarte={rate:?}"),
+            Self::None => f.write_str("none"),
+        }
+    }
+}
+
+impl FromStr for Correction {
+    type Err = ();
+
+    fn from_str(name: &str) -> Result<Self, ()> {
+        Ok(match name {
+            "partition" => Self::Partition,
+            "closed-form" => Self::ClosedForm,
+            "mass-weighted" => Self::MassWeighted,
+            "none" => Self::None,
+            _ => match name.strip_prefix("baumgarte=").and_then(|rate| rate.parse().ok()) {
+                Some(rate) if rate > 0.0 && f64::is_finite(rate) => Self::Baumgarte(rate),
+                _ => return Err(()),
+            },
+        })
+    }
+}
+
+impl fmt::Display for When {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Steps(steps) => write!(f, "steps={steps}"),
+            Self::Violation(limit) => write!(f, "violation={limit:?}"),
+        }
+    }
+}
+
+impl FromStr for When {
+    type Err = ();
+
+    fn from_str(text: &str) -> Result<Self, ()> {
+        match text.split_once('=').ok_or(())? {
+            ("steps", steps) => steps.parse().ok().filter(|&steps| steps > 0).map(Self::Steps).ok_or(()),
+            ("violation", limit) => match limit.parse() {
+                Ok(limit) if limit > 0.0 && f64::is_finite(limit) => Ok(Self::Violation(limit)),
+                _ => Err(()),
+            },
+            _ => Err(()),
+        }
+    }
+}
+
+impl From<When> for gyro_sim::When {
+    fn from(when: When) -> Self {
+        match when {
+            When::Steps(steps) => Self::Steps(steps),
+            When::Violation(limit) => Self::Violation(limit),
+        }
+    }
+}
+
+impl fmt::Display for Approach {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, {} coordinates", self.integrator, self.coordinates)?;
+        if self.coordinates == Coordinates::Maximal {
+            write!(f, ", correction {}", self.correction)?;
+            if let Some(when) = self.when {
+                write!(f, " at {when}")?;
+            }
+        }
+        match self.tolerance {
+            Some(tolerance) => write!(f, ", tolerance {tolerance:e}"),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_read_back() {
+        for integrator in Integrator::ALL {
+            assert_eq!(integrator.name().parse(), Ok(*integrator));
+        }
+        for correction in [
+            Correction::Partition,
+            Correction::ClosedForm,
+            Correction::MassWeighted,
+            Correction::Baumgarte(12.5),
+            Correction::None,
+        ] {
+            assert_eq!(correction.to_string().parse(), Ok(correction));
+        }
+        for when in [When::Steps(5), When::Violation(1e-9)] {
+            assert_eq!(when.to_string().parse(), Ok(when));
+        }
+        for nonsense in ["", "baumgarte", "baumgarte=-1", "baumgarte=inf", "Partition"] {
+            assert_eq!(nonsense.parse::<Correction>(), Err(()));
+        }
+        for nonsense in ["steps=0", "violation=nan", "steps", "5"] {
+            assert_eq!(nonsense.parse::<When>(), Err(()));
+        }
+    }
+}

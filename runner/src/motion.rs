@@ -1,0 +1,530 @@
+//! A motion under way, whatever integrates it.
+
+use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use gyro_sim::integrate::{Embedded, Method};
+use gyro_sim::{
+    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Error, JointForm,
+    JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition, Partitioning, Ports,
+    Projection, Real, Rodas4, Scalar, Solver, Statistics, Storage, Tsit5, Uncorrected, When,
+};
+
+/// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
+pub trait Motion<M: Mechanism> {
+    /// One step of this length.
+    ///
+    /// # Errors
+    /// [`Error`] of the solver.
+    fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error>;
+    /// One step under error control, not beyond `t_end`.
+    ///
+    /// # Errors
+    /// [`Error`] of the solver.
+    fn step_towards(&mut self, mechanism: &M, t_end: f64) -> Result<(), Error>;
+    /// Corrects the state.
+    ///
+    /// # Errors
+    /// [`Error`] of the correction.
+    fn correct(&mut self, mechanism: &M) -> Result<(), Error>;
+    /// The time, s.
+    fn time(&self) -> f64;
+    /// Writes the maximal state at a time within the last step.
+    ///
+    /// # Errors
+    /// [`Error`] of the correction.
+    fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error>;
+    /// An input of the mechanism has changed.
+    fn set_input(&mut self, index: usize, value: f64);
+    /// What the steps have cost and met.
+    fn statistics(&self) -> Statistics;
+    /// How often independent coordinates have been chosen anew.
+    fn chart_switches(&self) -> u64;
+}
+
+/// What there is to begin motions of a mechanism with: more for some than for others.
+pub trait Kit<M: Partition + Ports> {
+    /// A motion from a maximal state at time zero; in words why there cannot be one.
+    ///
+    /// # Errors
+    /// What the mechanism lacks for this approach.
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
+}
+
+/// For whatever can be partitioned.
+#[derive(Clone, Copy, Debug)]
+pub struct Any;
+
+/// For mechanisms with a projection too.
+#[derive(Clone, Copy, Debug)]
+pub struct Projecting;
+
+/// For any mechanism whose kernels exist in dual numbers too.
+#[derive(Clone, Copy, Debug)]
+pub struct WithDuals<D>(pub D);
+
+/// For trees.
+#[derive(Clone, Copy, Debug)]
+pub struct Tree<D>(pub D);
+
+/// For trees with a generated Jacobian.
+#[derive(Clone, Copy, Debug)]
+pub struct TreeWithJacobian<D>(pub D);
+
+/// Columns of a Jacobian that are computed at a time.
+pub const COLUMNS: usize = 4;
+
+impl<M: Partition + Ports + 'static> Kit<M> for Any {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        only_maximal(approach)?;
+        only_explicit(approach)?;
+        match approach.correction {
+            Keeping::Partition => Ok(explicit(Cheap, partitioning(mechanism, y), approach, y)),
+            Keeping::None => Ok(explicit(Plain, Boxed(Box::new(Uncorrected)), approach, y)),
+            other => {
+                Err(format!("the correction {other} needs a projection, which this mechanism does not have"))
+            }
+        }
+    }
+}
+
+impl<M: Partition + Ports + Projection + 'static> Kit<M> for Projecting {
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        only_maximal(approach)?;
+        only_explicit(approach)?;
+        let correction = keeping(mechanism, approach, y)?;
+        Ok(maximal(approach, correction, y))
+    }
+}
+
+impl<M, D> Kit<M> for WithDuals<D>
+where
+    M: Partition + Ports + Projection + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+{
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        only_maximal(approach)?;
+        let correction = keeping(mechanism, approach, y)?;
+        if approach.integrator == Integrator::Rodas4 {
+            return Ok(implicit(mechanism, approach, self.0.clone(), correction, y));
+        }
+        Ok(maximal(approach, correction, y))
+    }
+}
+
+impl<M, D> Kit<M> for Tree<D>
+where
+    M: Partition + Ports + Projection + JointSpace + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + JointSpace + Clone + 'static,
+{
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        if approach.coordinates == Coordinates::Maximal {
+            return in_maximal(mechanism, approach, &self.0, y);
+        }
+        let x = joints(mechanism, y);
+        if approach.integrator == Integrator::Rodas4 {
+            let duals = JointDuals(self.0.clone(), vec![M::Scalar::constant(0.0); square(x.as_ref())]);
+            let method = Rodas4::new(&duals.system(mechanism), &x);
+            return Ok(adaptive(duals, method, Uncorrected, approach, &x));
+        }
+        Ok(explicit(Joint, Uncorrected, approach, &x))
+    }
+}
+
+impl<M, D> Kit<M> for TreeWithJacobian<D>
+where
+    M: Partition + Ports + Projection + JointJacobian + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+{
+    fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
+        if approach.coordinates == Coordinates::Maximal {
+            return in_maximal(mechanism, approach, &self.0, y);
+        }
+        let x = joints(mechanism, y);
+        if approach.integrator == Integrator::Rodas4 {
+            let method = Rodas4::new(&JointForm(mechanism), &x);
+            return Ok(adaptive(Joint, method, Uncorrected, approach, &x));
+        }
+        Ok(explicit(Joint, Uncorrected, approach, &x))
+    }
+}
+
+fn only_maximal(approach: &Approach) -> Result<(), String> {
+    match approach.coordinates {
+        Coordinates::Maximal => Ok(()),
+        Coordinates::Joint => Err("joint coordinates are for generated code of trees".to_owned()),
+    }
+}
+
+fn only_explicit(approach: &Approach) -> Result<(), String> {
+    if approach.integrator == Integrator::Rodas4 {
+        return Err("rodas4 needs derivatives, which only generated code has".to_owned());
+    }
+    Ok(())
+}
+
+fn square<T>(state: &[T]) -> usize {
+    state.len() * state.len()
+}
+
+/// The joint state of a maximal one.
+fn joints<M: JointSpace>(mechanism: &M, y: &M::State) -> M::Joints {
+    let mut x = mechanism.joint_start();
+    mechanism.to_joints(Scalar::constant(0.0), y, &mut x);
+    x
+}
+
+/// What a system of a mechanism is, however long the mechanism is borrowed.
+trait Lens<M: Mechanism>: 'static {
+    type State: Storage<M::Scalar> + 'static;
+    type System<'a>: Ode<Scalar = M::Scalar, State = Self::State>
+    where
+        M: 'a;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> Self::System<'a>;
+    /// Writes the maximal state.
+    fn show(&self, mechanism: &M, t: M::Scalar, from: &Self::State, to: &mut M::State);
+    fn set_input(&mut self, _index: usize, _value: f64) {}
+}
+
+fn copy<M: Mechanism>(from: &M::State, to: &mut M::State) {
+    to.as_mut().copy_from_slice(from.as_ref());
+}
+
+/// Exact on the constraints and off them.
+struct Plain;
+
+/// A mechanism as a system of its own.
+struct Exact<'a, M>(&'a M);
+
+impl<M: Mechanism> Ode for Exact<'_, M> {
+    type Scalar = M::Scalar;
+    type State = M::State;
+
+    fn start(&self) -> M::State {
+        self.0.start()
+    }
+    fn derivative(&self, t: M::Scalar, y: &M::State, dy: &mut M::State) {
+        self.0.derivative(t, y, dy);
+    }
+}
+
+impl<M: Mechanism> Maximal for Exact<'_, M> {
+    type Mechanism = M;
+
+    fn mechanism(&self) -> &M {
+        self.0
+    }
+}
+
+impl<M: Mechanism<State: 'static> + 'static> Lens<M> for Plain {
+    type State = M::State;
+    type System<'a> = Exact<'a, M>;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> Exact<'a, M> {
+        Exact(mechanism)
+    }
+    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
+        copy::<M>(from, to);
+    }
+}
+
+/// For states that are corrected every few steps.
+struct Cheap;
+
+impl<M: Mechanism<State: 'static> + 'static> Lens<M> for Cheap {
+    type State = M::State;
+    type System<'a> = Corrected<'a, M>;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> Corrected<'a, M> {
+        Corrected(mechanism)
+    }
+    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
+        copy::<M>(from, to);
+    }
+}
+
+/// Baumgarte's rate.
+struct Steered(f64);
+
+impl<M: Projection<State: 'static> + 'static> Lens<M> for Steered {
+    type State = M::State;
+    type System<'a> = Baumgarte<'a, M>;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> Baumgarte<'a, M> {
+        Baumgarte { mechanism, rate: Scalar::constant(self.0) }
+    }
+    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
+        copy::<M>(from, to);
+    }
+}
+
+/// The mechanism in dual numbers, and zeros for a Jacobian.
+struct Duals<D, T>(D, Vec<T>);
+
+impl<M, D> Lens<M> for Duals<D, M::Scalar>
+where
+    M: Mechanism<State: 'static, Scalar: 'static> + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+{
+    type State = M::State;
+    type System<'a> = ByDuals<'a, Exact<'a, M>, Exact<'a, D>, Vec<M::Scalar>, COLUMNS>;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> Self::System<'a> {
+        ByDuals::new(Exact(mechanism), Exact(&self.0), &self.1)
+    }
+    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
+        copy::<M>(from, to);
+    }
+    fn set_input(&mut self, index: usize, value: f64) {
+        self.0.set_input(index, Scalar::constant(value));
+    }
+}
+
+/// Joint coordinates.
+struct Joint;
+
+impl<M: JointSpace<Joints: 'static> + 'static> Lens<M> for Joint {
+    type State = M::Joints;
+    type System<'a> = JointForm<'a, M>;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> JointForm<'a, M> {
+        JointForm(mechanism)
+    }
+    fn show(&self, mechanism: &M, t: M::Scalar, from: &M::Joints, to: &mut M::State) {
+        mechanism.to_maximal(t, from, to);
+    }
+}
+
+/// Joint coordinates, with a Jacobian by dual numbers.
+struct JointDuals<D, T>(D, Vec<T>);
+
+impl<M, D> Lens<M> for JointDuals<D, M::Scalar>
+where
+    M: JointSpace<Joints: 'static, Scalar: 'static> + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+{
+    type State = M::Joints;
+    type System<'a> = ByDuals<'a, JointForm<'a, M>, JointForm<'a, D>, Vec<M::Scalar>, COLUMNS>;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> Self::System<'a> {
+        ByDuals::new(JointForm(mechanism), JointForm(&self.0), &self.1)
+    }
+    fn show(&self, mechanism: &M, t: M::Scalar, from: &M::Joints, to: &mut M::State) {
+        mechanism.to_maximal(t, from, to);
+    }
+    fn set_input(&mut self, index: usize, value: f64) {
+        self.0.set_input(index, Scalar::constant(value));
+    }
+}
+
+/// Boxed corrections, so that integrators are not compiled anew for each.
+trait Keeps<M: Mechanism> {
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error>;
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar;
+    fn switches(&self) -> u64;
+}
+
+impl<M: Mechanism, C: Correction<M>> Keeps<M> for C {
+    fn correct(&mut self, mechanism: &M, t: M::Scalar, y: &mut M::State) -> Result<(), Error> {
+        Correction::correct(self, mechanism, t, y)
+    }
+    fn violation(&mut self, mechanism: &M, t: M::Scalar, y: &M::State) -> M::Scalar {
+        Correction::violation(self, mechanism, t, y)
+    }
+    fn switches(&self) -> u64 {
+        Correction::switches(self)
+    }
+}
+
+struct Boxed<M: Mechanism>(Box<dyn Keeps<M>>);
+
+impl<M: Mechanism, O: Maximal<Mechanism = M, Scalar = M::Scalar, State = M::State>> Correction<O>
+    for Boxed<M>
+{
+    fn correct(&mut self, system: &O, t: O::Scalar, y: &mut O::State) -> Result<(), Error> {
+        self.0.correct(system.mechanism(), t, y)
+    }
+    fn violation(&mut self, system: &O, t: O::Scalar, y: &O::State) -> O::Scalar {
+        self.0.violation(system.mechanism(), t, y)
+    }
+    fn switches(&self) -> u64 {
+        self.0.switches()
+    }
+}
+
+fn keeping<M>(mechanism: &M, approach: &Approach, y: &M::State) -> Result<Boxed<M>, String>
+where
+    M: Partition + Projection + 'static,
+{
+    Ok(Boxed(match approach.correction {
+        Keeping::Partition => return Ok(partitioning(mechanism, y)),
+        Keeping::MassWeighted => Box::new(MassWeighted::new(mechanism)),
+        Keeping::None | Keeping::Baumgarte(_) => Box::new(Uncorrected),
+        Keeping::ClosedForm => return Err("the closed form is for generated code of trees".to_owned()),
+    }))
+}
+
+fn partitioning<M: Partition + 'static>(mechanism: &M, y: &M::State) -> Boxed<M> {
+    Boxed(Box::new(Partitioning::new(mechanism, Scalar::constant(0.0), y)))
+}
+
+/// Maximal coordinates of trees.
+fn in_maximal<M, D>(
+    mechanism: &M,
+    approach: &Approach,
+    duals: &D,
+    y: &M::State,
+) -> Result<Box<dyn Motion<M>>, String>
+where
+    M: Partition + Ports + Projection + JointSpace + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+{
+    let correction = match approach.correction {
+        Keeping::ClosedForm => Boxed(Box::new(ClosedForm::new(mechanism))),
+        _ => keeping(mechanism, approach, y)?,
+    };
+    if approach.integrator == Integrator::Rodas4 {
+        return Ok(implicit(mechanism, approach, duals.clone(), correction, y));
+    }
+    Ok(maximal(approach, correction, y))
+}
+
+/// Explicit methods in maximal coordinates.
+fn maximal<M>(approach: &Approach, correction: Boxed<M>, y: &M::State) -> Box<dyn Motion<M>>
+where
+    M: Partition + Projection + 'static,
+{
+    match approach.correction {
+        Keeping::None => explicit(Plain, correction, approach, y),
+        Keeping::Baumgarte(rate) => explicit(Steered(rate), correction, approach, y),
+        _ => explicit(Cheap, correction, approach, y),
+    }
+}
+
+/// Rodas in maximal coordinates.
+fn implicit<M, D>(
+    mechanism: &M,
+    approach: &Approach,
+    duals: D,
+    correction: Boxed<M>,
+    y: &M::State,
+) -> Box<dyn Motion<M>>
+where
+    M: Partition + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+{
+    let duals = Duals(duals, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
+    let method = Rodas4::new(&duals.system(mechanism), y);
+    adaptive(duals, method, correction, approach, y)
+}
+
+fn explicit<M, L, C>(lens: L, correction: C, approach: &Approach, y: &L::State) -> Box<dyn Motion<M>>
+where
+    M: Mechanism<Scalar: Real> + 'static,
+    L: Lens<M>,
+    C: for<'a> Correction<L::System<'a>> + 'static,
+{
+    match approach.integrator {
+        Integrator::Rk4 => {
+            Box::new(Fixed(Moving { lens, solver: solver(Kutta4::new(y), correction, approach, y) }))
+        }
+        Integrator::Tsit5 => adaptive(lens, Tsit5::new(y), correction, approach, y),
+        _ => adaptive(lens, Dop853::new(y), correction, approach, y),
+    }
+}
+
+fn adaptive<M, L, A, C>(
+    lens: L,
+    method: A,
+    correction: C,
+    approach: &Approach,
+    y: &L::State,
+) -> Box<dyn Motion<M>>
+where
+    M: Mechanism<Scalar: Real> + 'static,
+    L: Lens<M>,
+    A: for<'a> Embedded<L::System<'a>> + 'static,
+    C: for<'a> Correction<L::System<'a>> + 'static,
+{
+    Box::new(Adaptive(Moving { lens, solver: solver(method, correction, approach, y) }))
+}
+
+fn solver<S: Storage<T>, T: Real, A, C>(
+    method: A,
+    correction: C,
+    approach: &Approach,
+    y: &S,
+) -> Solver<S, T, A, C> {
+    let mut control = Control::default();
+    if let Some(tolerance) = approach.tolerance {
+        control = control.with_tolerance(tolerance);
+    }
+    control.budget = approach.budget.unwrap_or(control.budget);
+    control.when = match (approach.when, approach.tolerance) {
+        (Some(when), _) => when.into(),
+        (None, Some(_)) => When::Steps(1),
+        // The schedule says when.
+        (None, None) => When::Steps(u32::MAX),
+    };
+    Solver::new(method, correction, T::constant(0.0), y).with_control(control)
+}
+
+struct Moving<L, S, T, A, C> {
+    lens: L,
+    solver: Solver<S, T, A, C>,
+}
+
+/// A method without an error estimate.
+struct Fixed<L, S, T, A, C>(Moving<L, S, T, A, C>);
+
+/// A method with one.
+struct Adaptive<L, S, T, A, C>(Moving<L, S, T, A, C>);
+
+macro_rules! motion {
+    ($type:ident, $method:ident, |$self:ident, $mechanism:ident, $t_end:ident| $towards:expr) => {
+        impl<M, L, A, C> Motion<M> for $type<L, L::State, M::Scalar, A, C>
+        where
+            M: Mechanism<Scalar: Real> + 'static,
+            L: Lens<M>,
+            A: for<'a> $method<L::System<'a>>,
+            C: for<'a> Correction<L::System<'a>>,
+        {
+            fn step(&mut self, mechanism: &M, h: f64) -> Result<(), Error> {
+                let moving = &mut self.0;
+                moving.solver.step(&moving.lens.system(mechanism), Scalar::constant(h))
+            }
+            fn step_towards(&mut $self, $mechanism: &M, $t_end: f64) -> Result<(), Error> {
+                $towards
+            }
+            fn correct(&mut self, mechanism: &M) -> Result<(), Error> {
+                let moving = &mut self.0;
+                moving.solver.correct(&moving.lens.system(mechanism))
+            }
+            fn time(&self) -> f64 {
+                self.0.solver.time().to_f64()
+            }
+            fn at(&mut self, mechanism: &M, t: f64, y: &mut M::State) -> Result<(), Error> {
+                let (moving, t) = (&mut self.0, Scalar::constant(t));
+                let mut state = moving.solver.state().clone();
+                moving.solver.interpolate(&moving.lens.system(mechanism), t, &mut state)?;
+                moving.lens.show(mechanism, t, &state, y);
+                Ok(())
+            }
+            fn set_input(&mut self, index: usize, value: f64) {
+                self.0.lens.set_input(index, value);
+                self.0.solver.system_has_changed();
+            }
+            fn statistics(&self) -> Statistics {
+                *self.0.solver.statistics()
+            }
+            fn chart_switches(&self) -> u64 {
+                self.0.solver.correction().switches()
+            }
+        }
+    };
+}
+
+motion!(Adaptive, Embedded, |self, mechanism, t_end| {
+    let moving = &mut self.0;
+    moving.solver.step_towards(&moving.lens.system(mechanism), Scalar::constant(t_end))
+});
+motion!(Fixed, Method, |self, mechanism, t_end| self.step(mechanism, t_end - self.time()));
