@@ -2,7 +2,7 @@
 
 use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
-use gyro_runner::{Event, Failure, Settings, Start, Summary, run};
+use gyro_runner::{Approach, Event, Failure, Settings, Start, Summary, motion, run_by};
 use gyro_sim::{Partition, Ports};
 use std::fmt;
 
@@ -62,23 +62,23 @@ impl std::error::Error for QuickLookError {}
 pub fn quick_look(
     model: &Model,
     (form, precision): (Form, Precision),
-    settings: &Settings,
+    plan: (&Settings, &Approach),
     start: &Start,
     tell: &mut dyn FnMut(Event<'_>),
 ) -> Result<Summary, QuickLookError> {
     match (form, precision) {
-        (Form::Careful, Precision::Single) => simulate(Careful::<f32>::new(model), settings, start, tell),
-        (Form::Careful, Precision::Double) => simulate(Careful::<f64>::new(model), settings, start, tell),
-        (Form::Recursive, Precision::Single) => simulate(Recursive::<f32>::new(model), settings, start, tell),
-        (Form::Recursive, Precision::Double) => simulate(Recursive::<f64>::new(model), settings, start, tell),
-        (Form::Dense, Precision::Single) => simulate(Dense::<f32>::new(model), settings, start, tell),
-        (Form::Dense, Precision::Double) => simulate(Dense::<f64>::new(model), settings, start, tell),
+        (Form::Careful, Precision::Single) => simulate(Careful::<f32>::new(model), plan, start, tell),
+        (Form::Careful, Precision::Double) => simulate(Careful::<f64>::new(model), plan, start, tell),
+        (Form::Recursive, Precision::Single) => simulate(Recursive::<f32>::new(model), plan, start, tell),
+        (Form::Recursive, Precision::Double) => simulate(Recursive::<f64>::new(model), plan, start, tell),
+        (Form::Dense, Precision::Single) => simulate(Dense::<f32>::new(model), plan, start, tell),
+        (Form::Dense, Precision::Double) => simulate(Dense::<f64>::new(model), plan, start, tell),
     }
 }
 
-fn simulate<M: Partition + Ports>(
+fn simulate<M: Partition + Ports + 'static>(
     mechanism: Result<M, BuildError>,
-    settings: &Settings,
+    plan: (&Settings, &Approach),
     start: &Start,
     tell: &mut dyn FnMut(Event<'_>),
 ) -> Result<Summary, QuickLookError> {
@@ -87,5 +87,5 @@ fn simulate<M: Partition + Ports>(
         tell(event);
         Ok(())
     };
-    run(&mut mechanism, settings, start, told).map_err(QuickLookError::Run)
+    run_by(&mut mechanism, &motion::Any, plan, start, told).map_err(QuickLookError::Run)
 }

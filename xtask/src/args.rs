@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use gyro_model::{Method, Rational, parse_decimal};
+use gyro_runner::{Coordinates, Correction, Integrator, When};
 use std::path::PathBuf;
 
 /// From a page of bodies and joints to Rust code and to plots.
@@ -105,6 +106,7 @@ pub(crate) struct InspectArgs {
   cargo xtask simulate models/gyroscope.toml
   cargo xtask simulate models/gyroscope.toml --engine assembled --t-end 10
   cargo xtask simulate models/gyroscope.toml --method direct --step 2e-4 --out /tmp/direct
+  cargo xtask simulate models/gyroscope.toml --integrator dop853 --tolerance 1e-9 --coordinates joint --verify
   cargo xtask simulate my-gimbal.toml --set rotor_mass=0.085 --json
   cargo xtask simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01")]
 pub(crate) struct SimulateArgs {
@@ -124,8 +126,29 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true)]
     pub(crate) correct_every: Option<f64>,
     /// Integration alone, or with coordinate partitioning
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, conflicts_with = "correction")]
     pub(crate) method: Option<MethodName>,
+    /// The integrator: rk4 (fixed steps), tsit5, dop853, or rodas4 for stiff scenes
+    #[arg(long, value_name = "NAME", value_parser = integrator, default_value = "rk4")]
+    pub(crate) integrator: Integrator,
+    /// Error tolerated in each step, relative and absolute: steps are then as long as it allows
+    #[arg(long, value_name = "TOL", conflicts_with = "step")]
+    pub(crate) tolerance: Option<f64>,
+    /// What is integrated: positions and Euler parameters of all bodies, or a tree's joint coordinates (generated code only)
+    #[arg(long, value_name = "maximal|joint", value_parser = coordinates, default_value = "maximal")]
+    pub(crate) coordinates: Coordinates,
+    /// How constraints are kept: partition, closed-form (trees), mass-weighted, baumgarte=RATE, none [default: the page's]
+    #[arg(long, value_name = "NAME", value_parser = correction)]
+    pub(crate) correction: Option<Correction>,
+    /// When they are corrected: steps=K or violation=SIZE [default: --correct-every; every step with --tolerance]
+    #[arg(long, value_name = "WHEN", value_parser = when, conflicts_with = "correct_every")]
+    pub(crate) correct_when: Option<When>,
+    /// Steps after which a run under --tolerance is given up
+    #[arg(long, value_name = "STEPS")]
+    pub(crate) budget: Option<u64>,
+    /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
+    #[arg(long)]
+    pub(crate) verify: bool,
     /// Number type of the run
     #[arg(long, value_enum, default_value_t = Precision::F64)]
     pub(crate) precision: Precision,
@@ -282,6 +305,25 @@ fn feed(text: &str) -> Result<(String, Feed), String> {
     }
 }
 
+fn integrator(text: &str) -> Result<Integrator, String> {
+    text.parse().map_err(|()| "rk4, tsit5, dop853 or rodas4 was expected".to_owned())
+}
+
+fn coordinates(text: &str) -> Result<Coordinates, String> {
+    text.parse().map_err(|()| "maximal or joint was expected".to_owned())
+}
+
+fn correction(text: &str) -> Result<Correction, String> {
+    let expected =
+        "partition, closed-form, mass-weighted, baumgarte=RATE or none was expected, such as baumgarte=100";
+    text.parse().map_err(|()| expected.to_owned())
+}
+
+fn when(text: &str) -> Result<When, String> {
+    text.parse()
+        .map_err(|()| "steps=K or violation=SIZE was expected, such as steps=5 or violation=1e-10".to_owned())
+}
+
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
@@ -364,6 +406,11 @@ mod tests {
             (&["--input", "motor"], "NAME=FILE.csv or NAME=NUMBER was expected"),
             (&["--input", "motor="], "nothing stands after `motor=`"),
             (&["--input", "motor=nan"], "`nan` is not a finite number"),
+            (&["--integrator", "euler"], "rk4, tsit5, dop853 or rodas4 was expected"),
+            (&["--coordinates", "polar"], "maximal or joint was expected"),
+            (&["--correction", "baumgarte"], "such as baumgarte=100"),
+            (&["--correct-when", "steps=0"], "such as steps=5"),
+            (&["--step", "1e-3", "--tolerance", "1e-6"], "cannot be used with"),
             (&["--engine", "steam"], "possible values: generated, assembled, dense, recursive"),
             (&["--methd", "direct"], "--method"),
         ] {

@@ -30,8 +30,12 @@ pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Sum
     }
     build(&package)?;
     let program = package.built(&format!("{}{}", package.name, std::env::consts::EXE_SUFFIX));
-    let request =
-        Request { settings: scene.settings, parameters: scene.parameters(), start: scene.start.clone() };
+    let request = Request {
+        settings: scene.settings,
+        approach: scene.approach,
+        parameters: scene.parameters(),
+        start: scene.start.clone(),
+    };
     converse(&program, &request, tell)
 }
 
@@ -56,7 +60,7 @@ struct Package {
 
 impl Package {
     fn program(module: &Module, precision: Precision) -> Self {
-        Self::new(module, ("main.rs", main(&module.type_name, precision)), &[])
+        Self::new(module, ("main.rs", main(module, precision)), &[])
     }
 
     fn new(module: &Module, root: (&'static str, String), options: &'static [&'static str]) -> Self {
@@ -81,17 +85,25 @@ impl Package {
     }
 }
 
-fn main(type_name: &str, precision: Precision) -> String {
-    let precision = precision.name();
+/// The program's own lines. What the module implements decides with what motions can be begun.
+fn main(module: &Module, precision: Precision) -> String {
+    let (type_name, precision) = (&module.type_name, precision.name());
+    let has = |name: &str| module.code.contains(&format!("gyro_sim::{name} for {type_name}"));
+    let kit = match (has("JointSpace"), has("JointJacobian")) {
+        (true, true) => "TreeWithJacobian",
+        (true, false) => "Tree",
+        (false, _) => "WithDuals",
+    };
     format!(
         "#[allow(warnings, clippy::all)]
 mod mechanism;
 
-use gyro_sim::Scalar;
+use gyro_runner::motion::{{COLUMNS, {kit}}};
+use gyro_sim::{{Dual, Scalar}};
 use mechanism::{type_name};
 
-fn build(parameters: &[f64]) -> {type_name}<{precision}> {{
-    let mut mechanism = {type_name}::<{precision}>::default();
+fn build<T: Scalar>(parameters: &[f64]) -> {type_name}<T> {{
+    let mut mechanism = {type_name}::<T>::default();
     for (index, value) in parameters.iter().enumerate() {{
         mechanism.set_parameter(index, Scalar::constant(*value));
     }}
@@ -99,7 +111,9 @@ fn build(parameters: &[f64]) -> {type_name}<{precision}> {{
 }}
 
 fn main() -> std::process::ExitCode {{
-    gyro_runner::child::main(build)
+    gyro_runner::child::main(|parameters| {{
+        (build::<{precision}>(parameters), {kit}(build::<Dual<{precision}, COLUMNS>>(parameters)))
+    }})
 }}
 "
     )

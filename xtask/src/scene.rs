@@ -4,7 +4,7 @@ use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::{files, inputs, remarks};
 use gyro_model::{JointKind, Method, Model, Move, Rational, Support};
-use gyro_runner::{Settings, Start};
+use gyro_runner::{Approach, Coordinates, Correction, Settings, Start};
 use std::fs;
 use std::path::Path;
 
@@ -18,6 +18,7 @@ pub(crate) struct Scene {
     /// The model with the parameters of this run.
     pub(crate) model: Model,
     pub(crate) settings: Settings,
+    pub(crate) approach: Approach,
     pub(crate) start: Start,
     /// How far the assembly has moved what the page gives of the start.
     pub(crate) moved: Vec<Move>,
@@ -41,8 +42,9 @@ impl Scene {
         Ok(Self {
             page,
             page_name,
-            model,
             settings,
+            approach: approach(&model, args),
+            model,
             start,
             moved,
             engine: args.engine,
@@ -56,8 +58,13 @@ impl Scene {
     }
 
     /// The algorithm's name.
-    pub(crate) fn method(&self) -> &'static str {
-        if self.settings.correct_every.is_some() { "partitioned" } else { "direct" }
+    pub(crate) fn method(&self) -> String {
+        match (self.approach.coordinates, self.approach.correction) {
+            (Coordinates::Joint, _) => "joint".to_owned(),
+            (_, Correction::Partition) => "partitioned".to_owned(),
+            (_, Correction::None) => "direct".to_owned(),
+            (_, other) => other.to_string(),
+        }
     }
 }
 
@@ -81,12 +88,31 @@ fn with_parameters(page: &Model, set: &[(String, Rational)]) -> Result<Model, Fa
     page.with_parameters(set).map_err(|words| Failure::Usage(format!("--set: {words}")))
 }
 
+fn approach(model: &Model, args: &SimulateArgs) -> Approach {
+    let correction = match (args.correction, args.method.map_or(model.simulation.method, Method::from)) {
+        (Some(correction), _) => correction,
+        (None, Method::Partitioned) => Correction::Partition,
+        (None, Method::Direct) => Correction::None,
+    };
+    Approach {
+        integrator: args.integrator,
+        tolerance: args.tolerance,
+        coordinates: args.coordinates,
+        correction,
+        when: args.correct_when,
+        budget: args.budget,
+    }
+}
+
 fn settings(model: &Model, args: &SimulateArgs) -> Settings {
     let page = &model.simulation;
     let method = args.method.map_or(page.method, Method::from);
     let step = args.step.unwrap_or(page.step);
-    let correct_every =
-        (method == Method::Partitioned).then_some(args.correct_every.unwrap_or(page.correct_every));
+    let is_corrected = match args.correction {
+        Some(correction) => correction != Correction::None,
+        None => method == Method::Partitioned,
+    };
+    let correct_every = is_corrected.then_some(args.correct_every.unwrap_or(page.correct_every));
     let grid = correct_every.unwrap_or(step);
     Settings {
         t_end: args.t_end.unwrap_or(page.t_end),

@@ -67,7 +67,8 @@ fn twin(scene: &Scene, form: Form, tell: &mut dyn FnMut(Event<'_>)) -> Result<Su
         Precision::F32 => gyro_assembled::Precision::Single,
         Precision::F64 => gyro_assembled::Precision::Double,
     };
-    let outcome = quick_look(&scene.model, (form, precision), &scene.settings, &scene.start, tell);
+    let outcome =
+        quick_look(&scene.model, (form, precision), (&scene.settings, &scene.approach), &scene.start, tell);
     outcome.map_err(|error| match error {
         QuickLookError::Start(error) => Failure::Usage(error.to_string()),
         QuickLookError::Run(failure) => Failure::Run(failure.to_string()),

@@ -6,7 +6,8 @@ use crate::words::{count, number, table};
 use crate::{columns, compare, remarks};
 use gyro_assembled::Careful;
 use gyro_model::{Model, Move};
-use gyro_runner::{JointSample, Sample, Summary};
+use gyro_runner::{Approach, Coordinates, Correction, JointSample, Sample, Settings, Summary, When};
+use gyro_sim::Statistics;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
@@ -36,10 +37,7 @@ pub(crate) fn text(scene: &Scene, samples: &[Sample], run: &Summary, written: &[
 
 fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
     let settings = &scene.settings;
-    let method = match settings.correct_every {
-        Some(every) => format!("coordinate partitioning every {every:?} s"),
-        None => "direct integration".to_owned(),
-    };
+    let method = method(&scene.approach, settings);
     let mut text = format!(
         "{}: {} s in {} (mean {} s), {method}\nengine {}, {}\n",
         scene.model.name,
@@ -54,6 +52,27 @@ fn head(scene: &Scene, run: &Summary, last: &Sample) -> String {
         let _ = writeln!(text, "parameter {} = {:?}", parameter.name, gyro_model::to_f64(&parameter.value));
     }
     text
+}
+
+/// Integrator and correction in words.
+fn method(approach: &Approach, settings: &Settings) -> String {
+    let kept = match (approach.coordinates, approach.correction) {
+        (Coordinates::Joint, _) => return format!("{} in joint coordinates", approach.integrator),
+        (_, Correction::None) => return format!("{}, direct integration", approach.integrator),
+        (_, Correction::Partition) => "coordinate partitioning".to_owned(),
+        (_, Correction::ClosedForm) => "closed-form correction".to_owned(),
+        (_, Correction::MassWeighted) => "mass-weighted projection".to_owned(),
+        (_, Correction::Baumgarte(rate)) => {
+            return format!("{}, Baumgarte's stabilisation at {rate:?}/s", approach.integrator);
+        }
+    };
+    let when = match (approach.when, approach.tolerance, settings.correct_every) {
+        (Some(When::Steps(1)), ..) | (None, Some(_), _) => "after every step".to_owned(),
+        (Some(When::Steps(steps)), ..) => format!("every {steps} steps"),
+        (Some(When::Violation(limit)), ..) => format!("beyond a violation of {limit:e}"),
+        (None, None, every) => format!("every {:?} s", every.unwrap_or(settings.step)),
+    };
+    format!("{}, {kept} {when}", approach.integrator)
 }
 
 /// The engine's name, and why it is not what it is elsewhere.
@@ -148,6 +167,30 @@ fn list(values: &[f64]) -> String {
     values.iter().map(|v| number(*v, 7)).collect::<Vec<_>>().join(", ")
 }
 
+/// What the steps have cost and met.
+fn cost(statistics: &Statistics) -> Vec<Vec<String>> {
+    let Statistics { accepted, rejected, corrections, work, limited_by_stability, fastest_rate, .. } =
+        *statistics;
+    let mut rows = vec![vec!["evaluations".to_owned(), work.evaluations.to_string()]];
+    if rejected > 0 {
+        rows.push(vec!["rejected steps".to_owned(), rejected.to_string()]);
+    }
+    if work.jacobians > 0 {
+        rows.push(vec!["Jacobians".to_owned(), work.jacobians.to_string()]);
+    }
+    if corrections > 0 {
+        rows.push(vec!["corrections".to_owned(), corrections.to_string()]);
+    }
+    if fastest_rate > 0.0 {
+        rows.push(vec!["fastest rate".to_owned(), format!("{} 1/s", number(fastest_rate, FEW))]);
+    }
+    if limited_by_stability > 0 {
+        let share = 100.0 * limited_by_stability as f64 / accepted.max(1) as f64;
+        rows.push(vec!["steps limited by stability".to_owned(), format!("{} %", number(share, FEW))]);
+    }
+    rows
+}
+
 fn quality(scene: &Scene, samples: &[Sample], run: &Summary, last: &Sample) -> String {
     let mut rows = vec![
         vec!["worst constraint violation".to_owned(), number(run.position_violation, FEW)],
@@ -164,6 +207,7 @@ fn quality(scene: &Scene, samples: &[Sample], run: &Summary, last: &Sample) -> S
     if scene.settings.correct_every.is_some() {
         rows.push(vec!["chart switches".to_owned(), run.chart_switches.to_string()]);
     }
+    rows.extend(cost(&run.statistics));
     rows.push(vec!["samples".to_owned(), samples.len().to_string()]);
     rows.push(vec!["run time".to_owned(), format!("{} s", number(run.run_time_s, FEW))]);
     format!("\n{}", table(&rows))
