@@ -113,7 +113,7 @@ fn errors_follow_the_tolerance() {
             ("dop853", adaptive(Dop853::new(&y), tolerance)),
             ("rodas4", adaptive(Rodas4::new(&CHIRP, &y), tolerance)),
         ] {
-            assert!(error < 10.0 * tolerance, "{name}: {error:e} at {tolerance:e} in {steps} steps");
+            assert!(error < 30.0 * tolerance, "{name}: {error:e} at {tolerance:e} in {steps} steps");
             assert!(
                 error > 1e-4 * tolerance,
                 "{name} tries too hard: {error:e} at {tolerance:e} in {steps} steps"
