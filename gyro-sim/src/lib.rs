@@ -75,7 +75,7 @@ pub use apart::apart;
 pub use error::Error;
 pub use mechanism::{
     Charted, Coordinate, Differentiable, Energy, Equations, JointForm, JointInfo, JointJacobian, JointSpace,
-    Mechanism, Ode, OutputInfo, Owner, Partition, Ports, RowInfo, Storage,
+    Mechanism, Ode, OutputInfo, Owner, Partition, Ports, Projection, RowInfo, Storage,
 };
 pub use partition::{Direct, Partitioned};
 pub use rk4::Rk4;
