@@ -160,7 +160,12 @@ fn as_many_steps(model: &Model) -> Settings {
         return PAPER;
     }
     let t_end = asked.step * (PAPER.t_end / PAPER.step);
-    Settings { step: asked.step, correct_every: Some(asked.correct_every), t_end, sample_every: t_end / 100.0 }
+    Settings {
+        step: asked.step,
+        correct_every: Some(asked.correct_every),
+        t_end,
+        sample_every: t_end / 100.0,
+    }
 }
 
 /// What gains or loses energy accounts for it, all others keep it. Returns whether the page does.

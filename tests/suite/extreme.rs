@@ -5,8 +5,8 @@
 use gyro_reference::{DoubleDouble, Gyroscope as Reference, JointRow, Start as ReferenceStart, scene};
 use gyro_runner::{JointSample, Sample, Settings};
 use gyro_sim::{
-    Direct, Error, JointCoordinate, JointForm, JointSpace, Mechanism, Ode, Partition, Partitioned, Rk4, Turns,
-    generated as shipped,
+    Direct, Error, JointCoordinate, JointForm, JointSpace, Mechanism, Ode, Partition, Partitioned, Rk4,
+    Turns, generated as shipped,
 };
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, Run, coordinate, fed, generated, model, simulate, violated_start};
@@ -64,7 +64,9 @@ fn expected(page: &str, times: &[f64]) -> Vec<JointRow> {
 /// All scalar coordinates of a sample, as its reference gives them.
 fn row(sample: &Sample) -> JointRow {
     let scalar = |joint: &JointSample| match *joint {
-        JointSample::Angle { position, rate } | JointSample::Length { position, rate } => Some((position, rate)),
+        JointSample::Angle { position, rate } | JointSample::Length { position, rate } => {
+            Some((position, rate))
+        }
         JointSample::Orientation { .. } => None,
     };
     let (positions, rates) = sample.coordinates.iter().filter_map(scalar).unzip();
@@ -135,9 +137,18 @@ fn check_joint_form<M: JointSpace<Scalar = f64>>(page: &str, mechanism: &M) {
 fn extreme_scenes_in_joint_coordinates() {
     check_joint_form("gyroscope-fast", &shipped::gyroscope_fast::GyroscopeFast::default());
     check_joint_form("gyroscope-at-rest", &shipped::gyroscope_at_rest::GyroscopeAtRest::default());
-    check_joint_form("gyroscope-light-rings", &shipped::gyroscope_light_rings::GyroscopeLightRings::default());
-    check_joint_form("gyroscope-heavy-rotor", &shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default());
-    check_joint_form("gyroscope-gimbal-lock", &shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default());
+    check_joint_form(
+        "gyroscope-light-rings",
+        &shipped::gyroscope_light_rings::GyroscopeLightRings::default(),
+    );
+    check_joint_form(
+        "gyroscope-heavy-rotor",
+        &shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default(),
+    );
+    check_joint_form(
+        "gyroscope-gimbal-lock",
+        &shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default(),
+    );
     check_joint_form("gyroscope-stiff", &shipped::gyroscope_stiff::GyroscopeStiff::default());
     check_joint_form("gyroscope-overdamped", &shipped::gyroscope_overdamped::GyroscopeOverdamped::default());
     check_joint_form("gyroscope-coulomb", &shipped::gyroscope_coulomb::GyroscopeCoulomb::default());
@@ -230,7 +241,10 @@ fn reference_from((angles, rates): ([f64; 3], [f64; 3])) -> Reference {
     let [alpha_rate, beta_rate, phi_rate] = rates.map(DoubleDouble::new);
     let angles = angles.map(DoubleDouble::new);
     let spin = phi_rate + alpha_rate * angles[1].sin_cos().0;
-    Reference { start: ReferenceStart { angles, ring_rates: [alpha_rate, beta_rate], spin }, ..Reference::paper() }
+    Reference {
+        start: ReferenceStart { angles, ring_rates: [alpha_rate, beta_rate], spin },
+        ..Reference::paper()
+    }
 }
 
 #[test]
@@ -261,7 +275,9 @@ fn a_wrong_start_is_corrected_by_the_partition_and_not_hidden_by_direct_integrat
     let expected = [end.alpha, end.beta, end.phi];
     let (found, _) = joints(&mechanism, &y, expected);
     let error = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    println!("violation {before:.1e}; direct {after:.1e}; corrected {corrected:.1e}, then off by {error:.1e} rad");
+    println!(
+        "violation {before:.1e}; direct {after:.1e}; corrected {corrected:.1e}, then off by {error:.1e} rad"
+    );
     assert!(corrected <= CORRECTED, "{corrected:e}");
     assert!(error <= FOLLOWED, "{found:?} {expected:?}");
     // It is another motion than that of the right start.

@@ -30,7 +30,8 @@ fn found(sample: &Sample) -> Vec<f64> {
 }
 
 fn expected(row: &JointRow) -> Vec<f64> {
-    let orientations = row.orientations.iter().flat_map(|o| [&o.rotation.concat()[..], &o.angular_velocity].concat());
+    let orientations =
+        row.orientations.iter().flat_map(|o| [&o.rotation.concat()[..], &o.angular_velocity].concat());
     row.positions.iter().chain(&row.rates).copied().chain(orientations).collect()
 }
 
@@ -38,7 +39,8 @@ fn expected(row: &JointRow) -> Vec<f64> {
 fn error(page: &str, reference: &str) -> Option<f64> {
     let (scene, model) = (scene(reference)?, model(page));
     let step = model.simulation.step;
-    let settings = Settings { t_end: STEPS * step, step, correct_every: Some(5.0 * step), sample_every: 5.0 * step };
+    let settings =
+        Settings { t_end: STEPS * step, step, correct_every: Some(5.0 * step), sample_every: 5.0 * step };
     let run = simulate(&generated(page), &model, &settings);
     let rows = scene.solve(&times(&run));
     let errors = run.samples.iter().zip(&rows).flat_map(|(sample, row)| {
@@ -53,7 +55,10 @@ fn error(page: &str, reference: &str) -> Option<f64> {
 fn every_shipped_page_with_joints_moves_as_its_reference() {
     for page in shelves()[0].pages() {
         let Some(error) = error(&page, &page) else {
-            assert!(model(&page).joints.is_empty(), "{page} has no reference: add it to gyro_reference::scene");
+            assert!(
+                model(&page).joints.is_empty(),
+                "{page} has no reference: add it to gyro_reference::scene"
+            );
             continue;
         };
         println!("{page}: off by {error:.1e}");

@@ -222,8 +222,9 @@ impl Precisely {
         while done < count {
             let slope = self.derivative(&state);
             if is_steady(&slope) {
-                let rest = step.times(count - done);
-                return core::array::from_fn(|k| state[k] + rest * slope[k]);
+                let ([alpha_rate, _, phi_rate, ..], rest) = (slope, step.times(count - done));
+                let [alpha, beta, phi, rate, work] = state;
+                return [alpha + rest * alpha_rate, beta, phi + rest * phi_rate, rate, work];
             }
             let now = from + step.times(done);
             state = match advance(|_, state| self.derivative(state), &scheme, state, now, now + step) {
@@ -238,7 +239,10 @@ impl Precisely {
     /// Where the motion comes back: the first time that it crosses the line through the start, at right angles to how it sets out, in
     /// the same sense.
     fn cycle(&self) -> Cycle {
-        assert!(self.forces.iter().all(|force| force.energy(self.start[1]).is_some()), "friction ends a cycle");
+        assert!(
+            self.forces.iter().all(|force| force.energy(self.start[1]).is_some()),
+            "friction ends a cycle"
+        );
         let out = self.derivative(&self.start);
         let along = |slope: &Reduced| slope[1] * out[1] + slope[3] * out[3];
         let beyond = |state: &Reduced| along(&core::array::from_fn(|k| state[k] - self.start[k]));

