@@ -12,9 +12,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 485 operations by relative Euler parameters; 486 operations by rotations of the bodies
+//! * project: 403 operations by relative Euler parameters; 406 operations by rotations of the bodies
 //! * joint_accelerations: 68 operations by normal form; 84 operations by recursion
 //! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 1 more compared
 //! * corrected_accelerations: 486 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * joint_jacobian: 1392 operations by derivatives of the balance, from its leaves, normal form; 1392 operations by normal form of that; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 288 | 5 | 485 | 7 of 18 | 514002 | 489 |
 //! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 | 3929 | 312 |
+//! | project | (δr, δπ') that changes the rows as given | 151 | 247 | 5 | 403 | 1 of 18 | 418426 | 404 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 | 1141 | 332 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 56 | 65 | 0 | 121 | 0 of 9 | 227 | 121 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 | 497223 | 490 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 | 771 | 142 |
 //! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 | 4.1e6 | 590 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 530 | 859 | 3 | 1392 | 29 of 56 | 8.8e6 | 1393 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -3049,6 +3054,286 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRollingBase<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 403 operations (151 ±, 247 ×, 5 ÷) and 3 functions.
+    fn project(
+        &self,
+        t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(0.5) * (k(125.66370614359172) * t).sin();
+        let t2 = t1.cos();
+        let t3 = t1.sin();
+        let t4 = T::fused(
+            t2,
+            k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0)),
+            t3
+                * (k(2.0)
+                    * T::fused(
+                        -outer_ring_e0,
+                        outer_ring_e1,
+                        outer_ring_e2 * outer_ring_e3,
+                    )),
+        );
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+        let t6 = outer_ring_e0 * outer_ring_e2;
+        let t7 = outer_ring_e1 * outer_ring_e3;
+        let t8 = T::fused(
+            -t2,
+            k(2.0) * (t7 - t6),
+            t3
+                * (k(2.0)
+                    * T::fused(
+                        outer_ring_e0,
+                        outer_ring_e3,
+                        outer_ring_e1 * outer_ring_e2,
+                    )),
+        );
+        let t9 = k(2.0) * (t7 + t6);
+        let t10 = k(1.0) / T::fused(t5, t4, t9 * t8);
+        let t11 = T::fused(-(t5 * t10), row3, t8 * t10 * row4);
+        let t12 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t13 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t12;
+        let t15 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t16 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t17 = t16 * t15;
+        let t18 = t17 - t14;
+        let t19 = k(2.0) * t18;
+        let t20 = t17 + t14;
+        let t21 = k(2.0) * t20;
+        let t22 = t13 * t13;
+        let t23 = k(0.5) - T::fused(t15, t15, t22);
+        let t24 = k(2.0) * t23;
+        let t25 = k(0.5) - T::fused(t16, t16, t22);
+        let t26 = k(2.0) * t25;
+        let t27 = k(1.0) / T::fused(-t21, t19, t26 * t24);
+        let t28 = T::fused(row13, t19 * t27, row14 * (t26 * t27));
+        let t29 = k(5e-6) * t28;
+        let t30 = T::fused(t13, t15, t12 * t16);
+        let t31 = k(2.0) * t30;
+        let t32 = T::fused(row13, t24 * t27, row14 * (t21 * t27));
+        let t33 = k(5e-6) * t32;
+        let t34 = T::fused(-t13, t16, t12 * t15);
+        let t35 = k(2.0) * t34;
+        let t36 = k(0.08) * row10;
+        let t37 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
+        let t38 = k(0.00025) * t37;
+        let t39 = k(0.08) * row11;
+        let t40 = inner_ring_e0 * inner_ring_e0;
+        let t41 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t40);
+        let t42 = k(0.00025) * t41;
+        let t43 = k(0.08) * row12;
+        let t44 = inner_ring_e0 * inner_ring_e1;
+        let t45 = inner_ring_e2 * inner_ring_e3;
+        let t46 = t45 + t44;
+        let t47 = k(0.00025) * t46;
+        let t48 = T::fused(t47, t43, -T::fused(-t38, t36, t42 * t39))
+            + T::fused(t19, t29, t24 * t33);
+        let t49 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t19, k(1e-5) * t18, t24 * (k(1e-5) * t23)));
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * t48;
+        let t52 = k(1e-5) * t30;
+        let t53 = k(1e-5) * t34;
+        let t54 = T::fused(-t19, t52, t24 * t53);
+        let t55 = k(2e-5) * t37;
+        let t56 = t50 * t55;
+        let t57 = t54 * t56;
+        let t58 = k(2e-5) * t41;
+        let t59 = t50 * t58;
+        let t60 = t54 * t59;
+        let t61 = k(2e-5) * t46;
+        let t62 = t50 * t61;
+        let t63 = t54 * t62;
+        let t64 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t65 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t66 = t65 * t64;
+        let t67 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t68 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t69 = t68 * t67;
+        let t70 = k(2.0) * (t69 - t66);
+        let t71 = k(2.0) * (t69 + t66);
+        let t72 = t65 * t65;
+        let t73 = k(2.0) * (k(0.5) - T::fused(t67, t67, t72));
+        let t74 = k(2.0) * (k(0.5) - T::fused(t68, t68, t72));
+        let t75 = k(1.0) / T::fused(-t71, t70, t74 * t73);
+        let t76 = T::fused(row8, t70 * t75, row9 * (t74 * t75));
+        let t77 = t50 * t54;
+        let t78 = T::fused(t54, t77, -(k(1e-6) + T::fused(t31, t52, t35 * t53)));
+        let t79 = T::fused(row8, t73 * t75, row9 * (t71 * t75));
+        let t80 = k(1e-5) * t25;
+        let t81 = k(1e-5) * t20;
+        let t82 = T::fused(t19, t80, t24 * t81);
+        let t83 = T::fused(t82, t77, -T::fused(-t26, t52, t21 * t53));
+        let t84 = T::fused(-t78, t76, t83 * t79)
+            + T::fused(row7, t63, -T::fused(-row5, t57, row6 * t60));
+        let t85 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t86 = k(0.00025) * t85;
+        let t87 = t45 - t44;
+        let t88 = k(0.00025) * t87;
+        let t89 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t40);
+        let t90 = k(0.00025) * t89;
+        let t91 = T::fused(t90, t43, -T::fused(t86, t36, t88 * t39))
+            - T::fused(t26, t29, t21 * t33);
+        let t92 = T::fused(-t82, t56, k(2e-5) * t85);
+        let t93 = T::fused(t82, t59, k(2e-5) * t87);
+        let t94 = T::fused(t82, t62, k(2e-5) * t89);
+        let t95 = T::fused(
+            t82,
+            t50 * t82,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t26, t80, t21 * t81))),
+        );
+        let t96 = T::fused(-t83, t76, t95 * t79)
+            + T::fused(row7, t94, -T::fused(row5, t92, row6 * t93));
+        let t97 = T::fused(
+            -t70,
+            t84 + T::fused(t54, t51, -T::fused(-t31, t29, t35 * t33)),
+            t73 * (t96 + T::fused(t82, t51, t91)),
+        );
+        let t98 = T::fused(
+            row0,
+            T::fused(t70, t57, t73 * t92),
+            row1 * T::fused(-t70, t60, t73 * t93),
+        );
+        let t99 = T::fused(
+            -t70,
+            T::fused(-t74, t78, t71 * t83),
+            t73 * T::fused(-t74, t83, t71 * t95),
+        );
+        let t100 = T::fused(t9 * t10, row3, t4 * t10 * row4);
+        let t101 = T::fused(-t70, t78, t73 * t83);
+        let t102 = k(2.0) * T::fused(t65, t67, t68 * t64);
+        let t103 = T::fused(-t70, t83, t73 * t95);
+        let t104 = k(2.0) * T::fused(-t65, t68, t67 * t64);
+        let t105 = T::fused(t99, t11, T::fused(t102, t101, t104 * t103) * t100)
+            - T::fused(row2, T::fused(-t70, t63, t73 * t94), -t98);
+        let t106 = (t105 - t97) / (k(1e-6) - T::fused(-t70, t101, t73 * t103));
+        let t107 = row0 + row5;
+        let t108 = row1 + row6;
+        let t109 = row2 + row7;
+        let t110 = t76 + T::fused(t102, t100, -T::fused(t74, t11, t70 * t106));
+        let t111 = t79 - T::fused(t104, t100, T::fused(t71, t11, t73 * t106));
+        let t112 = T::fused(t109, t61, -T::fused(-t107, t55, t108 * t58))
+            + T::fused(-t54, t110, t82 * t111);
+        let t113 = t50 * (t48 + t112);
+        *out = [
+            row0,
+            row1,
+            row2,
+            t11,
+            -t106,
+            t100,
+            t107,
+            t108,
+            t109,
+            t110,
+            -t111,
+            -t113,
+            row10 + (t107 - T::fused(-t86, t111, t38 * t113)),
+            row11 + (t108 + T::fused(t88, t111, t42 * t113)),
+            row12 + (t109 - T::fused(t90, t111, t47 * t113)),
+            k(0.0),
+            t28 - T::fused(t19, t113, -T::fused(t31, t110, t26 * t111)),
+            T::fused(t24, t113, -T::fused(-t35, t110, t21 * t111)) - t32,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
@@ -4485,6 +4770,1174 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
             t175,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 49]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1392 operations (530 ±, 859 ×, 3 ÷) and 18 functions.
+    fn joint_jacobian(
+        &self,
+        t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let (
+            t0,
+            t2,
+            t3,
+            t5,
+            t6,
+            t7,
+            t8,
+            t9,
+            t10,
+            t11,
+            t17,
+            t19,
+            t22,
+            t24,
+            t26,
+            t30,
+            t31,
+            t33,
+            t35,
+            t36,
+            t37,
+            t38,
+            t50,
+            t52,
+            t55,
+            t56,
+            t57,
+            t58,
+            t59,
+            t60,
+            t62,
+            t63,
+            t64,
+            t65,
+            t66,
+            t67,
+            t68,
+            t69,
+            t71,
+            t73,
+            t74,
+            t75,
+            t76,
+            t78,
+            t79,
+            t80,
+            t82,
+            t83,
+            t84,
+            t86,
+            t87,
+            t88,
+            t89,
+            t90,
+            t91,
+            t92,
+            t93,
+            t96,
+            t97,
+            t98,
+            t99,
+            t100,
+            t101,
+            t103,
+            t104,
+            t105,
+            t106,
+            t108,
+            t109,
+            t111,
+            t113,
+            t116,
+            t117,
+            t118,
+            t119,
+            t120,
+            t121,
+            t122,
+            t124,
+            t125,
+            t126,
+            t127,
+            t129,
+            t130,
+            t132,
+            t134,
+            t137,
+            t138,
+            t140,
+            t142,
+            t146,
+            t147,
+            t148,
+            t149,
+            t150,
+            t152,
+            t154,
+            t156,
+            t157,
+            t158,
+            t159,
+            t160,
+            t161,
+            t162,
+            t163,
+            t164,
+            t167,
+            t168,
+            t169,
+            t170,
+            t171,
+            t172,
+            t173,
+            t174,
+            t175,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
+            t181,
+            t182,
+            t183,
+            t184,
+            t185,
+            t186,
+            t187,
+            t188,
+            t189,
+            t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = x1.sin();
+            let t1 = t0 * t0;
+            let t2 = k(1.0)
+                / T::fused(
+                    -t0,
+                    k(1e-5) * t0,
+                    T::fused(k(3.99875e-6), t1, k(8.00125e-6)),
+                );
+            let t3 = x0.cos();
+            let t4 = k(125.66370614359172) * t;
+            let t5 = t4.cos();
+            let t6 = t5 * t3;
+            let t7 = x0.sin();
+            let t8 = t4.sin();
+            let t9 = k(125.66370614359172) * t8;
+            let t10 = x1.cos();
+            let t11 = u1 * t0;
+            let t12 = t5 * t7;
+            let t13 = T::fused(t10, T::fused(-u0, t6, t9 * t7), t12 * t11);
+            let t14 = k(0.03157286447908486) * t1;
+            let t15 = t14 - k(0.04736423152082783);
+            let t16 = t5 * t5;
+            let t17 = t8 * t0;
+            let t18 = T::fused(k(0.0005024977449416874), t1, k(0.0001258207857762712));
+            let t19 = T::fused(t12, t15, u1 * t18);
+            let t20 = T::fused(
+                -k(0.5),
+                t16 * t15,
+                t7 * T::fused(k(0.03157286447908486), t10 * t17, t5 * t19),
+            );
+            let t21 = k(0.5) * t8;
+            let t22 = t21.sin();
+            let t23 = k(0.0001) * t22;
+            let t24 = k(0.0006283185307179586) * u2;
+            let t25 = t10 * T::fused(-t7, t23, t24 * t6);
+            let t26 = T::fused(-t0, k(0.0006283185307179586) * t13, t25 + t20) * t2;
+            let t27 = k(62.83185307179586) * t12;
+            let t28 = t8 * t3;
+            let t29 = T::fused(
+                k(0.07895683520871487),
+                t10 * T::fused(-k(0.00012665147955292222), u0 * (u1 - t27), t28),
+                k(0.0006283185307179586) * (t6 * t11),
+            );
+            let t30 = t10 * t6;
+            let t31 = u0 * t0;
+            let t32 = T::fused(
+                -t22,
+                t3,
+                k(0.020025)
+                    * (u1
+                        * T::fused(
+                            -k(62.83185307179586),
+                            T::fused(k(0.07947812389108382), u2, -t30),
+                            t31,
+                        )),
+            );
+            let t33 = T::fused(k(0.01578643223954243), t30, t24);
+            let t34 = T::fused(
+                k(0.047383970729630014),
+                t10 * T::fused(-k(0.00211041832206494), t32, t0 * t28),
+                T::fused(
+                    t10,
+                    T::fused(k(0.0006283185307179586), t31, t33),
+                    k(0.007895683520871487) * t6,
+                ) * t12,
+            );
+            let t35 = t10 * t10;
+            let t36 = t34 / T::fused(k(6.00125e-6), t35, k(2e-6));
+            let t37 = t0 * t36;
+            let t38 = T::fused(k(100000.0), t29, t37);
+            let t39 = k(1e-5) * t10;
+            let t40 = k(7.9975e-6) * t10;
+            let t41 = k(1e-5) * u2;
+            let t42 = T::fused(k(0.0010049954898833748), t30, t41);
+            let t43 = T::fused(
+                t3,
+                t23,
+                t12 * T::fused(k(0.03157286447908486), t30, t24),
+            );
+            let t44 = k(0.00025330295910584445) * u0;
+            let t45 = k(0.01578643223954243) - t14;
+            let t46 = T::fused(
+                t0,
+                t43 + T::fused(t36, t40, u1 * t42),
+                k(2.0) * (t45 * T::fused(-u1, t44, t28)),
+            );
+            let t47 = T::fused(
+                t39,
+                t36,
+                k(0.0006283185307179586) * (t3 * T::fused(-t9, t0, u1 * (t5 * t10))),
+            );
+            let t48 = T::fused(-k(0.0006283185307179586), t12, k(1e-5) * u1);
+            let t49 = T::fused(t31, t48, t47);
+            let t50 = t2 * T::fused(t0, t49, -T::fused(-t39, t38, t46));
+            let t51 = t10 * t48;
+            let t52 = T::fused(-t0, t51, t11 * t40) * t2;
+            let t53 = T::fused(-u0, t39, k(0.0006283185307179586) * (t0 * t6));
+            let t54 = T::fused(-t6, t18, t10 * T::fused(k(7.9975e-6), t31, t41));
+            let t55 = T::fused(t0, t53, t54) * t2;
+            let t56 = t39 * (u1 + t27) * t2;
+            let t57 = u0 * t18;
+            let t58 = k(166631.95167673402)
+                * T::fused(t12, t57, T::fused(k(0.047383970729630014), t28, t0 * t43));
+            let t59 = t21.cos();
+            let t60 = T::fused(-t7, t7, k(1.0));
+            let t61 = T::fused(
+                -t0,
+                T::fused(-u0, t42, k(0.0001) * t59),
+                t45 * T::fused(-u0, t44, t16 * t60),
+            );
+            let t62 = k(166631.95167673402) * (t25 + t61);
+            let t63 = k(166631.95167673402) * t54;
+            let t64 = k(166631.95167673402) * t53;
+            let t65 = T::fused(-t0, t26, k(62.83185307179586) * t13);
+            let t66 = T::fused(k(100000.0), t49, t0 * t50);
+            let t67 = T::fused(-t0, t52, k(100000.0) * t51);
+            let t68 = T::fused(t0, t55, k(100000.0) * t53);
+            let t69 = t0 * t56;
+            let t70 = k(0.5) * x0;
+            let t71 = t70.cos();
+            let t72 = k(0.25) * t8;
+            let t73 = t72.sin();
+            let t74 = t73 * t71;
+            let t75 = t72.cos();
+            let t76 = t75 * t71;
+            let t77 = t76 * t74;
+            let t78 = t70.sin();
+            let t79 = t73 * t78;
+            let t80 = t75 * t78;
+            let t81 = t80 * t79;
+            let t82 = k(2.0) * (t81 + t77);
+            let t83 = k(62.83185307179586) * t5;
+            let t84 = t83 * t22;
+            let t85 = t76 * t76;
+            let t86 = k(2.0) * (k(0.5) - T::fused(t80, t80, t85));
+            let t87 = t83 * t59;
+            let t88 = T::fused(-t84, t82, t87 * t86);
+            let t89 = k(2.0) * (t81 - t77);
+            let t90 = k(2.0) * (k(0.5) - T::fused(t79, t79, t85));
+            let t91 = T::fused(t22, t89, t59 * t90);
+            let t92 = k(2.0) * (k(0.5) - T::fused(t74, t74, t85));
+            let t93 = k(2.0) * T::fused(t76, t79, t74 * t80);
+            let t94 = t76 * t80;
+            let t95 = t74 * t79;
+            let t96 = k(2.0) * (t95 - t94);
+            let t97 = T::fused(-t22, t93, t59 * t96);
+            let t98 = k(2.0) * (t95 + t94);
+            let t99 = k(1.0) / T::fused(-t92, t91, t98 * t97);
+            let t100 = t92 * t99;
+            let t101 = t100 * t88;
+            let t102 = k(0.5) * x1;
+            let t103 = t102.sin();
+            let t104 = t102.cos();
+            let t105 = T::fused(t80, t103, t74 * t104);
+            let t106 = T::fused(-t79, t103, t76 * t104);
+            let t107 = t106 * t106;
+            let t108 = k(2.0) * (k(0.5) - T::fused(t105, t105, t107));
+            let t109 = T::fused(t76, t103, t79 * t104);
+            let t110 = t106 * t109;
+            let t111 = T::fused(-t74, t103, t80 * t104);
+            let t112 = t105 * t111;
+            let t113 = k(2.0) * (t112 + t110);
+            let t114 = t106 * t111;
+            let t115 = t105 * t109;
+            let t116 = k(2.0) * (t115 - t114);
+            let t117 = T::fused(t96, t116, T::fused(t92, t108, t93 * t113));
+            let t118 = t98 * t99;
+            let t119 = t118 * t88;
+            let t120 = T::fused(t90, t116, -T::fused(-t98, t108, t89 * t113));
+            let t121 = T::fused(t117, t101, t120 * t119);
+            let t122 = k(1e-6) * t121;
+            let t123 = k(0.5) * x2;
+            let t124 = t123.sin();
+            let t125 = t123.cos();
+            let t126 = T::fused(t106, t124, t105 * t125);
+            let t127 = T::fused(-t105, t124, t106 * t125);
+            let t128 = t127 * t127;
+            let t129 = k(2.0) * (k(0.5) - T::fused(t126, t126, t128));
+            let t130 = T::fused(-t111, t124, t109 * t125);
+            let t131 = t127 * t130;
+            let t132 = T::fused(t109, t124, t111 * t125);
+            let t133 = t126 * t132;
+            let t134 = k(2.0) * (t133 + t131);
+            let t135 = t127 * t132;
+            let t136 = t126 * t130;
+            let t137 = k(2.0) * (t136 - t135);
+            let t138 = T::fused(t116, t137, T::fused(t108, t129, t113 * t134));
+            let t139 = t112 - t110;
+            let t140 = k(2.0) * t139;
+            let t141 = k(0.5) - T::fused(t111, t111, t107);
+            let t142 = k(2.0) * t141;
+            let t143 = t106 * t105;
+            let t144 = t111 * t109;
+            let t145 = t144 + t143;
+            let t146 = k(2.0) * t145;
+            let t147 = T::fused(t96, t146, -T::fused(t92, t140, t93 * t142));
+            let t148 = T::fused(t90, t146, T::fused(-t98, t140, t89 * t142));
+            let t149 = T::fused(t147, t101, t148 * t119);
+            let t150 = T::fused(t146, t137, -T::fused(t140, t129, t142 * t134));
+            let t151 = t115 + t114;
+            let t152 = k(2.0) * t151;
+            let t153 = t144 - t143;
+            let t154 = k(2.0) * t153;
+            let t155 = k(0.5) - T::fused(t109, t109, t107);
+            let t156 = k(2.0) * t155;
+            let t157 = T::fused(t96, t156, -T::fused(-t92, t152, t93 * t154));
+            let t158 = T::fused(t90, t156, T::fused(t98, t152, t89 * t154));
+            let t159 = T::fused(t157, t101, t158 * t119);
+            let t160 = T::fused(t156, t137, -T::fused(-t152, t129, t154 * t134));
+            let t161 = k(1e-5) * T::fused(t138, t121, T::fused(t150, t149, t160 * t159));
+            let t162 = t161 + t122;
+            let t163 = k(2.0) * (t133 - t131);
+            let t164 = k(2.0) * (k(0.5) - T::fused(t132, t132, t128));
+            let t165 = t127 * t126;
+            let t166 = t132 * t130;
+            let t167 = k(2.0) * (t166 + t165);
+            let t168 = T::fused(t116, t167, -T::fused(t108, t163, t113 * t164));
+            let t169 = T::fused(t146, t167, T::fused(t140, t163, t142 * t164));
+            let t170 = T::fused(t156, t167, T::fused(-t152, t163, t154 * t164));
+            let t171 = k(5e-6) * T::fused(t168, t121, T::fused(t169, t149, t170 * t159));
+            let t172 = x2.cos();
+            let t173 = k(2.0) * (t136 + t135);
+            let t174 = k(2.0) * (t166 - t165);
+            let t175 = k(2.0) * (k(0.5) - T::fused(t130, t130, t128));
+            let t176 = T::fused(t116, t175, -T::fused(-t108, t173, t113 * t174));
+            let t177 = T::fused(t146, t175, T::fused(-t140, t173, t142 * t174));
+            let t178 = T::fused(t156, t175, T::fused(t152, t173, t154 * t174));
+            let t179 = k(5e-6) * T::fused(t176, t121, T::fused(t177, t149, t178 * t159));
+            let t180 = x2.sin();
+            let t181 = k(0.00025) * t151;
+            let t182 = k(0.00025) * t139;
+            let t183 = k(0.08) * T::fused(t181, t149, t182 * t159);
+            let t184 = k(0.00025) * t153;
+            let t185 = k(0.00025) * t141;
+            let t186 = k(0.08) * T::fused(-t184, t149, t185 * t159);
+            let t187 = k(0.00025) * t155;
+            let t188 = k(0.00025) * t145;
+            let t189 = k(0.08) * T::fused(-t187, t149, t188 * t159);
+            let t190 = T::fused(
+                -k(2e-6),
+                t149,
+                T::fused(-t181, t183, T::fused(t184, t186, t187 * t189)),
+            );
+            let t191 = T::fused(-t172, t171, T::fused(-t180, t179, t190));
+            let t192 = T::fused(-t0, t162, t10 * t191);
+            let t193 = k(2.0) * t78;
+            let t194 = t71 * t193;
+            let t195 = t83 * t194;
+            let t196 = k(7895.6835208714865) * t8;
+            let t197 = T::fused(u0, t195, t196 * t3);
+            let t198 = u1 + t195;
+            let t199 = T::fused(-t78, t193, k(1.0));
+            (
+                t0,
+                t2,
+                t3,
+                t5,
+                t6,
+                t7,
+                t8,
+                t9,
+                t10,
+                t11,
+                t17,
+                t19,
+                t22,
+                t24,
+                t26,
+                t30,
+                t31,
+                t33,
+                t35,
+                t36,
+                t37,
+                t38,
+                t50,
+                t52,
+                t55,
+                t56,
+                t57,
+                t58,
+                t59,
+                t60,
+                t62,
+                t63,
+                t64,
+                t65,
+                t66,
+                t67,
+                t68,
+                t69,
+                t71,
+                t73,
+                t74,
+                t75,
+                t76,
+                t78,
+                t79,
+                t80,
+                t82,
+                t83,
+                t84,
+                t86,
+                t87,
+                t88,
+                t89,
+                t90,
+                t91,
+                t92,
+                t93,
+                t96,
+                t97,
+                t98,
+                t99,
+                t100,
+                t101,
+                t103,
+                t104,
+                t105,
+                t106,
+                t108,
+                t109,
+                t111,
+                t113,
+                t116,
+                t117,
+                t118,
+                t119,
+                t120,
+                t121,
+                t122,
+                t124,
+                t125,
+                t126,
+                t127,
+                t129,
+                t130,
+                t132,
+                t134,
+                t137,
+                t138,
+                t140,
+                t142,
+                t146,
+                t147,
+                t148,
+                t149,
+                t150,
+                t152,
+                t154,
+                t156,
+                t157,
+                t158,
+                t159,
+                t160,
+                t161,
+                t162,
+                t163,
+                t164,
+                t167,
+                t168,
+                t169,
+                t170,
+                t171,
+                t172,
+                t173,
+                t174,
+                t175,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
+                t181,
+                t182,
+                t183,
+                t184,
+                t185,
+                t186,
+                t187,
+                t188,
+                t189,
+                t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t326,
+            t340,
+            t341,
+            t348,
+            t352,
+            t354,
+            t364,
+            t366,
+            t368,
+            t372,
+            t379,
+            t380,
+            t385,
+            t386,
+            t387,
+            t388,
+            t392,
+            t395,
+            t396,
+            t397,
+            t398,
+            t399,
+        ) = {
+            let t200 = t83 * t199;
+            let t201 = k(2.0) * t103;
+            let t202 = t104 * t201;
+            let t203 = T::fused(-t103, t201, k(1.0));
+            let t204 = T::fused(-t202, t200, u0 * t203);
+            let t205 = T::fused(-u1, t204, T::fused(t10, t197, t37));
+            let t206 = k(1e-5) * (t38 - t205);
+            let t207 = k(2.0) * t124;
+            let t208 = t125 * t207;
+            let t209 = T::fused(-t124, t207, k(1.0));
+            let t210 = T::fused(-t208, t204, t209 * t198);
+            let t211 = T::fused(t203, t200, u0 * t202);
+            let t212 = u2 + t211;
+            let t213 = T::fused(u1, t211, T::fused(-t0, t197, t10 * t36));
+            let t214 = u0 * t200;
+            let t215 = T::fused(t196, t7, -t214);
+            let t216 = T::fused(
+                -t10,
+                T::fused(
+                    -k(0.0399875),
+                    u0 * T::fused(k(2.500781494216943), u2, t31),
+                    t59,
+                ),
+                t7 * T::fused(t22, t0, k(473.8397072963001) * t8),
+            );
+            let t217 = T::fused(
+                -k(0.0001),
+                t216,
+                t6
+                    * T::fused(
+                        k(0.0005024977449416874),
+                        u0 * (k(1.2503907471084714) - t35),
+                        t0 * t33,
+                    ),
+            );
+            let t218 = T::fused(k(166631.95167673402), t217, t215);
+            let t219 = T::fused(
+                -t212,
+                t210,
+                T::fused(-u2, t210, T::fused(t172, t213, t180 * t218)),
+            );
+            let t220 = k(5e-6) * t219;
+            let t221 = T::fused(t209, t204, t208 * t198);
+            let t222 = T::fused(
+                t212,
+                t221,
+                T::fused(u2, t221, T::fused(-t180, t213, t172 * t218)),
+            );
+            let t223 = k(5e-6) * t222;
+            let t224 = T::fused(
+                -k(1e-6),
+                T::fused(t204, t198, t205),
+                T::fused(t223, t176, -T::fused(-t206, t138, t220 * t168)),
+            );
+            let t225 = k(0.000125) * t204;
+            let t226 = k(0.000125) * t198;
+            let t227 = T::fused(t204, t225, t198 * t226);
+            let t228 = t225 * t211;
+            let t229 = t226 * t211;
+            let t230 = T::fused(-t213, t181, t218 * t182)
+                - T::fused(t152, t229, T::fused(t108, t227, t140 * t228));
+            let t231 = k(0.08) * t230;
+            let t232 = T::fused(t213, t184, t218 * t185)
+                + T::fused(t154, t229, -T::fused(t113, t227, t142 * t228));
+            let t233 = T::fused(k(0.08), t232, k(0.8));
+            let t234 = T::fused(t213, t187, t218 * t188)
+                + T::fused(t156, t229, -T::fused(-t116, t227, t146 * t228));
+            let t235 = k(0.08) * t234;
+            let t236 = T::fused(t187, t235, T::fused(-t181, t231, t184 * t233))
+                - T::fused(t223, t177, -T::fused(-t206, t150, t220 * t169));
+            let t237 = T::fused(k(2e-6), t213, t236);
+            let t238 = T::fused(t188, t235, T::fused(t182, t231, t185 * t233))
+                + T::fused(t223, t178, -T::fused(-t206, t160, t220 * t170));
+            let t239 = T::fused(k(1e-6), T::fused(-t204, t211, t218), t238);
+            let t240 = T::fused(
+                -k(2e-6),
+                t197,
+                T::fused(t239, t157, -T::fused(-t224, t117, t237 * t147)),
+            );
+            let t241 = T::fused(
+                k(1e-6),
+                t214 + t215,
+                T::fused(t239, t158, -T::fused(-t224, t120, t237 * t148)),
+            );
+            let t242 = T::fused(t240, t100, t241 * t118);
+            let t243 = t84 * t242;
+            let t244 = t239 * t119;
+            let t245 = t237 * t119;
+            let t246 = t224 * t119;
+            let t247 = t241 * t88;
+            let t248 = t240 * t88;
+            let t249 = t99 * t99 * T::fused(t98, t247, t92 * t248);
+            let t250 = t92 * t249;
+            let t251 = T::fused(
+                t22,
+                t250,
+                -T::fused(t113, t246, T::fused(-t154, t244, t142 * t245)),
+            );
+            let t252 = k(2.0) * (t251 + t243);
+            let t253 = T::fused(
+                t108,
+                t246,
+                T::fused(t140, t245, T::fused(t99, t247, t152 * t244)),
+            );
+            let t254 = T::fused(t97, t249, -t253);
+            let t255 = t98 * t249;
+            let t256 = t239 * t101;
+            let t257 = t237 * t101;
+            let t258 = t224 * t101;
+            let t259 = T::fused(
+                t116,
+                t258,
+                -T::fused(t146, t257, -T::fused(-t59, t255, t156 * t256)),
+            );
+            let t260 = k(2.0) * (t259 - t254);
+            let t261 = T::fused(
+                t113,
+                t258,
+                T::fused(t142, t257, -T::fused(-t22, t255, t154 * t256)),
+            );
+            let t262 = k(2.0) * t261;
+            let t263 = T::fused(
+                t140,
+                t257,
+                T::fused(t152, t256, T::fused(t99, t248, t91 * t249)),
+            );
+            let t264 = T::fused(t108, t258, t263);
+            let t265 = t74 * (k(2.0) * t264);
+            let t266 = t265
+                + (t265 - T::fused(t80, t262, T::fused(-t76, t252, t79 * t260)));
+            let t267 = t223 * t159;
+            let t268 = t220 * t159;
+            let t269 = T::fused(
+                t164,
+                t268,
+                -T::fused(t174, t267, -T::fused(-t89, t244, t93 * t256)),
+            );
+            let t270 = t206 * t159;
+            let t271 = T::fused(
+                k(2.0),
+                T::fused(t229, t186, -T::fused(t134, t270, t269)),
+                k(0.00025) * T::fused(-t233, t149, t213 * t186),
+            );
+            let t272 = t223 * t149;
+            let t273 = T::fused(
+                t175,
+                t272,
+                -T::fused(t228, t189, T::fused(t90, t245, t96 * t257)),
+            );
+            let t274 = t220 * t149;
+            let t275 = t206 * t149;
+            let t276 = T::fused(
+                k(0.00025),
+                T::fused(t235, t159, t218 * t189),
+                k(2.0) * T::fused(t137, t275, -T::fused(t167, t274, -t273)),
+            );
+            let t277 = t276 + t271;
+            let t278 = T::fused(
+                t174,
+                t272,
+                -T::fused(t228, t186, -T::fused(-t89, t245, t93 * t257)),
+            );
+            let t279 = T::fused(
+                -k(0.00025),
+                T::fused(t233, t159, t218 * t186),
+                k(2.0) * T::fused(t134, t275, T::fused(t164, t274, -t278)),
+            );
+            let t280 = t111 * t279;
+            let t281 = T::fused(
+                t163,
+                t268,
+                T::fused(t173, t267, T::fused(t98, t244, t92 * t256)),
+            );
+            let t282 = T::fused(
+                k(2.0),
+                T::fused(t229, t183, -T::fused(t129, t270, t281)),
+                k(0.00025) * T::fused(-t231, t149, t213 * t183),
+            );
+            let t283 = t223 * t121;
+            let t284 = T::fused(
+                t175,
+                t283,
+                T::fused(t96, t258, T::fused(t90, t246, t227 * t189)),
+            );
+            let t285 = t220 * t121;
+            let t286 = t206 * t121;
+            let t287 = k(2.0) * T::fused(t137, t286, -T::fused(t167, t285, -t284));
+            let t288 = t287 + t282;
+            let t289 = T::fused(
+                t173,
+                t272,
+                T::fused(t228, t183, -T::fused(t98, t245, t92 * t257)),
+            );
+            let t290 = T::fused(
+                -k(0.00025),
+                T::fused(t231, t159, t218 * t183),
+                k(2.0) * T::fused(t129, t275, T::fused(t163, t274, t289)),
+            );
+            let t291 = T::fused(
+                t174,
+                t283,
+                -T::fused(t93, t258, -T::fused(t89, t246, t227 * t186)),
+            );
+            let t292 = k(2.0) * T::fused(t134, t286, T::fused(t164, t285, -t291));
+            let t293 = t292 - t290;
+            let t294 = T::fused(
+                t105,
+                t293,
+                -T::fused(t106, t288, -(t280 + T::fused(t109, t277, t280))),
+            );
+            let t295 = T::fused(t113, t283, -T::fused(t154, t267, t142 * t272));
+            let t296 = T::fused(t116, t285, T::fused(t156, t268, t146 * t274));
+            let t297 = k(2.0) * (t296 + t295);
+            let t298 = T::fused(t113, t285, -T::fused(t154, t268, t142 * t274));
+            let t299 = t132 * (k(2.0) * t298);
+            let t300 = T::fused(t108, t283, -T::fused(-t152, t267, t140 * t272));
+            let t301 = T::fused(t116, t286, T::fused(t156, t270, t146 * t275));
+            let t302 = k(2.0) * (t301 - t300);
+            let t303 = T::fused(t108, t285, -T::fused(-t152, t268, t140 * t274));
+            let t304 = T::fused(t113, t286, -T::fused(t154, t270, t142 * t275));
+            let t305 = k(2.0) * (t304 + t303);
+            let t306 = T::fused(
+                t126,
+                t305,
+                -T::fused(t127, t302, t299 + T::fused(t130, t297, t299)),
+            );
+            let t307 = T::fused(t116, t283, T::fused(t156, t267, t146 * t272));
+            let t308 = k(2.0) * (t301 + t300);
+            let t309 = T::fused(
+                t126,
+                t308,
+                -T::fused(k(2.0), t130 * (k(2.0) * t307), t132 * t297),
+            );
+            let t310 = k(2.0) * (t304 - t303);
+            let t311 = T::fused(t127, t310, t309);
+            let t312 = T::fused(t124, t311, -T::fused(t125, t306, t294));
+            let t313 = t276 - t271;
+            let t314 = t287 - t282;
+            let t315 = T::fused(
+                t173,
+                t283,
+                T::fused(t92, t258, -T::fused(-t98, t246, t227 * t183)),
+            );
+            let t316 = k(2.0) * T::fused(t129, t286, T::fused(t163, t285, t315));
+            let t317 = t105 * t316;
+            let t318 = t317
+                + (t317 - T::fused(t111, t293, T::fused(t106, t313, t109 * t314)));
+            let t319 = k(2.0) * (t296 - t295);
+            let t320 = T::fused(t108, t286, -T::fused(-t152, t270, t140 * t275));
+            let t321 = t127 * (k(2.0) * (t320 + (t298 + t307)));
+            let t322 = t321
+                + (t321 - T::fused(t130, t310, -T::fused(t126, t319, t132 * t302)));
+            let t323 = t126 * (k(2.0) * t320);
+            let t324 = t323
+                + (t323 - T::fused(t132, t305, T::fused(-t127, t319, t130 * t308)));
+            let t325 = T::fused(t125, t324, -T::fused(t124, t322, -t318));
+            let t326 = T::fused(t104, t325, -T::fused(t103, t312, -t266));
+            let t327 = k(2.0) * (t259 + t254);
+            let t328 = t87 * t242;
+            let t329 = T::fused(
+                t59,
+                t250,
+                T::fused(t116, t246, -T::fused(-t156, t244, t146 * t245)),
+            );
+            let t330 = t76 * (k(2.0) * (t264 + (t329 + t328)));
+            let t331 = t330
+                + (t330 - T::fused(t79, t262, -T::fused(t74, t252, t80 * t327)));
+            let t332 = T::fused(
+                t167,
+                t268,
+                -T::fused(t175, t267, T::fused(t90, t244, t96 * t256)),
+            );
+            let t333 = T::fused(
+                k(2.0),
+                T::fused(t229, t189, T::fused(t137, t270, -t332)),
+                k(0.00025) * T::fused(-t235, t149, t213 * t189),
+            );
+            let t334 = t292 + t290;
+            let t335 = T::fused(
+                t106,
+                t334,
+                T::fused(t105, t314, T::fused(-k(2.0), t109 * t333, t111 * t277)),
+            );
+            let t336 = T::fused(t125, t311, T::fused(t124, t306, t335));
+            let t337 = t106 * (t316 - (t279 - t333));
+            let t338 = t337
+                + (t337 - T::fused(t109, t334, -T::fused(-t105, t313, t111 * t288)));
+            let t339 = T::fused(t124, t324, T::fused(t125, t322, t338));
+            let t340 = T::fused(t104, t339, -T::fused(t103, t336, -t331));
+            let t341 = T::fused(t10, t162, T::fused(t0, t191, k(2e-6) * t101));
+            let t342 = T::fused(u2, t171, t212 * t171);
+            let t343 = T::fused(u2, t179, t212 * t179);
+            let t344 = T::fused(-t108, t183, T::fused(-t113, t186, t116 * t189));
+            let t345 = T::fused(-t152, t183, T::fused(t154, t186, t156 * t189));
+            let t346 = T::fused(
+                t208,
+                t343,
+                T::fused(k(0.000125), T::fused(t198, t344, t211 * t345), t226 * t344),
+            );
+            let t347 = T::fused(-t204, t122, T::fused(t209, t342, t346));
+            let t348 = T::fused(-u0, t341, t347);
+            let t349 = t83 * t348;
+            let t350 = k(2.0) * (t251 - t243);
+            let t351 = T::fused(
+                t76,
+                t327,
+                -T::fused(-k(2.0), t80 * (k(2.0) * t328), t79 * t350),
+            );
+            let t352 = T::fused(
+                t103,
+                t325,
+                T::fused(t104, t312, -T::fused(t74, t262, -t351)),
+            );
+            let t353 = T::fused(
+                t74,
+                t260,
+                T::fused(-k(2.0), t79 * (k(2.0) * t329), t80 * t350),
+            );
+            let t354 = T::fused(
+                t103,
+                t339,
+                T::fused(t104, t336, T::fused(t76, t262, t353)),
+            );
+            let t355 = T::fused(t140, t183, T::fused(t142, t186, t146 * t189));
+            let t356 = k(1e-6) * t159;
+            let t357 = T::fused(
+                k(0.000125),
+                T::fused(-t204, t344, t211 * t355),
+                T::fused(-t225, t344, t211 * t356),
+            );
+            let t358 = T::fused(
+                -u1,
+                t162,
+                T::fused(t198, t122, T::fused(t208, t342, T::fused(-t209, t343, t357))),
+            );
+            let t359 = t210 * t171;
+            let t360 = t221 * t179;
+            let t361 = t360 + t359;
+            let t362 = T::fused(
+                -u1,
+                t191,
+                T::fused(t225, t355, T::fused(-t226, t345, t204 * t356)) - t361,
+            );
+            let t363 = T::fused(
+                t172,
+                t179,
+                T::fused(t182, t183, T::fused(t185, t186, T::fused(t188, t189, t356))),
+            );
+            let t364 = T::fused(-t180, t171, t363);
+            let t365 = k(1e-6) * t119;
+            let t366 = t365 + t364;
+            let t367 = t365 - t366;
+            let t368 = T::fused(t202, t358, T::fused(-t203, t362, u0 * t367));
+            let t369 = t83 * t368;
+            let t370 = T::fused(
+                k(2.0),
+                T::fused(-t71, t349, t78 * t369),
+                T::fused(t193, t369, -T::fused(-t75, t352, t73 * t354)),
+            );
+            let t371 = T::fused(
+                t78,
+                T::fused(t193, t349, -T::fused(t73, t326, t75 * t340)),
+                t71 * t370,
+            );
+            let t372 = T::fused(
+                -k(0.5),
+                t371,
+                T::fused(t7, t196 * t341, t3 * (t196 * t366)),
+            );
+            let t373 = T::fused(
+                t76,
+                t339,
+                T::fused(t74, t325, T::fused(-t79, t336, t80 * t312)),
+            );
+            let t374 = T::fused(-t200, t358, u0 * t362);
+            let t375 = T::fused(
+                t79,
+                t339,
+                -T::fused(t80, t325, -T::fused(t76, t336, t74 * t312)),
+            );
+            let t376 = T::fused(u0, t358, t200 * t362);
+            let t377 = T::fused(
+                k(2.0),
+                T::fused(-t104, t374, t103 * t376),
+                T::fused(t201, t376, t375),
+            );
+            let t378 = T::fused(
+                k(0.5),
+                T::fused(t103, T::fused(t201, t374, t373), t104 * t377),
+                t0 * T::fused(-t36, t191, t197 * t162),
+            );
+            let t379 = T::fused(
+                -t50,
+                t192,
+                T::fused(t10, T::fused(t36, t162, t197 * t191), -t378),
+            );
+            let t380 = T::fused(
+                -t172,
+                T::fused(t213, t179, t218 * t171),
+                t180 * T::fused(-t218, t179, t213 * t171),
+            );
+            let t381 = T::fused(-t204, t342, t198 * t343);
+            let t382 = T::fused(
+                t106,
+                t322,
+                -T::fused(t109, t311, T::fused(t111, t306, t207 * t381)),
+            );
+            let t383 = T::fused(t198, t342, t204 * t343);
+            let t384 = T::fused(
+                -t109,
+                t306,
+                T::fused(k(2.0), T::fused(-t125, t381, t124 * t383), t207 * t383),
+            );
+            let t385 = T::fused(
+                -t124,
+                T::fused(t105, t324, t382),
+                t125
+                    * T::fused(
+                        t106,
+                        t324,
+                        -T::fused(t105, t322, -T::fused(t111, t311, t384)),
+                    ),
+            );
+            let t386 = T::fused(
+                -t195,
+                t341,
+                T::fused(-t203, t358, T::fused(-t202, t362, t200 * t367)),
+            );
+            let t387 = T::fused(
+                t68,
+                t161,
+                T::fused(t55, t192, T::fused(t204, t162, T::fused(t211, t191, t347))),
+            );
+            let t388 = T::fused(
+                t69,
+                t161,
+                T::fused(t64, t364, T::fused(t56, t192, t359 + (t360 + t361))),
+            );
+            let t389 = t7 * t10;
+            let t390 = T::fused(
+                -k(9.922008537695943),
+                t30,
+                k(0.07895683520871487) * (t8 * T::fused(u0, t389, t3 * t11)),
+            );
+            let t391 = T::fused(
+                t9,
+                T::fused(-t24, t389, t3 * t19),
+                k(0.006283185307179587)
+                    * (t30 * T::fused(-k(631.4572895816972), t0, t59)),
+            );
+            let t392 = T::fused(-t0, t390, t391) * t2;
+            let t393 = T::fused(
+                t7,
+                T::fused(t59, t0, k(947.6794145926002)),
+                t10 * T::fused(k(631.4572895816972), t17 * t60, t22),
+            );
+            let t394 = T::fused(
+                t9,
+                t3 * T::fused(t0, t24, t57),
+                k(0.006283185307179587) * (t5 * t393),
+            );
+            let t395 = k(166631.95167673402) * t394;
+            let t396 = T::fused(-t0, t392, k(100000.0) * t390);
+            let t397 = t86 * t242;
+            let t398 = t82 * t242;
+            let t399 = T::fused(
+                -t22,
+                T::fused(t90, t250, -T::fused(-t83, t397, t96 * t255)),
+                t59 * T::fused(t89, t250, T::fused(-t83, t398, t93 * t255)),
+            );
+            (
+                t326,
+                t340,
+                t341,
+                t348,
+                t352,
+                t354,
+                t364,
+                t366,
+                t368,
+                t372,
+                t379,
+                t380,
+                t385,
+                t386,
+                t387,
+                t388,
+                t392,
+                t395,
+                t396,
+                t397,
+                t398,
+                t399,
+            )
+        };
+        let (t403,) = {
+            let t400 = T::fused(
+                t73,
+                T::fused(t78, t352, t71 * t340),
+                t75 * T::fused(-t71, t326, t78 * t354),
+            );
+            let t401 = T::fused(
+                k(7895.6835208714865),
+                T::fused(-t3, t341, t7 * t366),
+                T::fused(k(0.5), t399, k(0.25) * t400),
+            );
+            let t402 = T::fused(
+                t194,
+                t348,
+                T::fused(t199, t368, -T::fused(-t59, t397, t22 * t398)),
+            );
+            let t403 = T::fused(
+                -t392,
+                t192,
+                k(125.66370614359172)
+                    * T::fused(-t5, t401, t8 * (k(62.83185307179586) * t402)),
+            );
+            (t403,)
+        };
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t26,
+            -t50,
+            k(0.0),
+            -t52,
+            -t55,
+            -t56,
+            k(0.0),
+            t58,
+            -t62,
+            k(0.0),
+            t63,
+            k(0.0),
+            -t64,
+            k(0.0),
+            -t65,
+            t66,
+            k(0.0),
+            -t67,
+            t68,
+            t69,
+            k(0.0),
+            T::fused(t65, t161, T::fused(t58, t364, -T::fused(t26, t192, t372))),
+            -T::fused(t66, t161, T::fused(t62, t364, -t379)),
+            T::fused(k(0.5), t385, -t380),
+            T::fused(t67, t161, -T::fused(-t63, t364, T::fused(t52, t192, t386))),
+            -t387,
+            -t388,
+            k(0.0),
+        ];
+        *dfdt = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t392,
+            t395,
+            -t396,
+            T::fused(t396, t161, T::fused(t395, t364, t403)),
+        ];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeRollingBase<T> {
     type Outputs = [T; 0];
