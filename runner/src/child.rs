@@ -30,6 +30,7 @@ fn answer<M: Partition + Ports + 'static, K: Kit<M>>(
     let (mut mechanism, kit) = build(&request.parameters);
     let told = |event: Event<'_>| match event {
         Event::Sample(sample) => writeln!(output, "{}", sample_line(sample)),
+        Event::Linear(linear) => writeln!(output, "{}", Reply::Linear(linear.clone()).to_line()),
         Event::Progress(t) => {
             writeln!(output, "{}", Reply::Progress(t).to_line())?;
             output.flush()

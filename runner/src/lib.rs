@@ -14,6 +14,7 @@ pub mod child;
 mod failure;
 mod input;
 pub mod motion;
+mod pivots;
 pub mod protocol;
 mod run;
 mod sample;

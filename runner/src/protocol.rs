@@ -3,6 +3,7 @@
 //! Numbers are printed with as many digits as it takes to read the same number back. The command line writes one
 //! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output.
 
+use crate::motion::Linear;
 use crate::{Approach, BodySample, Input, JointSample, Sample, Settings, Start, Summary};
 use gyro_sim::Statistics;
 use gyro_sim::integrate::Work;
@@ -27,6 +28,8 @@ pub struct Request {
 pub enum Reply {
     /// The mechanism at a sample time.
     Sample(Sample),
+    /// The linearisation at the end.
+    Linear(Linear),
     /// The run has reached this time, s.
     Progress(f64),
     /// The run is complete.
@@ -55,11 +58,13 @@ impl Request {
         if let Some(every) = correct_every {
             let _ = writeln!(text, "correct_every {every:?}");
         }
-        let Approach { integrator, tolerance, coordinates, correction, when, budget } = self.approach;
+        let Approach { integrator, tolerance, coordinates, correction, when, budget, examine } =
+            self.approach;
         let _ = writeln!(text, "integrator {integrator}\ncoordinates {coordinates}\ncorrection {correction}");
         let _ = tolerance.map(|tolerance| writeln!(text, "tolerance {tolerance:?}"));
         let _ = when.map(|when| writeln!(text, "when {when}"));
         let _ = budget.map(|budget| writeln!(text, "budget {budget}"));
+        let _ = writeln!(text, "examine {examine}");
         line(&mut text, "parameters", &self.parameters);
         line(&mut text, "positions", &self.start.positions);
         line(&mut text, "velocities", &self.start.velocities);
@@ -101,6 +106,7 @@ impl Request {
             "coordinates" => self.approach.coordinates = values.parse().ok()?,
             "correction" => self.approach.correction = values.parse().ok()?,
             "when" => self.approach.when = Some(values.parse().ok()?),
+            "examine" => self.approach.examine = values.parse().ok()?,
             "budget" => self.approach.budget = Some(values.parse().ok()?),
             "parameters" => self.parameters = list(values)?,
             "positions" => self.start.positions = list(values)?,
@@ -120,6 +126,14 @@ impl Reply {
     pub fn to_line(&self) -> String {
         match self {
             Self::Sample(sample) => sample_line(sample),
+            Self::Linear(linear) => {
+                let mut text =
+                    format!("linear {:?} {} {}", linear.t, linear.state.len(), linear.by_inputs.len());
+                for values in [&linear.state, &linear.slope, &linear.by_state, &linear.by_inputs] {
+                    words(&mut text, "", values);
+                }
+                text
+            }
             Self::Progress(t) => format!("progress {t:?}"),
             Self::Done(s) => {
                 let Statistics { accepted, rejected, corrections, work, limited_by_stability, .. } =
@@ -131,6 +145,7 @@ impl Reply {
                 words(&mut text, "", &[limited_by_stability]);
                 let Statistics { fastest_rate, shortest_step, longest_step, .. } = s.statistics;
                 words(&mut text, "", &[fastest_rate, shortest_step, longest_step]);
+                words(&mut text, "", s.smallest_pivot.as_slice());
                 text
             }
             Self::Failed(words) => format!("failed {}", words.replace('\n', " ")),
@@ -150,6 +165,7 @@ impl Reply {
         let mut words = Words(rest.split_ascii_whitespace());
         let reply = match key {
             "sample" => Self::Sample(words.sample()?),
+            "linear" => Self::Linear(words.linear()?),
             "progress" => Self::Progress(words.next()?),
             "done" => Self::Done(words.summary()?),
             "failed" => return Some(Self::Failed(rest.to_owned())),
@@ -175,6 +191,21 @@ impl Words<'_> {
         Some(array)
     }
 
+    fn list(&mut self, n: usize) -> Option<Vec<f64>> {
+        (0..n).map(|_| self.next()).collect()
+    }
+
+    fn linear(&mut self) -> Option<Linear> {
+        let (t, n, m): (f64, usize, usize) = (self.next()?, self.next()?, self.next()?);
+        Some(Linear {
+            t,
+            state: self.list(n)?,
+            slope: self.list(n)?,
+            by_state: self.list(n * n)?,
+            by_inputs: self.list(m)?,
+        })
+    }
+
     fn summary(&mut self) -> Option<Summary> {
         Some(Summary {
             steps: self.next()?,
@@ -193,6 +224,10 @@ impl Words<'_> {
                 fastest_rate: self.next()?,
                 shortest_step: self.next()?,
                 longest_step: self.next()?,
+            },
+            smallest_pivot: match self.0.next() {
+                Some(word) => Some(word.parse().ok()?),
+                None => None,
             },
         })
     }
@@ -303,6 +338,7 @@ mod tests {
                     correction: Correction::Baumgarte(AWKWARD[0]),
                     when: correct_every.map(When::Violation),
                     budget: correct_every.map(|_| 7),
+                    examine: correct_every.is_some(),
                 },
                 parameters: vec![1.0 / 7.0],
                 start: Start {
@@ -342,9 +378,16 @@ mod tests {
             chart_switches: 7,
         };
         let summary =
-            Summary { steps: 10_000, chart_switches: 32, energy_drift: 1e-14, ..Default::default() };
+            Summary { steps: 10_000, chart_switches: 32, smallest_pivot: Some(0.5), ..Default::default() };
         for reply in [
             Reply::Sample(sample),
+            Reply::Linear(Linear {
+                t: AWKWARD[0],
+                state: AWKWARD[..2].to_vec(),
+                slope: AWKWARD[2..4].to_vec(),
+                by_state: AWKWARD[1..5].to_vec(),
+                by_inputs: vec![AWKWARD[6]; 2],
+            }),
             Reply::Progress(0.25),
             Reply::Done(summary),
             Reply::Failed("at t = 1 s the end".to_owned()),

@@ -13,6 +13,7 @@ mod inspect;
 mod json;
 mod lanes;
 mod linear;
+mod linearization;
 mod machine_code;
 mod nested;
 mod performance;
@@ -28,6 +29,7 @@ mod stability;
 mod summary;
 mod urdf;
 mod variants;
+mod verdict;
 mod verify;
 mod words;
 

@@ -238,6 +238,7 @@ fn listen(output: impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result<Opti
         let line = line.map_err(|e| Failure::Run(e.to_string()))?;
         match Reply::parse(&line).map_err(|e| Failure::Run(format!("the generated program: {e}")))? {
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
+            Reply::Linear(linear) => tell(Event::Linear(&linear)),
             Reply::Progress(t) => tell(Event::Progress(t)),
             Reply::Done(summary) => return Ok(Some(summary)),
             Reply::Failed(words) => return Err(Failure::Run(words)),
@@ -262,8 +263,9 @@ mod tests {
     #[test]
     fn replies_are_heard_to_their_end() {
         let sample = "sample 0.0 1.0 0.0 0.0 0.0 0.0 0.0 0 angle 0.0 1.0\n";
+        let done = Summary { steps: 10, ..Summary::default() };
         let (outcome, n_samples) =
-            heard(&format!("{sample}progress 0.5\n{sample}done 10 0 0.0 0.0 0.0 0.0 0.1\n"));
+            heard(&format!("{sample}progress 0.5\n{sample}{}\n", Reply::Done(done).to_line()));
         assert_eq!((outcome.unwrap().unwrap().steps, n_samples), (10, 2));
         let (outcome, n_samples) = heard(&format!("{sample}failed at t = 0.5 s\n"));
         assert!(matches!(outcome, Err(Failure::Run(words)) if words == "at t = 0.5 s"));
