@@ -11,6 +11,7 @@
 
 mod approach;
 pub mod child;
+mod companion;
 mod failure;
 mod input;
 pub mod motion;
@@ -22,6 +23,7 @@ mod schedule;
 mod summary;
 
 pub use approach::{Approach, Coordinates, Correction, Integrator, When};
+pub use companion::{companions, differences};
 pub use failure::{Failure, describe, describe_in};
 pub use input::Input;
 pub use run::{Event, Start, run, run_by};

@@ -99,6 +99,18 @@ pub struct Tree<D>(pub D);
 #[derive(Clone, Copy, Debug)]
 pub struct TreeWithJacobian<D>(pub D);
 
+/// A system with inputs.
+pub trait Feed: Ode {
+    /// Sets an input until it is set anew.
+    fn feed(&mut self, index: usize, value: Self::Scalar);
+}
+
+impl<M: Ports> Feed for M {
+    fn feed(&mut self, index: usize, value: M::Scalar) {
+        self.set_input(index, value);
+    }
+}
+
 /// Columns of a Jacobian that are computed at a time.
 pub const COLUMNS: usize = 4;
 
@@ -132,7 +144,7 @@ impl<M: Partition + Ports + Projection + 'static> Kit<M> for Projecting {
 impl<M, D> Kit<M> for WithDuals<D>
 where
     M: Partition + Ports + Projection + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
@@ -151,7 +163,7 @@ where
 impl<M, D> Kit<M> for Tree<D>
 where
     M: Partition + Ports + Projection + JointSpace + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + JointSpace + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + JointSpace + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -199,7 +211,7 @@ where
 impl<M, D> Kit<M> for TreeWithJacobian<D>
 where
     M: Partition + Ports + Projection + JointJacobian + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -256,12 +268,12 @@ fn square<T>(state: &[T]) -> usize {
 /// ∂f/∂u of one input. What the input is set to does not matter: it enters linearly.
 fn input_column<T: Real, D>(duals: &D, input: usize, t: T, x: &[T]) -> Vec<T>
 where
-    D: JointSpace<Scalar = Dual<T, COLUMNS>> + Ports + Clone,
+    D: JointSpace<Scalar = Dual<T, COLUMNS>> + Feed + Clone,
 {
     let mut duals = duals.clone();
     let (mut arguments, zero, one) = (duals.joint_start(), T::constant(0.0), T::constant(1.0));
     let slopes = core::array::from_fn(|k| if k == 0 { one } else { zero });
-    duals.set_input(input, Dual { value: zero, slopes });
+    duals.feed(input, Dual { value: zero, slopes });
     for (argument, value) in arguments.as_mut().iter_mut().zip(x) {
         *argument = Dual::new(*value);
     }
@@ -300,7 +312,7 @@ struct Plain;
 /// A mechanism as a system of its own.
 struct Exact<'a, M>(&'a M);
 
-impl<M: Mechanism> Ode for Exact<'_, M> {
+impl<M: Ode> Ode for Exact<'_, M> {
     type Scalar = M::Scalar;
     type State = M::State;
 
@@ -368,7 +380,7 @@ struct Duals<D, T>(D, Vec<T>);
 impl<M, D> Lens<M> for Duals<D, M::Scalar>
 where
     M: Mechanism<State: 'static, Scalar: 'static> + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
 {
     type State = M::State;
     type System<'a> = ByDuals<'a, Exact<'a, M>, Exact<'a, D>, Vec<M::Scalar>, COLUMNS>;
@@ -380,7 +392,7 @@ where
         copy::<M>(from, to);
     }
     fn set_input(&mut self, index: usize, value: f64) {
-        self.0.set_input(index, Scalar::constant(value));
+        self.0.feed(index, Scalar::constant(value));
     }
 }
 
@@ -405,7 +417,7 @@ struct JointDuals<D, T>(D, Vec<T>);
 impl<M, D> Lens<M> for JointDuals<D, M::Scalar>
 where
     M: JointSpace<Joints: 'static, Scalar: 'static> + 'static,
-    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
 {
     type State = M::Joints;
     type System<'a> = ByDuals<'a, JointForm<'a, M>, JointForm<'a, D>, Vec<M::Scalar>, COLUMNS>;
@@ -417,7 +429,7 @@ where
         mechanism.to_maximal(t, from, to);
     }
     fn set_input(&mut self, index: usize, value: f64) {
-        self.0.set_input(index, Scalar::constant(value));
+        self.0.feed(index, Scalar::constant(value));
     }
 }
 
@@ -481,7 +493,7 @@ fn in_maximal<M, D>(
 ) -> Result<Box<dyn Motion<M>>, String>
 where
     M: Partition + Ports + Projection + JointSpace + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
 {
     let correction = match approach.correction {
         Keeping::ClosedForm => Boxed(Box::new(ClosedForm::new(mechanism))),
@@ -499,7 +511,8 @@ where
     M: Partition + Projection + 'static,
 {
     match approach.correction {
-        Keeping::None => explicit(Plain, correction, approach, y),
+        // The projection is as good as it is only with accelerations that are exact off the constraints.
+        Keeping::None | Keeping::MassWeighted => explicit(Plain, correction, approach, y),
         Keeping::Baumgarte(rate) => explicit(Steered(rate), correction, approach, y),
         _ => explicit(Cheap, correction, approach, y),
     }
@@ -515,7 +528,7 @@ fn implicit<M, D>(
 ) -> Box<dyn Motion<M>>
 where
     M: Partition + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
 {
     let duals = Duals(duals, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
     let method = Rodas4::new(&duals.system(mechanism), y);

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::scene::Scene;
 use crate::words::{number, table};
 use gyro_runner::motion::Linear;
-use gyro_runner::{Approach, Coordinates, Correction, Integrator, JointSample, Sample, Summary};
+use gyro_runner::{Approach, Coordinates, Correction, Integrator, Sample, Settings, Summary, differences};
 use nalgebra::DMatrix;
 use std::fmt::Write as _;
 
@@ -34,12 +34,6 @@ pub(crate) struct Outcome {
     pub(crate) linear: Option<Linear>,
 }
 
-/// The finest tolerance that double precision can resolve in every element.
-const FINEST: f64 = 2e-15;
-
-/// Steps that a companion may take before another one is tried.
-const PATIENCE: u64 = 2_000_000;
-
 /// Judges a run. `run` makes companions.
 ///
 /// # Errors
@@ -59,65 +53,27 @@ pub(crate) fn verdict(
     Err(last.unwrap_or_else(|| Failure::Run("there is no finer run to compare with".to_owned())))
 }
 
-/// Scenes to compare with, the best first: a tree's joint coordinates by other methods, else the same by finer means.
+/// Scenes to compare with, the best first.
 fn companions(scene: &Scene) -> Vec<Scene> {
-    let mut companions = Vec::new();
-    let approach = &scene.approach;
-    let varies = scene.start.inputs.iter().any(|input| input.rows.len() > 1);
-    let double = Scene { precision: Precision::F64, ..scene.clone() };
-    if !varies {
-        // Mechanisms without joint coordinates say so at once.
-        let aim = approach.tolerance.unwrap_or(1e-9).min(1e-9);
-        let joint = |integrator, tolerance: f64| Scene {
-            engine: Engine::Generated,
-            approach: Approach {
-                integrator,
-                tolerance: Some(tolerance),
-                coordinates: Coordinates::Joint,
-                budget: Some(PATIENCE),
-                ..Approach::default()
-            },
-            ..double.clone()
-        };
-        companions.push(joint(Integrator::Dop853, (aim / 100.0).clamp(FINEST, 1e-12)));
-        companions.push(joint(Integrator::Rodas4, (aim / 100.0).clamp(1e-12, 1e-9)));
-    }
-    let mut finer = double;
-    match approach.tolerance {
-        Some(tolerance) => finer.approach.tolerance = Some((tolerance / 100.0).max(FINEST)),
-        None => finer.settings.step = scene.settings.step / 4.0,
-    }
-    companions.push(finer);
-    companions
+    let vary = scene.start.inputs.iter().any(|input| input.rows.len() > 1);
+    let double = |(settings, approach): (Settings, Approach)| {
+        // Only generated code has joint coordinates.
+        let engine =
+            if approach.coordinates == Coordinates::Joint { Engine::Generated } else { scene.engine };
+        Scene { precision: Precision::F64, engine, settings, approach, ..scene.clone() }
+    };
+    gyro_runner::companions(&scene.settings, &scene.approach, vary).into_iter().map(double).collect()
 }
 
 fn compare(scene: &Scene, outcome: &Outcome, companion: &Scene, other: &Outcome) -> Verdict {
     let columns = columns::coordinates(&scene.model);
-    let mut errors: Vec<(String, &'static str, f64)> =
-        columns.iter().map(|c| (c.name.clone(), c.unit(), 0.0)).collect();
-    for (sample, other) in outcome.samples.iter().zip(&other.samples) {
-        for ((error, one), other) in errors.iter_mut().zip(&sample.coordinates).zip(&other.coordinates) {
-            error.2 = error.2.max(distance(one, other));
-        }
-    }
+    let differences = differences(&outcome.samples, &other.samples);
+    let errors =
+        columns.iter().zip(differences).map(|(c, error)| (c.name.clone(), c.unit(), error)).collect();
     let fastest_eigenvalue = outcome.linear.as_ref().or(other.linear.as_ref()).map(fastest);
     let mut verdict = Verdict { errors, companion: words(companion), fastest_eigenvalue, advice: Vec::new() };
     verdict.advice = advice(scene, outcome, &verdict);
     verdict
-}
-
-/// Of positions; of orientations the angle between them.
-fn distance(one: &JointSample, other: &JointSample) -> f64 {
-    match (one, other) {
-        (JointSample::Angle { position: a, .. }, JointSample::Angle { position: b, .. })
-        | (JointSample::Length { position: a, .. }, JointSample::Length { position: b, .. }) => (a - b).abs(),
-        (JointSample::Orientation { position: a, .. }, JointSample::Orientation { position: b, .. }) => {
-            // p and −p are one orientation.
-            let gap = |sign: f64| a.iter().zip(b).map(|(a, b)| (a - sign * b).powi(2)).sum::<f64>().sqrt();
-            2.0 * gap(1.0).min(gap(-1.0))
-        }
-        _ => f64::NAN,
-    }
 }
 
 fn words(scene: &Scene) -> String {
@@ -241,18 +197,6 @@ pub(crate) fn text(verdict: &Verdict, outcome: &Outcome) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn orientations_differ_by_an_angle_whatever_their_sign() {
-        let turned = |angle: f64, sign: f64| JointSample::Orientation {
-            position: [sign * (angle / 2.0).cos(), sign * (angle / 2.0).sin(), 0.0, 0.0],
-            rate: [0.0; 3],
-        };
-        for sign in [1.0, -1.0] {
-            let found = distance(&turned(0.3, 1.0), &turned(0.3 + 1e-6, sign));
-            assert!((found - 1e-6).abs() < 1e-11, "{found}");
-        }
-    }
 
     #[test]
     fn eigenvalues_of_an_oscillator() {
