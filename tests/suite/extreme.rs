@@ -313,7 +313,7 @@ fn assert_refused<M: Partition<Scalar = f64>>(what: &str, mechanism: &M) {
 #[test]
 fn inputs_that_are_no_numbers_are_an_error() {
     for value in NO_NUMBERS {
-        let motor = own::motor::Motor::<f64> { torque: value, ..Default::default() };
+        let motor = own::motor::Motor::<f64> { torque: value };
         assert_refused(&format!("a torque of {value}"), &motor);
     }
 }
@@ -321,7 +321,8 @@ fn inputs_that_are_no_numbers_are_an_error() {
 #[test]
 fn parameters_that_are_no_numbers_are_an_error() {
     type Parametric = shipped::gyroscope_parameters::GyroscopeParameters<f64>;
-    let fields: [(&str, fn(&mut Parametric) -> &mut f64); 5] = [
+    type Field = fn(&mut Parametric) -> &mut f64;
+    let fields: [(&str, Field); 5] = [
         ("gravity", |g| &mut g.gravity),
         ("rotor_mass", |g| &mut g.rotor_mass),
         ("rotor_offset", |g| &mut g.rotor_offset),
