@@ -16,7 +16,7 @@
 //! * joint_accelerations: 68 operations by normal form; 84 operations by recursion
 //! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 1 more compared
 //! * corrected_accelerations: 486 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
-//! * joint_jacobian: 1392 operations by derivatives of the balance, from its leaves, normal form; 1392 operations by normal form of that; 5 more compared
+//! * joint_jacobian: 1406 operations by derivatives of u̇, from its roots; 1406 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 | 497223 | 490 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 | 771 | 142 |
 //! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 | 4.1e6 | 590 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 530 | 859 | 3 | 1392 | 29 of 56 | 8.8e6 | 1393 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 528 | 876 | 2 | 1406 | 29 of 56 | 8.8e6 | 1406 |
 //!
 //! # Proof
 //!
@@ -4780,7 +4780,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1392 operations (530 ±, 859 ×, 3 ÷) and 18 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1406 operations (528 ±, 876 ×, 2 ÷) and 18 functions.
     fn joint_jacobian(
         &self,
         t: T,
@@ -4797,65 +4797,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
         let u2 = x[5];
         let (
             t0,
-            t2,
-            t3,
             t5,
-            t6,
             t7,
-            t8,
             t9,
-            t10,
-            t11,
-            t17,
+            t12,
+            t13,
+            t18,
             t19,
+            t20,
+            t21,
             t22,
-            t24,
-            t26,
-            t30,
-            t31,
-            t33,
-            t35,
-            t36,
-            t37,
+            t28,
+            t29,
             t38,
-            t50,
+            t39,
+            t40,
+            t41,
+            t42,
+            t47,
+            t48,
+            t49,
             t52,
+            t54,
             t55,
-            t56,
-            t57,
             t58,
             t59,
             t60,
-            t62,
             t63,
-            t64,
-            t65,
             t66,
             t67,
-            t68,
-            t69,
-            t71,
             t73,
             t74,
             t75,
-            t76,
-            t78,
-            t79,
-            t80,
+            t77,
             t82,
             t83,
             t84,
+            t85,
             t86,
-            t87,
             t88,
-            t89,
             t90,
             t91,
             t92,
             t93,
+            t95,
             t96,
             t97,
-            t98,
             t99,
             t100,
             t101,
@@ -4863,47 +4850,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             t104,
             t105,
             t106,
+            t107,
             t108,
             t109,
-            t111,
+            t110,
             t113,
+            t114,
+            t115,
             t116,
             t117,
             t118,
-            t119,
             t120,
             t121,
             t122,
-            t124,
+            t123,
             t125,
             t126,
-            t127,
-            t129,
+            t128,
             t130,
-            t132,
+            t133,
             t134,
+            t135,
+            t136,
             t137,
             t138,
-            t140,
+            t139,
+            t141,
             t142,
+            t143,
+            t144,
             t146,
             t147,
-            t148,
             t149,
-            t150,
-            t152,
+            t151,
             t154,
-            t156,
+            t155,
             t157,
             t158,
             t159,
-            t160,
-            t161,
             t162,
             t163,
             t164,
+            t165,
+            t166,
             t167,
-            t168,
             t169,
             t170,
             t171,
@@ -4917,14 +4907,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             t179,
             t180,
             t181,
-            t182,
-            t183,
             t184,
             t185,
             t186,
             t187,
             t188,
             t189,
+            t190,
             t191,
             t192,
             t193,
@@ -4935,319 +4924,306 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             t198,
             t199,
         ) = {
-            let t0 = x1.sin();
+            let t0 = x1.cos();
             let t1 = t0 * t0;
-            let t2 = k(1.0)
-                / T::fused(
-                    -t0,
-                    k(1e-5) * t0,
-                    T::fused(k(3.99875e-6), t1, k(8.00125e-6)),
-                );
-            let t3 = x0.cos();
-            let t4 = k(125.66370614359172) * t;
-            let t5 = t4.cos();
-            let t6 = t5 * t3;
-            let t7 = x0.sin();
-            let t8 = t4.sin();
-            let t9 = k(125.66370614359172) * t8;
-            let t10 = x1.cos();
-            let t11 = u1 * t0;
-            let t12 = t5 * t7;
-            let t13 = T::fused(t10, T::fused(-u0, t6, t9 * t7), t12 * t11);
-            let t14 = k(0.03157286447908486) * t1;
-            let t15 = t14 - k(0.04736423152082783);
-            let t16 = t5 * t5;
-            let t17 = t8 * t0;
-            let t18 = T::fused(k(0.0005024977449416874), t1, k(0.0001258207857762712));
-            let t19 = T::fused(t12, t15, u1 * t18);
-            let t20 = T::fused(
-                -k(0.5),
-                t16 * t15,
-                t7 * T::fused(k(0.03157286447908486), t10 * t17, t5 * t19),
-            );
-            let t21 = k(0.5) * t8;
-            let t22 = t21.sin();
-            let t23 = k(0.0001) * t22;
-            let t24 = k(0.0006283185307179586) * u2;
-            let t25 = t10 * T::fused(-t7, t23, t24 * t6);
-            let t26 = T::fused(-t0, k(0.0006283185307179586) * t13, t25 + t20) * t2;
-            let t27 = k(62.83185307179586) * t12;
-            let t28 = t8 * t3;
-            let t29 = T::fused(
-                k(0.07895683520871487),
-                t10 * T::fused(-k(0.00012665147955292222), u0 * (u1 - t27), t28),
-                k(0.0006283185307179586) * (t6 * t11),
-            );
-            let t30 = t10 * t6;
-            let t31 = u0 * t0;
-            let t32 = T::fused(
-                -t22,
-                t3,
-                k(0.020025)
-                    * (u1
-                        * T::fused(
-                            -k(62.83185307179586),
-                            T::fused(k(0.07947812389108382), u2, -t30),
-                            t31,
-                        )),
-            );
-            let t33 = T::fused(k(0.01578643223954243), t30, t24);
-            let t34 = T::fused(
-                k(0.047383970729630014),
-                t10 * T::fused(-k(0.00211041832206494), t32, t0 * t28),
-                T::fused(
-                    t10,
-                    T::fused(k(0.0006283185307179586), t31, t33),
-                    k(0.007895683520871487) * t6,
-                ) * t12,
-            );
-            let t35 = t10 * t10;
-            let t36 = t34 / T::fused(k(6.00125e-6), t35, k(2e-6));
-            let t37 = t0 * t36;
-            let t38 = T::fused(k(100000.0), t29, t37);
-            let t39 = k(1e-5) * t10;
-            let t40 = k(7.9975e-6) * t10;
-            let t41 = k(1e-5) * u2;
-            let t42 = T::fused(k(0.0010049954898833748), t30, t41);
-            let t43 = T::fused(
-                t3,
+            let t2 = k(1.0) / T::fused(k(6.00125e-6), t1, k(2e-6));
+            let t3 = k(0.047383970729630014) * t2;
+            let t4 = t0 * t3;
+            let t5 = k(0.00211041832206494) * t4;
+            let t6 = k(125.66370614359172) * t;
+            let t7 = t6.sin();
+            let t8 = k(0.5) * t7;
+            let t9 = t8.sin();
+            let t10 = k(4.2261126899350424e-5) * t4;
+            let t11 = u1 * t10;
+            let t12 = x0.sin();
+            let t13 = t6.cos();
+            let t14 = t13 * t12;
+            let t15 = t2 * t14;
+            let t16 = t0 * t15;
+            let t17 = T::fused(-k(62.83185307179586), t11, k(0.01578643223954243) * t16);
+            let t18 = T::fused(t0, t17, k(0.007895683520871487) * t15);
+            let t19 = x1.sin();
+            let t20 = t19 * t4;
+            let t21 = x0.cos();
+            let t22 = t13 * t21;
+            let t23 = t0 * t22;
+            let t24 = T::fused(
+                k(0.01578643223954243),
                 t23,
-                t12 * T::fused(k(0.03157286447908486), t30, t24),
+                k(0.0006283185307179586) * u2,
             );
-            let t44 = k(0.00025330295910584445) * u0;
-            let t45 = k(0.01578643223954243) - t14;
-            let t46 = T::fused(
+            let t25 = u0 * t19;
+            let t26 = T::fused(k(0.0006283185307179586), t25, t24);
+            let t27 = T::fused(t0, t26, k(0.007895683520871487) * t22);
+            let t28 = t2 * t27;
+            let t29 = T::fused(
+                -t12,
+                T::fused(t9, t5, T::fused(t13, t18, t7 * t20)),
+                t21 * (t13 * t28),
+            );
+            let t30 = T::fused(
+                -k(62.83185307179586),
+                T::fused(k(0.07947812389108382), u2, -t23),
+                t25,
+            );
+            let t31 = t7 * t21;
+            let t32 = T::fused(
+                -k(0.00211041832206494),
+                T::fused(-t9, t21, k(0.020025) * (u1 * t30)),
+                t19 * t31,
+            );
+            let t33 = t2 * t2;
+            let t34 = T::fused(k(0.047383970729630014), t0 * t32, t27 * t14);
+            let t35 = T::fused(
+                -t32,
+                t3,
+                T::fused(-t26, t15, k(2.0) * (t0 * (k(6.00125e-6) * (t34 * t33)))),
+            );
+            let t36 = k(0.0006283185307179586) * t16;
+            let t37 = t36 - t11;
+            let t38 = T::fused(
+                t19,
+                T::fused(-t22, t17, t35),
+                t0 * T::fused(u0, t37, t31 * t4),
+            );
+            let t39 = t19 * t37;
+            let t40 = t30 * t10;
+            let t41 = T::fused(k(4.9937578027465666), t11, t36);
+            let t42 = T::fused(t9, t19, k(473.8397072963001) * t7);
+            let t43 = k(166631.95167673402) * t22;
+            let t44 = t19 * t43;
+            let t45 = k(0.01578643223954243) * t44;
+            let t46 = k(1.2503907471084714) - t1;
+            let t47 = T::fused(k(0.0005024977449416874), u0 * t46, t19 * t24);
+            let t48 = T::fused(t0, t45, k(166631.95167673402) * t47);
+            let t49 = T::fused(t21, k(16.6631951676734) * t42, t12 * (t13 * t48));
+            let t50 = k(0.6663195167673401) * t0;
+            let t51 = u0 * t50;
+            let t52 = k(16.6631951676734) * t12;
+            let t53 = T::fused(k(2.500781494216943), u2, t25);
+            let t54 = t8.cos();
+            let t55 = T::fused(-k(0.0399875), u0 * t53, t54);
+            let t56 = k(83.73217995279107) * t22;
+            let t57 = t0 * (u0 * t56);
+            let t58 = T::fused(
                 t0,
-                t43 + T::fused(t36, t40, u1 * t42),
-                k(2.0) * (t45 * T::fused(-u1, t44, t28)),
+                T::fused(-u0, t51, T::fused(-t9, t52, t24 * t43)),
+                t19 * T::fused(-k(16.6631951676734), t55, t57 - T::fused(t22, t45, -t57)),
             );
-            let t47 = T::fused(
-                t39,
-                t36,
-                k(0.0006283185307179586) * (t3 * T::fused(-t9, t0, u1 * (t5 * t10))),
+            let t59 = T::fused(-t19, t51, T::fused(-t53, t50, t46 * t56));
+            let t60 = T::fused(
+                -k(2.500781494216943),
+                t51,
+                k(0.0006283185307179586) * t44,
             );
-            let t48 = T::fused(-k(0.0006283185307179586), t12, k(1e-5) * u1);
-            let t49 = T::fused(t31, t48, t47);
-            let t50 = t2 * T::fused(t0, t49, -T::fused(-t39, t38, t46));
-            let t51 = t10 * t48;
-            let t52 = T::fused(-t0, t51, t11 * t40) * t2;
-            let t53 = T::fused(-u0, t39, k(0.0006283185307179586) * (t0 * t6));
-            let t54 = T::fused(-t6, t18, t10 * T::fused(k(7.9975e-6), t31, t41));
-            let t55 = T::fused(t0, t53, t54) * t2;
-            let t56 = t39 * (u1 + t27) * t2;
-            let t57 = u0 * t18;
-            let t58 = k(166631.95167673402)
-                * T::fused(t12, t57, T::fused(k(0.047383970729630014), t28, t0 * t43));
-            let t59 = t21.cos();
-            let t60 = T::fused(-t7, t7, k(1.0));
-            let t61 = T::fused(
-                -t0,
-                T::fused(-u0, t42, k(0.0001) * t59),
-                t45 * T::fused(-u0, t44, t16 * t60),
+            let t61 = u0 * t0;
+            let t62 = t19 * t2;
+            let t63 = T::fused(k(62.83185307179586), t61, t27 * t62);
+            let t64 = k(0.047383970729630014) * t62;
+            let t65 = t0 * t64;
+            let t66 = T::fused(k(7895.6835208714865), t0, t19 * t65);
+            let t67 = u1 * t19;
+            let t68 = k(4.2261126899350424e-5) * t65;
+            let t69 = u1 * t68;
+            let t70 = t14 * t62;
+            let t71 = t0 * t70;
+            let t72 = T::fused(-k(62.83185307179586), t69, k(0.01578643223954243) * t71);
+            let t73 = T::fused(
+                k(62.83185307179586),
+                t67,
+                T::fused(t0, t72, k(0.007895683520871487) * t70),
             );
-            let t62 = k(166631.95167673402) * (t25 + t61);
-            let t63 = k(166631.95167673402) * t54;
-            let t64 = k(166631.95167673402) * t53;
-            let t65 = T::fused(-t0, t26, k(62.83185307179586) * t13);
-            let t66 = T::fused(k(100000.0), t49, t0 * t50);
-            let t67 = T::fused(-t0, t52, k(100000.0) * t51);
-            let t68 = T::fused(t0, t55, k(100000.0) * t53);
-            let t69 = t0 * t56;
-            let t70 = k(0.5) * x0;
-            let t71 = t70.cos();
-            let t72 = k(0.25) * t8;
-            let t73 = t72.sin();
-            let t74 = t73 * t71;
-            let t75 = t72.cos();
-            let t76 = t75 * t71;
-            let t77 = t76 * t74;
-            let t78 = t70.sin();
-            let t79 = t73 * t78;
-            let t80 = t75 * t78;
-            let t81 = t80 * t79;
-            let t82 = k(2.0) * (t81 + t77);
-            let t83 = k(62.83185307179586) * t5;
-            let t84 = t83 * t22;
-            let t85 = t76 * t76;
-            let t86 = k(2.0) * (k(0.5) - T::fused(t80, t80, t85));
-            let t87 = t83 * t59;
-            let t88 = T::fused(-t84, t82, t87 * t86);
-            let t89 = k(2.0) * (t81 - t77);
-            let t90 = k(2.0) * (k(0.5) - T::fused(t79, t79, t85));
-            let t91 = T::fused(t22, t89, t59 * t90);
-            let t92 = k(2.0) * (k(0.5) - T::fused(t74, t74, t85));
-            let t93 = k(2.0) * T::fused(t76, t79, t74 * t80);
-            let t94 = t76 * t80;
-            let t95 = t74 * t79;
-            let t96 = k(2.0) * (t95 - t94);
-            let t97 = T::fused(-t22, t93, t59 * t96);
-            let t98 = k(2.0) * (t95 + t94);
-            let t99 = k(1.0) / T::fused(-t92, t91, t98 * t97);
-            let t100 = t92 * t99;
-            let t101 = t100 * t88;
-            let t102 = k(0.5) * x1;
-            let t103 = t102.sin();
-            let t104 = t102.cos();
-            let t105 = T::fused(t80, t103, t74 * t104);
-            let t106 = T::fused(-t79, t103, t76 * t104);
-            let t107 = t106 * t106;
-            let t108 = k(2.0) * (k(0.5) - T::fused(t105, t105, t107));
-            let t109 = T::fused(t76, t103, t79 * t104);
-            let t110 = t106 * t109;
-            let t111 = T::fused(-t74, t103, t80 * t104);
-            let t112 = t105 * t111;
-            let t113 = k(2.0) * (t112 + t110);
-            let t114 = t106 * t111;
-            let t115 = t105 * t109;
-            let t116 = k(2.0) * (t115 - t114);
-            let t117 = T::fused(t96, t116, T::fused(t92, t108, t93 * t113));
-            let t118 = t98 * t99;
-            let t119 = t118 * t88;
-            let t120 = T::fused(t90, t116, -T::fused(-t98, t108, t89 * t113));
-            let t121 = T::fused(t117, t101, t120 * t119);
-            let t122 = k(1e-6) * t121;
-            let t123 = k(0.5) * x2;
-            let t124 = t123.sin();
-            let t125 = t123.cos();
-            let t126 = T::fused(t106, t124, t105 * t125);
-            let t127 = T::fused(-t105, t124, t106 * t125);
-            let t128 = t127 * t127;
-            let t129 = k(2.0) * (k(0.5) - T::fused(t126, t126, t128));
-            let t130 = T::fused(-t111, t124, t109 * t125);
-            let t131 = t127 * t130;
-            let t132 = T::fused(t109, t124, t111 * t125);
-            let t133 = t126 * t132;
-            let t134 = k(2.0) * (t133 + t131);
-            let t135 = t127 * t132;
-            let t136 = t126 * t130;
-            let t137 = k(2.0) * (t136 - t135);
-            let t138 = T::fused(t116, t137, T::fused(t108, t129, t113 * t134));
-            let t139 = t112 - t110;
-            let t140 = k(2.0) * t139;
-            let t141 = k(0.5) - T::fused(t111, t111, t107);
-            let t142 = k(2.0) * t141;
-            let t143 = t106 * t105;
-            let t144 = t111 * t109;
-            let t145 = t144 + t143;
-            let t146 = k(2.0) * t145;
-            let t147 = T::fused(t96, t146, -T::fused(t92, t140, t93 * t142));
-            let t148 = T::fused(t90, t146, T::fused(-t98, t140, t89 * t142));
-            let t149 = T::fused(t147, t101, t148 * t119);
-            let t150 = T::fused(t146, t137, -T::fused(t140, t129, t142 * t134));
-            let t151 = t115 + t114;
-            let t152 = k(2.0) * t151;
-            let t153 = t144 - t143;
-            let t154 = k(2.0) * t153;
-            let t155 = k(0.5) - T::fused(t109, t109, t107);
-            let t156 = k(2.0) * t155;
-            let t157 = T::fused(t96, t156, -T::fused(-t92, t152, t93 * t154));
-            let t158 = T::fused(t90, t156, T::fused(t98, t152, t89 * t154));
-            let t159 = T::fused(t157, t101, t158 * t119);
-            let t160 = T::fused(t156, t137, -T::fused(-t152, t129, t154 * t134));
-            let t161 = k(1e-5) * T::fused(t138, t121, T::fused(t150, t149, t160 * t159));
-            let t162 = t161 + t122;
-            let t163 = k(2.0) * (t133 - t131);
-            let t164 = k(2.0) * (k(0.5) - T::fused(t132, t132, t128));
-            let t165 = t127 * t126;
-            let t166 = t132 * t130;
-            let t167 = k(2.0) * (t166 + t165);
-            let t168 = T::fused(t116, t167, -T::fused(t108, t163, t113 * t164));
-            let t169 = T::fused(t146, t167, T::fused(t140, t163, t142 * t164));
-            let t170 = T::fused(t156, t167, T::fused(-t152, t163, t154 * t164));
-            let t171 = k(5e-6) * T::fused(t168, t121, T::fused(t169, t149, t170 * t159));
-            let t172 = x2.cos();
-            let t173 = k(2.0) * (t136 + t135);
-            let t174 = k(2.0) * (t166 - t165);
-            let t175 = k(2.0) * (k(0.5) - T::fused(t130, t130, t128));
-            let t176 = T::fused(t116, t175, -T::fused(-t108, t173, t113 * t174));
-            let t177 = T::fused(t146, t175, T::fused(-t140, t173, t142 * t174));
-            let t178 = T::fused(t156, t175, T::fused(t152, t173, t154 * t174));
-            let t179 = k(5e-6) * T::fused(t176, t121, T::fused(t177, t149, t178 * t159));
-            let t180 = x2.sin();
-            let t181 = k(0.00025) * t151;
-            let t182 = k(0.00025) * t139;
-            let t183 = k(0.08) * T::fused(t181, t149, t182 * t159);
-            let t184 = k(0.00025) * t153;
-            let t185 = k(0.00025) * t141;
-            let t186 = k(0.08) * T::fused(-t184, t149, t185 * t159);
-            let t187 = k(0.00025) * t155;
-            let t188 = k(0.00025) * t145;
-            let t189 = k(0.08) * T::fused(-t187, t149, t188 * t159);
-            let t190 = T::fused(
-                -k(2e-6),
-                t149,
-                T::fused(-t181, t183, T::fused(t184, t186, t187 * t189)),
+            let t74 = k(0.00211041832206494) * t65;
+            let t75 = T::fused(
+                -t21,
+                t13 * t63,
+                t12 * T::fused(t7, t66, T::fused(t13, t73, t9 * t74)),
             );
-            let t191 = T::fused(-t172, t171, T::fused(-t180, t179, t190));
-            let t192 = T::fused(-t0, t162, t10 * t191);
-            let t193 = k(2.0) * t78;
-            let t194 = t71 * t193;
-            let t195 = t83 * t194;
-            let t196 = k(7895.6835208714865) * t8;
-            let t197 = T::fused(u0, t195, t196 * t3);
-            let t198 = u1 + t195;
-            let t199 = T::fused(-t78, t193, k(1.0));
+            let t76 = T::fused(-k(62.83185307179586), t14, u1);
+            let t77 = T::fused(-k(0.00012665147955292222), u0 * t76, t31);
+            let t78 = T::fused(
+                -t26,
+                t70,
+                k(2.0) * (t0 * (k(6.00125e-6) * (t33 * (t19 * t34)))),
+            );
+            let t79 = k(62.83185307179586) * t22;
+            let t80 = k(0.0006283185307179586) * t71;
+            let t81 = t80 - t69;
+            let t82 = t2 * t34;
+            let t83 = T::fused(
+                t19,
+                T::fused(
+                    -k(7895.6835208714865),
+                    t77,
+                    T::fused(-t22, t72, T::fused(-t32, t64, t78)),
+                ),
+                t0 * T::fused(u1, t79, T::fused(u0, t81, T::fused(t31, t65, t82))),
+            );
+            let t84 = T::fused(-t0, t76, t19 * t81);
+            let t85 = t61 + T::fused(-t19, t79, t30 * t68);
+            let t86 = T::fused(k(4.9937578027465666), t69, t80);
+            let t87 = k(0.5) * x0;
+            let t88 = t87.cos();
+            let t89 = k(0.25) * t7;
+            let t90 = t89.sin();
+            let t91 = t90 * t88;
+            let t92 = t89.cos();
+            let t93 = t92 * t88;
+            let t94 = t93 * t91;
+            let t95 = t87.sin();
+            let t96 = t90 * t95;
+            let t97 = t92 * t95;
+            let t98 = t97 * t96;
+            let t99 = k(2.0) * (t98 + t94);
+            let t100 = k(62.83185307179586) * t13;
+            let t101 = t100 * t9;
+            let t102 = t93 * t93;
+            let t103 = k(2.0) * (k(0.5) - T::fused(t97, t97, t102));
+            let t104 = t100 * t54;
+            let t105 = T::fused(-t101, t99, t104 * t103);
+            let t106 = k(2.0) * (t98 - t94);
+            let t107 = k(2.0) * (k(0.5) - T::fused(t96, t96, t102));
+            let t108 = T::fused(t9, t106, t54 * t107);
+            let t109 = k(2.0) * (k(0.5) - T::fused(t91, t91, t102));
+            let t110 = k(2.0) * T::fused(t93, t96, t91 * t97);
+            let t111 = t93 * t97;
+            let t112 = t91 * t96;
+            let t113 = k(2.0) * (t112 - t111);
+            let t114 = T::fused(-t9, t110, t54 * t113);
+            let t115 = k(2.0) * (t112 + t111);
+            let t116 = k(1.0) / T::fused(-t109, t108, t115 * t114);
+            let t117 = t109 * t116;
+            let t118 = t117 * t105;
+            let t119 = k(0.5) * x1;
+            let t120 = t119.sin();
+            let t121 = t119.cos();
+            let t122 = T::fused(t97, t120, t91 * t121);
+            let t123 = T::fused(-t96, t120, t93 * t121);
+            let t124 = t123 * t123;
+            let t125 = k(2.0) * (k(0.5) - T::fused(t122, t122, t124));
+            let t126 = T::fused(t93, t120, t96 * t121);
+            let t127 = t123 * t126;
+            let t128 = T::fused(-t91, t120, t97 * t121);
+            let t129 = t122 * t128;
+            let t130 = k(2.0) * (t129 + t127);
+            let t131 = t123 * t128;
+            let t132 = t122 * t126;
+            let t133 = k(2.0) * (t132 - t131);
+            let t134 = T::fused(t113, t133, T::fused(t109, t125, t110 * t130));
+            let t135 = t115 * t116;
+            let t136 = t135 * t105;
+            let t137 = T::fused(t107, t133, -T::fused(-t115, t125, t106 * t130));
+            let t138 = T::fused(t134, t118, t137 * t136);
+            let t139 = k(1e-6) * t138;
+            let t140 = k(0.5) * x2;
+            let t141 = t140.sin();
+            let t142 = t140.cos();
+            let t143 = T::fused(t123, t141, t122 * t142);
+            let t144 = T::fused(-t122, t141, t123 * t142);
+            let t145 = t144 * t144;
+            let t146 = k(2.0) * (k(0.5) - T::fused(t143, t143, t145));
+            let t147 = T::fused(-t128, t141, t126 * t142);
+            let t148 = t144 * t147;
+            let t149 = T::fused(t126, t141, t128 * t142);
+            let t150 = t143 * t149;
+            let t151 = k(2.0) * (t150 + t148);
+            let t152 = t144 * t149;
+            let t153 = t143 * t147;
+            let t154 = k(2.0) * (t153 - t152);
+            let t155 = T::fused(t133, t154, T::fused(t125, t146, t130 * t151));
+            let t156 = t129 - t127;
+            let t157 = k(2.0) * t156;
+            let t158 = k(0.5) - T::fused(t128, t128, t124);
+            let t159 = k(2.0) * t158;
+            let t160 = t123 * t122;
+            let t161 = t128 * t126;
+            let t162 = t161 + t160;
+            let t163 = k(2.0) * t162;
+            let t164 = T::fused(t113, t163, -T::fused(t109, t157, t110 * t159));
+            let t165 = T::fused(t107, t163, T::fused(-t115, t157, t106 * t159));
+            let t166 = T::fused(t164, t118, t165 * t136);
+            let t167 = T::fused(t163, t154, -T::fused(t157, t146, t159 * t151));
+            let t168 = t132 + t131;
+            let t169 = k(2.0) * t168;
+            let t170 = t161 - t160;
+            let t171 = k(2.0) * t170;
+            let t172 = k(0.5) - T::fused(t126, t126, t124);
+            let t173 = k(2.0) * t172;
+            let t174 = T::fused(t113, t173, -T::fused(-t109, t169, t110 * t171));
+            let t175 = T::fused(t107, t173, T::fused(t115, t169, t106 * t171));
+            let t176 = T::fused(t174, t118, t175 * t136);
+            let t177 = T::fused(t173, t154, -T::fused(-t169, t146, t171 * t151));
+            let t178 = k(1e-5) * T::fused(t155, t138, T::fused(t167, t166, t177 * t176));
+            let t179 = t178 + t139;
+            let t180 = k(2.0) * (t150 - t148);
+            let t181 = k(2.0) * (k(0.5) - T::fused(t149, t149, t145));
+            let t182 = t144 * t143;
+            let t183 = t149 * t147;
+            let t184 = k(2.0) * (t183 + t182);
+            let t185 = T::fused(t133, t184, -T::fused(t125, t180, t130 * t181));
+            let t186 = T::fused(t163, t184, T::fused(t157, t180, t159 * t181));
+            let t187 = T::fused(t173, t184, T::fused(-t169, t180, t171 * t181));
+            let t188 = k(5e-6) * T::fused(t185, t138, T::fused(t186, t166, t187 * t176));
+            let t189 = x2.cos();
+            let t190 = k(2.0) * (t153 + t152);
+            let t191 = k(2.0) * (t183 - t182);
+            let t192 = k(2.0) * (k(0.5) - T::fused(t147, t147, t145));
+            let t193 = T::fused(t133, t192, -T::fused(-t125, t190, t130 * t191));
+            let t194 = T::fused(t163, t192, T::fused(-t157, t190, t159 * t191));
+            let t195 = T::fused(t173, t192, T::fused(t169, t190, t171 * t191));
+            let t196 = k(5e-6) * T::fused(t193, t138, T::fused(t194, t166, t195 * t176));
+            let t197 = x2.sin();
+            let t198 = k(0.00025) * t168;
+            let t199 = k(0.00025) * t156;
             (
                 t0,
-                t2,
-                t3,
                 t5,
-                t6,
                 t7,
-                t8,
                 t9,
-                t10,
-                t11,
-                t17,
+                t12,
+                t13,
+                t18,
                 t19,
+                t20,
+                t21,
                 t22,
-                t24,
-                t26,
-                t30,
-                t31,
-                t33,
-                t35,
-                t36,
-                t37,
+                t28,
+                t29,
                 t38,
-                t50,
+                t39,
+                t40,
+                t41,
+                t42,
+                t47,
+                t48,
+                t49,
                 t52,
+                t54,
                 t55,
-                t56,
-                t57,
                 t58,
                 t59,
                 t60,
-                t62,
                 t63,
-                t64,
-                t65,
                 t66,
                 t67,
-                t68,
-                t69,
-                t71,
                 t73,
                 t74,
                 t75,
-                t76,
-                t78,
-                t79,
-                t80,
+                t77,
                 t82,
                 t83,
                 t84,
+                t85,
                 t86,
-                t87,
                 t88,
-                t89,
                 t90,
                 t91,
                 t92,
                 t93,
+                t95,
                 t96,
                 t97,
-                t98,
                 t99,
                 t100,
                 t101,
@@ -5255,47 +5231,50 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
                 t104,
                 t105,
                 t106,
+                t107,
                 t108,
                 t109,
-                t111,
+                t110,
                 t113,
+                t114,
+                t115,
                 t116,
                 t117,
                 t118,
-                t119,
                 t120,
                 t121,
                 t122,
-                t124,
+                t123,
                 t125,
                 t126,
-                t127,
-                t129,
+                t128,
                 t130,
-                t132,
+                t133,
                 t134,
+                t135,
+                t136,
                 t137,
                 t138,
-                t140,
+                t139,
+                t141,
                 t142,
+                t143,
+                t144,
                 t146,
                 t147,
-                t148,
                 t149,
-                t150,
-                t152,
+                t151,
                 t154,
-                t156,
+                t155,
                 t157,
                 t158,
                 t159,
-                t160,
-                t161,
                 t162,
                 t163,
                 t164,
+                t165,
+                t166,
                 t167,
-                t168,
                 t169,
                 t170,
                 t171,
@@ -5309,14 +5288,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
                 t179,
                 t180,
                 t181,
-                t182,
-                t183,
                 t184,
                 t185,
                 t186,
                 t187,
                 t188,
                 t189,
+                t190,
                 t191,
                 t192,
                 t193,
@@ -5329,547 +5307,596 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             )
         };
         let (
-            t326,
-            t340,
+            t208,
+            t209,
+            t211,
+            t212,
+            t215,
+            t216,
+            t217,
+            t219,
+            t220,
+            t221,
+            t226,
+            t230,
+            t259,
+            t267,
+            t272,
+            t323,
+            t328,
+            t339,
             t341,
-            t348,
-            t352,
-            t354,
+            t343,
+            t357,
+            t358,
+            t359,
+            t360,
             t364,
-            t366,
-            t368,
-            t372,
+            t365,
+            t369,
+            t371,
+            t375,
+            t376,
+            t377,
+            t378,
             t379,
-            t380,
+            t381,
+            t383,
+            t384,
             t385,
-            t386,
-            t387,
-            t388,
-            t392,
-            t395,
+            t389,
             t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = t83 * t199;
-            let t201 = k(2.0) * t103;
-            let t202 = t104 * t201;
-            let t203 = T::fused(-t103, t201, k(1.0));
-            let t204 = T::fused(-t202, t200, u0 * t203);
-            let t205 = T::fused(-u1, t204, T::fused(t10, t197, t37));
-            let t206 = k(1e-5) * (t38 - t205);
-            let t207 = k(2.0) * t124;
-            let t208 = t125 * t207;
-            let t209 = T::fused(-t124, t207, k(1.0));
-            let t210 = T::fused(-t208, t204, t209 * t198);
-            let t211 = T::fused(t203, t200, u0 * t202);
-            let t212 = u2 + t211;
-            let t213 = T::fused(u1, t211, T::fused(-t0, t197, t10 * t36));
-            let t214 = u0 * t200;
-            let t215 = T::fused(t196, t7, -t214);
-            let t216 = T::fused(
-                -t10,
-                T::fused(
-                    -k(0.0399875),
-                    u0 * T::fused(k(2.500781494216943), u2, t31),
-                    t59,
-                ),
-                t7 * T::fused(t22, t0, k(473.8397072963001) * t8),
-            );
-            let t217 = T::fused(
-                -k(0.0001),
-                t216,
-                t6
-                    * T::fused(
-                        k(0.0005024977449416874),
-                        u0 * (k(1.2503907471084714) - t35),
-                        t0 * t33,
-                    ),
-            );
-            let t218 = T::fused(k(166631.95167673402), t217, t215);
-            let t219 = T::fused(
-                -t212,
-                t210,
-                T::fused(-u2, t210, T::fused(t172, t213, t180 * t218)),
-            );
-            let t220 = k(5e-6) * t219;
-            let t221 = T::fused(t209, t204, t208 * t198);
-            let t222 = T::fused(
-                t212,
-                t221,
-                T::fused(u2, t221, T::fused(-t180, t213, t172 * t218)),
-            );
-            let t223 = k(5e-6) * t222;
-            let t224 = T::fused(
-                -k(1e-6),
-                T::fused(t204, t198, t205),
-                T::fused(t223, t176, -T::fused(-t206, t138, t220 * t168)),
-            );
-            let t225 = k(0.000125) * t204;
-            let t226 = k(0.000125) * t198;
-            let t227 = T::fused(t204, t225, t198 * t226);
-            let t228 = t225 * t211;
-            let t229 = t226 * t211;
-            let t230 = T::fused(-t213, t181, t218 * t182)
-                - T::fused(t152, t229, T::fused(t108, t227, t140 * t228));
-            let t231 = k(0.08) * t230;
-            let t232 = T::fused(t213, t184, t218 * t185)
-                + T::fused(t154, t229, -T::fused(t113, t227, t142 * t228));
-            let t233 = T::fused(k(0.08), t232, k(0.8));
-            let t234 = T::fused(t213, t187, t218 * t188)
-                + T::fused(t156, t229, -T::fused(-t116, t227, t146 * t228));
-            let t235 = k(0.08) * t234;
-            let t236 = T::fused(t187, t235, T::fused(-t181, t231, t184 * t233))
-                - T::fused(t223, t177, -T::fused(-t206, t150, t220 * t169));
-            let t237 = T::fused(k(2e-6), t213, t236);
-            let t238 = T::fused(t188, t235, T::fused(t182, t231, t185 * t233))
-                + T::fused(t223, t178, -T::fused(-t206, t160, t220 * t170));
-            let t239 = T::fused(k(1e-6), T::fused(-t204, t211, t218), t238);
-            let t240 = T::fused(
+            let t200 = k(0.08) * T::fused(t198, t166, t199 * t176);
+            let t201 = k(0.00025) * t170;
+            let t202 = k(0.00025) * t158;
+            let t203 = k(0.08) * T::fused(-t201, t166, t202 * t176);
+            let t204 = k(0.00025) * t172;
+            let t205 = k(0.00025) * t162;
+            let t206 = k(0.08) * T::fused(-t204, t166, t205 * t176);
+            let t207 = T::fused(
                 -k(2e-6),
-                t197,
-                T::fused(t239, t157, -T::fused(-t224, t117, t237 * t147)),
+                t166,
+                T::fused(-t198, t200, T::fused(t201, t203, t204 * t206)),
             );
+            let t208 = T::fused(-t189, t188, T::fused(-t197, t196, t207));
+            let t209 = T::fused(-t19, t179, t0 * t208);
+            let t210 = k(2.0) * t95;
+            let t211 = t88 * t210;
+            let t212 = t100 * t211;
+            let t213 = k(7895.6835208714865) * t7;
+            let t214 = T::fused(u0, t212, t213 * t21);
+            let t215 = u1 + t212;
+            let t216 = T::fused(-t95, t210, k(1.0));
+            let t217 = t100 * t216;
+            let t218 = k(2.0) * t120;
+            let t219 = t121 * t218;
+            let t220 = T::fused(-t120, t218, k(1.0));
+            let t221 = T::fused(-t219, t217, u0 * t220);
+            let t222 = t19 * t82;
+            let t223 = T::fused(-u1, t221, T::fused(t0, t214, t222));
+            let t224 = T::fused(
+                k(100000.0),
+                T::fused(
+                    k(0.07895683520871487),
+                    t0 * t77,
+                    k(0.0006283185307179586) * (t22 * t67),
+                ),
+                t222,
+            );
+            let t225 = k(1e-5) * (t224 - t223);
+            let t226 = k(2.0) * t141;
+            let t227 = t142 * t226;
+            let t228 = T::fused(-t141, t226, k(1.0));
+            let t229 = T::fused(-t227, t221, t228 * t215);
+            let t230 = T::fused(t220, t217, u0 * t219);
+            let t231 = u2 + t230;
+            let t232 = T::fused(u1, t230, T::fused(-t19, t214, t0 * t82));
+            let t233 = u0 * t217;
+            let t234 = T::fused(t213, t12, -t233);
+            let t235 = T::fused(
+                k(166631.95167673402),
+                T::fused(-k(0.0001), T::fused(-t0, t55, t12 * t42), t22 * t47),
+                t234,
+            );
+            let t236 = T::fused(
+                -t231,
+                t229,
+                T::fused(-u2, t229, T::fused(t189, t232, t197 * t235)),
+            );
+            let t237 = k(5e-6) * t236;
+            let t238 = T::fused(t228, t221, t227 * t215);
+            let t239 = T::fused(
+                t231,
+                t238,
+                T::fused(u2, t238, T::fused(-t197, t232, t189 * t235)),
+            );
+            let t240 = k(5e-6) * t239;
             let t241 = T::fused(
+                -k(1e-6),
+                T::fused(t221, t215, t223),
+                T::fused(t240, t193, -T::fused(-t225, t155, t237 * t185)),
+            );
+            let t242 = k(0.000125) * t221;
+            let t243 = k(0.000125) * t215;
+            let t244 = T::fused(t221, t242, t215 * t243);
+            let t245 = t242 * t230;
+            let t246 = t243 * t230;
+            let t247 = T::fused(-t232, t198, t235 * t199)
+                - T::fused(t169, t246, T::fused(t125, t244, t157 * t245));
+            let t248 = k(0.08) * t247;
+            let t249 = T::fused(t232, t201, t235 * t202)
+                + T::fused(t171, t246, -T::fused(t130, t244, t159 * t245));
+            let t250 = T::fused(k(0.08), t249, k(0.8));
+            let t251 = T::fused(t232, t204, t235 * t205)
+                + T::fused(t173, t246, -T::fused(-t133, t244, t163 * t245));
+            let t252 = k(0.08) * t251;
+            let t253 = T::fused(t204, t252, T::fused(-t198, t248, t201 * t250))
+                - T::fused(t240, t194, -T::fused(-t225, t167, t237 * t186));
+            let t254 = T::fused(k(2e-6), t232, t253);
+            let t255 = T::fused(t205, t252, T::fused(t199, t248, t202 * t250))
+                + T::fused(t240, t195, -T::fused(-t225, t177, t237 * t187));
+            let t256 = T::fused(k(1e-6), T::fused(-t221, t230, t235), t255);
+            let t257 = T::fused(
+                -k(2e-6),
+                t214,
+                T::fused(t256, t174, -T::fused(-t241, t134, t254 * t164)),
+            );
+            let t258 = T::fused(
                 k(1e-6),
-                t214 + t215,
-                T::fused(t239, t158, -T::fused(-t224, t120, t237 * t148)),
+                t233 + t234,
+                T::fused(t256, t175, -T::fused(-t241, t137, t254 * t165)),
             );
-            let t242 = T::fused(t240, t100, t241 * t118);
-            let t243 = t84 * t242;
-            let t244 = t239 * t119;
-            let t245 = t237 * t119;
-            let t246 = t224 * t119;
-            let t247 = t241 * t88;
-            let t248 = t240 * t88;
-            let t249 = t99 * t99 * T::fused(t98, t247, t92 * t248);
-            let t250 = t92 * t249;
-            let t251 = T::fused(
-                t22,
-                t250,
-                -T::fused(t113, t246, T::fused(-t154, t244, t142 * t245)),
+            let t259 = T::fused(t257, t117, t258 * t135);
+            let t260 = t101 * t259;
+            let t261 = t256 * t136;
+            let t262 = t254 * t136;
+            let t263 = t241 * t136;
+            let t264 = t258 * t105;
+            let t265 = t257 * t105;
+            let t266 = t116 * t116 * T::fused(t115, t264, t109 * t265);
+            let t267 = t109 * t266;
+            let t268 = T::fused(
+                t9,
+                t267,
+                -T::fused(t130, t263, T::fused(-t171, t261, t159 * t262)),
             );
-            let t252 = k(2.0) * (t251 + t243);
-            let t253 = T::fused(
-                t108,
-                t246,
-                T::fused(t140, t245, T::fused(t99, t247, t152 * t244)),
+            let t269 = k(2.0) * (t268 + t260);
+            let t270 = T::fused(
+                t125,
+                t263,
+                T::fused(t157, t262, T::fused(t116, t264, t169 * t261)),
             );
-            let t254 = T::fused(t97, t249, -t253);
-            let t255 = t98 * t249;
-            let t256 = t239 * t101;
-            let t257 = t237 * t101;
-            let t258 = t224 * t101;
-            let t259 = T::fused(
-                t116,
-                t258,
-                -T::fused(t146, t257, -T::fused(-t59, t255, t156 * t256)),
-            );
-            let t260 = k(2.0) * (t259 - t254);
-            let t261 = T::fused(
-                t113,
-                t258,
-                T::fused(t142, t257, -T::fused(-t22, t255, t154 * t256)),
-            );
-            let t262 = k(2.0) * t261;
-            let t263 = T::fused(
-                t140,
-                t257,
-                T::fused(t152, t256, T::fused(t99, t248, t91 * t249)),
-            );
-            let t264 = T::fused(t108, t258, t263);
-            let t265 = t74 * (k(2.0) * t264);
-            let t266 = t265
-                + (t265 - T::fused(t80, t262, T::fused(-t76, t252, t79 * t260)));
-            let t267 = t223 * t159;
-            let t268 = t220 * t159;
-            let t269 = T::fused(
-                t164,
-                t268,
-                -T::fused(t174, t267, -T::fused(-t89, t244, t93 * t256)),
-            );
-            let t270 = t206 * t159;
-            let t271 = T::fused(
-                k(2.0),
-                T::fused(t229, t186, -T::fused(t134, t270, t269)),
-                k(0.00025) * T::fused(-t233, t149, t213 * t186),
-            );
-            let t272 = t223 * t149;
-            let t273 = T::fused(
-                t175,
-                t272,
-                -T::fused(t228, t189, T::fused(t90, t245, t96 * t257)),
-            );
-            let t274 = t220 * t149;
-            let t275 = t206 * t149;
+            let t271 = T::fused(t114, t266, -t270);
+            let t272 = t115 * t266;
+            let t273 = t256 * t118;
+            let t274 = t254 * t118;
+            let t275 = t241 * t118;
             let t276 = T::fused(
-                k(0.00025),
-                T::fused(t235, t159, t218 * t189),
-                k(2.0) * T::fused(t137, t275, -T::fused(t167, t274, -t273)),
+                t133,
+                t275,
+                -T::fused(t163, t274, -T::fused(-t54, t272, t173 * t273)),
             );
-            let t277 = t276 + t271;
+            let t277 = k(2.0) * (t276 - t271);
             let t278 = T::fused(
-                t174,
-                t272,
-                -T::fused(t228, t186, -T::fused(-t89, t245, t93 * t257)),
+                t130,
+                t275,
+                T::fused(t159, t274, -T::fused(-t9, t272, t171 * t273)),
             );
-            let t279 = T::fused(
-                -k(0.00025),
-                T::fused(t233, t159, t218 * t186),
-                k(2.0) * T::fused(t134, t275, T::fused(t164, t274, -t278)),
+            let t279 = k(2.0) * t278;
+            let t280 = T::fused(
+                t157,
+                t274,
+                T::fused(t169, t273, T::fused(t116, t265, t108 * t266)),
             );
-            let t280 = t111 * t279;
-            let t281 = T::fused(
-                t163,
-                t268,
-                T::fused(t173, t267, T::fused(t98, t244, t92 * t256)),
+            let t281 = T::fused(t125, t275, t280);
+            let t282 = t91 * (k(2.0) * t281);
+            let t283 = t282
+                + (t282 - T::fused(t97, t279, T::fused(-t93, t269, t96 * t277)));
+            let t284 = t240 * t176;
+            let t285 = t237 * t176;
+            let t286 = T::fused(
+                t181,
+                t285,
+                -T::fused(t191, t284, -T::fused(-t106, t261, t110 * t273)),
             );
-            let t282 = T::fused(
+            let t287 = t225 * t176;
+            let t288 = T::fused(
                 k(2.0),
-                T::fused(t229, t183, -T::fused(t129, t270, t281)),
-                k(0.00025) * T::fused(-t231, t149, t213 * t183),
+                T::fused(t246, t203, -T::fused(t151, t287, t286)),
+                k(0.00025) * T::fused(-t250, t166, t232 * t203),
             );
-            let t283 = t223 * t121;
-            let t284 = T::fused(
-                t175,
-                t283,
-                T::fused(t96, t258, T::fused(t90, t246, t227 * t189)),
-            );
-            let t285 = t220 * t121;
-            let t286 = t206 * t121;
-            let t287 = k(2.0) * T::fused(t137, t286, -T::fused(t167, t285, -t284));
-            let t288 = t287 + t282;
-            let t289 = T::fused(
-                t173,
-                t272,
-                T::fused(t228, t183, -T::fused(t98, t245, t92 * t257)),
-            );
+            let t289 = t240 * t166;
             let t290 = T::fused(
-                -k(0.00025),
-                T::fused(t231, t159, t218 * t183),
-                k(2.0) * T::fused(t129, t275, T::fused(t163, t274, t289)),
+                t192,
+                t289,
+                -T::fused(t245, t206, T::fused(t107, t262, t113 * t274)),
             );
-            let t291 = T::fused(
-                t174,
-                t283,
-                -T::fused(t93, t258, -T::fused(t89, t246, t227 * t186)),
+            let t291 = t237 * t166;
+            let t292 = t225 * t166;
+            let t293 = T::fused(
+                k(0.00025),
+                T::fused(t252, t176, t235 * t206),
+                k(2.0) * T::fused(t154, t292, -T::fused(t184, t291, -t290)),
             );
-            let t292 = k(2.0) * T::fused(t134, t286, T::fused(t164, t285, -t291));
-            let t293 = t292 - t290;
-            let t294 = T::fused(
-                t105,
-                t293,
-                -T::fused(t106, t288, -(t280 + T::fused(t109, t277, t280))),
-            );
-            let t295 = T::fused(t113, t283, -T::fused(t154, t267, t142 * t272));
-            let t296 = T::fused(t116, t285, T::fused(t156, t268, t146 * t274));
-            let t297 = k(2.0) * (t296 + t295);
-            let t298 = T::fused(t113, t285, -T::fused(t154, t268, t142 * t274));
-            let t299 = t132 * (k(2.0) * t298);
-            let t300 = T::fused(t108, t283, -T::fused(-t152, t267, t140 * t272));
-            let t301 = T::fused(t116, t286, T::fused(t156, t270, t146 * t275));
-            let t302 = k(2.0) * (t301 - t300);
-            let t303 = T::fused(t108, t285, -T::fused(-t152, t268, t140 * t274));
-            let t304 = T::fused(t113, t286, -T::fused(t154, t270, t142 * t275));
-            let t305 = k(2.0) * (t304 + t303);
-            let t306 = T::fused(
-                t126,
-                t305,
-                -T::fused(t127, t302, t299 + T::fused(t130, t297, t299)),
-            );
-            let t307 = T::fused(t116, t283, T::fused(t156, t267, t146 * t272));
-            let t308 = k(2.0) * (t301 + t300);
-            let t309 = T::fused(
-                t126,
-                t308,
-                -T::fused(k(2.0), t130 * (k(2.0) * t307), t132 * t297),
-            );
-            let t310 = k(2.0) * (t304 - t303);
-            let t311 = T::fused(t127, t310, t309);
-            let t312 = T::fused(t124, t311, -T::fused(t125, t306, t294));
-            let t313 = t276 - t271;
-            let t314 = t287 - t282;
-            let t315 = T::fused(
-                t173,
-                t283,
-                T::fused(t92, t258, -T::fused(-t98, t246, t227 * t183)),
-            );
-            let t316 = k(2.0) * T::fused(t129, t286, T::fused(t163, t285, t315));
-            let t317 = t105 * t316;
-            let t318 = t317
-                + (t317 - T::fused(t111, t293, T::fused(t106, t313, t109 * t314)));
-            let t319 = k(2.0) * (t296 - t295);
-            let t320 = T::fused(t108, t286, -T::fused(-t152, t270, t140 * t275));
-            let t321 = t127 * (k(2.0) * (t320 + (t298 + t307)));
-            let t322 = t321
-                + (t321 - T::fused(t130, t310, -T::fused(t126, t319, t132 * t302)));
-            let t323 = t126 * (k(2.0) * t320);
-            let t324 = t323
-                + (t323 - T::fused(t132, t305, T::fused(-t127, t319, t130 * t308)));
-            let t325 = T::fused(t125, t324, -T::fused(t124, t322, -t318));
-            let t326 = T::fused(t104, t325, -T::fused(t103, t312, -t266));
-            let t327 = k(2.0) * (t259 + t254);
-            let t328 = t87 * t242;
-            let t329 = T::fused(
-                t59,
-                t250,
-                T::fused(t116, t246, -T::fused(-t156, t244, t146 * t245)),
-            );
-            let t330 = t76 * (k(2.0) * (t264 + (t329 + t328)));
-            let t331 = t330
-                + (t330 - T::fused(t79, t262, -T::fused(t74, t252, t80 * t327)));
-            let t332 = T::fused(
-                t167,
-                t268,
-                -T::fused(t175, t267, T::fused(t90, t244, t96 * t256)),
-            );
-            let t333 = T::fused(
-                k(2.0),
-                T::fused(t229, t189, T::fused(t137, t270, -t332)),
-                k(0.00025) * T::fused(-t235, t149, t213 * t189),
-            );
-            let t334 = t292 + t290;
-            let t335 = T::fused(
-                t106,
-                t334,
-                T::fused(t105, t314, T::fused(-k(2.0), t109 * t333, t111 * t277)),
-            );
-            let t336 = T::fused(t125, t311, T::fused(t124, t306, t335));
-            let t337 = t106 * (t316 - (t279 - t333));
-            let t338 = t337
-                + (t337 - T::fused(t109, t334, -T::fused(-t105, t313, t111 * t288)));
-            let t339 = T::fused(t124, t324, T::fused(t125, t322, t338));
-            let t340 = T::fused(t104, t339, -T::fused(t103, t336, -t331));
-            let t341 = T::fused(t10, t162, T::fused(t0, t191, k(2e-6) * t101));
-            let t342 = T::fused(u2, t171, t212 * t171);
-            let t343 = T::fused(u2, t179, t212 * t179);
-            let t344 = T::fused(-t108, t183, T::fused(-t113, t186, t116 * t189));
-            let t345 = T::fused(-t152, t183, T::fused(t154, t186, t156 * t189));
-            let t346 = T::fused(
-                t208,
-                t343,
-                T::fused(k(0.000125), T::fused(t198, t344, t211 * t345), t226 * t344),
-            );
-            let t347 = T::fused(-t204, t122, T::fused(t209, t342, t346));
-            let t348 = T::fused(-u0, t341, t347);
-            let t349 = t83 * t348;
-            let t350 = k(2.0) * (t251 - t243);
-            let t351 = T::fused(
-                t76,
-                t327,
-                -T::fused(-k(2.0), t80 * (k(2.0) * t328), t79 * t350),
-            );
-            let t352 = T::fused(
-                t103,
-                t325,
-                T::fused(t104, t312, -T::fused(t74, t262, -t351)),
-            );
-            let t353 = T::fused(
-                t74,
-                t260,
-                T::fused(-k(2.0), t79 * (k(2.0) * t329), t80 * t350),
-            );
-            let t354 = T::fused(
-                t103,
-                t339,
-                T::fused(t104, t336, T::fused(t76, t262, t353)),
-            );
-            let t355 = T::fused(t140, t183, T::fused(t142, t186, t146 * t189));
-            let t356 = k(1e-6) * t159;
-            let t357 = T::fused(
-                k(0.000125),
-                T::fused(-t204, t344, t211 * t355),
-                T::fused(-t225, t344, t211 * t356),
-            );
-            let t358 = T::fused(
-                -u1,
-                t162,
-                T::fused(t198, t122, T::fused(t208, t342, T::fused(-t209, t343, t357))),
-            );
-            let t359 = t210 * t171;
-            let t360 = t221 * t179;
-            let t361 = t360 + t359;
-            let t362 = T::fused(
-                -u1,
+            let t294 = t293 + t288;
+            let t295 = T::fused(
                 t191,
-                T::fused(t225, t355, T::fused(-t226, t345, t204 * t356)) - t361,
+                t289,
+                -T::fused(t245, t203, -T::fused(-t106, t262, t110 * t274)),
             );
-            let t363 = T::fused(
-                t172,
-                t179,
-                T::fused(t182, t183, T::fused(t185, t186, T::fused(t188, t189, t356))),
+            let t296 = T::fused(
+                -k(0.00025),
+                T::fused(t250, t176, t235 * t203),
+                k(2.0) * T::fused(t151, t292, T::fused(t181, t291, -t295)),
             );
-            let t364 = T::fused(-t180, t171, t363);
-            let t365 = k(1e-6) * t119;
-            let t366 = t365 + t364;
-            let t367 = t365 - t366;
-            let t368 = T::fused(t202, t358, T::fused(-t203, t362, u0 * t367));
-            let t369 = t83 * t368;
-            let t370 = T::fused(
+            let t297 = t128 * t296;
+            let t298 = T::fused(
+                t180,
+                t285,
+                T::fused(t190, t284, T::fused(t115, t261, t109 * t273)),
+            );
+            let t299 = T::fused(
                 k(2.0),
-                T::fused(-t71, t349, t78 * t369),
-                T::fused(t193, t369, -T::fused(-t75, t352, t73 * t354)),
+                T::fused(t246, t200, -T::fused(t146, t287, t298)),
+                k(0.00025) * T::fused(-t248, t166, t232 * t200),
+            );
+            let t300 = t240 * t138;
+            let t301 = T::fused(
+                t192,
+                t300,
+                T::fused(t113, t275, T::fused(t107, t263, t244 * t206)),
+            );
+            let t302 = t237 * t138;
+            let t303 = t225 * t138;
+            let t304 = k(2.0) * T::fused(t154, t303, -T::fused(t184, t302, -t301));
+            let t305 = t304 + t299;
+            let t306 = T::fused(
+                t190,
+                t289,
+                T::fused(t245, t200, -T::fused(t115, t262, t109 * t274)),
+            );
+            let t307 = T::fused(
+                -k(0.00025),
+                T::fused(t248, t176, t235 * t200),
+                k(2.0) * T::fused(t146, t292, T::fused(t180, t291, t306)),
+            );
+            let t308 = T::fused(
+                t191,
+                t300,
+                -T::fused(t110, t275, -T::fused(t106, t263, t244 * t203)),
+            );
+            let t309 = k(2.0) * T::fused(t151, t303, T::fused(t181, t302, -t308));
+            let t310 = t309 - t307;
+            let t311 = T::fused(
+                t122,
+                t310,
+                -T::fused(t123, t305, -(t297 + T::fused(t126, t294, t297))),
+            );
+            let t312 = T::fused(t130, t300, -T::fused(t171, t284, t159 * t289));
+            let t313 = T::fused(t133, t302, T::fused(t173, t285, t163 * t291));
+            let t314 = k(2.0) * (t313 + t312);
+            let t315 = T::fused(t130, t302, -T::fused(t171, t285, t159 * t291));
+            let t316 = t149 * (k(2.0) * t315);
+            let t317 = T::fused(t125, t300, -T::fused(-t169, t284, t157 * t289));
+            let t318 = T::fused(t133, t303, T::fused(t173, t287, t163 * t292));
+            let t319 = k(2.0) * (t318 - t317);
+            let t320 = T::fused(t125, t302, -T::fused(-t169, t285, t157 * t291));
+            let t321 = T::fused(t130, t303, -T::fused(t171, t287, t159 * t292));
+            let t322 = k(2.0) * (t321 + t320);
+            let t323 = T::fused(
+                t143,
+                t322,
+                -T::fused(t144, t319, t316 + T::fused(t147, t314, t316)),
+            );
+            let t324 = T::fused(t133, t300, T::fused(t173, t284, t163 * t289));
+            let t325 = k(2.0) * (t318 + t317);
+            let t326 = T::fused(
+                t143,
+                t325,
+                -T::fused(k(2.0), t147 * (k(2.0) * t324), t149 * t314),
+            );
+            let t327 = k(2.0) * (t321 - t320);
+            let t328 = T::fused(t144, t327, t326);
+            let t329 = T::fused(t141, t328, -T::fused(t142, t323, t311));
+            let t330 = t293 - t288;
+            let t331 = t304 - t299;
+            let t332 = T::fused(
+                t190,
+                t300,
+                T::fused(t109, t275, -T::fused(-t115, t263, t244 * t200)),
+            );
+            let t333 = k(2.0) * T::fused(t146, t303, T::fused(t180, t302, t332));
+            let t334 = t122 * t333;
+            let t335 = t334
+                + (t334 - T::fused(t128, t310, T::fused(t123, t330, t126 * t331)));
+            let t336 = k(2.0) * (t313 - t312);
+            let t337 = T::fused(t125, t303, -T::fused(-t169, t287, t157 * t292));
+            let t338 = t144 * (k(2.0) * (t337 + (t315 + t324)));
+            let t339 = t338
+                + (t338 - T::fused(t147, t327, -T::fused(t143, t336, t149 * t319)));
+            let t340 = t143 * (k(2.0) * t337);
+            let t341 = t340
+                + (t340 - T::fused(t149, t322, T::fused(-t144, t336, t147 * t325)));
+            let t342 = T::fused(t142, t341, -T::fused(t141, t339, -t335));
+            let t343 = T::fused(t121, t342, -T::fused(t120, t329, -t283));
+            let t344 = k(2.0) * (t276 + t271);
+            let t345 = t104 * t259;
+            let t346 = T::fused(
+                t54,
+                t267,
+                T::fused(t133, t263, -T::fused(-t173, t261, t163 * t262)),
+            );
+            let t347 = t93 * (k(2.0) * (t281 + (t346 + t345)));
+            let t348 = t347
+                + (t347 - T::fused(t96, t279, -T::fused(t91, t269, t97 * t344)));
+            let t349 = T::fused(
+                t184,
+                t285,
+                -T::fused(t192, t284, T::fused(t107, t261, t113 * t273)),
+            );
+            let t350 = T::fused(
+                k(2.0),
+                T::fused(t246, t206, T::fused(t154, t287, -t349)),
+                k(0.00025) * T::fused(-t252, t166, t232 * t206),
+            );
+            let t351 = t309 + t307;
+            let t352 = T::fused(
+                t123,
+                t351,
+                T::fused(t122, t331, T::fused(-k(2.0), t126 * t350, t128 * t294)),
+            );
+            let t353 = T::fused(t142, t328, T::fused(t141, t323, t352));
+            let t354 = t123 * (t333 - (t296 - t350));
+            let t355 = t354
+                + (t354 - T::fused(t126, t351, -T::fused(-t122, t330, t128 * t305)));
+            let t356 = T::fused(t141, t341, T::fused(t142, t339, t355));
+            let t357 = T::fused(t121, t356, -T::fused(t120, t353, -t348));
+            let t358 = T::fused(t0, t179, T::fused(t19, t208, k(2e-6) * t118));
+            let t359 = T::fused(u2, t188, t231 * t188);
+            let t360 = T::fused(u2, t196, t231 * t196);
+            let t361 = T::fused(-t125, t200, T::fused(-t130, t203, t133 * t206));
+            let t362 = T::fused(-t169, t200, T::fused(t171, t203, t173 * t206));
+            let t363 = T::fused(
+                t227,
+                t360,
+                T::fused(k(0.000125), T::fused(t215, t361, t230 * t362), t243 * t361),
+            );
+            let t364 = T::fused(-t221, t139, T::fused(t228, t359, t363));
+            let t365 = T::fused(-u0, t358, t364);
+            let t366 = t100 * t365;
+            let t367 = k(2.0) * (t268 - t260);
+            let t368 = T::fused(
+                t93,
+                t344,
+                -T::fused(-k(2.0), t97 * (k(2.0) * t345), t96 * t367),
+            );
+            let t369 = T::fused(
+                t120,
+                t342,
+                T::fused(t121, t329, -T::fused(t91, t279, -t368)),
+            );
+            let t370 = T::fused(
+                t91,
+                t277,
+                T::fused(-k(2.0), t96 * (k(2.0) * t346), t97 * t367),
             );
             let t371 = T::fused(
-                t78,
-                T::fused(t193, t349, -T::fused(t73, t326, t75 * t340)),
-                t71 * t370,
+                t120,
+                t356,
+                T::fused(t121, t353, T::fused(t93, t279, t370)),
             );
-            let t372 = T::fused(
-                -k(0.5),
-                t371,
-                T::fused(t7, t196 * t341, t3 * (t196 * t366)),
+            let t372 = T::fused(t157, t200, T::fused(t159, t203, t163 * t206));
+            let t373 = k(1e-6) * t176;
+            let t374 = T::fused(
+                k(0.000125),
+                T::fused(-t221, t361, t230 * t372),
+                T::fused(-t242, t361, t230 * t373),
             );
-            let t373 = T::fused(
-                t76,
-                t339,
-                T::fused(t74, t325, T::fused(-t79, t336, t80 * t312)),
-            );
-            let t374 = T::fused(-t200, t358, u0 * t362);
             let t375 = T::fused(
-                t79,
-                t339,
-                -T::fused(t80, t325, -T::fused(t76, t336, t74 * t312)),
+                -u1,
+                t179,
+                T::fused(t215, t139, T::fused(t227, t359, T::fused(-t228, t360, t374))),
             );
-            let t376 = T::fused(u0, t358, t200 * t362);
-            let t377 = T::fused(
-                k(2.0),
-                T::fused(-t104, t374, t103 * t376),
-                T::fused(t201, t376, t375),
-            );
-            let t378 = T::fused(
-                k(0.5),
-                T::fused(t103, T::fused(t201, t374, t373), t104 * t377),
-                t0 * T::fused(-t36, t191, t197 * t162),
-            );
+            let t376 = t229 * t188;
+            let t377 = t238 * t196;
+            let t378 = t377 + t376;
             let t379 = T::fused(
-                -t50,
-                t192,
-                T::fused(t10, T::fused(t36, t162, t197 * t191), -t378),
+                -u1,
+                t208,
+                T::fused(t242, t372, T::fused(-t243, t362, t221 * t373)) - t378,
             );
             let t380 = T::fused(
-                -t172,
-                T::fused(t213, t179, t218 * t171),
-                t180 * T::fused(-t218, t179, t213 * t171),
+                t189,
+                t196,
+                T::fused(t199, t200, T::fused(t202, t203, T::fused(t205, t206, t373))),
             );
-            let t381 = T::fused(-t204, t342, t198 * t343);
-            let t382 = T::fused(
-                t106,
-                t322,
-                -T::fused(t109, t311, T::fused(t111, t306, t207 * t381)),
-            );
-            let t383 = T::fused(t198, t342, t204 * t343);
-            let t384 = T::fused(
-                -t109,
-                t306,
-                T::fused(k(2.0), T::fused(-t125, t381, t124 * t383), t207 * t383),
-            );
-            let t385 = T::fused(
-                -t124,
-                T::fused(t105, t324, t382),
-                t125
-                    * T::fused(
-                        t106,
-                        t324,
-                        -T::fused(t105, t322, -T::fused(t111, t311, t384)),
-                    ),
-            );
-            let t386 = T::fused(
-                -t195,
-                t341,
-                T::fused(-t203, t358, T::fused(-t202, t362, t200 * t367)),
-            );
+            let t381 = T::fused(-t197, t188, t380);
+            let t382 = k(1e-6) * t136;
+            let t383 = t382 + t381;
+            let t384 = t382 - t383;
+            let t385 = T::fused(t219, t375, T::fused(-t220, t379, u0 * t384));
+            let t386 = t100 * t385;
             let t387 = T::fused(
-                t68,
-                t161,
-                T::fused(t55, t192, T::fused(t204, t162, T::fused(t211, t191, t347))),
+                k(2.0),
+                T::fused(-t88, t366, t95 * t386),
+                T::fused(t210, t386, -T::fused(-t92, t369, t90 * t371)),
             );
             let t388 = T::fused(
-                t69,
-                t161,
-                T::fused(t64, t364, T::fused(t56, t192, t359 + (t360 + t361))),
+                t95,
+                T::fused(t210, t366, -T::fused(t90, t343, t92 * t357)),
+                t88 * t387,
             );
-            let t389 = t7 * t10;
+            let t389 = T::fused(
+                -k(0.5),
+                t388,
+                T::fused(t12, t213 * t358, t21 * (t213 * t383)),
+            );
             let t390 = T::fused(
-                -k(9.922008537695943),
-                t30,
-                k(0.07895683520871487) * (t8 * T::fused(u0, t389, t3 * t11)),
+                t93,
+                t356,
+                T::fused(t91, t342, T::fused(-t96, t353, t97 * t329)),
             );
-            let t391 = T::fused(
-                t9,
-                T::fused(-t24, t389, t3 * t19),
-                k(0.006283185307179587)
-                    * (t30 * T::fused(-k(631.4572895816972), t0, t59)),
+            let t391 = T::fused(-t217, t375, u0 * t379);
+            let t392 = T::fused(
+                t96,
+                t356,
+                -T::fused(t97, t342, -T::fused(t93, t353, t91 * t329)),
             );
-            let t392 = T::fused(-t0, t390, t391) * t2;
-            let t393 = T::fused(
-                t7,
-                T::fused(t59, t0, k(947.6794145926002)),
-                t10 * T::fused(k(631.4572895816972), t17 * t60, t22),
-            );
+            let t393 = T::fused(u0, t375, t217 * t379);
             let t394 = T::fused(
-                t9,
-                t3 * T::fused(t0, t24, t57),
-                k(0.006283185307179587) * (t5 * t393),
+                k(2.0),
+                T::fused(-t121, t391, t120 * t393),
+                T::fused(t218, t393, t392),
             );
-            let t395 = k(166631.95167673402) * t394;
-            let t396 = T::fused(-t0, t392, k(100000.0) * t390);
-            let t397 = t86 * t242;
-            let t398 = t82 * t242;
+            let t395 = T::fused(
+                k(0.5),
+                T::fused(t120, T::fused(t218, t391, t390), t121 * t394),
+                t19 * T::fused(-t82, t208, t214 * t179),
+            );
+            let t396 = T::fused(
+                -t38,
+                t209,
+                T::fused(t0, T::fused(t82, t179, t214 * t208), -t395),
+            );
+            let t397 = T::fused(
+                -t189,
+                T::fused(t232, t196, t235 * t188),
+                t197 * T::fused(-t235, t196, t232 * t188),
+            );
+            let t398 = T::fused(-t221, t359, t215 * t360);
             let t399 = T::fused(
-                -t22,
-                T::fused(t90, t250, -T::fused(-t83, t397, t96 * t255)),
-                t59 * T::fused(t89, t250, T::fused(-t83, t398, t93 * t255)),
+                t123,
+                t339,
+                -T::fused(t126, t328, T::fused(t128, t323, t226 * t398)),
             );
             (
-                t326,
-                t340,
+                t208,
+                t209,
+                t211,
+                t212,
+                t215,
+                t216,
+                t217,
+                t219,
+                t220,
+                t221,
+                t226,
+                t230,
+                t259,
+                t267,
+                t272,
+                t323,
+                t328,
+                t339,
                 t341,
-                t348,
-                t352,
-                t354,
+                t343,
+                t357,
+                t358,
+                t359,
+                t360,
                 t364,
-                t366,
-                t368,
-                t372,
+                t365,
+                t369,
+                t371,
+                t375,
+                t376,
+                t377,
+                t378,
                 t379,
-                t380,
+                t381,
+                t383,
+                t384,
                 t385,
-                t386,
-                t387,
-                t388,
-                t392,
-                t395,
+                t389,
                 t396,
                 t397,
                 t398,
                 t399,
             )
         };
-        let (t403,) = {
-            let t400 = T::fused(
-                t73,
-                T::fused(t78, t352, t71 * t340),
-                t75 * T::fused(-t71, t326, t78 * t354),
-            );
+        let (t402, t403, t404, t405, t407, t409, t411, t418) = {
+            let t400 = T::fused(t215, t359, t221 * t360);
             let t401 = T::fused(
-                k(7895.6835208714865),
-                T::fused(-t3, t341, t7 * t366),
-                T::fused(k(0.5), t399, k(0.25) * t400),
+                -t126,
+                t323,
+                T::fused(k(2.0), T::fused(-t142, t398, t141 * t400), t226 * t400),
             );
             let t402 = T::fused(
-                t194,
-                t348,
-                T::fused(t199, t368, -T::fused(-t59, t397, t22 * t398)),
+                -t141,
+                T::fused(t122, t341, t399),
+                t142
+                    * T::fused(
+                        t123,
+                        t341,
+                        -T::fused(t122, t339, -T::fused(t128, t328, t401)),
+                    ),
             );
             let t403 = T::fused(
-                -t392,
-                t192,
-                k(125.66370614359172)
-                    * T::fused(-t5, t401, t8 * (k(62.83185307179586) * t402)),
+                -t212,
+                t358,
+                T::fused(-t220, t375, T::fused(-t219, t379, t217 * t384)),
             );
-            (t403,)
+            let t404 = T::fused(
+                -t85,
+                t178,
+                T::fused(-t40, t209, T::fused(t221, t179, T::fused(t230, t208, t364))),
+            );
+            let t405 = T::fused(
+                t86,
+                t178,
+                T::fused(t60, t381, T::fused(t41, t209, t376 + (t377 + t378))),
+            );
+            let t406 = T::fused(
+                -t13,
+                T::fused(k(0.5), t54 * (t21 * t5), t21 * t20),
+                t7 * T::fused(t21, t18, t12 * t28),
+            );
+            let t407 = k(125.66370614359172) * t406;
+            let t408 = T::fused(
+                k(0.5),
+                T::fused(t9, k(16.6631951676734) * t0, t54 * (t19 * t52)),
+                k(7895.6835208714865) * t12,
+            );
+            let t409 = k(125.66370614359172) * T::fused(t13, t408, t7 * (t21 * t48));
+            let t410 = T::fused(
+                -t7,
+                T::fused(t12, t63, t21 * t73),
+                t13 * T::fused(t21, t66, k(0.5) * (t54 * (t21 * t74))),
+            );
+            let t411 = k(125.66370614359172) * t410;
+            let t412 = t103 * t259;
+            let t413 = t99 * t259;
+            let t414 = T::fused(
+                -t9,
+                T::fused(t107, t267, -T::fused(-t100, t412, t113 * t272)),
+                t54 * T::fused(t106, t267, T::fused(-t100, t413, t110 * t272)),
+            );
+            let t415 = T::fused(
+                t90,
+                T::fused(t95, t369, t88 * t357),
+                t92 * T::fused(-t88, t343, t95 * t371),
+            );
+            let t416 = T::fused(
+                k(7895.6835208714865),
+                T::fused(-t21, t358, t12 * t383),
+                T::fused(k(0.5), t414, k(0.25) * t415),
+            );
+            let t417 = T::fused(
+                t211,
+                t365,
+                T::fused(t216, t385, -T::fused(-t54, t412, t9 * t413)),
+            );
+            let t418 = T::fused(
+                t407,
+                t209,
+                k(125.66370614359172)
+                    * T::fused(-t13, t416, t7 * (k(62.83185307179586) * t417)),
+            );
+            (t402, t403, t404, t405, t407, t409, t411, t418)
         };
         *dfdx = [
             k(0.0),
@@ -5893,43 +5920,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -t26,
-            -t50,
+            -t29,
+            -t38,
             k(0.0),
-            -t52,
-            -t55,
-            -t56,
+            -t39,
+            t40,
+            -t41,
             k(0.0),
-            t58,
-            -t62,
+            t49,
+            -t58,
             k(0.0),
-            t63,
+            -t59,
             k(0.0),
-            -t64,
+            -t60,
             k(0.0),
-            -t65,
-            t66,
+            -t75,
+            t83,
             k(0.0),
-            -t67,
-            t68,
-            t69,
+            t84,
+            -t85,
+            t86,
             k(0.0),
-            T::fused(t65, t161, T::fused(t58, t364, -T::fused(t26, t192, t372))),
-            -T::fused(t66, t161, T::fused(t62, t364, -t379)),
-            T::fused(k(0.5), t385, -t380),
-            T::fused(t67, t161, -T::fused(-t63, t364, T::fused(t52, t192, t386))),
-            -t387,
-            -t388,
+            T::fused(t75, t178, T::fused(t49, t381, -T::fused(t29, t209, t389))),
+            -T::fused(t83, t178, T::fused(t58, t381, -t396)),
+            T::fused(k(0.5), t402, -t397),
+            -T::fused(t84, t178, T::fused(t59, t381, T::fused(t39, t209, t403))),
+            -t404,
+            -t405,
             k(0.0),
         ];
         *dfdt = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t392,
-            t395,
-            -t396,
-            T::fused(t396, t161, T::fused(t395, t364, t403)),
+            t407,
+            t409,
+            t411,
+            T::fused(-t411, t178, T::fused(t409, t381, t418)),
         ];
     }
     fn joint_input_jacobian(

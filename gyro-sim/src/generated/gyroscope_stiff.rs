@@ -16,7 +16,7 @@
 //! * joint_accelerations: 24 operations by normal form; 43 operations by recursion
 //! * joint_accelerations_at: 97 operations by normal form; 116 operations by recursion; 1 more compared
 //! * corrected_accelerations: 196 operations by normal form in the global frame; 207 operations by normal form in the bodies' frames; 5 more compared
-//! * joint_jacobian: 62 operations by normal form of that; 63 operations by derivatives of u̇, from its leaves; 5 more compared
+//! * joint_jacobian: 59 operations by derivatives of the balance, from its leaves, normal form; 59 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 73 | 122 | 1 | 196 | 6 of 18 | 2440 | 197 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 77 | 113 | 0 | 190 | 0 of 15 | 1263 | 190 |
 //! | corrected_solution | both | 101 | 159 | 1 | 261 | 6 of 33 | 20568 | 262 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 17 | 44 | 1 | 62 | 40 of 56 | 157 | 62 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 15 | 43 | 1 | 59 | 40 of 56 | 178 | 59 |
 //!
 //! # Proof
 //!
@@ -3939,7 +3939,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeStiff<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 62 operations (17 ±, 44 ×, 1 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 59 operations (15 ±, 43 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3955,32 +3955,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeStiff<T> {
         let t0 = x1.cos();
         let t1 = t0 * t0;
         let t2 = k(1.0) / T::fused(k(3.000625), t1, k(1.0));
-        let t3 = t1 * t2;
-        let t4 = x1.sin();
-        let t5 = u2 * t4;
-        let t6 = T::fused(-k(6.0087515625), t1, k(6.0087515625));
-        let t7 = T::fused(-t6, t3, k(1.00125));
-        let t8 = T::fused(-k(2.0025), t1, t7);
-        let t9 = u1 * t2
-            * T::fused(k(30.00625), t5 * (t3 - k(0.166631951676734)), u0 * t8);
-        let t10 = u1 * t0;
-        let t11 = t4 * t10;
-        let t12 = k(1.00125) * t2;
-        let t13 = k(4.9937578027465666) * u2;
-        let t14 = u0 * t4;
-        let t15 = k(5.0) * t2;
-        let t16 = k(1.6663195167673401) * u0;
-        let t17 = T::fused(
-            T::fused(k(0.79975), u0 * (k(0.5) - t1), t5),
-            t16,
-            T::fused(-k(16.6631951676734), t4, k(166631951.676734)),
+        let t3 = k(500000.0) * t2;
+        let t4 = k(4.9937578027465666) * u2;
+        let t5 = t1 * t2;
+        let t6 = k(0.166631951676734) - t5;
+        let t7 = x1.sin();
+        let t8 = T::fused(
+            -(t7 * t6),
+            t4,
+            u0 * T::fused(t1, t5 - k(0.333263903353468), t6),
         );
-        let t18 = T::fused(
-            t2,
-            T::fused(-t13, t8, t14 * T::fused(-k(3.00375), t1, t7)),
-            t14,
+        let t9 = k(1.2017503125e-5) * (u1 * t8) * t3;
+        let t10 = k(2.0025e-6) * t0;
+        let t11 = u1 * t7 * t10 * t3;
+        let t12 = u0 * t7;
+        let t13 = t12 - t4;
+        let t14 = t13 * t10 * t3;
+        let t15 = k(1e-5) * t0;
+        let t16 = u1 * t15;
+        let t17 = t16 * t3;
+        let t18 = k(1.2503907471084714) * u2;
+        let t19 = T::fused(
+            k(7.9975e-6),
+            u0 * T::fused(t7, t18, u0 * (k(0.5) - t1)),
+            T::fused(-k(0.0001), t7, k(1000.0)),
         );
-        let t19 = T::fused(k(0.166631951676734), t2 * t6, k(1.0));
+        let t20 = u0 * t15;
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -4006,23 +4006,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeStiff<T> {
             k(0.0),
             -t9,
             k(0.0),
-            t12 * t11,
-            t12 * (t0 * (t14 - t13)),
-            -(t10 * t15),
-            k(0.0),
-            k(0.0),
+            t11,
+            t14,
             -t17,
             k(0.0),
-            k(1.3326390335346803) * (t0 * T::fused(k(1.2503907471084714), u2, t14)),
+            k(0.0),
+            -(k(166631.95167673402) * t19),
+            k(0.0),
+            k(1.3326390335346803) * (t0 * (t12 + t18)),
             k(-1666.3195167673402),
-            t0 * t16,
+            k(166631.95167673402) * t20,
             k(0.0),
             k(0.0),
-            u1 * t18,
+            T::fused(t7, t9, u1 * T::fused(-k(1.00125), t5 * t13, t12)),
             k(0.0),
-            -(t10 * t19),
-            -(t0 * T::fused(-t5, t15, u0 * t19)),
-            t11 * t15,
+            -T::fused(t7, t11, k(100000.0) * t16),
+            -T::fused(t7, t14, k(100000.0) * t20),
+            t7 * t17,
             k(0.0),
             k(0.0),
             k(0.0),
