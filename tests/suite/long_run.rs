@@ -30,7 +30,7 @@ const DRIFT: f64 = 1e-10;
 const ALPHA: f64 = 5e-9;
 
 /// α by the mass-weighted projection, rad, with RK4 and with Tsitouras's method.
-const ALPHA_PROJECTED: [f64; 2] = [3e-10, 5e-11];
+const ALPHA_PROJECTED: [f64; 2] = [5e-11, 5e-11];
 
 /// What a fixed choice does to the energy and to α: a thousand times what the partition is allowed, at least.
 const RUINED_DRIFT: f64 = 1e3 * DRIFT;

@@ -54,9 +54,11 @@ impl<M: Projection<Scalar: Real>> MassWeighted<M> {
             self.rows.as_mut().iter_mut().zip(self.phi.as_ref()).for_each(|(row, phi)| *row = -*phi);
             mechanism.project(t, y, &self.rows, &mut self.change);
             self.refuse_jump(mechanism, t, worst.owner)?;
-            for (position, change) in y.as_mut().chunks_exact_mut(7).zip(self.change.as_ref().chunks_exact(6))
-            {
+            let (positions, velocities) = y.as_mut().split_at_mut(7 * mechanism.n_bodies());
+            let bodies = positions.chunks_exact_mut(7).zip(velocities.chunks_exact_mut(6));
+            for ((position, velocity), change) in bodies.zip(self.change.as_ref().chunks_exact(6)) {
                 displace(position, change);
+                turn(velocity, change);
             }
         }
         let owner = worst.owner.unwrap_or(Owner::Body(0));
