@@ -68,7 +68,7 @@ pub fn cross([a, b, c]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
 }
 
 /// A(p) by rows, paper eq. (3).
-fn rotation([e0, e1, e2, e3]: [f64; 4]) -> [[f64; 3]; 3] {
+pub fn rotation([e0, e1, e2, e3]: [f64; 4]) -> [[f64; 3]; 3] {
     let diagonal = |e: f64| 2.0 * (e0 * e0 + e * e) - 1.0;
     [
         [diagonal(e1), 2.0 * (e1 * e2 - e0 * e3), 2.0 * (e1 * e3 + e0 * e2)],

@@ -9,7 +9,7 @@ mod random;
 mod runs;
 mod shelves;
 
-pub use against::{along, body, check, check_pairs, cross, pair, reference_body, times, worst};
+pub use against::{along, body, check, check_pairs, cross, pair, reference_body, rotation, times, worst};
 pub use engine::{Choice, Engine};
 pub use matrix::{Matrix, difference, phi_pi, phi_q};
 pub use nested::{Said, cargo, say};

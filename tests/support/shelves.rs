@@ -39,26 +39,45 @@ pub fn generated(page: &str) -> Engine {
         "driven-four-bar" => Engine::new(own::driven_four_bar::DrivenFourBar::default()),
         "driven-gyroscope" => Engine::new(shipped::driven_gyroscope::DrivenGyroscope::default()),
         "four-bar" => Engine::new(shipped::four_bar::FourBar::default()),
+        "four-bar-in-line" => Engine::new(shipped::four_bar_in_line::FourBarInLine::default()),
         "four-bar-revolute" => Engine::new(shipped::four_bar_revolute::FourBarRevolute::default()),
         "free-body" => Engine::new(shipped::free_body::FreeBody::default()),
         "friction" => Engine::new(own::friction::Friction::default()),
         "gear" => Engine::new(own::gear::Gear::default()),
         "gyroscope" => Engine::new(shipped::gyroscope::Gyroscope::default()),
+        "gyroscope-at-rest" => Engine::new(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
         "gyroscope-bearings" => Engine::new(own::gyroscope_bearings::GyroscopeBearings::default()),
         "gyroscope-combined-offsets" => {
             Engine::new(shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default())
         }
+        "gyroscope-coulomb" => Engine::new(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
+        "gyroscope-fast" => Engine::new(shipped::gyroscope_fast::GyroscopeFast::default()),
         "gyroscope-free-nutation" => {
             Engine::new(shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
         }
+        "gyroscope-gimbal-lock" => {
+            Engine::new(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default())
+        }
+        "gyroscope-heavy-rotor" => {
+            Engine::new(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default())
+        }
+        "gyroscope-light-rings" => {
+            Engine::new(shipped::gyroscope_light_rings::GyroscopeLightRings::default())
+        }
+        "gyroscope-long" => Engine::new(shipped::gyroscope_long::GyroscopeLong::default()),
         "gyroscope-maximal" => Engine::new(shipped::gyroscope_maximal::GyroscopeMaximal::default()),
         "gyroscope-misalignments" => {
             Engine::new(shipped::gyroscope_misalignments::GyroscopeMisalignments::default())
         }
+        "gyroscope-overdamped" => Engine::new(shipped::gyroscope_overdamped::GyroscopeOverdamped::default()),
         "gyroscope-parameters" => Engine::new(shipped::gyroscope_parameters::GyroscopeParameters::default()),
         "gyroscope-radial-imbalance" => {
             Engine::new(shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default())
         }
+        "gyroscope-rolling-base" => {
+            Engine::new(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
+        }
+        "gyroscope-stiff" => Engine::new(shipped::gyroscope_stiff::GyroscopeStiff::default()),
         "gyroscope-viscous" => Engine::new(shipped::gyroscope_viscous::GyroscopeViscous::default()),
         "heavy-top" => Engine::new(shipped::heavy_top::HeavyTop::default()),
         "loads" => Engine::new(own::loads::Loads::default()),

@@ -40,3 +40,25 @@ pub mod pitching_gyroscope;
 pub mod spinning_top;
 #[rustfmt::skip]
 pub mod torsion;
+#[rustfmt::skip]
+pub mod gyroscope_at_rest;
+#[rustfmt::skip]
+pub mod gyroscope_coulomb;
+#[rustfmt::skip]
+pub mod gyroscope_fast;
+#[rustfmt::skip]
+pub mod gyroscope_gimbal_lock;
+#[rustfmt::skip]
+pub mod gyroscope_heavy_rotor;
+#[rustfmt::skip]
+pub mod gyroscope_light_rings;
+#[rustfmt::skip]
+pub mod gyroscope_long;
+#[rustfmt::skip]
+pub mod gyroscope_overdamped;
+#[rustfmt::skip]
+pub mod gyroscope_rolling_base;
+#[rustfmt::skip]
+pub mod gyroscope_stiff;
+#[rustfmt::skip]
+pub mod four_bar_in_line;

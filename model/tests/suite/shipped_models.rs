@@ -23,7 +23,7 @@ fn rates(stem: &str) -> Vec<f64> {
 #[test]
 fn every_page_is_named_after_its_file() {
     let pages = crate::support::pages("models");
-    assert!(pages.len() >= 16);
+    assert!(pages.len() >= 28);
     for (path, _) in pages {
         let stem = path.file_stem().and_then(|s| s.to_str()).expect("a name");
         assert_eq!(model(stem).name, stem.replace('-', "_"));
@@ -107,6 +107,41 @@ fn moving_bases_carry_the_gyroscope_from_rest_in_the_base() {
             }
         }
     }
+}
+
+#[test]
+fn extreme_gyroscopes_start_as_their_comments_say() {
+    for (stem, expected) in [
+        ("gyroscope-fast", [0.0, 0.0, 1e5]),
+        ("gyroscope-at-rest", [0.0; 3]),
+        ("gyroscope-light-rings", [0.0, 0.0, 100.0]),
+        ("gyroscope-heavy-rotor", [0.0, 0.0, 100.0]),
+        ("gyroscope-gimbal-lock", [0.0, 0.0, 10.0]),
+        ("gyroscope-stiff", [0.0, 0.0, 100.0]),
+        ("gyroscope-overdamped", [0.0, 0.0, 100.0]),
+        ("gyroscope-coulomb", [0.0, 0.0, 100.0]),
+        ("gyroscope-rolling-base", [0.0, 0.0, 100.0]),
+        ("gyroscope-long", [1.0, 0.5, 100.0]),
+    ] {
+        assert_eq!(rates(stem), expected, "{stem}");
+    }
+    for stem in ["gyroscope-stiff", "gyroscope-overdamped"] {
+        assert_eq!(start(stem).joints[1].position, [0.01]);
+    }
+    // At 20 Hz and 0.5 rad.
+    assert!((start("gyroscope-rolling-base").v[3] - 62.831_853_071_795_86).abs() <= 1e-13);
+}
+
+#[test]
+fn the_linkage_in_line_is_a_parallelogram_without_redundancy() {
+    let model = model("four-bar-in-line");
+    assert_eq!((model.rows().len(), model.redundant.len(), model.degrees_of_freedom()), (17, 0, 1));
+    let start = start("four-bar-in-line");
+    let third = std::f64::consts::FRAC_PI_3;
+    for (joint, expected) in [(0, -third), (1, -third), (2, third)] {
+        assert!((start.joints[joint].position[0] - expected).abs() <= 1e-12, "{:?}", start.joints[joint]);
+    }
+    assert!((start.joints[1].rate[0] - 12.0).abs() <= 1e-11, "{:?}", start.joints[1]);
 }
 
 #[test]

@@ -9,6 +9,7 @@
 //! | solution | of |
 //! |---|---|
 //! | [`Gyroscope`] | the gimballed gyroscope on a fixed base, by Kane's equations, in 31 digits |
+//! | [`ReducedGyroscope`] | the same reduced to its inner ring's angle, with springs and friction there; for long and stiff motions |
 //! | [`moving_base`] | the same on a base that rolls and pitches, with the base's work and the bearings' reactions |
 //! | [`Chain`] | any chain of up to four turning or sliding freedoms, on a base that moves |
 //! | [`HeavyTop`] | a body on a spherical joint |
@@ -19,6 +20,8 @@
 //! | [`Slider`], [`PlanarBlock`], [`FallingSpindle`], [`FallingScrew`], [`GearedDiscs`] | prismatic, planar, cylindrical and screw joint and a gear, in closed form |
 //! | [`Bead`], [`RodPendulum`] | a body that turns freely on a line or a rod |
 //! | [`Tether`] | a body on a spring-damper between two points |
+//!
+//! [`scene`] has one for each shipped page, by its name: the joint coordinates at any times.
 //!
 //! The [`Gyroscope`] has three angles, all zero where every frame coincides with the global one:
 //!
@@ -58,7 +61,9 @@ mod newton_euler;
 mod one_axis;
 mod pendulum;
 mod real;
+mod reduced;
 mod rotation;
+mod scene;
 mod solution;
 mod tabulated;
 mod tether;
@@ -81,6 +86,8 @@ pub use hooke::{HookePendulum, HookeSample};
 pub use one_axis::{AxisForce, AxisSample, OneAxis, SampledInput, Side};
 pub use pendulum::{Pendulum, PendulumSample};
 pub use real::Real;
+pub use reduced::ReducedGyroscope;
+pub use scene::{JointRow, Orientation, SceneReference, scene};
 pub use solution::Sample;
 pub use tabulated::{Scene, tabulated};
 pub use tether::{Tether, TetherSample};

@@ -55,6 +55,14 @@ pub fn rolling_and_pitching() -> Chain<3> {
     Chain { base: BaseMotion::turning(vec![roll(), ([0.0, 0.0, 1.0], pitch)]), ..resting() }
 }
 
+/// [`resting`] on a base that rolls 0.5 sin(2π·20 t) rad about the global x axis: at up to 63 rad/s, and as
+/// often as the rotor and the nutation go round, or nearly so.
+#[must_use]
+pub fn rolling_fast() -> Chain<3> {
+    let roll = Sinusoid { amplitude: 0.5, angular_frequency: 20.0 * TAU, phase: 0.0 };
+    Chain { base: BaseMotion::turning(vec![([1.0, 0.0, 0.0], roll)]), ..resting() }
+}
+
 /// What the bearings of α, β and φ exert on outer ring, inner ring and rotor: force (N) along f, g and h of
 /// the joint's frame on the body before it, then torque (N·m) about the joint point of the body after it. f
 /// is z for α, x for β and y for φ.

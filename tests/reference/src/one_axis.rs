@@ -101,7 +101,7 @@ pub struct AxisSample {
 }
 
 /// One of the forces in double-double numbers.
-enum PreciseForce {
+pub(crate) enum PreciseForce {
     Spring {
         stiffness: DoubleDouble,
         free: DoubleDouble,
@@ -208,7 +208,7 @@ impl SampledInput {
 }
 
 impl PreciseForce {
-    fn new(force: &AxisForce) -> Self {
+    pub(crate) fn new(force: &AxisForce) -> Self {
         match *force {
             AxisForce::Spring { stiffness, free } => {
                 PreciseForce::Spring { stiffness: decimal(stiffness), free: decimal(free) }
@@ -228,7 +228,7 @@ impl PreciseForce {
         }
     }
 
-    fn at(&self, x: DoubleDouble, rate: DoubleDouble) -> DoubleDouble {
+    pub(crate) fn at(&self, x: DoubleDouble, rate: DoubleDouble) -> DoubleDouble {
         match *self {
             PreciseForce::Spring { stiffness, free } => -(stiffness * (x - free)),
             PreciseForce::Damper(damping) => -(damping * rate),
@@ -244,7 +244,7 @@ impl PreciseForce {
     }
 
     /// Energy stored; `None` where the force stores none.
-    fn energy(&self, x: DoubleDouble) -> Option<DoubleDouble> {
+    pub(crate) fn energy(&self, x: DoubleDouble) -> Option<DoubleDouble> {
         match *self {
             PreciseForce::Spring { stiffness, free } => {
                 Some((stiffness * (x - free) * (x - free)).times(0.5))

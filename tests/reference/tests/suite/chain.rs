@@ -223,6 +223,7 @@ fn laws_of_motion_hold_for_everything_at_once() {
 fn laws_of_motion_hold_for_the_gyroscope_on_its_moving_base() {
     check_laws(&moving_base::rolling(), 0.2);
     check_laws(&moving_base::rolling_and_pitching(), 0.2);
+    check_laws(&moving_base::rolling_fast(), 0.2);
 }
 
 /// The first joint's balance needs the base's rotation: at rest it is known.
@@ -240,7 +241,8 @@ fn the_base_carries_the_whole_gyroscope() {
 fn energy_comes_from_the_base_and_goes_into_the_dampers() {
     /// Rounding of gain and works.
     const RELATIVE: f64 = 1e-15;
-    for chain in [everything(), moving_base::rolling(), moving_base::rolling_and_pitching()] {
+    let carried = [moving_base::rolling(), moving_base::rolling_and_pitching(), moving_base::rolling_fast()];
+    for chain in [everything()].into_iter().chain(carried) {
         for sample in chain.solve(&[0.1, 0.35, 1.0]) {
             let (gain, work) = (sample.energy_gain, sample.base_work + sample.damping_work);
             let size = sample.base_work.abs() + sample.damping_work.abs();

@@ -3,4 +3,5 @@
 mod bearings;
 mod chain;
 mod lagrange;
+mod reduced;
 mod scenes;

@@ -1,0 +1,74 @@
+//! Every shipped page has its reference solution and sets out as it says: right numbers, joints in the right order.
+#![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
+
+use gyro_reference::{JointRow, scene};
+use gyro_runner::{JointSample, Sample, Settings};
+use gyro_sim_suite::{generated, model, rotation, shelves, simulate, times};
+
+/// Steps of the page's own length.
+const STEPS: f64 = 20.0;
+
+/// Over one and the value. Most pages take steps of a hundredth of a radian, the torsional spring of several.
+const AGREEMENT: f64 = 1e-8;
+
+/// Positions and rates of all joints, orientations as rotation matrices.
+fn found(sample: &Sample) -> Vec<f64> {
+    let (mut positions, mut rates, mut orientations) = (Vec::new(), Vec::new(), Vec::new());
+    for joint in &sample.coordinates {
+        match *joint {
+            JointSample::Angle { position, rate } | JointSample::Length { position, rate } => {
+                positions.push(position);
+                rates.push(rate);
+            }
+            JointSample::Orientation { position, rate } => {
+                orientations.extend(rotation(position).concat());
+                orientations.extend(rate);
+            }
+        }
+    }
+    [positions, rates, orientations].concat()
+}
+
+fn expected(row: &JointRow) -> Vec<f64> {
+    let orientations =
+        row.orientations.iter().flat_map(|o| [&o.rotation.concat()[..], &o.angular_velocity].concat());
+    row.positions.iter().chain(&row.rates).copied().chain(orientations).collect()
+}
+
+/// The worst error of a page in its first steps; `None` if it has no reference.
+fn error(page: &str, reference: &str) -> Option<f64> {
+    let (scene, model) = (scene(reference)?, model(page));
+    let step = model.simulation.step;
+    let settings =
+        Settings { t_end: STEPS * step, step, correct_every: Some(5.0 * step), sample_every: 5.0 * step };
+    let run = simulate(&generated(page), &model, &settings);
+    let rows = scene.solve(&times(&run));
+    let errors = run.samples.iter().zip(&rows).flat_map(|(sample, row)| {
+        let (found, expected) = (found(sample), expected(row));
+        assert_eq!(found.len(), expected.len(), "{page}: {found:?} {expected:?}");
+        found.into_iter().zip(expected).map(|(a, b)| (a - b).abs() / (1.0 + b.abs())).collect::<Vec<_>>()
+    });
+    Some(errors.fold(0.0, |worst: f64, x| if x.is_nan() { x } else { worst.max(x) }))
+}
+
+#[test]
+fn every_shipped_page_with_joints_moves_as_its_reference() {
+    for page in shelves()[0].pages() {
+        let Some(error) = error(&page, &page) else {
+            assert!(
+                model(&page).joints.is_empty(),
+                "{page} has no reference: add it to gyro_reference::scene"
+            );
+            continue;
+        };
+        println!("{page}: off by {error:.1e}");
+        assert!(error <= AGREEMENT, "{page}: off by {error:e}");
+    }
+}
+
+#[test]
+fn another_reference_does_not_pass() {
+    // The check must be able to fail, even for scenes that hardly differ.
+    let error = error("gyroscope-light-rings", "gyroscope").expect("it has a reference");
+    assert!(error > 10.0 * AGREEMENT, "{error:e}");
+}
