@@ -8,7 +8,7 @@ use crate::textbook::p_dot;
 use gyro_model::Model;
 use gyro_sim::{Energy, Error, JointInfo, Mechanism, Ode, Partition, RowInfo};
 use nalgebra::Vector4;
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
 use std::fmt::Debug;
 
 /// A mechanism assembled at run time, with the linear algebra of `S`.
@@ -28,6 +28,8 @@ struct Space<T> {
     accelerations: Vec<T>,
     lambda: Vec<T>,
     nu: Vec<T>,
+    /// Of [`Projection`](gyro_sim::Projection): empty until it is asked for, as it grows with the square of the mechanism.
+    projection: Vec<T>,
 }
 
 /// How eq. (17) is solved and how the coordinates are partitioned.
@@ -92,13 +94,19 @@ impl<T: Number, S: Solver<T>> Assembled<T, S> {
             accelerations: zeros(solver.accelerations_len(&lowered)),
             lambda: zeros(lowered.n_rows()),
             nu: zeros(lowered.n_rows()),
+            projection: Vec::new(),
         };
         Ok(Self { lowered, solver, phi_q_pattern, phi_pi_pattern, space: RefCell::new(space) })
     }
 
+    /// Work space of a projection.
+    pub(crate) fn work(&self) -> RefMut<'_, Vec<T>> {
+        RefMut::map(self.space.borrow_mut(), |space| &mut space.projection)
+    }
+
     /// Solves eq. (17), with multipliers, and hands the solution to `f`.
     pub(crate) fn with_solution<R>(&self, at: Moment<'_, T>, f: impl FnOnce(Solution<'_, T>) -> R) -> R {
-        let Space { accelerations, lambda, nu } = &mut *self.space.borrow_mut();
+        let Space { accelerations, lambda, nu, .. } = &mut *self.space.borrow_mut();
         self.solver.accelerations(&self.lowered, at.t, at.y, accelerations);
         self.solver.multipliers(&self.lowered, at.t, at.y, accelerations, lambda);
         self.lowered.nu(at, nu);

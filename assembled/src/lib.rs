@@ -70,6 +70,7 @@ mod outputs;
 mod partition;
 mod path;
 mod primitives;
+mod projection;
 mod quick_look;
 mod reactions;
 mod readings;

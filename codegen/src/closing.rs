@@ -33,22 +33,21 @@ pub fn gradient(kinematics: &Kinematics, row: usize) -> Vec<Twist> {
     columns.map(|c| Twist { t: [c[0], c[1], c[2]], rho: [c[3], c[4], c[5]] }).collect()
 }
 
-/// Corrects the accelerations of the free tree; returns the multipliers too.
+/// Corrects the motions of the free tree, so that these rows change as `rates` of all rows say; returns the multipliers too.
 pub fn close(
-    system: &mut System,
+    graph: &mut Graph,
     kinematics: &Kinematics,
     tree: &EliminatedTree,
+    (rows, rates): (&[usize], &[ExprId]),
     mut motions: Vec<Twist>,
 ) -> (Vec<Twist>, Vec<ExprId>) {
-    let rows = closing_rows(system);
     let gradients: Vec<_> = rows.iter().map(|&row| gradient(kinematics, row)).collect();
     let respond = |gradient: &Vec<Twist>| {
-        let bias = gradient.iter().map(|twist| twist.negated(&mut system.graph)).collect();
+        let bias = gradient.iter().map(|twist| twist.negated(graph)).collect();
         let (forced, along) = (vec![Twist::ZERO; tree.joints.len()], vec![Vec::new(); tree.joints.len()]);
-        tree.respond(&mut system.graph, Excitation { bias, forced, along }).motions
+        tree.respond(graph, Excitation { bias, forced, along }).motions
     };
     let responses: Vec<_> = gradients.iter().map(respond).collect();
-    let graph = &mut system.graph;
     let mut matrix = BTreeMap::new();
     for (k, gradient) in gradients.iter().enumerate() {
         for (l, response) in responses.iter().enumerate().take(k + 1) {
@@ -58,7 +57,7 @@ pub fn close(
     matrix.retain(|_, entry| *entry != Graph::ZERO);
     let excess = rows.iter().zip(&gradients).map(|(&row, gradient)| {
         let rate = dot(graph, gradient, &motions);
-        graph.sub(rate, kinematics.gamma[row])
+        graph.sub(rate, rates[row])
     });
     let excess = excess.collect();
     let multipliers = Elimination::new(matrix, excess).solve_in_order(graph);

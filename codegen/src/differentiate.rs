@@ -99,6 +99,66 @@ impl<'a> Derivative<'a> {
     }
 }
 
+/// The derivatives of one expression by some symbols, from the expression inwards: each operation on the way is met once, not once for each
+/// symbol. Every symbol is constant but these, and the tables that time moves.
+pub fn gradient(graph: &mut Graph, root: ExprId, by: &[Symbol]) -> Vec<ExprId> {
+    let mut slopes: HashMap<ExprId, ExprId> = HashMap::from_iter([(root, Graph::ONE)]);
+    let mut of_symbols: HashMap<Symbol, ExprId> = HashMap::default();
+    for id in graph.reachable(&[root]).into_iter().rev() {
+        let slope = slopes.remove(&id).expect("whoever uses an expression comes after it");
+        let (symbol, factor) = match *graph.node(id) {
+            Node::Symbol(Symbol::Table { table, order }) => {
+                (Symbol::Time, graph.symbol(Symbol::Table { table, order: order + 1 }))
+            }
+            Node::Symbol(symbol) => (symbol, Graph::ONE),
+            _ => {
+                for (operand, factor) in factors(graph, id) {
+                    let product = graph.mul(slope, factor);
+                    let sum = slopes.get(&operand).copied().unwrap_or(Graph::ZERO);
+                    slopes.insert(operand, graph.add(sum, product));
+                }
+                continue;
+            }
+        };
+        let product = graph.mul(slope, factor);
+        let sum = of_symbols.get(&symbol).copied().unwrap_or(Graph::ZERO);
+        of_symbols.insert(symbol, graph.add(sum, product));
+    }
+    by.iter().map(|symbol| of_symbols.get(symbol).copied().unwrap_or(Graph::ZERO)).collect()
+}
+
+/// The operands of an expression, each with the derivative of the expression by it.
+fn factors(graph: &mut Graph, id: ExprId) -> Vec<(ExprId, ExprId)> {
+    match *graph.node(id) {
+        Node::Constant(_) | Node::Symbol(_) => Vec::new(),
+        Node::Add(a, b) => vec![(a, Graph::ONE), (b, Graph::ONE)],
+        Node::Mul(a, b) => vec![(a, b), (b, a)],
+        Node::Neg(a) => vec![(a, graph.integer(-1))],
+        Node::Recip(a) => {
+            let square = graph.mul(id, id);
+            vec![(a, graph.neg(square))]
+        }
+        Node::Sqrt(a) => {
+            let half = graph.fraction(1, 2);
+            vec![(a, graph.div(half, id))]
+        }
+        Node::Sin(a) => vec![(a, graph.cos(a))],
+        Node::Cos(a) => {
+            let sin = graph.sin(a);
+            vec![(a, graph.neg(sin))]
+        }
+        Node::Tanh(a) => {
+            let square = graph.mul(id, id);
+            vec![(a, graph.sub(Graph::ONE, square))]
+        }
+        Node::Atan2(y, x) => {
+            let square = graph.dot(&[x, y], &[x, y]);
+            let (by_y, by_x) = (graph.div(x, square), graph.div(y, square));
+            vec![(y, by_y), (x, graph.neg(by_x))]
+        }
+    }
+}
+
 /// The rate of the angle of the point (x, y): `(x y' − y x') / (x² + y²)`.
 pub fn angle_rate(graph: &mut Graph, (y, x): (ExprId, ExprId), (dy, dx): (ExprId, ExprId)) -> ExprId {
     let (plus, minus) = (graph.mul(x, dy), graph.mul(y, dx));
@@ -123,6 +183,7 @@ mod tests {
         let root = build(&mut graph, vx, vy);
         let direction = Direction::from([(x, Graph::ONE), (y, vx)]);
         let derivative = Derivative::new(&definitions, direction).of(&mut graph, root);
+        let gradient = gradient(&mut graph, root, &[x, y]);
         for seed in 0..20 {
             let at = |h: f64| {
                 let value = sample(seed);
@@ -135,6 +196,12 @@ mod tests {
                 / (2.0 * STEP);
             let value = evaluate(&graph, &[derivative], at(0.0))[0];
             assert!((value - difference).abs() <= TOLERANCE * value.abs().max(1.0), "{value} {difference}");
+            let x0 = sample(seed)(x) + 2.0;
+            let [by_x, by_y] = evaluate(&graph, &gradient, at(0.0))[..] else {
+                unreachable!("of two symbols")
+            };
+            let along = by_x + x0 * by_y;
+            assert!((value - along).abs() <= TOLERANCE * value.abs().max(1.0), "{value} {along}");
         }
     }
 

@@ -8,13 +8,14 @@ use crate::graph::{ExprId, Graph};
 use crate::joint_space::JointSpace;
 use crate::kinematics::{Kinematics, Matrix, non_zeros};
 use crate::normal_form::vanishes;
+use crate::null_space::Trees;
 use crate::outputs::{self, Sources};
 use crate::partition::Partition;
 use crate::schedule::cheapest;
 use crate::sheet::Form;
 use crate::symbol::Symbol;
 use crate::system::System;
-use crate::{coordinate, null_space, readings, saddle};
+use crate::{coordinate, readings, saddle};
 use gyro_model::{Model, Spline, Start};
 use rustc_hash::FxHashMap as HashMap;
 
@@ -42,6 +43,9 @@ pub struct Equations<'m> {
     pub accelerations: Vec<ExprId>,
     /// The ways of writing them that were compared.
     pub forms: Vec<Form>,
+    /// (δr, δπ') of each slot that change the rows as given.
+    pub projection: Vec<ExprId>,
+    pub forms_of_projection: Vec<Form>,
     /// Multipliers that are found with the accelerations.
     pub closing: Vec<ExprId>,
     /// All multipliers, the accelerations being known.
@@ -76,11 +80,12 @@ impl<'m> Equations<'m> {
         let mut system = System::new(model);
         let kinematics = Kinematics::derive(&mut system);
         let dynamics = Dynamics::derive(&mut system);
+        let trees = Trees::of(&mut system, &kinematics);
         let solution = match elimination {
             Elimination::Saddle if closing_rows(&system).is_empty() => {
                 saddle::solve(&mut system, &kinematics, &dynamics)
             }
-            _ => null_space::solve(&mut system, &kinematics, &dynamics),
+            _ => trees.solve(&mut system, &kinematics, &dynamics),
         };
         let sources = Sources { kinematics: &kinematics, dynamics: &dynamics, lambda: &solution.lambda };
         let outputs = outputs::derive(&mut system, &sources);
@@ -113,6 +118,12 @@ impl<'m> Equations<'m> {
         ];
         let (mut solved, forms) = cheapest(graph, candidates);
         let closing = solved.split_off(solution.accelerations.len());
+        let projected = trees.project(graph, &kinematics);
+        let candidates = vec![
+            ("rotations of the bodies".to_owned(), expansion.all(graph, &projected)),
+            ("relative Euler parameters".to_owned(), relative.all(graph, &projected)),
+        ];
+        let (projection, forms_of_projection) = cheapest(graph, candidates);
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
         Self {
             model,
@@ -126,6 +137,8 @@ impl<'m> Equations<'m> {
             applied_force: expansion.all(graph, &dynamics.applied_force),
             accelerations: solved,
             forms,
+            projection,
+            forms_of_projection,
             closing,
             lambda: expansion.all(graph, &solution.lambda),
             position_rates,

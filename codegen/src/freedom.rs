@@ -162,6 +162,11 @@ fn accelerated(graph: &mut Graph, gamma: &[ExprId], forced: &[Twist]) -> Twist {
 }
 
 impl Freedom {
+    /// What the rows force upon the body, its parent at rest, if these are the changes of all rows.
+    pub fn forced_by(&self, graph: &mut Graph, changes: &[ExprId]) -> Twist {
+        accelerated(graph, &changes[self.rows.clone()], &self.forced)
+    }
+
     /// The same between the mass centres, all vectors in the global frame.
     pub fn in_global_frame(&self, system: &mut System) -> Self {
         let frame_of = |slot: usize| system.poses[system.slots[slot]].a;

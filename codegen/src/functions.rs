@@ -17,6 +17,7 @@ pub struct Functions {
     pub applied_force: Vec<ExprId>,
     pub accelerations: Vec<ExprId>,
     pub multipliers: Vec<ExprId>,
+    pub project: Vec<ExprId>,
     pub derivative: Vec<ExprId>,
     pub energy: Vec<ExprId>,
     pub read_joints: Vec<ExprId>,
@@ -32,6 +33,8 @@ pub struct Functions {
     pub corrected_accelerations: Vec<ExprId>,
     pub corrected_multipliers: Vec<ExprId>,
     pub corrected_solution: Vec<ExprId>,
+    pub joint_jacobian: Vec<ExprId>,
+    pub joint_input_jacobian: Vec<ExprId>,
 }
 
 impl Functions {
@@ -43,6 +46,7 @@ impl Functions {
         let of_joints = |part: fn(&JointSpace) -> &Vec<ExprId>| {
             equations.joint_space.as_ref().map_or_else(Vec::new, |space| part(space).clone())
         };
+        let jacobian = equations.joint_space.as_ref().and_then(|space| space.jacobian.as_ref());
         let rates = equations.position_rates.iter().chain(&equations.power).chain(&equations.turn_rates);
         Self {
             phi: equations.phi.clone(),
@@ -54,6 +58,7 @@ impl Functions {
             applied_force: equations.applied_force.clone(),
             accelerations: equations.accelerations.iter().chain(&equations.closing).copied().collect(),
             multipliers: equations.lambda.clone(),
+            project: equations.projection.clone(),
             derivative: rates.copied().collect(),
             energy: vec![equations.kinetic, equations.potential],
             read_joints: equations.readings.clone(),
@@ -69,6 +74,10 @@ impl Functions {
             corrected_accelerations: of_joints(|space| &space.corrected),
             corrected_multipliers: of_joints(|space| &space.multipliers),
             corrected_solution: of_joints(|space| &space.solution),
+            joint_jacobian: jacobian
+                .map(|jacobian| [&jacobian.by_state[..], &jacobian.by_time].concat())
+                .unwrap_or_default(),
+            joint_input_jacobian: jacobian.map(|jacobian| jacobian.by_inputs.clone()).unwrap_or_default(),
         }
     }
 
@@ -82,7 +91,7 @@ impl Functions {
 
     /// Name, meaning and roots of each that there is, in the order of the data sheet.
     pub fn list(&self) -> Vec<(&'static str, &'static str, &[ExprId])> {
-        let all: [(_, _, &[ExprId]); 24] = [
+        let all: [(_, _, &[ExprId]); 27] = [
             ("phi", "Φ", &self.phi),
             ("phi_q", "Φ_q, non-zeros in (r, p)", &self.phi_q),
             ("phi_pi", "(Φ_r, Φ_π'), non-zeros", &self.phi_pi),
@@ -92,6 +101,7 @@ impl Functions {
             ("applied_force", "(f, n' − w̃'J'w')", &self.applied_force),
             ("accelerations", "(s̈, ẇ'), eq. (17)", &self.accelerations),
             ("multipliers", "λ, the accelerations being known", &self.multipliers),
+            ("project", "(δr, δπ') that changes the rows as given", &self.project),
             ("derivative", "ẏ but for the accelerations: eqs. (14), (16)", &self.derivative),
             ("energy", "T and V", &self.energy),
             ("read_joints", "joint coordinates and rates", &self.read_joints),
@@ -111,6 +121,8 @@ impl Functions {
                 &self.corrected_multipliers,
             ),
             ("corrected_solution", "both", &self.corrected_solution),
+            ("joint_jacobian", "∂f/∂x and ∂f/∂t of ẋ = f(t, x)", &self.joint_jacobian),
+            ("joint_input_jacobian", "∂f/∂(inputs)", &self.joint_input_jacobian),
         ];
         all.into_iter().filter(|(.., roots)| !roots.is_empty()).collect()
     }

@@ -15,28 +15,34 @@ struct Column {
 #[derive(Debug)]
 pub struct Elimination {
     entries: BTreeMap<(usize, usize), ExprId>,
-    rhs: Vec<ExprId>,
+    /// Right-hand sides, then solutions.
+    rhs: Vec<Vec<ExprId>>,
     columns: Vec<Column>,
 }
 
 impl Elimination {
     /// The lower triangle of a symmetric matrix, without zeros, and a right-hand side.
     pub fn new(entries: BTreeMap<(usize, usize), ExprId>, rhs: Vec<ExprId>) -> Self {
+        Self::of_several(entries, vec![rhs])
+    }
+
+    /// The same with several right-hand sides.
+    pub fn of_several(entries: BTreeMap<(usize, usize), ExprId>, rhs: Vec<Vec<ExprId>>) -> Self {
         Self { entries, rhs, columns: Vec::new() }
     }
 
     /// The solution, unknowns eliminated in their order.
     pub fn solve_in_order(mut self, graph: &mut Graph) -> Vec<ExprId> {
-        (0..self.rhs.len()).for_each(|unknown| self.pivot(graph, unknown));
+        (0..self.rhs[0].len()).for_each(|unknown| self.pivot(graph, unknown));
         self.substitute_back(graph)
     }
 
     /// Rewrites all that is yet to be eliminated; of each expression `rewritten` is told whether it is on the diagonal.
     pub fn rewrite(&mut self, rewritten: impl FnOnce(&[ExprId], &[bool]) -> Vec<ExprId>) {
-        let old: Vec<_> = self.entries.values().chain(&self.rhs).copied().collect();
+        let old: Vec<_> = self.entries.values().chain(self.rhs.iter().flatten()).copied().collect();
         let is_diagonal: Vec<_> = self.entries.keys().map(|(row, column)| row == column).collect();
         let mut new = rewritten(&old, &is_diagonal).into_iter();
-        for (value, new) in self.entries.values_mut().chain(&mut self.rhs).zip(&mut new) {
+        for (value, new) in self.entries.values_mut().chain(self.rhs.iter_mut().flatten()).zip(&mut new) {
             *value = new;
         }
         self.entries.retain(|_, value| *value != Graph::ZERO);
@@ -65,8 +71,10 @@ impl Elimination {
             for &(j, other) in &column[..=position] {
                 self.subtract(graph, i.max(j), i.min(j), factor, other);
             }
-            let moved = graph.mul(factor, self.rhs[pivot]);
-            self.rhs[i] = graph.sub(self.rhs[i], moved);
+            for rhs in &mut self.rhs {
+                let moved = graph.mul(factor, rhs[pivot]);
+                rhs[i] = graph.sub(rhs[i], moved);
+            }
             below.push((i, factor));
         }
         self.columns.push(Column { pivot, inverse, below });
@@ -83,15 +91,22 @@ impl Elimination {
         }
     }
 
+    /// The solution of the first right-hand side.
+    pub fn substitute_back(self, graph: &mut Graph) -> Vec<ExprId> {
+        self.solutions(graph).swap_remove(0)
+    }
+
     /// x_p = b_p / d − Σ l_i x_i, last pivot first.
-    pub fn substitute_back(mut self, graph: &mut Graph) -> Vec<ExprId> {
-        for Column { pivot, inverse, below } in self.columns.iter().rev() {
-            let mut x = graph.mul(self.rhs[*pivot], *inverse);
-            for &(i, factor) in below {
-                let product = graph.mul(factor, self.rhs[i]);
-                x = graph.sub(x, product);
+    pub fn solutions(mut self, graph: &mut Graph) -> Vec<Vec<ExprId>> {
+        for rhs in &mut self.rhs {
+            for Column { pivot, inverse, below } in self.columns.iter().rev() {
+                let mut x = graph.mul(rhs[*pivot], *inverse);
+                for &(i, factor) in below {
+                    let product = graph.mul(factor, rhs[i]);
+                    x = graph.sub(x, product);
+                }
+                rhs[*pivot] = x;
             }
-            self.rhs[*pivot] = x;
         }
         self.rhs
     }

@@ -14,6 +14,7 @@ use crate::kinematics::Kinematics;
 use crate::linear::{Mat3, UNIT3, Vec3, ZERO3, transposed};
 use crate::multipliers;
 use crate::schedule::Operations;
+use crate::symbol::Symbol;
 use crate::system::System;
 
 /// Accelerations and what follows from them.
@@ -27,38 +28,79 @@ pub struct Solution {
     pub lambda: Vec<ExprId>,
 }
 
-/// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
-pub fn solve(system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
-    let links = system.tree.links.clone();
-    let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
-    let mut trees = vec![EliminatedTree::new(system, freedoms.clone(), Basis::Mixed)];
-    // Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
-    if closing::closing_rows(system).is_empty() {
-        let in_global_frame = freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
-        let in_own_frames = freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
-        trees.push(EliminatedTree::new(system, in_global_frame, Basis::Global));
-        trees.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
-    }
-    let solved: Vec<_> = trees.iter().map(|tree| solved(system, kinematics, dynamics, tree)).collect();
-    let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
-        Operations::count(&system.graph, &[&accelerations[..], closing].concat()).total()
-    };
-    let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("at least one");
-    let lambda = multipliers::of(system, kinematics, dynamics, &freedoms);
-    Solution { accelerations, closing, lambda }
+/// The trees of a mechanism with the free twists of all joints eliminated.
+#[derive(Debug)]
+pub struct Trees {
+    freedoms: Vec<Freedom>,
+    /// In each basis that is tried.
+    eliminated: Vec<EliminatedTree>,
+    /// The rows that no joint of the trees owns.
+    closing: Vec<usize>,
 }
 
-/// (s̈, ẇ') of each slot, and the multipliers that close loops.
-fn solved(
-    system: &mut System,
-    kinematics: &Kinematics,
-    dynamics: &Dynamics,
-    tree: &EliminatedTree,
-) -> (Vec<ExprId>, Vec<ExprId>) {
-    let free = tree.accelerations(system, dynamics);
-    let (motions, closing) = closing::close(system, kinematics, tree, free);
-    let accelerations = motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho));
-    (accelerations.collect(), closing)
+impl Trees {
+    pub fn of(system: &mut System, kinematics: &Kinematics) -> Self {
+        let links = system.tree.links.clone();
+        let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
+        let closing = closing::closing_rows(system);
+        let mut eliminated = vec![EliminatedTree::new(system, freedoms.clone(), Basis::Mixed)];
+        // Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
+        if closing.is_empty() {
+            let in_global_frame = freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
+            let in_own_frames = freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
+            eliminated.push(EliminatedTree::new(system, in_global_frame, Basis::Global));
+            eliminated.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
+        }
+        Self { freedoms, eliminated, closing }
+    }
+
+    /// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
+    pub fn solve(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
+        let trees = self.eliminated.iter();
+        let solved: Vec<_> = trees.map(|tree| self.solved(system, kinematics, dynamics, tree)).collect();
+        let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
+            Operations::count(&system.graph, &[&accelerations[..], closing].concat()).total()
+        };
+        let (accelerations, closing) = solved.into_iter().min_by_key(cost).expect("at least one");
+        let lambda = multipliers::of(system, kinematics, dynamics, &self.freedoms);
+        Solution { accelerations, closing, lambda }
+    }
+
+    /// (s̈, ẇ') of each slot, and the multipliers that close loops.
+    fn solved(
+        &self,
+        system: &mut System,
+        kinematics: &Kinematics,
+        dynamics: &Dynamics,
+        tree: &EliminatedTree,
+    ) -> (Vec<ExprId>, Vec<ExprId>) {
+        let free = tree.accelerations(system, dynamics);
+        let rows = (&self.closing[..], &kinematics.gamma[..]);
+        let (motions, closing) = closing::close(&mut system.graph, kinematics, tree, rows, free);
+        (listed(&motions), closing)
+    }
+
+    /// The smallest (δr, δπ') of each slot, in the metric of the masses, that change the rows by [`Symbol::Change`]: eq. (17) without forces
+    /// and with these changes for γ. In symbols that are yet to be expanded.
+    pub fn project(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
+        let changes: Vec<_> =
+            (0..kinematics.phi.len()).map(|row| graph.symbol(Symbol::Change(row))).collect();
+        let projected = self.eliminated.iter().map(|tree| {
+            let forced = tree.joints.iter().map(|joint| joint.freedom.forced_by(graph, &changes)).collect();
+            let (bias, along) = (vec![Twist::ZERO; tree.frames.len()], vec![Vec::new(); tree.joints.len()]);
+            let free = tree.respond(graph, Excitation { bias, forced, along }).motions;
+            let (motions, _) = closing::close(graph, kinematics, tree, (&self.closing, &changes), free);
+            listed(&motions)
+        });
+        let projected: Vec<_> = projected.collect();
+        let cost = |motions: &Vec<_>| Operations::count(graph, motions).total();
+        projected.into_iter().min_by_key(cost).expect("at least one")
+    }
+}
+
+/// The components of the motions of all slots.
+fn listed(motions: &[Twist]) -> Vec<ExprId> {
+    motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect()
 }
 
 /// The frames in which an elimination works.

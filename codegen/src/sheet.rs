@@ -165,6 +165,7 @@ impl Function {
     fn of(equations: &Equations, &(name, computes, roots): &(&'static str, &'static str, &[ExprId])) -> Self {
         let (forms, reductions) = match (name, &equations.joint_space) {
             ("accelerations", _) => (equations.forms.clone(), Vec::new()),
+            ("project", _) => (equations.forms_of_projection.clone(), Vec::new()),
             (_, Some(space)) => space.choice(name),
             (_, None) => Default::default(),
         };
@@ -216,6 +217,9 @@ pub fn large(number: u64) -> String {
     }
 }
 
+const WITHOUT_JACOBIAN: &str =
+    "the Jacobian of the joint form (for up to 12 rates, where it takes no third derivative of a table)";
+
 fn left_out(equations: &Equations) -> Vec<String> {
     let model = equations.model;
     let mut left_out: Vec<String> = model
@@ -235,10 +239,13 @@ fn left_out(equations: &Equations) -> Vec<String> {
         left_out.push(format!("{} entries of Φ_π' (zero for unit Euler parameters)", equations.n_vanishing));
     }
     match &equations.joint_space {
-        Some(space) => left_out.extend(space.invariant.iter().map(|&body| {
-            let name = &model.bodies[body].name;
-            format!("the turning of `{name}` from u̇ (it looks the same all around its axis)")
-        })),
+        Some(space) => {
+            left_out.extend(space.invariant.iter().map(|&body| {
+                let name = &model.bodies[body].name;
+                format!("the turning of `{name}` from u̇ (it looks the same all around its axis)")
+            }));
+            left_out.extend(space.jacobian.is_none().then(|| WITHOUT_JACOBIAN.to_owned()));
+        }
         None => left_out.push("joint coordinates (for trees without couplers and drivers)".into()),
     }
     if equations.charts.is_none() {

@@ -30,10 +30,14 @@ pub enum Symbol {
     Acceleration { slot: usize, k: usize },
     /// Multiplier of a row that closes a loop, where accelerations are known.
     Closing(usize),
+    /// By how much a row is asked to change.
+    Change(usize),
     /// Joint coordinate, by its place in x: see `joint_space::Layout`.
     Coordinate(usize),
     /// Rate, by its place in u.
     Rate(usize),
+    /// The rate's rate of that place, where it is known.
+    RateOfRate(usize),
     /// Sine of the joint coordinate of that place, an angle.
     Sine(usize),
     /// Its cosine.

@@ -276,10 +276,18 @@ pub trait Equations: Mechanism {
     );
 }
 
-/// The projection onto the constraints in the metric of the masses.
+/// Corrections in the metric of the masses, which favour no coordinate: they leave where they can what is heavy.
 pub trait Projection: Equations {
-    /// Writes δ = (δr, δπ') body after body, of `[M Φ_πᵀ; Φ_π 0] [δ; μ] = [0; rows]` at the state as it stands, on the constraints or off them:
-    /// the smallest change in the metric of the masses by which Φ, or the velocity residual, changes by `rows` to first order.
+    /// Writes `δ = (δr, δπ')` body after body, the solution of
+    ///
+    /// ```text
+    /// [ M     Φ_π'ᵀ ] [ δ ]   [  0   ]
+    /// [ Φ_π'    0   ] [ μ ] = [ rows ]        Φ_π' short for (Φ_r, Φ_π')
+    /// ```
+    ///
+    /// at the state as it stands, off the constraints too. Of all motions by which the joint rows change by `rows` to first order it is the one of
+    /// the least `δᵀ M δ`: with `rows = −Φ` a step of a correction of the positions (p follows by `δp = ½ G(p)ᵀ δπ'`), with minus the
+    /// [velocity residual](Mechanism::velocity_residual) the correction of the velocities (s, w').
     fn project(&self, t: Self::Scalar, y: &Self::State, rows: &Self::Rows, out: &mut Self::Velocities);
 }
 

@@ -31,7 +31,11 @@ fn coordinates(model: &Model) -> Vec<Kind> {
 }
 
 /// A joint state anyhow, its Euler parameters unit vectors.
-fn random_state<M: JointSpace<Scalar = f64>>(model: &Model, mechanism: &M, random: &mut Random) -> M::Joints {
+pub fn random_state<M: JointSpace<Scalar = f64>>(
+    model: &Model,
+    mechanism: &M,
+    random: &mut Random,
+) -> M::Joints {
     let mut state = mechanism.joint_start();
     let (mut x, mut n_x, mut n_u) = (Vec::new(), 0, 0);
     for kind in coordinates(model) {

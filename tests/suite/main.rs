@@ -10,6 +10,7 @@ mod finite_differences;
 mod forces;
 mod four_bar;
 mod generated_files;
+mod joint_jacobian;
 mod joint_kinds;
 mod joint_readings;
 mod joint_space;

@@ -5,7 +5,7 @@
 
 use gyro_assembled::Careful;
 use gyro_model::Model;
-use gyro_sim::{Equations, Mechanism, Ode, Ports};
+use gyro_sim::{Equations, Mechanism, Ode, Ports, Projection};
 use gyro_sim_suite::{
     Engine, Matrix, Random, careful, dense, difference, for_each_generated, is_open, model, phi_pi, phi_q,
     shelves, state,
@@ -147,6 +147,7 @@ fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     let n_velocities = 6 * mechanism.n_bodies();
     let mut kinds = halves(["s̈", "ẇ'"], 6, &accelerations[..n_velocities]);
     kinds.extend(by_unit(mechanism, ["λ, forces", "λ, torques"], &lambda));
+    kinds.extend(projections(mechanism, y));
     let mut dy = mechanism.start();
     mechanism.derivative(T, y, &mut dy);
     let (q_dot, rest) = dy.split_at(7 * mechanism.n_bodies());
@@ -158,6 +159,25 @@ fn solutions(mechanism: &Engine, model: &Model, values: &[f64]) -> Vec<Kind> {
     kinds.push(kind("rates of turn references", turns.to_vec()));
     kinds.extend(outputs(mechanism, y));
     kinds.into_iter().map(|kind| Kind { agreement: AGREEMENT_OF_SOLUTIONS, ..kind }).collect()
+}
+
+/// The least motions that change lengths, and pure rows, by numbers anyhow. A displacement is as inexact as the rotations at an arm of the
+/// mechanism's size, and the other way round.
+fn projections(mechanism: &Engine, y: &Vec<f64>) -> Vec<Kind> {
+    let of_rows = |names: [&'static str; 2], is_length: bool| {
+        let (mut rows, mut motion) = (mechanism.rows(), mechanism.velocities());
+        for (row, change) in rows.iter_mut().enumerate() {
+            *change = if mechanism.row(row).is_length == is_length { y[row % y.len()] } else { 0.0 };
+        }
+        mechanism.project(T, y, &rows, &mut motion);
+        let mut kinds = halves(names, 6, &motion);
+        let largest = |kind: &Kind| kind.values.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let scale = largest(&kinds[0]).max(mechanism.size() * largest(&kinds[1]));
+        (kinds[0].scale, kinds[1].scale) = (scale, scale / mechanism.size());
+        kinds
+    };
+    let lengths = of_rows(["δr for lengths", "δπ' for lengths"], true);
+    lengths.into_iter().chain(of_rows(["δr", "δπ'"], false)).collect()
 }
 
 /// Each output by itself, numbers of one unit together. A torque is as inexact as the forces at an arm of the mechanism's size.

@@ -2,7 +2,8 @@
 //! for all of them.
 
 use gyro_sim::{
-    Energy, Equations, Error, JointInfo, Mechanism, Ode, OutputInfo, Partition, Ports, Real, RowInfo, Storage,
+    Energy, Equations, Error, JointInfo, Mechanism, Ode, OutputInfo, Partition, Ports, Projection, Real,
+    RowInfo, Storage,
 };
 use std::any::Any;
 use std::fmt::Debug;
@@ -19,7 +20,7 @@ impl<T: Real + 'static> Engine<T> {
     /// The same mechanism, its type forgotten.
     pub fn new<M>(mechanism: M) -> Self
     where
-        M: Partition<Scalar = T, Independent: 'static> + Equations + Ports + Clone + Debug + 'static,
+        M: Partition<Scalar = T, Independent: 'static> + Projection + Ports + Clone + Debug + 'static,
     {
         Self(Box::new(mechanism))
     }
@@ -66,6 +67,7 @@ trait Erased<T>: Debug {
     fn buffer(&self, term: Term) -> Vec<T>;
     fn write(&self, term: Term, t: T, y: &[T], out: &mut [T]);
     fn multipliers(&self, t: T, y: &[T], accelerations: &[T], lambda: &mut [T]);
+    fn project(&self, t: T, y: &[T], rows: &[T], motion: &mut [T]);
     fn energy(&self, t: T, y: &[T]) -> Energy<T>;
     fn work(&self, y: &[T]) -> T;
     fn independent(&self, t: T, y: &[T]) -> Choice;
@@ -130,7 +132,7 @@ fn listed<T: Copy>(buffer: impl AsRef<[T]>) -> Vec<T> {
 
 impl<T: Real + 'static, M> Erased<T> for M
 where
-    M: Partition<Scalar = T, Independent: 'static> + Equations + Ports + Clone + Debug + 'static,
+    M: Partition<Scalar = T, Independent: 'static> + Projection + Ports + Clone + Debug + 'static,
 {
     fn cloned(&self) -> Engine<T> {
         Engine::new(self.clone())
@@ -168,6 +170,10 @@ where
         let y = &filled(self.start(), y);
         let accelerations = &filled(self.accelerations_buffer(), accelerations);
         through(self.rows(), lambda, |lambda| Equations::multipliers(self, t, y, accelerations, lambda));
+    }
+    fn project(&self, t: T, y: &[T], rows: &[T], motion: &mut [T]) {
+        let (y, rows) = (&filled(self.start(), y), &filled(self.rows(), rows));
+        through(self.velocities(), motion, |motion| Projection::project(self, t, y, rows, motion));
     }
     fn energy(&self, t: T, y: &[T]) -> Energy<T> {
         Mechanism::energy(self, t, &filled(self.start(), y))
@@ -364,6 +370,12 @@ impl<T: Real> Equations for Engine<T> {
     }
     fn multipliers(&self, t: T, y: &Vec<T>, accelerations: &Vec<T>, lambda: &mut Vec<T>) {
         self.0.multipliers(t, y, accelerations, lambda);
+    }
+}
+
+impl<T: Real> Projection for Engine<T> {
+    fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, motion: &mut Vec<T>) {
+        self.0.project(t, y, rows, motion);
     }
 }
 

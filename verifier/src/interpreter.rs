@@ -16,6 +16,8 @@ pub struct Given<'a, F: Field> {
     pub accelerations: &'a [F],
     /// For each joint with a chart the vector that stands for it: of a chart that is chosen a unit vector.
     pub charts: &'a [[F; 4]],
+    /// By how much the rows are asked to change.
+    pub changes: &'a [F],
     /// Joint state.
     pub joints: &'a [F],
 }
@@ -113,8 +115,11 @@ fn read<F: Field>(source: Source, given: &Given<F>) -> F {
         Source::Input(k) => point.inputs[k].clone(),
         Source::Acceleration(k) => given.accelerations[k].clone(),
         Source::Chart(chart, k) => given.charts[chart][k].clone(),
+        Source::Change(k) => given.changes[k].clone(),
         Source::Joint(k) => given.joints[k].clone(),
-        Source::Factor(_) | Source::Before(_) => unreachable!("no module reads what claims vary"),
+        Source::Factor(_) | Source::Motion(_) | Source::Before(_) => {
+            unreachable!("no module reads what claims vary")
+        }
     }
 }
 

@@ -49,7 +49,7 @@ pub struct Module {
 }
 
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 25] = [
+const FUNCTIONS: [(&str, Form); 28] = [
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
     ("velocity_residual", Form::Filling),
@@ -62,6 +62,7 @@ const FUNCTIONS: [(&str, Form); 25] = [
     ("applied_force", Form::Filling),
     ("accelerations", Form::Filling),
     ("multipliers", Form::Filling),
+    ("project", Form::Filling),
     ("outputs", Form::Filling),
     ("newton_step", Form::Stores),
     ("solve_velocities", Form::Stores),
@@ -75,15 +76,19 @@ const FUNCTIONS: [(&str, Form); 25] = [
     ("corrected_accelerations", Form::Filling),
     ("corrected_multipliers", Form::Filling),
     ("corrected_solution", Form::Filling),
+    ("joint_jacobian", Form::Jacobian),
+    ("joint_input_jacobian", Form::Filling),
 ];
 
 /// What functions write, where it is not `out`.
-const TARGETS: [(&str, &str); 6] = [
+const TARGETS: [(&str, &str); 8] = [
     ("derivative", "dy"),
     ("corrected_derivative", "dy"),
     ("multipliers", "lambda"),
     ("corrected_multipliers", "lambda"),
     ("joint_derivative", "dx"),
+    ("joint_jacobian", "dfdx"),
+    ("joint_jacobian", "dfdt"),
     ("to_maximal", "y"),
 ];
 
@@ -156,9 +161,10 @@ impl Module {
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let tables = tables::read(model, tokens.clone())?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
+        let has_jacobian = text.contains("gyro_sim::JointJacobian");
         let joints = JointLayout::of(model);
         let name = skeleton::type_name(&model.name);
-        let expected = skeleton::text(model, &name, &tables, choice, joints.as_ref());
+        let expected = skeleton::text(model, &name, &tables, (choice, has_jacobian), joints.as_ref());
         let expected = expected.parse().expect("the expected text consists of tokens");
         let mut matched = Matched::default();
         matched.walk(expected, tokens, text.lines().count())?;
@@ -179,6 +185,7 @@ impl Module {
         let sizes = Sizes {
             state: n_state(model),
             accelerations: n_accelerations,
+            rows: model.rows().len(),
             joints: joints.as_ref().map_or(0, JointLayout::n_state),
             charts: n_charts.unwrap_or(0),
             tables: tables.len(),
@@ -197,7 +204,8 @@ impl Module {
                 before.iter().flat_map(Before::arguments).for_each(|argument| reader.argument(argument));
             }
             hole.arguments.iter().for_each(|argument| reader.argument(argument));
-            of_function(&TARGETS, name).into_iter().for_each(|target| reader.target(target));
+            let targets = TARGETS.iter().filter(|(function, _)| *function == name);
+            targets.for_each(|(_, target)| reader.target(target));
             if form == Form::Joints {
                 reader.buffer();
             }
@@ -243,6 +251,7 @@ impl Module {
         let (n_joints, n_rates) =
             self.joints.as_ref().map_or((0, 0), |joints| (joints.n_state(), joints.n_rates));
         let n_corrected = if self.joints.is_some() { n_state(model) } else { 0 };
+        let has = |function: &str| self.programs.contains_key(function);
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
             ("derivative", n_state(model)),
@@ -257,6 +266,7 @@ impl Module {
             ("applied_force", 6 * n),
             ("accelerations", self.n_accelerations),
             ("multipliers", rows),
+            ("project", 6 * n),
             ("outputs", outputs),
             ("chart_vectors", 4 * number("charts")),
             ("corrected_derivative", n_corrected),
@@ -268,6 +278,8 @@ impl Module {
             ("corrected_accelerations", if self.joints.is_some() { 6 * n } else { 0 }),
             ("corrected_multipliers", if self.joints.is_some() { rows } else { 0 }),
             ("corrected_solution", if self.joints.is_some() { 6 * n + rows } else { 0 }),
+            ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
+            ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
         ];
         let found = |name: &str| self.programs.get(name).map_or(0, |program| program.results.len());
         let patterns = [

@@ -84,7 +84,7 @@ fn joint_start_differs(model: &Model, module: &Module) -> Option<String> {
     let joints: Vec<_> = module.joint_start.iter().map(|&x| number(x)).collect();
     let point = point(model, &precision, &module.start, 0.0, number);
     let constants = interpreter::constants(&precision, module);
-    let given = Given { point: &point, accelerations: &[], charts: &[], joints: &joints };
+    let given = Given { point: &point, accelerations: &[], charts: &[], changes: &[], joints: &joints };
     let program = &module.programs["to_maximal"];
     let Ok(state) = interpreter::run(module, program, &constants, &Elementary, &given) else {
         return Some("the start in joint coordinates leads nowhere".to_owned());
@@ -125,7 +125,7 @@ fn wrong_signs(model: &Model, module: &Module) -> Option<String> {
     for _ in 0..STATES {
         let state = random_state(model, &mut random);
         let point = point(model, (), &state, random.random_range(-1.0..1.0), |x| x);
-        let given = Given { point: &point, accelerations: &[], charts: &[], joints: &[] };
+        let given = Given { point: &point, accelerations: &[], charts: &[], changes: &[], joints: &[] };
         let program = &module.programs["read_joints"];
         let Ok(found) = interpreter::run(module, program, &constants, &Elementary, &given) else { continue };
         let values = formulas.evaluate(&reach, (), &Elementary, &|source| read(&point, source));

@@ -42,6 +42,8 @@ impl<F: Field> Point<F> {
             | Source::Joint(_)
             | Source::Chart(..)
             | Source::Factor(_)
+            | Source::Change(_)
+            | Source::Motion(_)
             | Source::Before(_) => None,
         }
     }

@@ -49,12 +49,16 @@ pub enum Source {
     /// What the function has another one compute first, or is given: an element of `Equations::Accelerations`,
     /// `Equations::Velocities` or `JointSpace::Rates`.
     Acceleration(usize),
+    /// By how much a row is asked to change.
+    Change(usize),
     /// An element of the joint state.
     Joint(usize),
     /// Component of a joint's chart.
     Chart(usize, usize),
     /// A number for each body by which a claim makes its Euler parameters longer; no module reads it.
     Factor(usize),
+    /// Component of (δr, δπ') of any motion that a claim compares with; no module reads it.
+    Motion(usize),
     /// An element of a joint state that is no state of the mechanism, but what a buffer holds before; no module reads it.
     Before(usize),
 }

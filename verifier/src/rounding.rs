@@ -70,7 +70,8 @@ pub fn references<'c>(
         let joints = exact_joints(module, precision, &sample);
         let corrected = corrected_point(module, &constants, &point, &joints)?;
         let charts = charts(module, &constants, &point);
-        let given = Inputs { point, corrected, joints };
+        let changes = sample.changes.iter().map(|&x| Real::new(precision, x)).collect();
+        let given = Inputs { point, corrected, changes, joints };
         let results = results(module, &constants, &Elementary, &given, &charts)?;
         let corrected = given.corrected.state.iter().map(Real::to_f64).collect();
         Some(Reference { sample, results, charts, corrected })
@@ -208,7 +209,7 @@ fn corrected_point<'c>(
     joints: &[Real<'c>],
 ) -> Option<Point<Real<'c>>> {
     let Some(program) = module.programs.get("to_maximal") else { return Some(point.clone()) };
-    let given = Given { point, accelerations: &[], charts: &[], joints };
+    let given = Given { point, accelerations: &[], charts: &[], changes: &[], joints };
     let state = interpreter::run(module, program, constants, &Elementary, &given).ok()?;
     Some(Point { state, ..point.clone() })
 }
@@ -217,6 +218,7 @@ fn corrected_point<'c>(
 struct Inputs<F: Field> {
     point: Point<F>,
     corrected: Point<F>,
+    changes: Vec<F>,
     joints: Vec<F>,
 }
 
@@ -229,14 +231,15 @@ impl<F: Field> Inputs<F> {
     ) -> Self {
         let sample = &reference.sample;
         let point = |state: &[f64]| numeric::point(model, context, state, sample.t, &number);
-        let joints = sample.joints.iter().map(|&x| number(x)).collect();
-        Self { point: point(&sample.state), corrected: point(&reference.corrected), joints }
+        let [changes, joints] =
+            [&sample.changes, &sample.joints].map(|numbers| numbers.iter().map(|&x| number(x)).collect());
+        Self { point: point(&sample.state), corrected: point(&reference.corrected), changes, joints }
     }
 }
 
 /// The charts that the partition takes at a state: of each vector the largest component.
 fn charts<'c>(module: &Module, constants: &[Real<'c>], point: &Point<Real<'c>>) -> Vec<usize> {
-    let given = Given { point, accelerations: &[], charts: &[], joints: &[] };
+    let given = Given { point, accelerations: &[], charts: &[], changes: &[], joints: &[] };
     let Some(program) = module.programs.get("chart_vectors") else { return Vec::new() };
     let vectors = interpreter::run(module, program, constants, &Elementary, &given).unwrap_or_default();
     let size = |x: &Real| x.to_f64().abs();
@@ -259,7 +262,8 @@ fn results<F: Field>(
     let charts: Vec<_> = charts.iter().map(one_hot).collect();
     let run = |function: &str, accelerations: &[F]| {
         let point = if is_on_constraints(function) { &inputs.corrected } else { &inputs.point };
-        let given = Given { point, accelerations, charts: &charts, joints: &inputs.joints };
+        let given =
+            Given { point, accelerations, charts: &charts, changes: &inputs.changes, joints: &inputs.joints };
         interpreter::run(module, &module.programs[function], constants, atoms, &given).ok()
     };
     let result = |function: &String| {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// Each function of a data sheet: its name there and in the library, what it takes besides the mechanism and the time, and returns.
-const FUNCTIONS: [[&str; 5]; 24] = [
+const FUNCTIONS: [[&str; 5]; 27] = [
     ["phi", "phi", "y: &State, out: &mut <Module as Mechanism>::Constraints", "y, out", ""],
     ["phi_q", "phi_q", "y: &State, out: &mut <Module as Equations>::PhiQ", "y, out", ""],
     ["phi_pi", "phi_pi", "y: &State, out: &mut <Module as Equations>::PhiPi", "y, out", ""],
@@ -22,6 +22,13 @@ const FUNCTIONS: [[&str; 5]; 24] = [
     ],
     ["accelerations", "accelerations", "y: &State, out: &mut Accelerations", "y, out", ""],
     ["multipliers", "multipliers", "y: &State, a: &Accelerations, out: &mut Rows", "y, a, out", ""],
+    [
+        "project",
+        "project",
+        "y: &State, rows: &Rows, out: &mut <Module as Equations>::Velocities",
+        "y, rows, out",
+        "",
+    ],
     ["derivative", "derivative", "y: &State, dy: &mut State", "y, dy", ""],
     ["energy", "energy", "y: &State", "y", "Energy<f64>"],
     ["read_joints", "read_joints", "y: &State, out: &mut <Module as Mechanism>::Readings", "y, out", ""],
@@ -61,6 +68,20 @@ const FUNCTIONS: [[&str; 5]; 24] = [
         "y, out",
         "",
     ],
+    [
+        "joint_jacobian",
+        "joint_jacobian",
+        "x: &Joints, dfdx: &mut <Module as JointJacobian>::Jacobian, dfdt: &mut Joints",
+        "x, dfdx, dfdt",
+        "",
+    ],
+    [
+        "joint_input_jacobian",
+        "joint_input_jacobian",
+        "x: &Joints, out: &mut <Module as JointJacobian>::InputJacobian",
+        "x, out",
+        "",
+    ],
 ];
 
 /// The root of a library whose module `mechanism` has this type, with the functions of these names: without them nothing would be
@@ -71,7 +92,7 @@ pub(crate) fn library(type_name: &str, names: &[&str]) -> String {
 mod mechanism;
 
 #[allow(unused_imports)]
-use gyro_sim::{{Energy, Equations, Error, JointSpace, Mechanism, Ode, Partition, Ports}};
+use gyro_sim::{{Energy, Equations, Error, JointJacobian, JointSpace, Mechanism, Ode, Partition, Ports, Projection}};
 
 pub type Module = mechanism::{type_name}<f64>;
 type State = <Module as Ode>::State;

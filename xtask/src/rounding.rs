@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use gyro_assembled::{Careful, Dense};
 use gyro_model::Model;
-use gyro_sim::{Equations, Mechanism, Scalar};
+use gyro_sim::{Mechanism, Projection, Scalar};
 use gyro_verifier::field::{Precision, Real};
 use gyro_verifier::module::Module;
 use gyro_verifier::rounding::{DOUBLE_DIGITS, Kind, Reference, Rounding, Spread, error, measure, references};
@@ -136,7 +136,7 @@ impl std::fmt::Display for Short {
 /// The errors of a twin in one function on the states of one kind; `None` if it has no such function.
 fn of_twin<M>(module: &Module, twin: &M, references: &[Reference<'_>], row: &Rounding) -> Option<Spread>
 where
-    M: Equations<Scalar = f64>,
+    M: Projection<Scalar = f64>,
 {
     let of_kind = references.iter().filter(|reference| reference.sample.kind == row.kind);
     let errors = of_kind.filter_map(|reference| {
@@ -157,7 +157,7 @@ fn counterpart(function: &str) -> &str {
 /// What a twin gives for a function of the module; `None` if its results have no meaning of their own, or the twin has no such function.
 fn computed<M>(module: &Module, twin: &M, function: &str, reference: &Reference<'_>) -> Option<Vec<f64>>
 where
-    M: Equations<Scalar = f64>,
+    M: Projection<Scalar = f64>,
 {
     let (t, mut y) = (reference.sample.t, twin.start());
     y.as_mut().iter_mut().zip(reference.state(function)).for_each(|(y, x)| *y = Scalar::constant(*x));
@@ -199,6 +199,12 @@ where
         "applied_force" => {
             let mut out = twin.velocities();
             twin.applied_force(t, &y, &mut out);
+            out.as_ref().to_vec()
+        }
+        "project" => {
+            let (mut rows, mut out) = (twin.rows(), twin.velocities());
+            rows.as_mut().copy_from_slice(&reference.sample.changes);
+            twin.project(t, &y, &rows, &mut out);
             out.as_ref().to_vec()
         }
         "derivative" | "corrected_derivative" => {

@@ -3,7 +3,9 @@
 //! Both work in the bodies' own frames, on what [`Carriage`] says. Gravity enters as an acceleration of the ground.
 
 use super::carriage::{Bias, Carriage};
+use super::expanded;
 use super::layout::Layout;
+use super::maps::Values;
 use crate::coordinate::Load;
 use crate::dynamics::gyroscopic_torque;
 use crate::forces::{self, Readings};
@@ -124,6 +126,41 @@ impl Reduced {
         reduced(graph, "solution", (&solution, &[]))
     }
 
+    /// The rates' rates that forces along the rates alone bring about, for each column of forces: `M⁻¹ force`.
+    pub fn accelerations_of(&self, system: &mut System, columns: &[Vec<ExprId>]) -> Vec<Vec<ExprId>> {
+        let tree = EliminatedTree::new(system, self.freedoms.clone(), Basis::Mixed);
+        let solved = |forces: &Vec<ExprId>| {
+            let along = self.rates.iter().map(|rates| rates.iter().map(|&rate| forces[rate]).collect());
+            let (bias, forced) = (vec![Twist::ZERO; self.bias.len()], vec![Twist::ZERO; self.forced.len()]);
+            let excitation = Excitation { bias, forced, along: along.collect() };
+            self.scattered(&tree.respond(&mut system.graph, excitation).rates)
+        };
+        columns.iter().map(solved).collect()
+    }
+
+    /// The same by factoring the reduced mass matrix; forces in terms of joint coordinates and rates, as `in_joints` has the rest.
+    pub fn factored_accelerations_of(
+        &self,
+        system: &mut System,
+        (in_joints, unit): (&Values, &[Vec<ExprId>]),
+        columns: &[Vec<ExprId>],
+    ) -> Vec<Vec<ExprId>> {
+        let (places, entries): (Vec<_>, Vec<_>) = self.mass_matrix(system).into_iter().unzip();
+        let entries = expanded(system, in_joints, &entries);
+        let graph = &mut system.graph;
+        let matrix = places.into_iter().zip(entries).collect();
+        let mut elimination = Elimination::of_several(matrix, columns.to_vec());
+        elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
+        for unknown in self.rates.iter().flatten().rev().copied() {
+            let is_constant = graph.as_constant(elimination.diagonal(unknown)).is_some();
+            elimination.pivot(graph, unknown);
+            if is_constant {
+                elimination.rewrite(|old, divisors| normal_form_of(graph, unit, old, divisors));
+            }
+        }
+        elimination.solutions(graph)
+    }
+
     fn scattered(&self, rates: &[Vec<ExprId>]) -> Vec<ExprId> {
         let mut all = vec![Graph::ZERO; self.n_rates];
         for (places, values) in self.rates.iter().zip(rates) {
@@ -178,14 +215,23 @@ impl Reduced {
 
     /// What drives each rate: forces less what the motion at constant rates takes.
     fn generalised_forces(&self, system: &mut System) -> Vec<ExprId> {
+        self.left_over(system, &vec![Graph::ZERO; self.n_rates])
+    }
+
+    /// The force along each rate that is left over by the motion with these rates' rates.
+    pub fn left_over(&self, system: &mut System, rates_of_rates: &[ExprId]) -> Vec<ExprId> {
         let bodies: Vec<_> = (0..self.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
         let graph = &mut system.graph;
         let mut motions = vec![Twist::ZERO; self.bias.len()];
-        for (freedom, forced) in self.freedoms.iter().zip(&self.forced) {
+        for ((freedom, forced), rates) in self.freedoms.iter().zip(&self.forced).zip(&self.rates) {
             let mut motion = *forced;
             if let Some(parent) = freedom.parent {
                 let carried = parent.twist(graph, &motions[parent.slot]);
                 motion = motion.plus(graph, &carried);
+            }
+            for (twist, &rate) in freedom.free.iter().zip(rates) {
+                let own = twist.scaled(graph, rates_of_rates[rate]);
+                motion = motion.plus(graph, &own);
             }
             motions[freedom.slot] = Arm::on_body(graph, freedom).twist(graph, &motion);
         }

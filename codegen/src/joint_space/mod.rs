@@ -7,10 +7,12 @@
 
 mod carriage;
 mod dynamics;
+mod jacobian;
 mod layout;
 mod maps;
 mod multipliers;
 
+pub use jacobian::Jacobian;
 pub use layout::Layout;
 
 use crate::closing::closing_rows;
@@ -61,6 +63,8 @@ pub struct JointSpace {
     pub reduced: Vec<ExprId>,
     /// The joint state at the start.
     pub start: Vec<f64>,
+    /// The derivatives of the joint form, unless the mechanism is too large.
+    pub jacobian: Option<Jacobian>,
     /// Bodies that are described in a frame that does not turn with them.
     pub invariant: Vec<usize>,
     /// What was compared for accelerations, accelerations_at and corrected.
@@ -82,6 +86,11 @@ impl JointSpace {
             "joint_accelerations" => (accelerations.clone(), self.reductions.clone()),
             "joint_accelerations_at" => (at.clone(), Vec::new()),
             "corrected_accelerations" => (corrected.clone(), Vec::new()),
+            "joint_jacobian" | "joint_input_jacobian" => {
+                let place = usize::from(function == "joint_input_jacobian");
+                let forms = self.jacobian.as_ref().map(|jacobian| jacobian.forms[place].clone());
+                (forms.unwrap_or_default(), Vec::new())
+            }
             _ => Default::default(),
         }
     }
@@ -146,11 +155,26 @@ impl JointSpace {
         let solved = expanded(system, &known, &multipliers);
         let solution = corrected.iter().copied().chain(solved).collect();
 
-        let mut derivative = coordinate_rates(system, &layout);
-        let of_power = |power| power_in_joints(system, &carriages, &in_joints, &accelerations, power);
-        derivative.extend(power.map(of_power));
+        let coordinates = coordinate_rates(system, &layout);
+        let mut derivative = coordinates.clone();
+        let power_at = |system: &mut System, accelerations: &[ExprId]| {
+            power.map(|power| power_in_joints(system, &carriages, &in_joints, accelerations, power))
+        };
+        derivative.extend(power_at(system, &accelerations));
         let reduced = maps::reduced(system, &layout);
         let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
+        let rates_of_rates: Vec<_> =
+            (0..layout.n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
+        let form = jacobian::JointForm {
+            layout: &layout,
+            in_joints: &in_joints,
+            coordinates: &coordinates,
+            accelerations: &accelerations,
+            power: power_at(system, &rates_of_rates),
+            reduced: &from_rates,
+            unit: &unit,
+        };
+        let jacobian = Jacobian::derive(system, &form);
         let is_invariant = |link: &&layout::LinkCoordinates| {
             link.scalars.iter().any(|scalar| invariant.contains(&scalar.place.x))
         };
@@ -164,6 +188,7 @@ impl JointSpace {
             derivative,
             accelerations_at,
             corrected,
+            jacobian,
             maximal: listed(system, &layout, &maximal),
             start: joint_start(system, &layout, &reduced, start),
             reduced,

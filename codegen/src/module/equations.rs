@@ -66,6 +66,27 @@ impl ModuleWriter<'_> {
         }
     }
 
+    pub fn projection(&self) -> TokenStream {
+        let name = ident(self.type_name);
+        let what = "Solves eq. (17) without forces, the changes of the rows for γ";
+        let project = self.function(what, &self.functions.project, |body, t, y| {
+            let (statements, values) = (&body.statements, &body.values);
+            let reads_rows = body.symbols.iter().any(|symbol| matches!(symbol, Symbol::Change(_)));
+            let rows = ident(if reads_rows { "rows" } else { "_rows" });
+            quote! {
+                fn project(&self, #t: T, #y: &Self::State, #rows: &Self::Rows, out: &mut Self::Velocities) {
+                    #statements
+                    *out = [#(#values),*];
+                }
+            }
+        });
+        quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::Projection for #name<T> {
+                #project
+            }
+        }
+    }
+
     /// λ, the accelerations being known.
     pub fn multipliers(&self, name: &str, accelerations: &str, roots: &[ExprId]) -> TokenStream {
         let (name, accelerations) = (ident(name), ident(accelerations));

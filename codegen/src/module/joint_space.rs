@@ -75,6 +75,47 @@ impl ModuleWriter<'_> {
         })
     }
 
+    /// Nothing for mechanisms that are no trees, or too large.
+    pub fn joint_jacobian(&self) -> Option<TokenStream> {
+        let jacobian = self.equations.joint_space.as_ref()?.jacobian.as_ref()?;
+        let (name, f) = (ident(self.type_name), &self.functions);
+        let (n_state, n_inputs) = (index(jacobian.by_state.len()), index(jacobian.by_inputs.len()));
+        let out = quote! { dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints };
+        let what = "Writes ∂f/∂x and ∂f/∂t";
+        let by_state = self.of_joints("joint_jacobian", what, &out, &f.joint_jacobian, |values| {
+            let (by_state, by_time) = values.split_at(jacobian.by_state.len());
+            quote! {
+                *dfdx = [#(#by_state),*];
+                *dfdt = [#(#by_time),*];
+            }
+        });
+        let by_inputs = if f.joint_input_jacobian.is_empty() {
+            quote! {
+                fn joint_input_jacobian(&self, _t: T, _x: &Self::Joints, _out: &mut Self::InputJacobian) {}
+            }
+        } else {
+            let (out, roots) = (quote! { out: &mut Self::InputJacobian }, &f.joint_input_jacobian);
+            let write = |values: &[TokenStream]| quote! { *out = [#(#values),*]; };
+            self.of_joints("joint_input_jacobian", "Writes ∂f/∂(inputs)", &out, roots, write)
+        };
+        Some(quote! {
+            impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for #name<T> {
+                type Jacobian = [T; #n_state];
+                type InputJacobian = [T; #n_inputs];
+
+                fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+                    [T::constant(0.0); #n_state]
+                }
+                fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+                    [T::constant(0.0); #n_inputs]
+                }
+
+                #by_state
+                #by_inputs
+            }
+        })
+    }
+
     /// A function of time and joint state.
     fn of_joints(
         &self,

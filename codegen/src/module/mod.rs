@@ -100,7 +100,9 @@ impl ModuleWriter<'_> {
     fn tokens(&self, start: &Start) -> TokenStream {
         let (tables, definition, ode) = (self.tables_of_motions(), self.definition(), self.ode(start));
         let (mechanism, partition) = (self.mechanism(), self.partition());
-        let (equations, joint_space, ports) = (self.equations(), self.joint_space(), self.ports());
+        let (equations, projection) = (self.equations(), self.projection());
+        let (joint_space, joint_jacobian) = (self.joint_space(), self.joint_jacobian());
+        let ports = self.ports();
         quote! {
             #tables
             #definition
@@ -108,7 +110,9 @@ impl ModuleWriter<'_> {
             #mechanism
             #partition
             #equations
+            #projection
             #joint_space
+            #joint_jacobian
             #ports
         }
     }

@@ -54,6 +54,7 @@ impl Variables for ModuleWriter<'_> {
             Symbol::Closing(row) => {
                 bound(format!("closing{row}"), "accelerations", self.equations.accelerations.len() + row)
             }
+            Symbol::Change(row) => bound(format!("row{row}"), "rows", row),
             Symbol::Coordinate(place) => bound(format!("x{place}"), "x", place),
             Symbol::Rate(place) => {
                 let first = self.equations.joint_space.as_ref().map_or(0, |space| space.layout.n_coordinates);
@@ -62,11 +63,12 @@ impl Variables for ModuleWriter<'_> {
             Symbol::Sine(_)
             | Symbol::Cosine(_)
             | Symbol::Angle(_)
+            | Symbol::RateOfRate(_)
             | Symbol::Rotation { .. }
             | Symbol::Relative { .. }
             | Symbol::RotationRate { .. }
             | Symbol::RelativeRate { .. } => {
-                unreachable!("angles and rotations are expanded before they are written")
+                unreachable!("angles, rotations and rates' rates are expanded before they are written")
             }
         }
     }

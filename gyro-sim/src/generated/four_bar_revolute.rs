@@ -17,6 +17,7 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 811 operations by rotations of the bodies; 811 operations by relative Euler parameters
+//! * project: 616 operations by rotations of the bodies; 616 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -31,6 +32,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 330 | 475 | 6 | 811 | 0 of 20 | 1.9e7 | 812 |
 //! | multipliers | λ, the accelerations being known | 96 | 157 | 3 | 256 | 0 of 17 | 1879 | 256 |
+//! | project | (δr, δπ') that changes the rows as given | 254 | 356 | 6 | 616 | 0 of 18 | 9.2e6 | 617 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 44 | 55 | 0 | 99 | 0 of 12 | 234 | 99 |
@@ -40,7 +42,7 @@
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
@@ -2301,6 +2303,328 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             T::fused(t22, t21 * t79, t38 * t79 * t31),
             closing0,
             closing1,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBarRevolute<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 616 operations (254 ±, 356 ×, 6 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let row15 = rows[15];
+        let row16 = rows[16];
+        let t0 = crank_e0 * crank_e3;
+        let t1 = crank_e1 * crank_e2;
+        let t2 = k(2.0) * (t1 + t0);
+        let t3 = t1 - t0;
+        let t4 = k(2.0) * t3;
+        let t5 = crank_e0 * crank_e0;
+        let t6 = k(0.5) - T::fused(crank_e2, crank_e2, t5);
+        let t7 = k(2.0) * t6;
+        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t5));
+        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
+        let t10 = T::fused(t2 * t9, row3, t8 * t9 * row4);
+        let t11 = coupler_e0 * coupler_e3;
+        let t12 = coupler_e1 * coupler_e2;
+        let t13 = t12 - t11;
+        let t14 = k(2.0) * t13;
+        let t15 = coupler_e0 * coupler_e0;
+        let t16 = k(0.5) - T::fused(coupler_e2, coupler_e2, t15);
+        let t17 = k(2.0) * t16;
+        let t18 = coupler_e0 * coupler_e1;
+        let t19 = coupler_e2 * coupler_e3;
+        let t20 = t19 + t18;
+        let t21 = k(2.0) * t20;
+        let t22 = crank_e0 * crank_e2;
+        let t23 = crank_e1 * crank_e3;
+        let t24 = k(2.0) * (t23 - t22);
+        let t25 = T::fused(t24, t21, -T::fused(t8, t14, t2 * t17));
+        let t26 = T::fused(t7 * t9, row3, t4 * t9 * row4);
+        let t27 = crank_e0 * crank_e1;
+        let t28 = crank_e2 * crank_e3;
+        let t29 = t28 + t27;
+        let t30 = k(2.0) * t29;
+        let t31 = T::fused(t30, t21, T::fused(t7, t17, t4 * t14));
+        let t32 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t15));
+        let t33 = k(2.0) * (t12 + t11);
+        let t34 = coupler_e0 * coupler_e2;
+        let t35 = coupler_e1 * coupler_e3;
+        let t36 = k(2.0) * (t35 - t34);
+        let t37 = T::fused(t30, t36, -T::fused(t4, t32, t7 * t33));
+        let t38 = T::fused(t24, t36, T::fused(t8, t32, t2 * t33));
+        let t39 = k(1.0) / T::fused(-t25, t37, t38 * t31);
+        let t40 = T::fused(-(t37 * t39), row13, t38 * t39 * row14);
+        let t41 = t23 + t22;
+        let t42 = k(2.0) * t41;
+        let t43 = t28 - t27;
+        let t44 = k(2.0) * t43;
+        let t45 = k(0.5) - T::fused(crank_e3, crank_e3, t5);
+        let t46 = k(2.0) * t45;
+        let t47 = T::fused(t46, t36, -T::fused(-t42, t32, t44 * t33));
+        let t48 = t35 + t34;
+        let t49 = k(0.5) * t48;
+        let t50 = t19 - t18;
+        let t51 = k(0.5) * t50;
+        let t52 = k(0.5) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t15));
+        let t53 = T::fused(-(t31 * t39), row13, t25 * t39 * row14);
+        let t54 = T::fused(
+            k(0.0835),
+            t53,
+            -T::fused(t52, row12, -T::fused(t49, row10, t51 * row11)),
+        );
+        let t55 = T::fused(t46, t21, -T::fused(-t44, t17, t42 * t14));
+        let t56 = k(5.9880239520958085) * t13;
+        let t57 = k(0.5) * t13;
+        let t58 = t57 * t56;
+        let t59 = k(0.5) * t16;
+        let t60 = t59 * t56;
+        let t61 = k(0.5) * t20;
+        let t62 = t61 * t56;
+        let t63 = T::fused(
+            t49,
+            t53,
+            row10 - T::fused(t62, row12, -T::fused(-t58, row10, t60 * row11)),
+        );
+        let t64 = k(0.2) * t3;
+        let t65 = k(5.9880239520958085) * t16;
+        let t66 = t59 * t65;
+        let t67 = t61 * t65;
+        let t68 = T::fused(
+            t51,
+            t53,
+            row11 + T::fused(t67, row12, -T::fused(-t60, row10, t66 * row11)),
+        );
+        let t69 = k(0.2) * t6;
+        let t70 = t61 * (k(5.9880239520958085) * t20);
+        let t71 = T::fused(
+            t52,
+            t53,
+            -(row12 - T::fused(t70, row12, -T::fused(-t62, row10, t67 * row11))),
+        );
+        let t72 = k(0.2) * t29;
+        let t73 = T::fused(t72, t71, T::fused(-t64, t63, t69 * t68));
+        let t74 = T::fused(t72, t62, T::fused(t64, t58, t69 * t60));
+        let t75 = t49 * t55;
+        let t76 = t64 - t74 + t75;
+        let t77 = T::fused(t72, t67, T::fused(t64, t60, t69 * t66));
+        let t78 = t51 * t55;
+        let t79 = t69 - t77 - t78;
+        let t80 = T::fused(
+            -(t76 - T::fused(-k(0.28), t3, t74)),
+            row0,
+            (t79 - T::fused(-k(0.28), t6, t77)) * row1,
+        );
+        let t81 = T::fused(t72, t70, T::fused(t64, t62, t69 * t67));
+        let t82 = t52 * t55;
+        let t83 = t72 - t81 - t82;
+        let t84 = T::fused(t72, t52 * t25, T::fused(-t64, t49 * t25, t69 * (t51 * t25)));
+        let t85 = t84 + (t84 - T::fused(t47, k(5e-5) * t38, t55 * (k(0.0835) * t25)));
+        let t86 = k(0.2) * t41;
+        let t87 = k(0.2) * t43;
+        let t88 = k(0.2) * t45;
+        let t89 = t49 * t31;
+        let t90 = t51 * t31;
+        let t91 = t52 * t31;
+        let t92 = T::fused(t72, t91, T::fused(-t64, t89, t69 * t90))
+            - T::fused(t88, t82, T::fused(t86, t75, t87 * t78));
+        let t93 = T::fused(t88, t81, T::fused(-t86, t74, t87 * t77));
+        let t94 = t93 - t92 + T::fused(t47, k(5e-5) * t37, t55 * (k(0.0835) * t31));
+        let t95 = t86 + T::fused(t88, t62, T::fused(-t86, t58, t87 * t60)) + t89;
+        let t96 = t87 - T::fused(t88, t67, T::fused(-t86, t60, t87 * t66)) + t90;
+        let t97 = t88 - T::fused(t88, t70, T::fused(-t86, t62, t87 * t67)) + t91;
+        let t98 = T::fused(t72, t97, T::fused(-t64, t95, t69 * t96))
+            + T::fused(t88, t83, T::fused(-t86, t76, t87 * t79));
+        let t99 = T::fused(-t85, t10, (t98 - t93 - t94) * t26)
+            - T::fused(t83 - T::fused(-k(0.28), t29, t81), row2, -t80);
+        let t100 = t99 + (t73 + (t73 - T::fused(t47, k(5e-5) * t40, t55 * t54)));
+        let t101 = T::fused(t72, t81, T::fused(t64, t74, t69 * t77));
+        let t102 = T::fused(
+            k(2.0),
+            T::fused(t72, t82, T::fused(-t64, t75, t69 * t78)),
+            t101,
+        );
+        let t103 = t102
+            - (k(0.01) + T::fused(t47, k(5e-5) * t47, t55 * (k(0.0835) * t55)));
+        let t104 = T::fused(
+            k(2.0),
+            T::fused(t72, t83, T::fused(t64, t76, t69 * t79)),
+            -t101,
+        );
+        let t105 = k(1.0) / (t104 + (k(0.014) + (k(0.00135) - t103)));
+        let t106 = t105 * t100;
+        let t107 = t53 + T::fused(t55, t106, T::fused(-t25, t10, t31 * t26));
+        let t108 = T::fused(t86, t26, t64 * t106);
+        let t109 = row0 + t108;
+        let t110 = row10 + (t108 + t109);
+        let t111 = T::fused(-t87, t26, t69 * t106);
+        let t112 = row1 - t111;
+        let t113 = row11 - (t111 - t112);
+        let t114 = T::fused(-t88, t26, t72 * t106);
+        let t115 = row2 + t114;
+        let t116 = row12 + (t114 + t115);
+        let t117 = k(11.976047904191617)
+            * T::fused(t61, t116, -T::fused(-t57, t110, t59 * t113));
+        let t118 = T::fused(-t49, t107, t57 * t117);
+        let t119 = t110 - t118;
+        let t120 = rocker_e0 * rocker_e3;
+        let t121 = rocker_e1 * rocker_e2;
+        let t122 = k(2.0) * (t121 + t120);
+        let t123 = t121 - t120;
+        let t124 = k(2.0) * t123;
+        let t125 = rocker_e0 * rocker_e0;
+        let t126 = k(0.5) - T::fused(rocker_e2, rocker_e2, t125);
+        let t127 = k(2.0) * t126;
+        let t128 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t125));
+        let t129 = k(1.0) / T::fused(-t124, t122, t128 * t127);
+        let t130 = T::fused(t127 * t129, row8, t124 * t129 * row9);
+        let t131 = rocker_e0 * rocker_e1;
+        let t132 = rocker_e2 * rocker_e3;
+        let t133 = t132 + t131;
+        let t134 = T::fused(
+            k(0.32) * t133,
+            row7,
+            -T::fused(-(k(0.32) * t123), row5, k(0.32) * t126 * row6),
+        );
+        let t135 = k(23.364485981308412) * t134;
+        let t136 = k(0.4) * t123;
+        let t137 = T::fused(
+            -(k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3)),
+            t130,
+            t136 * t135,
+        );
+        let t138 = row5 - t137;
+        let t139 = row15 + (t137 - t138 - (t118 - t119));
+        let t140 = k(11.976047904191617) * t13;
+        let t141 = T::fused(
+            t72,
+            t61 * t140,
+            T::fused(-t64, T::fused(-t57, t140, k(1.0)), t69 * (t59 * t140)),
+        );
+        let t142 = (t141 + T::fused(-t48, t55, t141)) * t105;
+        let t143 = t55 * t142;
+        let t144 = t64 * t142;
+        let t145 = k(2.0) * t144;
+        let t146 = t69 * t142;
+        let t147 = k(2.0) * t146;
+        let t148 = t72 * t142;
+        let t149 = k(2.0) * t148;
+        let t150 = k(11.976047904191617)
+            * (t13 + T::fused(t61, t149, T::fused(t57, t145, t59 * t147)));
+        let t151 = T::fused(-t49, t143, t57 * t150);
+        let t152 = t145 - t151;
+        let t153 = k(18.69158878504673) * t123;
+        let t154 = t136 * t153;
+        let t155 = k(1.0) / T::fused(k(2.0), t154, t151 - t152);
+        let t156 = T::fused(t51, t107, t59 * t117);
+        let t157 = t113 + t156;
+        let t158 = k(0.4) * t126;
+        let t159 = T::fused(k(0.4) * (t132 - t131), t130, t158 * t135);
+        let t160 = row6 + t159;
+        let t161 = T::fused(t51, t143, t59 * t150);
+        let t162 = t147 - t161;
+        let t163 = t158 * t153;
+        let t164 = T::fused(k(2.0), t163, t161 - t162);
+        let t165 = t155 * t164;
+        let t166 = k(11.976047904191617) * t16;
+        let t167 = T::fused(
+            t72,
+            t61 * t166,
+            -T::fused(-t64, t57 * t166, t69 * T::fused(-t59, t166, k(1.0))),
+        );
+        let t168 = t105 * (t167 + T::fused(t50, t55, t167));
+        let t169 = t55 * t168;
+        let t170 = t64 * t168;
+        let t171 = k(2.0) * t170;
+        let t172 = t69 * t168;
+        let t173 = k(2.0) * t172;
+        let t174 = t72 * t168;
+        let t175 = k(2.0) * t174;
+        let t176 = k(11.976047904191617)
+            * (t16 + T::fused(t61, t175, T::fused(t57, t171, t59 * t173)));
+        let t177 = T::fused(t51, t169, t59 * t176);
+        let t178 = t173 - t177;
+        let t179 = k(18.69158878504673) * t126;
+        let t180 = t158 * t179;
+        let t181 = T::fused(t165, t139, row16 - (t159 + t160 - (t156 + t157)))
+            / T::fused(t164, t165, -T::fused(k(2.0), t180, t177 - t178));
+        let t182 = T::fused(-t155, t139, t165 * t181);
+        let t183 = T::fused(
+            t171 - T::fused(-t49, t169, t57 * t176),
+            t181,
+            T::fused(-t152, t182, t119),
+        );
+        let t184 = T::fused(
+            t149 - T::fused(t52, t143, t61 * t150),
+            t182,
+            -(t116 - T::fused(t52, t107, t61 * t117)),
+        );
+        let t185 = T::fused(
+            t47 * t142,
+            t182,
+            -(t40 + T::fused(t47, t106, T::fused(-t38, t10, t37 * t26))),
+        );
+        let t186 = k(0.4) * t133;
+        let t187 = T::fused(
+            k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t125)),
+            t130,
+            t186 * t135,
+        );
+        let t188 = T::fused(
+            t186 * t179,
+            t181,
+            -T::fused(t186 * t153, t182, -(row7 - t187)),
+        );
+        *out = [
+            T::fused(t170, t181, T::fused(-t144, t182, t109)),
+            T::fused(-t172, t181, T::fused(t146, t182, t112)),
+            T::fused(t174, t181, T::fused(-t148, t182, t115)),
+            t10,
+            -t26,
+            T::fused(t168, t181, T::fused(-t142, t182, t106)),
+            t183,
+            T::fused(-t178, t181, T::fused(t162, t182, t157)),
+            T::fused(t175 - T::fused(t52, t169, t61 * t176), t181, -t184),
+            T::fused(-(t47 * t168), t181, t185),
+            -T::fused(t169, t181, T::fused(-t143, t182, t107)),
+            -T::fused(t176, t181, T::fused(-t150, t182, t117)),
+            T::fused(t136 * t179, t181, T::fused(-t154, t182, t138)),
+            T::fused(-t180, t181, T::fused(t163, t182, t160)),
+            t188,
+            T::fused(t122 * t129, row8, t128 * t129 * row9),
+            -t130,
+            T::fused(t179, t181, -T::fused(t153, t182, t135)),
         ];
     }
 }

@@ -12,8 +12,10 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 4 operations by rotations of the bodies; 4 operations by relative Euler parameters
+//! * project: 0 operations by rotations of the bodies; 0 operations by relative Euler parameters
 //! * joint_accelerations_at: 4 operations by recursion; 4 operations by recursion on the bodies' spins
 //! * corrected_accelerations: 4 operations by recursion in the bodies' frames; 4 operations by recursion in the global frame; 3 more compared
+//! * joint_jacobian: 10 operations by derivatives of u̇, from its leaves; 10 operations by derivatives of u̇, from its roots
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -23,6 +25,7 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 | 4 | 4 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
+//! | project | (δr, δπ') that changes the rows as given | 0 | 0 | 0 | 0 | 6 of 6 | 0 | 0 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 11 | 0 | 16 | 1 of 2 | 16 | 16 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
@@ -35,13 +38,14 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
 //! | corrected_solution | both | 0 | 4 | 0 | 4 | 4 of 6 | 4 | 4 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 10 | 0 | 10 | 151 of 182 | 28 | 10 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -52,6 +56,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-151.
 //! Not proved: the size of rounding errors.
@@ -468,6 +473,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FreeBody<T> {
         *lambda = [];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for FreeBody<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn project(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        _rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
     type Joints = [T; 13];
     type Rates = [T; 6];
@@ -648,6 +666,233 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for FreeBody<T> {
             k(0.0),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for FreeBody<T> {
+    type Jacobian = [T; 169];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 169]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 10 operations (0 ±, 10 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let x6 = x[6];
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        let t0 = k(0.5) * u3;
+        let t1 = k(0.5) * u4;
+        let t2 = k(0.5) * u5;
+        let t3 = k(0.5) * x4;
+        let t4 = k(0.5) * x5;
+        let t5 = k(0.5) * x6;
+        let t6 = k(0.5) * x3;
+        let t7 = k(0.3333333333333333) * u5;
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t1,
+            -t2,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t3,
+            -t4,
+            -t5,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0,
+            k(0.0),
+            t2,
+            -t1,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t6,
+            -t5,
+            t4,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            -t2,
+            k(0.0),
+            t0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t6,
+            -t3,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t2,
+            t1,
+            -t0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t4,
+            t3,
+            t6,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t7,
+            -(k(0.3333333333333333) * u4),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t7,
+            k(0.0),
+            k(0.3333333333333333) * u3,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+        *dfdt = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for FreeBody<T> {
     type Outputs = [T; 0];

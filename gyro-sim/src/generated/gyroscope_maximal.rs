@@ -12,9 +12,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 616 operations by relative Euler parameters; 664 operations by rotations of the bodies
+//! * project: 491 operations by relative Euler parameters; 527 operations by rotations of the bodies
 //! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
 //! * joint_accelerations_at: 41 operations by normal form; 60 operations by recursion; 1 more compared
 //! * corrected_accelerations: 151 operations by normal form in the bodies' frames; 153 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 61 operations by derivatives of u̇, from its leaves; 61 operations by normal form of that; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 14 of 24 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 242 | 368 | 6 | 616 | 10 of 24 | 642879 | 620 |
 //! | multipliers | λ, the accelerations being known | 180 | 291 | 4 | 475 | 0 of 21 | 18384 | 475 |
+//! | project | (δr, δπ') that changes the rows as given | 187 | 298 | 6 | 491 | 1 of 24 | 479156 | 492 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 32 | 64 | 0 | 96 | 0 of 28 | 96 | 96 |
 //! | energy | T and V | 26 | 45 | 0 | 71 | 0 of 2 | 71 | 71 |
 //! | read_joints | joint coordinates and rates | 73 | 83 | 0 | 156 | 0 of 9 | 297 | 156 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 12 of 24 | 2594 | 152 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 | 2605 | 213 |
 //! | corrected_solution | both | 117 | 184 | 2 | 303 | 12 of 45 | 60646 | 305 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 48 | 1 | 61 | 28 of 42 | 182 | 61 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -3352,6 +3357,343 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMaximal<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMaximal<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 491 operations (187 ±, 298 ×, 6 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let base_e0 = y[3];
+        let base_e1 = y[4];
+        let base_e2 = y[5];
+        let base_e3 = y[6];
+        let outer_ring_e0 = y[10];
+        let outer_ring_e1 = y[11];
+        let outer_ring_e2 = y[12];
+        let outer_ring_e3 = y[13];
+        let inner_ring_e0 = y[17];
+        let inner_ring_e1 = y[18];
+        let inner_ring_e2 = y[19];
+        let inner_ring_e3 = y[20];
+        let rotor_e0 = y[24];
+        let rotor_e1 = y[25];
+        let rotor_e2 = y[26];
+        let rotor_e3 = y[27];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let row15 = rows[15];
+        let row16 = rows[16];
+        let row17 = rows[17];
+        let row18 = rows[18];
+        let row19 = rows[19];
+        let row20 = rows[20];
+        let t0 = k(0.5) * base_e3;
+        let t1 = k(0.5) * base_e0;
+        let t2 = t1 * t1;
+        let t3 = T::fused(t0, t0, t2);
+        let t4 = k(0.5) * base_e1;
+        let t5 = t4 * t1;
+        let t6 = k(0.5) * base_e2;
+        let t7 = t0 * t6;
+        let t8 = t7 + t5;
+        let t9 = t1 * t6;
+        let t10 = t4 * t0;
+        let t11 = t10 - t9;
+        let t12 = k(1.0) / T::fused(-t1, t3, T::fused(-t4, t8, t6 * t11));
+        let t13 = t1 * t0;
+        let t14 = t4 * t6;
+        let t15 = T::fused((t14 + t13) * t12, row4, T::fused(t4, t4, t2) * t12 * row3);
+        let t16 = T::fused(t11 * t12, row5, t15);
+        let t17 = T::fused(T::fused(t6, t6, t2) * t12, row4, (t14 - t13) * t12 * row3);
+        let t18 = T::fused(t8 * t12, row5, t17);
+        let t19 = T::fused((t7 - t5) * t12, row4, (t10 + t9) * t12 * row3);
+        let t20 = T::fused(t3 * t12, row5, t19);
+        let t21 = row0 + row6;
+        let t22 = row1 + row7;
+        let t23 = row2 + row8;
+        let t24 = T::fused(
+            -base_e0,
+            outer_ring_e3,
+            T::fused(
+                base_e1,
+                outer_ring_e2,
+                T::fused(-base_e2, outer_ring_e1, base_e3 * outer_ring_e0),
+            ),
+        );
+        let t25 = T::fused(
+            base_e3,
+            outer_ring_e3,
+            T::fused(
+                base_e2,
+                outer_ring_e2,
+                T::fused(base_e1, outer_ring_e1, base_e0 * outer_ring_e0),
+            ),
+        );
+        let t26 = t25 * t25;
+        let t27 = k(2.0) * (k(0.5) - T::fused(t24, t24, t26));
+        let t28 = T::fused(
+            base_e2,
+            outer_ring_e3,
+            T::fused(
+                -base_e3,
+                outer_ring_e2,
+                T::fused(-base_e0, outer_ring_e1, base_e1 * outer_ring_e0),
+            ),
+        );
+        let t29 = k(2.0) * (k(0.5) - T::fused(t28, t28, t26));
+        let t30 = T::fused(
+            -base_e1,
+            outer_ring_e3,
+            T::fused(
+                -base_e0,
+                outer_ring_e2,
+                T::fused(base_e3, outer_ring_e1, base_e2 * outer_ring_e0),
+            ),
+        );
+        let t31 = t25 * t30;
+        let t32 = t28 * t24;
+        let t33 = k(2.0) * (t32 + t31);
+        let t34 = k(2.0) * (t32 - t31);
+        let t35 = k(1.0) / T::fused(-t29, t27, t34 * t33);
+        let t36 = T::fused(-t29, t16, k(2.0) * T::fused(-t25, t24, t28 * t30) * t18);
+        let t37 = T::fused(t33, t20, t36)
+            - T::fused(row9, t29 * t35, row10 * (t33 * t35));
+        let t38 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t39 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t40 = t39 * t38;
+        let t41 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t42 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t43 = t42 * t41;
+        let t44 = t43 - t40;
+        let t45 = k(2.0) * t44;
+        let t46 = t43 + t40;
+        let t47 = k(2.0) * t46;
+        let t48 = t39 * t39;
+        let t49 = k(0.5) - T::fused(t41, t41, t48);
+        let t50 = k(2.0) * t49;
+        let t51 = k(0.5) - T::fused(t42, t42, t48);
+        let t52 = k(2.0) * t51;
+        let t53 = k(1.0) / T::fused(-t47, t45, t52 * t50);
+        let t54 = T::fused(row19, t45 * t53, row20 * (t52 * t53));
+        let t55 = k(5e-6) * t54;
+        let t56 = T::fused(t39, t41, t38 * t42);
+        let t57 = k(2.0) * t56;
+        let t58 = T::fused(row19, t50 * t53, row20 * (t47 * t53));
+        let t59 = k(5e-6) * t58;
+        let t60 = T::fused(-t39, t42, t38 * t41);
+        let t61 = k(2.0) * t60;
+        let t62 = k(0.08) * row16;
+        let t63 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
+        let t64 = k(0.00025) * t63;
+        let t65 = k(0.08) * row17;
+        let t66 = inner_ring_e0 * inner_ring_e0;
+        let t67 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t66);
+        let t68 = k(0.00025) * t67;
+        let t69 = k(0.08) * row18;
+        let t70 = inner_ring_e0 * inner_ring_e1;
+        let t71 = inner_ring_e2 * inner_ring_e3;
+        let t72 = t71 + t70;
+        let t73 = k(0.00025) * t72;
+        let t74 = T::fused(t73, t69, -T::fused(-t64, t62, t68 * t65))
+            + T::fused(t45, t55, t50 * t59);
+        let t75 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t45, k(1e-5) * t44, t50 * (k(1e-5) * t49)));
+        let t76 = k(1.0) / t75;
+        let t77 = t76 * t74;
+        let t78 = k(1e-5) * t56;
+        let t79 = k(1e-5) * t60;
+        let t80 = T::fused(-t45, t78, t50 * t79);
+        let t81 = k(2e-5) * t63;
+        let t82 = t76 * t81;
+        let t83 = t80 * t82;
+        let t84 = k(2e-5) * t67;
+        let t85 = t76 * t84;
+        let t86 = t80 * t85;
+        let t87 = k(2e-5) * t72;
+        let t88 = t76 * t87;
+        let t89 = t80 * t88;
+        let t90 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t91 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t92 = t91 * t90;
+        let t93 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t94 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t95 = t94 * t93;
+        let t96 = k(2.0) * (t95 - t92);
+        let t97 = k(2.0) * (t95 + t92);
+        let t98 = t91 * t91;
+        let t99 = k(2.0) * (k(0.5) - T::fused(t93, t93, t98));
+        let t100 = k(2.0) * (k(0.5) - T::fused(t94, t94, t98));
+        let t101 = k(1.0) / T::fused(-t97, t96, t100 * t99);
+        let t102 = T::fused(row14, t96 * t101, row15 * (t100 * t101));
+        let t103 = t76 * t80;
+        let t104 = T::fused(t80, t103, -(k(1e-6) + T::fused(t57, t78, t61 * t79)));
+        let t105 = T::fused(row14, t99 * t101, row15 * (t97 * t101));
+        let t106 = k(1e-5) * t51;
+        let t107 = k(1e-5) * t46;
+        let t108 = T::fused(t45, t106, t50 * t107);
+        let t109 = T::fused(t108, t103, -T::fused(-t52, t78, t47 * t79));
+        let t110 = T::fused(-t104, t102, t109 * t105)
+            + T::fused(row13, t89, -T::fused(-row11, t83, row12 * t86));
+        let t111 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t112 = k(0.00025) * t111;
+        let t113 = t71 - t70;
+        let t114 = k(0.00025) * t113;
+        let t115 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t66);
+        let t116 = k(0.00025) * t115;
+        let t117 = T::fused(t116, t69, -T::fused(t112, t62, t114 * t65))
+            - T::fused(t52, t55, t47 * t59);
+        let t118 = T::fused(-t108, t82, k(2e-5) * t111);
+        let t119 = T::fused(t108, t85, k(2e-5) * t113);
+        let t120 = T::fused(t108, t88, k(2e-5) * t115);
+        let t121 = T::fused(
+            t108,
+            t76 * t108,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t52, t106, t47 * t107))),
+        );
+        let t122 = T::fused(-t109, t102, t121 * t105)
+            + T::fused(row13, t120, -T::fused(row11, t118, row12 * t119));
+        let t123 = T::fused(
+            -t96,
+            t110 + T::fused(t80, t77, -T::fused(-t57, t55, t61 * t59)),
+            t99 * (t122 + T::fused(t108, t77, t117)),
+        );
+        let t124 = T::fused(
+            t21,
+            T::fused(t96, t83, t99 * t118),
+            t22 * T::fused(-t96, t86, t99 * t119),
+        );
+        let t125 = T::fused(
+            -t96,
+            T::fused(-t100, t104, t97 * t109),
+            t99 * T::fused(-t100, t109, t97 * t121),
+        );
+        let t126 = T::fused(t34, t16, k(2.0) * T::fused(t25, t28, t30 * t24) * t18);
+        let t127 = T::fused(t27, t20, -t126)
+            - T::fused(row9, t34 * t35, row10 * (t27 * t35));
+        let t128 = T::fused(-t96, t104, t99 * t109);
+        let t129 = k(2.0) * T::fused(t91, t93, t94 * t90);
+        let t130 = T::fused(-t96, t109, t99 * t121);
+        let t131 = k(2.0) * T::fused(-t91, t94, t93 * t90);
+        let t132 = T::fused(-t125, t37, T::fused(t129, t128, t131 * t130) * t127)
+            - T::fused(t23, T::fused(-t96, t89, t99 * t120), -t124);
+        let t133 = (t132 - t123) / (k(1e-6) - T::fused(-t96, t128, t99 * t130));
+        let t134 = row11 + t21;
+        let t135 = row12 + t22;
+        let t136 = row13 + t23;
+        let t137 = t102 + T::fused(t129, t127, -T::fused(-t100, t37, t96 * t133));
+        let t138 = t105 - T::fused(t131, t127, T::fused(-t97, t37, t99 * t133));
+        let t139 = T::fused(t136, t87, -T::fused(-t134, t81, t135 * t84))
+            + T::fused(-t80, t137, t108 * t138);
+        let t140 = t76 * (t74 + t139);
+        *out = [
+            row0,
+            row1,
+            row2,
+            -t16,
+            -t18,
+            -t20,
+            t21,
+            t22,
+            t23,
+            -t37,
+            -t133,
+            t127,
+            t134,
+            t135,
+            t136,
+            t137,
+            -t138,
+            -t140,
+            row16 + (t134 - T::fused(-t112, t138, t64 * t140)),
+            row17 + (t135 + T::fused(t114, t138, t68 * t140)),
+            row18 + (t136 - T::fused(t116, t138, t73 * t140)),
+            k(0.0),
+            t54 - T::fused(t45, t140, -T::fused(t57, t137, t52 * t138)),
+            T::fused(t50, t140, -T::fused(-t61, t137, t47 * t138)) - t58,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
@@ -4306,6 +4648,102 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMaximal<T> {
             t65,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 36]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 61 operations (12 ±, 48 ×, 1 ÷) and 2 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.sin();
+        let t1 = k(1e-5) * t0;
+        let t2 = u1 * t1;
+        let t3 = u0 * t0;
+        let t4 = T::fused(-k(0.20025), t3, u2);
+        let t5 = x1.cos();
+        let t6 = u0 * t5;
+        let t7 = k(1e-5) * t5;
+        let t8 = u1 * t7;
+        let t9 = k(1.0) / T::fused(k(6.00125e-6), t5 * t5, k(2e-6));
+        let t10 = t4 * t8;
+        let t11 = T::fused(
+            -t9,
+            T::fused(t4, t2, t8 * (k(0.20025) * t6)),
+            t10 * (t9 * t9 * (k(1.20025e-5) * (t0 * t5))),
+        );
+        let t12 = t9 * (t8 * (k(0.20025) * t0));
+        let t13 = t9 * (t4 * t7);
+        let t14 = t9 * t8;
+        let t15 = T::fused(k(0.399875), t3, u2);
+        let t16 = T::fused(
+            t7,
+            u0 * (k(0.399875) * t6),
+            T::fused(-u0, t15, k(10.0)) * t1,
+        );
+        let t17 = u0 * t7;
+        let t18 = T::fused(k(100000.0), u0 * t2, T::fused(t0, t11, t5 * (t9 * t10)));
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t11,
+            k(0.0),
+            t12,
+            -t13,
+            -t14,
+            k(0.0),
+            k(166631.95167673402) * t16,
+            k(0.0),
+            k(166631.95167673402) * (t7 * T::fused(u0, k(0.399875) * t0, t15)),
+            k(0.0),
+            k(166631.95167673402) * t17,
+            k(0.0),
+            t18,
+            k(0.0),
+            -T::fused(t0, t12, k(100000.0) * t8),
+            T::fused(-k(100000.0), t17, t0 * t13),
+            t0 * t14,
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeMaximal<T> {
     type Outputs = [T; 0];

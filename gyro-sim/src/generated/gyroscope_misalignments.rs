@@ -11,9 +11,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 838 operations by relative Euler parameters; 858 operations by rotations of the bodies
+//! * project: 798 operations by rotations of the bodies; 824 operations by relative Euler parameters
 //! * joint_accelerations: 191 operations by normal form; 441 operations by recursion
 //! * joint_accelerations_at: 229 operations by normal form; 479 operations by recursion; 1 more compared
 //! * corrected_accelerations: 366 operations by normal form in the bodies' frames; 458 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 518 operations by derivatives of u̇, from its leaves; 518 operations by normal form of that; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 22 | 0 | 29 | 8 of 18 | 32 | 29 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 336 | 496 | 6 | 838 | 6 of 18 | 6.5e7 | 842 |
 //! | multipliers | λ, the accelerations being known | 150 | 239 | 3 | 392 | 0 of 15 | 6505 | 392 |
+//! | project | (δr, δπ') that changes the rows as given | 326 | 466 | 6 | 798 | 0 of 18 | 2.0e7 | 799 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 23 | 37 | 0 | 60 | 0 of 2 | 60 | 60 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -42,13 +45,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 147 | 216 | 3 | 366 | 6 of 18 | 572394 | 367 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 106 | 161 | 0 | 267 | 0 of 15 | 1835 | 267 |
 //! | corrected_solution | both | 219 | 328 | 3 | 550 | 6 of 33 | 1.8e7 | 551 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 204 | 311 | 3 | 518 | 24 of 42 | 65963 | 518 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -59,6 +63,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -3264,6 +3269,401 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 798 operations (326 ±, 466 ×, 6 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let (
+            t8,
+            t15,
+            t19,
+            t34,
+            t45,
+            t60,
+            t66,
+            t71,
+            t73,
+            t77,
+            t79,
+            t184,
+            t186,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t193,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = outer_ring_e0 * outer_ring_e0;
+            let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+            let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+            let t3 = outer_ring_e0 * outer_ring_e2;
+            let t4 = outer_ring_e1 * outer_ring_e3;
+            let t5 = k(2.0) * (t4 - t3);
+            let t6 = k(2.0) * (t4 + t3);
+            let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+            let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
+            let t9 = rotor_e0 * rotor_e3;
+            let t10 = rotor_e1 * rotor_e2;
+            let t11 = k(2.0) * (t10 - t9);
+            let t12 = rotor_e0 * rotor_e2;
+            let t13 = rotor_e1 * rotor_e3;
+            let t14 = k(2.0) * (t13 + t12);
+            let t15 = T::fused(-t11, self.imbalance_z, t14 * self.imbalance_y);
+            let t16 = k(0.08) * t15;
+            let t17 = self.imbalance_y * self.imbalance_y;
+            let t18 = self.imbalance_z * self.imbalance_z;
+            let t19 = k(1.0) / T::fused(k(0.08), t18 + t17, k(1e-5));
+            let t20 = t19 * t16;
+            let t21 = t16 * t20;
+            let t22 = inner_ring_e0 * inner_ring_e3;
+            let t23 = inner_ring_e1 * inner_ring_e2;
+            let t24 = k(2.0) * (t23 - t22);
+            let t25 = inner_ring_e0 * inner_ring_e2;
+            let t26 = inner_ring_e1 * inner_ring_e3;
+            let t27 = k(2.0) * (t26 + t25);
+            let t28 = T::fused(-t24, self.offset_z, t27 * self.offset_y);
+            let t29 = rotor_e0 * rotor_e0;
+            let t30 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t29));
+            let t31 = rotor_e0 * rotor_e1;
+            let t32 = rotor_e2 * rotor_e3;
+            let t33 = k(2.0) * (t32 - t31);
+            let t34 = T::fused(t30, self.imbalance_z, t33 * self.imbalance_y);
+            let t35 = k(0.08) * t34;
+            let t36 = t35 * t20;
+            let t37 = inner_ring_e0 * inner_ring_e0;
+            let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t37));
+            let t39 = inner_ring_e0 * inner_ring_e1;
+            let t40 = inner_ring_e2 * inner_ring_e3;
+            let t41 = k(2.0) * (t40 - t39);
+            let t42 = T::fused(t38, self.offset_z, t41 * self.offset_y);
+            let t43 = k(2.0) * (t32 + t31);
+            let t44 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t29));
+            let t45 = T::fused(t43, self.imbalance_z, t44 * self.imbalance_y);
+            let t46 = k(0.08) * t45;
+            let t47 = t46 * t20;
+            let t48 = k(2.0) * (t40 + t39);
+            let t49 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t37));
+            let t50 = T::fused(t48, self.offset_z, t49 * self.offset_y);
+            let t51 = T::fused(t50, t47, T::fused(t28, t21, t42 * t36));
+            let t52 = t19 * t35;
+            let t53 = t35 * t52;
+            let t54 = t46 * t52;
+            let t55 = T::fused(t50, t54, T::fused(t28, t36, t42 * t53));
+            let t56 = t19 * t46;
+            let t57 = t46 * t56;
+            let t58 = T::fused(t50, t57, T::fused(t28, t47, t42 * t54));
+            let t59 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t29));
+            let t60 = t59 * self.imbalance_z;
+            let t61 = T::fused(k(0.08), t60, self.product_xy * t20);
+            let t62 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t37));
+            let t63 = k(2.0) * (t23 + t22);
+            let t64 = k(2.0) * (t26 - t25);
+            let t65 = T::fused(t64, t43, -T::fused(t62, t11, t63 * t30));
+            let t66 = t59 * self.imbalance_y;
+            let t67 = T::fused(-k(0.08), t66, self.product_xz * t20);
+            let t68 = T::fused(t64, t44, -T::fused(-t62, t14, t63 * t33));
+            let t69 = T::fused(-t65, t61, t68 * t67);
+            let t70 = k(2.0) * (t10 + t9);
+            let t71 = t70 * self.imbalance_z;
+            let t72 = T::fused(-k(0.08), t71, self.product_xy * t52);
+            let t73 = t70 * self.imbalance_y;
+            let t74 = T::fused(k(0.08), t73, self.product_xz * t52);
+            let t75 = T::fused(-t65, t72, t68 * t74);
+            let t76 = k(2.0) * (t13 - t12);
+            let t77 = t76 * self.imbalance_z;
+            let t78 = T::fused(k(0.08), t77, self.product_xy * t56);
+            let t79 = t76 * self.imbalance_y;
+            let t80 = T::fused(-k(0.08), t79, self.product_xz * t56);
+            let t81 = T::fused(-t65, t78, t68 * t80);
+            let t82 = T::fused(
+                k(2.0),
+                T::fused(t50, t81, T::fused(t28, t69, t42 * t75)),
+                T::fused(t50, t58, T::fused(t28, t51, t42 * t55)),
+            );
+            let t83 = self.product_xy * t19;
+            let t84 = T::fused(-self.product_xy, t83, T::fused(k(0.08), t18, k(5e-6)));
+            let t85 = T::fused(
+                self.product_xz,
+                t83,
+                k(0.08) * (self.imbalance_y * self.imbalance_z),
+            );
+            let t86 = T::fused(t84, t65, t85 * t68);
+            let t87 = T::fused(
+                -self.product_xz,
+                self.product_xz * t19,
+                T::fused(k(0.08), t17, k(5e-6)),
+            );
+            let t88 = T::fused(t85, t65, t87 * t68);
+            let t89 = self.offset_y * self.offset_y;
+            let t90 = self.offset_z * self.offset_z;
+            let t91 = T::fused(k(0.08), t90 + t89, T::fused(t65, t86, t68 * t88)) - t82;
+            let t92 = T::fused(t62, self.offset_y, t24 * self.offset_x);
+            let t93 = T::fused(t63, self.offset_y, t38 * self.offset_x);
+            let t94 = T::fused(-t64, self.offset_y, t48 * self.offset_x);
+            let t95 = T::fused(t94, t47, T::fused(-t92, t21, t93 * t36));
+            let t96 = T::fused(t94, t54, T::fused(-t92, t36, t93 * t53));
+            let t97 = T::fused(t94, t57, T::fused(-t92, t47, t93 * t54));
+            let t98 = T::fused(t49, t43, -T::fused(-t41, t30, t27 * t11));
+            let t99 = T::fused(t49, t44, T::fused(t41, t33, t27 * t14));
+            let t100 = T::fused(-t98, t61, t99 * t67);
+            let t101 = T::fused(-t98, t72, t99 * t74);
+            let t102 = T::fused(-t98, t78, t99 * t80);
+            let t103 = T::fused(t94, t81, T::fused(-t92, t69, t93 * t75))
+                + T::fused(t50, t102, T::fused(t28, t100, t42 * t101));
+            let t104 = T::fused(
+                k(0.08),
+                self.offset_x * self.offset_z,
+                T::fused(t98, t86, t99 * t88),
+            ) - (t103 + T::fused(t50, t97, T::fused(t28, t95, t42 * t96)));
+            let t105 = T::fused(
+                k(2.0),
+                T::fused(t94, t102, T::fused(-t92, t100, t93 * t101)),
+                T::fused(t94, t97, T::fused(-t92, t95, t93 * t96)),
+            );
+            let t106 = T::fused(
+                t98,
+                T::fused(t84, t98, t85 * t99),
+                t99 * T::fused(t85, t98, t87 * t99),
+            );
+            let t107 = self.offset_x * self.offset_x;
+            let t108 = k(1.0) / (k(1e-6) + (T::fused(k(0.08), t89 + t107, t106) - t105));
+            let t109 = t108 * t104;
+            let t110 = T::fused(t104, t109, -(k(1e-6) + t91));
+            let t111 = outer_ring_e0 * outer_ring_e3;
+            let t112 = outer_ring_e1 * outer_ring_e2;
+            let t113 = k(2.0) * (t112 - t111);
+            let t114 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
+            let t115 = outer_ring_e0 * outer_ring_e1;
+            let t116 = outer_ring_e2 * outer_ring_e3;
+            let t117 = k(2.0) * (t116 + t115);
+            let t118 = T::fused(t117, t64, -T::fused(t113, t62, t114 * t63));
+            let t119 = T::fused(t62, self.offset_z, t27 * self.offset_x);
+            let t120 = T::fused(-t63, self.offset_z, t41 * self.offset_x);
+            let t121 = T::fused(t64, self.offset_z, t49 * self.offset_x);
+            let t122 = T::fused(t121, t47, T::fused(t119, t21, t120 * t36));
+            let t123 = T::fused(t121, t54, T::fused(t119, t36, t120 * t53));
+            let t124 = T::fused(t121, t57, T::fused(t119, t47, t120 * t54));
+            let t125 = T::fused(t48, t43, T::fused(t38, t30, t24 * t11));
+            let t126 = T::fused(t48, t44, -T::fused(-t38, t33, t24 * t14));
+            let t127 = T::fused(-t125, t61, t126 * t67);
+            let t128 = T::fused(-t125, t72, t126 * t74);
+            let t129 = T::fused(-t125, t78, t126 * t80);
+            let t130 = T::fused(t121, t81, T::fused(t119, t69, t120 * t75))
+                - T::fused(t50, t129, T::fused(t28, t127, t42 * t128));
+            let t131 = T::fused(
+                k(0.08),
+                self.offset_x * self.offset_y,
+                -T::fused(t125, t86, t126 * t88),
+            ) - (t130 + T::fused(t50, t124, T::fused(t28, t122, t42 * t123)));
+            let t132 = T::fused(t94, t129, T::fused(-t92, t127, t93 * t128))
+                - T::fused(t121, t102, T::fused(t119, t100, t120 * t101));
+            let t133 = T::fused(t84, t125, t85 * t126);
+            let t134 = T::fused(t85, t125, t87 * t126);
+            let t135 = T::fused(
+                k(0.08),
+                self.offset_y * self.offset_z,
+                T::fused(t98, t133, t99 * t134),
+            ) - (t132 - T::fused(t121, t97, T::fused(t119, t95, t120 * t96)));
+            let t136 = T::fused(t135, t109, t131);
+            let t137 = T::fused(t117, t48, T::fused(t114, t38, t113 * t24));
+            let t138 = T::fused(t118, t110, t137 * t136);
+            let t139 = T::fused(
+                k(2.0),
+                T::fused(t121, t129, T::fused(t119, t127, t120 * t128)),
+                -T::fused(t121, t124, T::fused(t119, t122, t120 * t123)),
+            );
+            let t140 = T::fused(k(0.08), t90 + t107, T::fused(t125, t133, t126 * t134))
+                + t139;
+            let t141 = T::fused(t135, t108 * t135, -(k(2e-6) + t140));
+            let t142 = T::fused(t118, t136, t137 * t141);
+            let t143 = k(1.0) / T::fused(-t126, t98, t125 * t99);
+            let t144 = T::fused(t98 * t143, row13, t125 * t143 * row14);
+            let t145 = T::fused(t99 * t143, row13, t126 * t143 * row14);
+            let t146 = T::fused(t84, t144, t85 * t145)
+                + T::fused(row12, t78, -T::fused(row10, t61, row11 * t72));
+            let t147 = T::fused(t85, t144, t87 * t145)
+                - T::fused(row12, t80, -T::fused(row10, t67, row11 * t74));
+            let t148 = T::fused(
+                k(0.08),
+                row10,
+                T::fused(row12, t47, -T::fused(row10, t21, row11 * t36)),
+            );
+            let t149 = T::fused(-t61, t144, t67 * t145) + t148;
+            let t150 = T::fused(
+                k(0.08),
+                row11,
+                T::fused(row12, t54, -T::fused(row10, t36, row11 * t53)),
+            );
+            let t151 = T::fused(-t72, t144, t74 * t145) + t150;
+            let t152 = T::fused(
+                k(0.08),
+                row12,
+                -T::fused(row12, t57, -T::fused(row10, t47, row11 * t54)),
+            );
+            let t153 = T::fused(-t78, t144, t80 * t145) - t152;
+            let t154 = T::fused(t50, t153, T::fused(t28, t149, t42 * t151))
+                - T::fused(t65, t146, t68 * t147);
+            let t155 = T::fused(t94, t153, T::fused(-t92, t149, t93 * t151))
+                - T::fused(t98, t146, t99 * t147);
+            let t156 = t108 * t155;
+            let t157 = t100 + T::fused(k(0.08), t92, t95);
+            let t158 = t108 * t157;
+            let t159 = T::fused(t104, t158, -(t69 + T::fused(-k(0.08), t28, t51)));
+            let t160 = t101 + T::fused(-k(0.08), t93, t96);
+            let t161 = t108 * t160;
+            let t162 = T::fused(t104, t161, -(t75 + T::fused(-k(0.08), t42, t55)));
+            let t163 = t102 + T::fused(-k(0.08), t94, t97);
+            let t164 = t108 * t163;
+            let t165 = T::fused(t104, t164, -(t81 + T::fused(-k(0.08), t50, t58)));
+            let t166 = k(2.0) * (t112 + t111);
+            let t167 = T::fused(t5, t48, -T::fused(t2, t24, t166 * t38));
+            let t168 = T::fused(t5, t64, T::fused(t2, t62, t166 * t63));
+            let t169 = k(1.0) / T::fused(-t167, t118, t168 * t137);
+            let t170 = T::fused(-(t118 * t169), row8, t168 * t169 * row9);
+            let t171 = T::fused(-(t137 * t169), row8, t167 * t169 * row9);
+            let t172 = T::fused(t110, t170, t136 * t171)
+                - T::fused(row7, t165, -T::fused(row5, t159, row6 * t162));
+            let t173 = T::fused(t121, t153, T::fused(t119, t149, t120 * t151))
+                + T::fused(t125, t146, t126 * t147);
+            let t174 = T::fused(t135, t158, -(t127 - T::fused(-k(0.08), t119, t122)));
+            let t175 = T::fused(t135, t161, -(t128 - T::fused(-k(0.08), t120, t123)));
+            let t176 = T::fused(t135, t164, -(t129 - T::fused(-k(0.08), t121, t124)));
+            let t177 = T::fused(t136, t170, t141 * t171)
+                - T::fused(row7, t176, -T::fused(row5, t174, row6 * t175));
+            let t178 = T::fused(
+                t118,
+                t172 - T::fused(t104, t156, -t154),
+                t137 * (t177 - T::fused(t135, t156, t173)),
+            );
+            let t179 = T::fused(
+                row0,
+                T::fused(t118, t159, t137 * t174),
+                row1 * T::fused(t118, t162, t137 * t175),
+            );
+            let t180 = T::fused(
+                t118,
+                T::fused(t168, t110, t167 * t136),
+                t137 * T::fused(t168, t136, t167 * t141),
+            );
+            let t181 = k(2.0) * (t116 - t115);
+            let t182 = T::fused(t1, t64, -T::fused(-t6, t62, t181 * t63));
+            let t183 = T::fused(t1, t48, -T::fused(-t181, t38, t6 * t24));
+            let t184 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+            let t185 = T::fused(t8, t180, t184 * T::fused(t182, t138, t183 * t142))
+                + T::fused(row2, T::fused(t118, t165, t137 * t176), -t179);
+            let t186 = (t185 - t178) / (k(1e-6) - T::fused(t118, t138, t137 * t142));
+            let t187 = row0 + row5;
+            let t188 = row1 + row6;
+            let t189 = row2 + row7;
+            let t190 = t170 - T::fused(t182, t184, T::fused(t168, t8, t118 * t186));
+            let t191 = t171 - T::fused(t183, t184, T::fused(t167, t8, t137 * t186));
+            let t192 = T::fused(t104, t190, t135 * t191)
+                - T::fused(t189, t163, -T::fused(t187, t157, t188 * t160));
+            let t193 = t108 * (t155 - t192);
+            let t194 = row10
+                + (t187 + T::fused(t92, t193, T::fused(-t28, t190, t119 * t191)));
+            let t195 = row11
+                + (t188 - T::fused(t93, t193, -T::fused(-t42, t190, t120 * t191)));
+            let t196 = row12
+                + (t189 + T::fused(t94, t193, -T::fused(-t50, t190, t121 * t191)));
+            let t197 = t144 + T::fused(t98, t193, T::fused(t65, t190, t125 * t191));
+            let t198 = t145 + T::fused(t99, t193, T::fused(t68, t190, t126 * t191));
+            let t199 = T::fused(-self.product_xy, t197, self.product_xz * t198)
+                + T::fused(t46, t196, -T::fused(t16, t194, t35 * t195));
+            (
+                t8,
+                t15,
+                t19,
+                t34,
+                t45,
+                t60,
+                t66,
+                t71,
+                t73,
+                t77,
+                t79,
+                t184,
+                t186,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t193,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (t200,) = {
+            let t200 = t19 * t199;
+            (t200,)
+        };
+        *out = [
+            row0,
+            row1,
+            row2,
+            t8,
+            t186,
+            -t184,
+            t187,
+            t188,
+            t189,
+            -t190,
+            -t191,
+            t193,
+            t194 - T::fused(t66, t198, T::fused(-t15, t200, t60 * t197)),
+            t195 + T::fused(t73, t198, T::fused(t34, t200, t71 * t197)),
+            t196 + T::fused(t79, t198, T::fused(-t45, t200, t77 * t197)),
+            -t200,
+            -t197,
+            t198,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
@@ -4639,6 +5039,316 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             -t143,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 36]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 518 operations (204 ±, 311 ×, 3 ÷) and 4 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = k(0.08) * self.imbalance_y;
+        let t1 = self.imbalance_y * t0;
+        let t2 = self.imbalance_z * self.imbalance_z;
+        let t3 = k(0.08) * t2;
+        let t4 = t3 - t1;
+        let t5 = x2.sin();
+        let t6 = t5 * t4;
+        let t7 = k(0.16) * self.imbalance_y;
+        let t8 = x2.cos();
+        let t9 = t8 * t7;
+        let t10 = T::fused(self.imbalance_z, t9, -t6);
+        let t11 = t5 * t10;
+        let t12 = t1 - t11;
+        let t13 = T::fused(k(2.0), t12, k(1e-5));
+        let t14 = x1.sin();
+        let t15 = self.offset_y * t14;
+        let t16 = self.imbalance_z * t5;
+        let t17 = T::fused(-k(0.16), t16, t9);
+        let t18 = T::fused(-self.product_xy, t8, self.product_xz * t5);
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(-self.offset_x, t17, t19);
+        let t21 = x1.cos();
+        let t22 = T::fused(t17, t15, t21 * t20);
+        let t23 = T::fused(-t14, t13, t22);
+        let t24 = t8 * t4;
+        let t25 = T::fused(t7, t16, t24);
+        let t26 = T::fused(-t5, t25, self.imbalance_z * t0);
+        let t27 = self.offset_y * t21;
+        let t28 = T::fused(self.offset_x, t14, t27);
+        let t29 = self.imbalance_z * t8;
+        let t30 = T::fused(k(0.08), t29, t0 * t5);
+        let t31 = T::fused(self.product_xy, t5, self.product_xz * t8);
+        let t32 = t14 * t31;
+        let t33 = T::fused(t30, t28, t32);
+        let t34 = t21 * t31;
+        let t35 = T::fused(-self.offset_x, t21, t15);
+        let t36 = T::fused(t30, t35, -t34);
+        let t37 = T::fused(t14, t26, -t36);
+        let t38 = u0 * T::fused(-t14, T::fused(-t21, t26, t33), t21 * t37);
+        let t39 = T::fused(-u0, T::fused(u1, t23, t38), k(10.0) * (t14 * t30));
+        let t40 = T::fused(self.offset_x, t30, t31);
+        let t41 = k(1e-5) + t1;
+        let t42 = k(1.0) / (t3 + t41);
+        let t43 = t42 * t40;
+        let t44 = T::fused(-t14, t20, t17 * t27);
+        let t45 = k(0.16) * self.offset_x;
+        let t46 = t45 * t27;
+        let t47 = self.offset_x * self.offset_x;
+        let t48 = T::fused(
+            k(0.08),
+            T::fused(self.offset_y, self.offset_y, -t47),
+            k(4e-6),
+        ) + t12;
+        let t49 = t14 * t48;
+        let t50 = t21 * t48;
+        let t51 = t45 * t15;
+        let t52 = t51 + t50;
+        let t53 = T::fused(-t14, t49 - t46, t21 * t52) - T::fused(-t14, t22, t21 * t44);
+        let t54 = u0 * t53;
+        let t55 = T::fused(
+            u0,
+            T::fused(u2, t23, t54),
+            -T::fused(-k(0.8), t28, k(5.0) * (t21 * t17)),
+        );
+        let t56 = T::fused(-t43, t39, t55);
+        let t57 = k(0.08) * self.offset_z;
+        let t58 = t57 - t30;
+        let t59 = k(0.5) * (self.offset_z * t17);
+        let t60 = t59 - t26;
+        let t61 = t21 * t60;
+        let t62 = T::fused(t17, t35, t21 * t19);
+        let t63 = T::fused(-self.offset_z, t30, t3);
+        let t64 = t41 + t63;
+        let t65 = T::fused(-k(0.5), t62, t14 * t64);
+        let t66 = T::fused(t43, t65, -T::fused(-t58, t28, t61 + t32));
+        let t67 = k(0.08) * self.offset_y;
+        let t68 = T::fused(
+            t40,
+            t43,
+            -T::fused(k(0.08), t47, T::fused(self.offset_y, t67 - t17, k(6e-6) + t12)),
+        );
+        let t69 = k(1.0) / t68;
+        let t70 = t69 * t66;
+        let t71 = T::fused(-t14, t19, t17 * t28);
+        let t72 = T::fused(-t21, t64, k(0.5) * t71);
+        let t73 = t14 * t60;
+        let t74 = T::fused(t43, t72, T::fused(t35, t58, t34 - t73));
+        let t75 = t69 * t74;
+        let t76 = T::fused(-self.offset_y, t30, t26);
+        let t77 = T::fused(u1, t76, k(0.25) * (u2 * t20));
+        let t78 = T::fused(
+            k(0.5),
+            t20,
+            T::fused(-t14, t52, T::fused(t14, t44, self.offset_x * t67)),
+        );
+        let t79 = u0 * t78;
+        let t80 = T::fused(t21, t13, -t44);
+        let t81 = T::fused(u2, t80, -t79);
+        let t82 = T::fused(
+            k(2.0),
+            u2 * t77,
+            T::fused(u0, t81, T::fused(-k(5.0), t14 * t17, k(0.8) * t35)),
+        );
+        let t83 = u1 * u1;
+        let t84 = T::fused(t14, t37, t60);
+        let t85 = u0 * t84;
+        let t86 = T::fused(u1, t80, t85);
+        let t87 = T::fused(t83, t76, T::fused(k(10.0), t21 * t30, u0 * t86));
+        let t88 = T::fused(t43, t87, t82);
+        let t89 = t42 * t65;
+        let t90 = t42 * t72;
+        let t91 = k(5e-6) + (t11 + t63);
+        let t92 = u2 * u2;
+        let t93 = T::fused(
+            -k(2.0),
+            T::fused(-u1, t54, u2 * T::fused(t91, u1 * t14, t38)),
+            t92 * T::fused(-t21, t59, t33),
+        );
+        let t94 = T::fused(t83, T::fused(-t57, t28, t61 + t33), -t93)
+            - T::fused(t89, t39, t87 * t90);
+        let t95 = t49 - (t62 + t46);
+        let t96 = T::fused(
+            k(0.08),
+            T::fused(self.offset_z, T::fused(-k(25.0), t30, self.offset_z), t2 + t47),
+            k(8e-6),
+        );
+        let t97 = T::fused(
+            t66,
+            t70,
+            -T::fused(t65, t89, -(t11 + T::fused(t14, t95, t96))),
+        );
+        let t98 = k(1.0) / t97;
+        let t99 = T::fused(t14, t50 + (t51 - t71), t21 * t95)
+            + T::fused(t65, t90, t89 * t72);
+        let t100 = t98 * t98;
+        let t101 = T::fused(t57, t35, -(t36 + t73));
+        let t102 = T::fused(-t14, t59, t36);
+        let t103 = u1 * t21;
+        let t104 = T::fused(-t91, t103, t85);
+        let t105 = T::fused(
+            -t83,
+            t101,
+            T::fused(-t92, t102, k(2.0) * T::fused(u2, t104, u1 * t79)),
+        );
+        let t106 = T::fused(t70, t88, -T::fused(t89, t87, t105));
+        let t107 = T::fused(
+            t98,
+            t94 + T::fused(-t70, t56, t88 * t75),
+            t106 * (t100 * (t99 - T::fused(t66, t75, t70 * t74))),
+        );
+        let t108 = t5 * t7;
+        let t109 = T::fused(-t5, T::fused(self.imbalance_z, t108, t24), t8 * t10);
+        let t110 = T::fused(k(0.16), t29, t108);
+        let t111 = k(2.0) * t31;
+        let t112 = T::fused(self.offset_x, t110, t111);
+        let t113 = T::fused(t27, t110, t14 * t112);
+        let t114 = T::fused(-t21, k(2.0) * t109, t113);
+        let t115 = T::fused(-t5, T::fused(-t7, t29, t6), t8 * t25);
+        let t116 = T::fused(-k(0.08), t16, t0 * t8);
+        let t117 = T::fused(t35, t116, t21 * t18);
+        let t118 = k(0.5) * (self.offset_z * t110);
+        let t119 = t115 - t118;
+        let t120 = u0 * T::fused(-t14, T::fused(t14, t115, t117), t119);
+        let t121 = T::fused(self.offset_y, t116, t115);
+        let t122 = T::fused(
+            t83,
+            t121,
+            -T::fused(u0, T::fused(u1, t114, t120), k(10.0) * (t21 * t116)),
+        );
+        let t123 = T::fused(-self.offset_x, t116, t18);
+        let t124 = t42 * t123;
+        let t125 = u0 * T::fused(k(0.5), t112, T::fused(-t14, t113, t14 * (t21 * t109)));
+        let t126 = T::fused(
+            k(2.0),
+            u2 * T::fused(-k(0.25), u2 * t112, u1 * t121),
+            T::fused(-k(5.0), t14 * t110, u0 * T::fused(-u2, t114, t125)),
+        );
+        let t127 = t126 + T::fused(t43, t122, t87 * t124);
+        let t128 = self.offset_z * t116;
+        let t129 = T::fused(-t21, t111, t35 * t110);
+        let t130 = T::fused(-t14, t128, k(0.5) * t129);
+        let t131 = T::fused(t28, t116, -T::fused(-t21, t119, t14 * t18))
+            + T::fused(-t43, t130, t65 * t124);
+        let t132 = t69 * t69
+            * (T::fused(-self.offset_y, t110, t109) - T::fused(t40, t124, t43 * t123));
+        let t133 = T::fused(t69, t131, t66 * t132);
+        let t134 = t42 * t130;
+        let t135 = T::fused(
+            -k(2.0),
+            T::fused(u1, t125, u2 * T::fused(t103, t128 - t109, t120)),
+            t92 * T::fused(t14, t118, t117),
+        );
+        let t136 = T::fused(t83, T::fused(t14, t119, t117), -t135)
+            + T::fused(-t89, t122, t87 * t134);
+        let t137 = T::fused(
+            -k(0.08),
+            self.offset_z * (k(25.0) * t116),
+            t14 * T::fused(-t14, t109, t129),
+        );
+        let t138 = t109 + t137 - T::fused(t65, t134, t89 * t130)
+            - T::fused(t66, t133, t70 * t131);
+        let t139 = T::fused(
+            t98,
+            t136 + T::fused(t70, t127, t88 * t133),
+            t106 * (t100 * t138),
+        );
+        let t140 = t85 + t86;
+        let t141 = T::fused(-t43, t140, t79 - t81);
+        let t142 = T::fused(
+            t70,
+            t141,
+            T::fused(t89, t140, k(2.0) * T::fused(u1, t78, u2 * t84)),
+        );
+        let t143 = t98 * t142;
+        let t144 = u0 * t80;
+        let t145 = k(2.0) * u1;
+        let t146 = T::fused(t76, t145, t144);
+        let t147 = T::fused(t43, t146, k(2.0) * (u2 * t76));
+        let t148 = T::fused(
+            -t89,
+            t146,
+            T::fused(-k(2.0), T::fused(-u2, t21 * t91, t79), t101 * t145),
+        );
+        let t149 = t98 * T::fused(t70, t147, t148);
+        let t150 = T::fused(k(2.0), T::fused(u2, k(0.25) * t20, t77), t144);
+        let t151 = t98
+            * T::fused(t70, t150, T::fused(-k(2.0), t104, t102 * (k(2.0) * u2)));
+        let t152 = t98 * t106;
+        let t153 = T::fused(t69, t56, T::fused(t70, t107, t152 * t75));
+        let t154 = T::fused(t69, t127, t88 * t132) - T::fused(t70, t139, t152 * t133);
+        let t155 = T::fused(-t70, t143, t69 * t141);
+        let t156 = T::fused(-t70, t149, t69 * t147);
+        let t157 = T::fused(-t70, t151, t69 * t150);
+        let t158 = T::fused(
+            t43,
+            t153,
+            T::fused(t42, t39, -T::fused(t89, t107, t152 * t90)),
+        );
+        let t159 = T::fused(t42, t122, T::fused(-t89, t139, t152 * t134))
+            + T::fused(-t43, t154, T::fused(-t69, t88, t70 * t152) * t124);
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            t107,
+            t139,
+            t143,
+            -t149,
+            -t151,
+            k(0.0),
+            -t153,
+            t154,
+            t155,
+            -t156,
+            -t157,
+            k(0.0),
+            t158,
+            t159,
+            -T::fused(t43, t155, T::fused(t89, t143, t42 * t140)),
+            T::fused(t43, t156, -T::fused(-t89, t149, t42 * t146)),
+            T::fused(t43, t157, t89 * t151),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeMisalignments<T> {
     type Outputs = [T; 0];

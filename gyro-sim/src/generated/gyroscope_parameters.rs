@@ -12,9 +12,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 440 operations by relative Euler parameters; 460 operations by rotations of the bodies
+//! * project: 395 operations by relative Euler parameters; 400 operations by rotations of the bodies
 //! * joint_accelerations: 32 operations by normal form; 54 operations by recursion
 //! * joint_accelerations_at: 52 operations by normal form; 74 operations by recursion; 1 more compared
 //! * corrected_accelerations: 162 operations by normal form in the bodies' frames; 164 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 79 operations by derivatives of u̇, from its leaves; 79 operations by normal form of that; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 | 19 | 15 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 262 | 5 | 440 | 7 of 18 | 506786 | 444 |
 //! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 | 3886 | 309 |
+//! | project | (δr, δπ') that changes the rows as given | 147 | 243 | 5 | 395 | 1 of 18 | 416144 | 396 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 | 56 | 55 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 62 | 98 | 2 | 162 | 6 of 18 | 2791 | 164 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 | 758 | 145 |
 //! | corrected_solution | both | 97 | 160 | 2 | 259 | 6 of 33 | 24351 | 261 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 18 | 59 | 2 | 79 | 28 of 42 | 361 | 79 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2650,6 +2655,269 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 395 operations (147 ±, 243 ×, 5 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
+        let t9 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t10 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t11 = t10 * t9;
+        let t12 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t13 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t12;
+        let t15 = t14 - t11;
+        let t16 = k(2.0) * t15;
+        let t17 = t14 + t11;
+        let t18 = k(2.0) * t17;
+        let t19 = t10 * t10;
+        let t20 = k(0.5) - T::fused(t12, t12, t19);
+        let t21 = k(2.0) * t20;
+        let t22 = k(0.5) - T::fused(t13, t13, t19);
+        let t23 = k(2.0) * t22;
+        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
+        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
+        let t26 = k(5e-6) * t25;
+        let t27 = T::fused(t10, t12, t9 * t13);
+        let t28 = k(2.0) * t27;
+        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
+        let t30 = k(5e-6) * t29;
+        let t31 = T::fused(-t10, t13, t9 * t12);
+        let t32 = k(2.0) * t31;
+        let t33 = self.rotor_mass * row10;
+        let t34 = k(2.0)
+            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
+            * self.rotor_offset;
+        let t35 = self.rotor_mass * row11;
+        let t36 = inner_ring_e0 * inner_ring_e0;
+        let t37 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t36))
+            * self.rotor_offset;
+        let t38 = self.rotor_mass * row12;
+        let t39 = inner_ring_e0 * inner_ring_e1;
+        let t40 = inner_ring_e2 * inner_ring_e3;
+        let t41 = k(2.0) * (t40 + t39) * self.rotor_offset;
+        let t42 = T::fused(t41, t38, -T::fused(-t34, t33, t37 * t35))
+            + T::fused(t16, t26, t21 * t30);
+        let t43 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
+        let t44 = self.ring_diametral_inertia
+            + (t43 + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
+        let t45 = k(1.0) / t44;
+        let t46 = t45 * t42;
+        let t47 = k(1e-5) * t27;
+        let t48 = k(1e-5) * t31;
+        let t49 = T::fused(-t16, t47, t21 * t48);
+        let t50 = self.rotor_mass * t34;
+        let t51 = t45 * t50;
+        let t52 = t49 * t51;
+        let t53 = self.rotor_mass * t37;
+        let t54 = t45 * t53;
+        let t55 = t49 * t54;
+        let t56 = self.rotor_mass * t41;
+        let t57 = t45 * t56;
+        let t58 = t49 * t57;
+        let t59 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t60 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t61 = t60 * t59;
+        let t62 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t63 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t64 = t63 * t62;
+        let t65 = k(2.0) * (t64 - t61);
+        let t66 = k(2.0) * (t64 + t61);
+        let t67 = t60 * t60;
+        let t68 = k(2.0) * (k(0.5) - T::fused(t62, t62, t67));
+        let t69 = k(2.0) * (k(0.5) - T::fused(t63, t63, t67));
+        let t70 = k(1.0) / T::fused(-t66, t65, t69 * t68);
+        let t71 = T::fused(row8, t65 * t70, row9 * (t69 * t70));
+        let t72 = t45 * t49;
+        let t73 = T::fused(
+            t49,
+            t72,
+            -(self.ring_diametral_inertia + T::fused(t28, t47, t32 * t48)),
+        );
+        let t74 = T::fused(row8, t68 * t70, row9 * (t66 * t70));
+        let t75 = k(1e-5) * t22;
+        let t76 = k(1e-5) * t17;
+        let t77 = T::fused(t16, t75, t21 * t76);
+        let t78 = T::fused(t77, t72, -T::fused(-t23, t47, t18 * t48));
+        let t79 = T::fused(-t73, t71, t78 * t74)
+            + T::fused(row7, t58, -T::fused(-row5, t52, row6 * t55));
+        let t80 = k(2.0)
+            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
+            * self.rotor_offset;
+        let t81 = k(2.0) * (t40 - t39) * self.rotor_offset;
+        let t82 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t36))
+            * self.rotor_offset;
+        let t83 = T::fused(t82, t38, -T::fused(t80, t33, t81 * t35))
+            - T::fused(t23, t26, t18 * t30);
+        let t84 = T::fused(-t77, t51, self.rotor_mass * t80);
+        let t85 = T::fused(t77, t54, self.rotor_mass * t81);
+        let t86 = T::fused(t77, t57, self.rotor_mass * t82);
+        let t87 = T::fused(
+            t77,
+            t45 * t77,
+            -(self.ring_axial_inertia + (t43 + T::fused(t23, t75, t18 * t76))),
+        );
+        let t88 = T::fused(-t78, t71, t87 * t74)
+            + T::fused(row7, t86, -T::fused(row5, t84, row6 * t85));
+        let t89 = T::fused(
+            -t65,
+            t79 + T::fused(t49, t46, -T::fused(-t28, t26, t32 * t30)),
+            t68 * (t88 + T::fused(t77, t46, t83)),
+        );
+        let t90 = T::fused(
+            row0,
+            T::fused(t65, t52, t68 * t84),
+            row1 * T::fused(-t65, t55, t68 * t85),
+        );
+        let t91 = T::fused(
+            -t65,
+            T::fused(-t69, t73, t66 * t78),
+            t68 * T::fused(-t69, t78, t66 * t87),
+        );
+        let t92 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+        let t93 = T::fused(-t65, t73, t68 * t78);
+        let t94 = k(2.0) * T::fused(t60, t62, t63 * t59);
+        let t95 = T::fused(-t65, t78, t68 * t87);
+        let t96 = k(2.0) * T::fused(-t60, t63, t62 * t59);
+        let t97 = T::fused(-t91, t8, T::fused(t94, t93, t96 * t95) * t92)
+            + T::fused(row2, T::fused(-t65, t58, t68 * t86), -t90);
+        let t98 = (t97 + t89)
+            / (self.ring_diametral_inertia - T::fused(-t65, t93, t68 * t95));
+        let t99 = row0 + row5;
+        let t100 = row1 + row6;
+        let t101 = row2 + row7;
+        let t102 = t71 - T::fused(t94, t92, -T::fused(-t69, t8, t65 * t98));
+        let t103 = t74 + T::fused(t96, t92, T::fused(-t66, t8, t68 * t98));
+        let t104 = T::fused(t101, t56, -T::fused(-t99, t50, t100 * t53))
+            + T::fused(-t49, t102, t77 * t103);
+        let t105 = t45 * (t42 + t104);
+        *out = [
+            row0,
+            row1,
+            row2,
+            t8,
+            t98,
+            -t92,
+            t99,
+            t100,
+            t101,
+            t102,
+            -t103,
+            -t105,
+            row10 + (t99 - T::fused(-t80, t103, t34 * t105)),
+            row11 + (t100 + T::fused(t81, t103, t37 * t105)),
+            row12 + (t101 - T::fused(t82, t103, t41 * t105)),
+            k(0.0),
+            t25 - T::fused(t16, t105, -T::fused(t28, t102, t23 * t103)),
+            T::fused(t21, t105, -T::fused(-t32, t102, t18 * t103)) - t29,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
@@ -3466,6 +3734,107 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             t67,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeParameters<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 36]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 79 operations (18 ±, 59 ×, 2 ÷) and 2 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.sin();
+        let t1 = k(1e-5) * (u1 * t0);
+        let t2 = u0 * t0;
+        let t3 = self.rotor_offset * self.rotor_mass;
+        let t4 = self.rotor_offset * t3;
+        let t5 = self.ring_axial_inertia - (self.ring_diametral_inertia - t4);
+        let t6 = T::fused(-k(200000.0), t5 * t2, u2);
+        let t7 = x1.cos();
+        let t8 = u0 * t7;
+        let t9 = u1 * t7;
+        let t10 = k(1e-5) * t9;
+        let t11 = k(5e-6) + t5;
+        let t12 = k(1.0) / T::fused(t11, t7 * t7, k(2.0) * self.ring_diametral_inertia);
+        let t13 = t6 * t10;
+        let t14 = T::fused(
+            -t12,
+            T::fused(t6, t1, t10 * (k(200000.0) * (t5 * t8))),
+            t13 * (t12 * t12 * (t11 * (k(2.0) * (t0 * t7)))),
+        );
+        let t15 = t12 * (t10 * (k(200000.0) * (t0 * t5)));
+        let t16 = k(1e-5) * t7;
+        let t17 = t12 * (t6 * t16);
+        let t18 = t12 * t10;
+        let t19 = k(5e-6) - t5;
+        let t20 = T::fused(t19, t2, k(1e-5) * u2);
+        let t21 = T::fused(
+            t7,
+            u0 * (t19 * t8),
+            t0 * T::fused(-u0, t20, self.gravity * t3),
+        );
+        let t22 = k(1.0) / (t4 + (self.ring_diametral_inertia + k(5e-6)));
+        let t23 = T::fused(k(100000.0), u0 * t1, T::fused(t0, t14, t7 * (t12 * t13)));
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t14,
+            k(0.0),
+            t15,
+            -t17,
+            -t18,
+            k(0.0),
+            t22 * t21,
+            k(0.0),
+            t22 * (t7 * T::fused(u0, t0 * t19, t20)),
+            k(0.0),
+            t22 * (t7 * (k(1e-5) * u0)),
+            k(0.0),
+            t23,
+            k(0.0),
+            -T::fused(t0, t15, t9),
+            T::fused(-k(100000.0), u0 * t16, t0 * t17),
+            t0 * t18,
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeParameters<T> {
     type Outputs = [T; 0];

@@ -12,9 +12,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 413 operations by relative Euler parameters; 433 operations by rotations of the bodies
+//! * project: 394 operations by relative Euler parameters; 410 operations by rotations of the bodies
 //! * joint_accelerations: 61 operations by normal form; 91 operations by recursion
 //! * joint_accelerations_at: 99 operations by normal form; 129 operations by recursion; 1 more compared
 //! * corrected_accelerations: 179 operations by normal form in the bodies' frames; 193 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 226 operations by derivatives of the balance, from its leaves, normal form; 226 operations by derivatives of the balance, from its roots, normal form; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 162 | 246 | 5 | 413 | 6 of 18 | 568074 | 417 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 | 4371 | 304 |
+//! | project | (δr, δπ') that changes the rows as given | 147 | 242 | 5 | 394 | 0 of 18 | 491250 | 395 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 65 | 112 | 2 | 179 | 6 of 18 | 18438 | 180 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 853 | 134 |
 //! | corrected_solution | both | 89 | 153 | 2 | 244 | 6 of 33 | 214232 | 245 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 73 | 149 | 4 | 226 | 24 of 42 | 4259 | 227 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2620,6 +2625,263 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 394 operations (147 ±, 242 ×, 5 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
+        let t9 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t10 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t11 = t10 * t9;
+        let t12 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t13 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t12;
+        let t15 = t14 - t11;
+        let t16 = k(2.0) * t15;
+        let t17 = t14 + t11;
+        let t18 = k(2.0) * t17;
+        let t19 = t10 * t10;
+        let t20 = k(0.5) - T::fused(t12, t12, t19);
+        let t21 = k(2.0) * t20;
+        let t22 = k(0.5) - T::fused(t13, t13, t19);
+        let t23 = k(2.0) * t22;
+        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
+        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
+        let t26 = k(5e-6) * t25;
+        let t27 = T::fused(t10, t12, t9 * t13);
+        let t28 = k(2.0) * t27;
+        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
+        let t30 = rotor_e0 * rotor_e0;
+        let t31 = k(0.5) - T::fused(rotor_e1, rotor_e1, t30);
+        let t32 = k(3.2e-5) * t31;
+        let t33 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
+        let t34 = k(3.2e-5) * t33;
+        let t35 = rotor_e0 * rotor_e2;
+        let t36 = rotor_e1 * rotor_e3;
+        let t37 = t36 - t35;
+        let t38 = k(3.2e-5) * t37;
+        let t39 = T::fused(
+            -k(5.0032e-6),
+            t29,
+            T::fused(row12, t38, T::fused(-row10, t32, row11 * t34)),
+        );
+        let t40 = T::fused(-t10, t13, t9 * t12);
+        let t41 = k(2.0) * t40;
+        let t42 = T::fused(-t16, t26, t21 * t39);
+        let t43 = k(1.0)
+            / (k(1e-6) + T::fused(t16, k(1e-5) * t15, t21 * (k(1.00064e-5) * t20)));
+        let t44 = t43 * t42;
+        let t45 = k(1e-5) * t27;
+        let t46 = k(1.00064e-5) * t40;
+        let t47 = T::fused(-t16, t45, t21 * t46);
+        let t48 = t21 * t32;
+        let t49 = t43 * t48;
+        let t50 = T::fused(-t41, t32, t47 * t49);
+        let t51 = t21 * t34;
+        let t52 = t43 * t51;
+        let t53 = T::fused(-t41, t34, t47 * t52);
+        let t54 = t21 * t38;
+        let t55 = t43 * t54;
+        let t56 = T::fused(-t41, t38, t47 * t55);
+        let t57 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t58 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t59 = t58 * t57;
+        let t60 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t61 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t62 = t61 * t60;
+        let t63 = k(2.0) * (t62 - t59);
+        let t64 = k(2.0) * (t62 + t59);
+        let t65 = t58 * t58;
+        let t66 = k(2.0) * (k(0.5) - T::fused(t60, t60, t65));
+        let t67 = k(2.0) * (k(0.5) - T::fused(t61, t61, t65));
+        let t68 = k(1.0) / T::fused(-t64, t63, t67 * t66);
+        let t69 = T::fused(row8, t63 * t68, row9 * (t67 * t68));
+        let t70 = t43 * t47;
+        let t71 = T::fused(t47, t70, -(k(1e-6) + T::fused(t28, t45, t41 * t46)));
+        let t72 = T::fused(row8, t66 * t68, row9 * (t64 * t68));
+        let t73 = k(1e-5) * t22;
+        let t74 = k(1.00064e-5) * t17;
+        let t75 = T::fused(t16, t73, t21 * t74);
+        let t76 = T::fused(t75, t70, -T::fused(-t23, t45, t18 * t46));
+        let t77 = T::fused(-t71, t69, t76 * t72)
+            - T::fused(row7, t56, T::fused(-row5, t50, row6 * t53));
+        let t78 = T::fused(-t18, t32, t75 * t49);
+        let t79 = T::fused(-t18, t34, t75 * t52);
+        let t80 = T::fused(-t18, t38, t75 * t55);
+        let t81 = T::fused(t75, t43 * t75, -(k(2e-6) + T::fused(t23, t73, t18 * t74)));
+        let t82 = T::fused(-t76, t69, t81 * t72)
+            - T::fused(row7, t80, T::fused(-row5, t78, row6 * t79));
+        let t83 = T::fused(
+            -t63,
+            t77 - T::fused(t47, t44, -T::fused(t28, t26, t41 * t39)),
+            t66 * (t82 - T::fused(t75, t44, -T::fused(-t23, t26, t18 * t39))),
+        );
+        let t84 = T::fused(
+            -row0,
+            T::fused(-t63, t50, t66 * t78),
+            row1 * T::fused(-t63, t53, t66 * t79),
+        );
+        let t85 = T::fused(
+            -t63,
+            T::fused(-t67, t71, t64 * t76),
+            t66 * T::fused(-t67, t76, t64 * t81),
+        );
+        let t86 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+        let t87 = T::fused(-t63, t71, t66 * t76);
+        let t88 = k(2.0) * T::fused(t58, t60, t61 * t57);
+        let t89 = T::fused(-t63, t76, t66 * t81);
+        let t90 = k(2.0) * T::fused(-t58, t61, t60 * t57);
+        let t91 = T::fused(-t85, t8, T::fused(t88, t87, t90 * t89) * t86)
+            - T::fused(row2, T::fused(-t63, t56, t66 * t80), t84);
+        let t92 = (t91 + t83) / (k(1e-6) - T::fused(-t63, t87, t66 * t89));
+        let t93 = row0 + row5;
+        let t94 = row1 + row6;
+        let t95 = row2 + row7;
+        let t96 = t69 - T::fused(t88, t86, -T::fused(-t67, t8, t63 * t92));
+        let t97 = t72 + T::fused(t90, t86, T::fused(-t64, t8, t66 * t92));
+        let t98 = T::fused(-t47, t96, t75 * t97)
+            - T::fused(t95, t54, T::fused(-t93, t48, t94 * t51));
+        let t99 = t43 * (t42 - t98);
+        let t100 = t29 + T::fused(t21, t99, T::fused(-t41, t96, t18 * t97));
+        let t101 = t36 + t35;
+        let t102 = row10 + t93;
+        let t103 = T::fused(-rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
+        let t104 = row11 + t94;
+        let t105 = k(0.5) - T::fused(rotor_e3, rotor_e3, t30);
+        let t106 = row12 + t95;
+        let t107 = T::fused(
+            t106,
+            k(3.2e-5) * t105,
+            -T::fused(t102, k(3.2e-5) * t101, t104 * (k(3.2e-5) * t103)),
+        );
+        let t108 = k(99968.01023672425) * t107;
+        *out = [
+            row0,
+            row1,
+            row2,
+            t8,
+            t92,
+            -t86,
+            t93,
+            t94,
+            t95,
+            t96,
+            -t97,
+            t99,
+            t102 + T::fused(k(0.0004) * t31, t100, k(0.0004) * t101 * t108),
+            t104 + T::fused(-(k(0.0004) * t33), t100, k(0.0004) * t103 * t108),
+            t106 - T::fused(k(0.0004) * t37, t100, k(0.0004) * t105 * t108),
+            -t108,
+            t25 + T::fused(t16, t99, T::fused(t28, t96, t23 * t97)),
+            -t100,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
@@ -3502,6 +3764,189 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRadialImbalance<T> {
             t71,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRadialImbalance<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 36]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 226 operations (73 ±, 149 ×, 4 ÷) and 4 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.cos();
+        let t1 = k(1.00032e-5) * t0;
+        let t2 = x2.cos();
+        let t3 = k(3.2e-9) * t2;
+        let t4 = u0 * t0;
+        let t5 = T::fused(-t4, u0 * t3, k(0.00016));
+        let t6 = x2.sin();
+        let t7 = t2 * t2;
+        let t8 = k(6.4e-9) * u1;
+        let t9 = t6 * t3;
+        let t10 = T::fused(
+            t0,
+            T::fused(t6, t5, t8 * (u0 * (k(1562.5) + t7))),
+            u1 * u1 * t9,
+        );
+        let t11 = x1.sin();
+        let t12 = u0 * t11;
+        let t13 = T::fused(-t11, t5, k(6.4e-9) * (t4 * (u2 * t2)));
+        let t14 = u2 * t8;
+        let t15 = T::fused(t14, k(1563.5) - t7, T::fused(-k(2e-6), u1 * t12, t6 * t13));
+        let t16 = T::fused(
+            t2,
+            T::fused(t6, t14, t13),
+            k(1e-5) * (t4 * T::fused(k(0.4), t12, u2)),
+        );
+        let t17 = t0 * t9;
+        let t18 = k(1.0) / T::fused(t2, t3, k(6e-6));
+        let t19 = t18 * t17;
+        let t20 = t0 * t0;
+        let t21 = T::fused(-t0, t15, t19 * t16)
+            / T::fused(t17, t19, -T::fused(k(3.2e-9), (k(1876.0) - t7) * t20, k(2e-6)));
+        let t22 = t0 * t21;
+        let t23 = u0 * (k(0.5) - t20);
+        let t24 = k(2.0) * u1;
+        let t25 = k(6.4e-9) * t2;
+        let t26 = t2 * t25;
+        let t27 = k(8e-6) + t26;
+        let t28 = u2 * t4;
+        let t29 = T::fused(-t18, t16, t19 * t21);
+        let t30 = t6 * t2;
+        let t31 = k(3.2e-9) * t30;
+        let t32 = T::fused(
+            -t27,
+            T::fused(t11, t22, t24 * t23),
+            t31 * T::fused(-t11, T::fused(k(4.0), t28, t29), u1 * (u1 * t0)),
+        );
+        let t33 = k(1.00064e-5) - t26;
+        let t34 = u2 * t33;
+        let t35 = u1 * t11;
+        let t36 = T::fused(
+            t35,
+            t34,
+            -T::fused(T::fused(-k(99968.01023672425), t10, t11 * t21), t1, t32),
+        );
+        let t37 = k(1e-5) + t26;
+        let t38 = u1 * t37;
+        let t39 = u0 * t4;
+        let t40 = T::fused(-t25, t39, k(0.00016));
+        let t41 = T::fused(t21, t1, t11 * T::fused(u0, t38, t6 * t40));
+        let t42 = u2 * t37;
+        let t43 = k(0.00016) * t2;
+        let t44 = u0 * t27;
+        let t45 = T::fused(
+            t23,
+            t44,
+            T::fused(t11, T::fused(-t21, t31, u0 * t42), t0 * t43),
+        );
+        let t46 = k(1.0) / T::fused(k(3.2e-9), t7, k(6e-6));
+        let t47 = t0 * t31;
+        let t48 = t47 * t46;
+        let t49 = T::fused(
+            -t47,
+            t48,
+            T::fused(
+                -t11,
+                k(1.00032e-5) * t11,
+                T::fused(-k(0.5), t20 * t27, k(1.20032e-5)),
+            ),
+        );
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * T::fused(t48, t45, T::fused(t11, t41, -t36));
+        let t52 = T::fused(k(2.0), t28, t29);
+        let t53 = k(3.2e-9) - t26;
+        let t54 = T::fused(-u2, t24, t22);
+        let t55 = t6 * t25;
+        let t56 = T::fused(k(1.28e-8), t4 * t30, u1 * t53);
+        let t57 = T::fused(-t0, T::fused(t39, t53, t43), u1 * t56);
+        let t58 = T::fused(
+            t11,
+            t57,
+            -T::fused(t0, T::fused(t53, t52, t55 * t54), t35 * t56),
+        );
+        let t59 = T::fused(t53, t54, t6 * T::fused(-t25, t52, t11 * t40));
+        let t60 = t50 * T::fused(t48, t59, -t58);
+        let t61 = t11 * t44;
+        let t62 = t0 * (t42 + t61);
+        let t63 = t4 * t55;
+        let t64 = t0 * (t38 - t63);
+        let t65 = u2 * t55;
+        let t66 = T::fused(
+            -t62,
+            t48,
+            T::fused(-t11, t64, t0 * T::fused(t0, t65, t35 * t27)),
+        );
+        let t67 = t66 * t50;
+        let t68 = T::fused(u1, t55, t4 * t37);
+        let t69 = T::fused(
+            -t65,
+            t48,
+            T::fused(-t11, t68, T::fused(t35, t55, t0 * (t34 + t61))),
+        );
+        let t70 = t69 * t50;
+        let t71 = T::fused(-t68, t48, t0 * T::fused(u1, t33, t63)) * t50;
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t51,
+            t60,
+            -t67,
+            -t70,
+            -t71,
+            k(0.0),
+            -T::fused(t46, t45, t48 * t51),
+            T::fused(t46, t59, t48 * t60),
+            T::fused(-t48, t67, t62 * t46),
+            T::fused(-t48, t70, t65 * t46),
+            T::fused(-t48, t71, t68 * t46),
+            k(0.0),
+            T::fused(k(99968.01023672425), t41, t11 * t51),
+            T::fused(-t11, t60, k(99968.01023672425) * t57),
+            T::fused(-k(99968.01023672425), t64, t11 * t67),
+            T::fused(-k(99968.01023672425), t68, t11 * t70),
+            t11 * t71,
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeRadialImbalance<T> {
     type Outputs = [T; 0];

@@ -12,9 +12,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 89 operations by rotations of the bodies; 89 operations by relative Euler parameters
+//! * project: 53 operations by rotations of the bodies; 53 operations by relative Euler parameters
 //! * joint_accelerations: 14 operations by normal form; 21 operations by recursion
 //! * joint_accelerations_at: 14 operations by normal form; 21 operations by recursion; 1 more compared
 //! * corrected_accelerations: 62 operations by normal form in the bodies' frames; 65 operations by recursion in the bodies' frames; 5 more compared
+//! * joint_jacobian: 16 operations by derivatives of u̇, from its leaves; 16 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 | 4 | 4 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 33 | 56 | 0 | 89 | 1 of 6 | 879 | 89 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
+//! | project | (δr, δπ') that changes the rows as given | 18 | 35 | 0 | 53 | 1 of 6 | 190 | 53 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 37 | 0 | 62 | 1 of 6 | 135 | 62 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
 //! | corrected_solution | both | 26 | 40 | 0 | 66 | 1 of 9 | 259 | 66 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 16 | 0 | 16 | 22 of 56 | 34 | 16 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,8 +64,9 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-151.
+//! All of it holds but with a probability below 1e-150.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `spinning_top`.
@@ -687,6 +692,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for SpinningTop<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 53 operations (18 ±, 35 ×, 0 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let t0 = top_e0 * top_e2;
+        let t1 = top_e1 * top_e3;
+        let t2 = t1 + t0;
+        let t3 = T::fused(-top_e0, top_e1, top_e2 * top_e3);
+        let t4 = top_e0 * top_e0;
+        let t5 = k(0.5) - T::fused(top_e3, top_e3, t4);
+        let t6 = T::fused(
+            k(30.0) * t5,
+            row2,
+            -T::fused(k(30.0) * t2, row0, k(30.0) * t3 * row1),
+        );
+        let t7 = k(0.06564102564102564) * t6;
+        let t8 = k(0.5) - T::fused(top_e1, top_e1, t4);
+        let t9 = T::fused(top_e0, top_e3, top_e1 * top_e2);
+        let t10 = t1 - t0;
+        let t11 = T::fused(
+            k(30.0) * t10,
+            row2,
+            T::fused(-(k(30.0) * t8), row0, k(30.0) * t9 * row1),
+        );
+        let t12 = k(0.06564102564102564) * t11;
+        *out = [
+            row0 + T::fused(k(2.0) * t2, t7, k(2.0) * t8 * t12),
+            row1 - T::fused(-(k(2.0) * t3), t7, k(2.0) * t9 * t12),
+            row2 - T::fused(k(2.0) * t5, t7, k(2.0) * t10 * t12),
+            t7,
+            k(0.0),
+            t12,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
@@ -960,6 +1013,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for SpinningTop<T> {
             T::fused(k(15.0), t20, -k(147.15)),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for SpinningTop<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 49]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 16 operations (0 ±, 16 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        let t0 = k(0.5) * u0;
+        let t1 = k(0.5) * u1;
+        let t2 = k(0.5) * u2;
+        let t3 = k(0.5) * x1;
+        let t4 = k(0.5) * x2;
+        let t5 = k(0.5) * x3;
+        let t6 = k(0.5) * x0;
+        let t7 = k(0.9692307692307692) * u1;
+        *dfdx = [
+            k(0.0),
+            -t0,
+            -t1,
+            -t2,
+            -t3,
+            -t4,
+            -t5,
+            t0,
+            k(0.0),
+            t2,
+            -t1,
+            t6,
+            -t5,
+            t4,
+            t1,
+            -t2,
+            k(0.0),
+            t0,
+            t5,
+            t6,
+            -t3,
+            t2,
+            t1,
+            -t0,
+            k(0.0),
+            -t4,
+            t3,
+            t6,
+            k(0.0),
+            k(38.63630769230769) * x1,
+            k(38.63630769230769) * x2,
+            k(0.0),
+            k(0.0),
+            -(k(0.9692307692307692) * u2),
+            -t7,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(19.318153846153844) * x2),
+            k(19.318153846153844) * x3,
+            -(k(19.318153846153844) * x0),
+            k(19.318153846153844) * x1,
+            t7,
+            k(0.9692307692307692) * u0,
+            k(0.0),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for SpinningTop<T> {
     type Outputs = [T; 0];

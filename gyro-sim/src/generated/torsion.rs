@@ -13,9 +13,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 42 operations by rotations of the bodies; 42 operations by relative Euler parameters
+//! * project: 29 operations by rotations of the bodies; 29 operations by relative Euler parameters
 //! * joint_accelerations: 3 operations by normal form; 4 operations by recursion
 //! * joint_accelerations_at: 19 operations by normal form; 20 operations by recursion; 1 more compared
 //! * corrected_accelerations: 21 operations by normal form in the bodies' frames; 21 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -30,6 +32,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 16 | 0 | 23 | 3 of 6 | 32 | 23 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 14 | 27 | 1 | 42 | 3 of 6 | 63 | 43 |
 //! | multipliers | λ, the accelerations being known | 11 | 26 | 1 | 38 | 0 of 5 | 131 | 38 |
+//! | project | (δr, δπ') that changes the rows as given | 9 | 19 | 1 | 29 | 1 of 6 | 116 | 29 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 18 | 0 | 26 | 0 of 9 | 26 | 26 |
 //! | energy | T and V | 11 | 24 | 0 | 35 | 0 of 2 | 69 | 35 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
@@ -44,13 +47,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 14 | 0 | 21 | 3 of 6 | 30 | 21 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 5 | 14 | 0 | 19 | 0 of 5 | 31 | 19 |
 //! | corrected_solution | both | 10 | 23 | 0 | 33 | 6 of 11 | 54 | 33 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 8 of 12 | 1 | 1 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -61,6 +65,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the size of rounding errors.
@@ -785,6 +790,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Torsion<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 29 operations (9 ±, 19 ×, 1 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let t0 = disc_e0 * disc_e3;
+        let t1 = disc_e1 * disc_e2;
+        let t2 = k(2.0) * (t1 + t0);
+        let t3 = k(2.0) * (t1 - t0);
+        let t4 = disc_e0 * disc_e0;
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
+        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        *out = [
+            row0,
+            row1,
+            row2,
+            T::fused(t2 * t7, row3, t6 * t7 * row4),
+            -T::fused(t5 * t7, row3, t3 * t7 * row4),
+            k(0.0),
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
     type Joints = [T; 3];
     type Rates = [T; 1];
@@ -976,6 +1018,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Torsion<T> {
             T::fused(t11, t7, t9 * t10),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Torsion<T> {
+    type Jacobian = [T; 9];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 9]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1 operations (0 ±, 1 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let u0 = x[1];
+        *dfdx = [
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(-25.0),
+            k(-0.5),
+            k(0.0),
+            k(0.0),
+            -(k(0.02) * u0),
+            k(0.0),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Torsion<T> {
     type Outputs = [T; 0];

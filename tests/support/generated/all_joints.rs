@@ -11,6 +11,7 @@
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * accelerations: 10476 operations by rotations of the bodies; 10476 operations by relative Euler parameters
+//! * project: 8107 operations by rotations of the bodies; 8107 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -25,6 +26,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 304 | 425 | 2 | 731 | 6 of 42 | 35531 | 732 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 4664 | 5783 | 29 | 10476 | 0 of 51 | 1.1e18 | 10478 |
 //! | multipliers | λ, the accelerations being known | 1187 | 1646 | 12 | 2845 | 0 of 40 | 735403 | 2846 |
+//! | project | (δr, δπ') that changes the rows as given | 3610 | 4470 | 27 | 8107 | 0 of 42 | 1.0e18 | 8108 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 275 | 405 | 2 | 682 | 0 of 54 | 4196 | 683 |
 //! | energy | T and V | 109 | 169 | 0 | 278 | 0 of 2 | 1371 | 278 |
 //! | read_joints | joint coordinates and rates | 438 | 543 | 0 | 981 | 0 of 35 | 3846 | 981 |
@@ -35,7 +37,7 @@
 //! Equal to the textbook's at a random point modulo a prime of 553 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
@@ -23611,6 +23613,5537 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for AllJoints<T> {
             closing6,
             closing7,
             closing8,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for AllJoints<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 8107 operations (3610 ±, 4470 ×, 27 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let carrier_rx = y[0];
+        let carrier_ry = y[1];
+        let carrier_rz = y[2];
+        let shaft_rx = y[7];
+        let shaft_ry = y[8];
+        let shaft_rz = y[9];
+        let sleeve_rx = y[14];
+        let sleeve_ry = y[15];
+        let sleeve_rz = y[16];
+        let slide_rx = y[21];
+        let slide_ry = y[22];
+        let slide_rz = y[23];
+        let nut_rx = y[28];
+        let nut_ry = y[29];
+        let nut_rz = y[30];
+        let lid_rx = y[35];
+        let lid_ry = y[36];
+        let lid_rz = y[37];
+        let puck_rx = y[42];
+        let puck_ry = y[43];
+        let puck_rz = y[44];
+        let carrier_e0 = y[3];
+        let carrier_e1 = y[4];
+        let carrier_e2 = y[5];
+        let carrier_e3 = y[6];
+        let shaft_e0 = y[10];
+        let shaft_e1 = y[11];
+        let shaft_e2 = y[12];
+        let shaft_e3 = y[13];
+        let sleeve_e0 = y[17];
+        let sleeve_e1 = y[18];
+        let sleeve_e2 = y[19];
+        let sleeve_e3 = y[20];
+        let slide_e0 = y[24];
+        let slide_e1 = y[25];
+        let slide_e2 = y[26];
+        let slide_e3 = y[27];
+        let nut_e0 = y[31];
+        let nut_e1 = y[32];
+        let nut_e2 = y[33];
+        let nut_e3 = y[34];
+        let lid_e0 = y[38];
+        let lid_e1 = y[39];
+        let lid_e2 = y[40];
+        let lid_e3 = y[41];
+        let puck_e0 = y[45];
+        let puck_e1 = y[46];
+        let puck_e2 = y[47];
+        let puck_e3 = y[48];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let row15 = rows[15];
+        let row16 = rows[16];
+        let row17 = rows[17];
+        let row18 = rows[18];
+        let row19 = rows[19];
+        let row20 = rows[20];
+        let row21 = rows[21];
+        let row22 = rows[22];
+        let row23 = rows[23];
+        let row24 = rows[24];
+        let row25 = rows[25];
+        let row26 = rows[26];
+        let row27 = rows[27];
+        let row28 = rows[28];
+        let row29 = rows[29];
+        let row30 = rows[30];
+        let row31 = rows[31];
+        let row32 = rows[32];
+        let row33 = rows[33];
+        let row34 = rows[34];
+        let row35 = rows[35];
+        let row36 = rows[36];
+        let row37 = rows[37];
+        let row38 = rows[38];
+        let row39 = rows[39];
+        let (
+            t2,
+            t5,
+            t6,
+            t9,
+            t13,
+            t14,
+            t17,
+            t21,
+            t22,
+            t24,
+            t26,
+            t27,
+            t31,
+            t33,
+            t35,
+            t36,
+            t38,
+            t39,
+            t40,
+            t41,
+            t42,
+            t43,
+            t44,
+            t45,
+            t46,
+            t47,
+            t48,
+            t49,
+            t50,
+            t51,
+            t52,
+            t53,
+            t54,
+            t55,
+            t56,
+            t57,
+            t59,
+            t61,
+            t63,
+            t67,
+            t69,
+            t74,
+            t76,
+            t85,
+            t88,
+            t90,
+            t92,
+            t94,
+            t100,
+            t107,
+            t113,
+            t118,
+            t120,
+            t121,
+            t122,
+            t125,
+            t127,
+            t129,
+            t132,
+            t134,
+            t136,
+            t140,
+            t153,
+            t166,
+            t178,
+            t179,
+            t181,
+            t182,
+            t184,
+            t185,
+            t188,
+            t190,
+            t192,
+            t239,
+            t241,
+            t243,
+            t244,
+            t246,
+            t249,
+            t252,
+            t260,
+            t261,
+            t262,
+            t263,
+            t264,
+            t265,
+            t266,
+            t267,
+            t268,
+            t269,
+            t270,
+            t271,
+            t272,
+            t273,
+            t274,
+            t275,
+            t276,
+            t277,
+            t278,
+            t281,
+            t284,
+            t286,
+            t287,
+            t288,
+            t291,
+            t292,
+            t293,
+            t294,
+            t295,
+            t296,
+            t297,
+            t298,
+            t299,
+            t301,
+            t303,
+            t306,
+            t309,
+            t311,
+            t312,
+            t313,
+            t314,
+            t315,
+            t316,
+            t317,
+            t319,
+            t321,
+            t322,
+            t323,
+            t325,
+            t327,
+            t328,
+            t329,
+            t330,
+            t331,
+            t334,
+            t336,
+            t337,
+            t339,
+            t340,
+            t341,
+            t342,
+            t343,
+            t349,
+            t353,
+            t358,
+            t359,
+            t362,
+            t367,
+            t370,
+            t371,
+            t375,
+            t378,
+            t379,
+            t382,
+            t383,
+            t384,
+            t386,
+            t396,
+            t398,
+            t399,
+            t407,
+            t409,
+            t411,
+            t413,
+            t420,
+            t427,
+            t429,
+            t430,
+            t431,
+            t436,
+            t443,
+            t483,
+            t492,
+            t496,
+            t497,
+            t498,
+            t499,
+        ) = gyro_sim::apart(move || {
+            let t0 = shaft_e0 * shaft_e2;
+            let t1 = shaft_e1 * shaft_e3;
+            let t2 = t1 + t0;
+            let t3 = k(0.2) * t2;
+            let t4 = shaft_e0 * shaft_e0;
+            let t5 = k(0.5) - T::fused(shaft_e2, shaft_e2, t4);
+            let t6 = k(2.0) * t5;
+            let t7 = carrier_e0 * carrier_e1;
+            let t8 = carrier_e2 * carrier_e3;
+            let t9 = t8 - t7;
+            let t10 = k(2.0) * t9;
+            let t11 = shaft_e0 * shaft_e3;
+            let t12 = shaft_e1 * shaft_e2;
+            let t13 = t12 - t11;
+            let t14 = k(2.0) * t13;
+            let t15 = carrier_e0 * carrier_e2;
+            let t16 = carrier_e1 * carrier_e3;
+            let t17 = t16 + t15;
+            let t18 = k(2.0) * t17;
+            let t19 = shaft_e0 * shaft_e1;
+            let t20 = shaft_e2 * shaft_e3;
+            let t21 = t20 + t19;
+            let t22 = k(2.0) * t21;
+            let t23 = carrier_e0 * carrier_e0;
+            let t24 = k(0.5) - T::fused(carrier_e3, carrier_e3, t23);
+            let t25 = k(2.0) * t24;
+            let t26 = T::fused(t25, t22, -T::fused(-t10, t6, t18 * t14));
+            let t27 = k(0.5) - T::fused(carrier_e2, carrier_e2, t23);
+            let t28 = k(2.0) * t27;
+            let t29 = carrier_e0 * carrier_e3;
+            let t30 = carrier_e1 * carrier_e2;
+            let t31 = t30 - t29;
+            let t32 = k(2.0) * t31;
+            let t33 = t8 + t7;
+            let t34 = k(2.0) * t33;
+            let t35 = T::fused(t34, t22, T::fused(t28, t6, t32 * t14));
+            let t36 = T::fused(-k(0.8), t26, k(0.6) * t35);
+            let t37 = k(0.2) * t13;
+            let t38 = t20 - t19;
+            let t39 = k(2.0) * t38;
+            let t40 = k(2.0) * t2;
+            let t41 = k(0.5) - T::fused(shaft_e3, shaft_e3, t4);
+            let t42 = k(2.0) * t41;
+            let t43 = T::fused(t34, t42, -T::fused(-t28, t39, t32 * t40));
+            let t44 = T::fused(t25, t42, T::fused(t10, t39, t18 * t40));
+            let t45 = T::fused(-k(0.6), t43, k(0.8) * t44);
+            let t46 = T::fused(-t36, t3, t45 * t37);
+            let t47 = k(0.5) - T::fused(shaft_e1, shaft_e1, t4);
+            let t48 = k(2.0) * t47;
+            let t49 = t12 + t11;
+            let t50 = k(2.0) * t49;
+            let t51 = t1 - t0;
+            let t52 = k(2.0) * t51;
+            let t53 = T::fused(
+                -k(0.6),
+                T::fused(t34, t52, -T::fused(t32, t48, t28 * t50)),
+                k(0.8) * T::fused(t25, t52, -T::fused(-t18, t48, t10 * t50)),
+            );
+            let t54 = T::fused(
+                k(0.0001),
+                t45,
+                -T::fused(-k(0.001), t53, k(0.0002) * t36),
+            );
+            let t55 = T::fused(
+                k(0.0003),
+                t45,
+                T::fused(-k(0.0002), t53, k(0.026) * t36),
+            );
+            let t56 = T::fused(k(0.026), t45, T::fused(k(0.0001), t53, k(0.0003) * t36));
+            let t57 = k(1.0) / T::fused(t45, t56, T::fused(t53, t54, t36 * t55));
+            let t58 = t57 * t46;
+            let t59 = t54 * t58;
+            let t60 = t54 * t57;
+            let t61 = k(1.0) / T::fused(-t54, t60, k(0.001));
+            let t62 = t61 * t59;
+            let t63 = T::fused(t55, t60, k(0.0002));
+            let t64 = T::fused(t63, t62, T::fused(t55, t58, t3));
+            let t65 = k(0.2) * t38;
+            let t66 = k(0.2) * t5;
+            let t67 = T::fused(t36, t65, t45 * t66);
+            let t68 = t57 * t67;
+            let t69 = t54 * t68;
+            let t70 = t61 * t69;
+            let t71 = T::fused(t63, t70, -T::fused(-t55, t68, t65));
+            let t72 = k(0.2) * t41;
+            let t73 = k(0.2) * t21;
+            let t74 = T::fused(t36, t72, t45 * t73);
+            let t75 = t57 * t74;
+            let t76 = t54 * t75;
+            let t77 = t61 * t76;
+            let t78 = T::fused(t63, t77, -T::fused(-t55, t75, t72));
+            let t79 = k(1.0) / T::fused(t45, t45, t36 * t36);
+            let t80 = t45 * t79 * row8;
+            let t81 = t55 * t57;
+            let t82 = t61 * t63;
+            let t83 = T::fused(t63, t82, -T::fused(-t55, t81, k(0.026)));
+            let t84 = t36 * t79 * row8;
+            let t85 = T::fused(-t56, t60, k(0.0001));
+            let t86 = T::fused(t85, t82, T::fused(-t56, t81, k(0.0003)));
+            let t87 = T::fused(t83, t80, t86 * t84)
+                - T::fused(t78, row7, -T::fused(-t64, row5, t71 * row6));
+            let t88 = k(0.5) - T::fused(carrier_e1, carrier_e1, t23);
+            let t89 = k(2.0) * t88;
+            let t90 = t30 + t29;
+            let t91 = k(2.0) * t90;
+            let t92 = t16 - t15;
+            let t93 = k(2.0) * t92;
+            let t94 = T::fused(t93, t22, -T::fused(t89, t14, t91 * t6));
+            let t95 = T::fused(t85, t62, T::fused(-t56, t58, t37));
+            let t96 = T::fused(t85, t70, T::fused(-t56, t68, t66));
+            let t97 = T::fused(t85, t77, T::fused(-t56, t75, t73));
+            let t98 = T::fused(t85, t61 * t85, -T::fused(-t56, t56 * t57, k(0.026)));
+            let t99 = T::fused(t86, t80, t98 * t84)
+                - T::fused(t97, row7, -T::fused(-t95, row5, t96 * row6));
+            let t100 = T::fused(t93, t42, -T::fused(-t89, t40, t91 * t39));
+            let t101 = T::fused(t46, t58, t59 * t62);
+            let t102 = T::fused(t67, t58, t69 * t62);
+            let t103 = T::fused(t74, t58, t76 * t62);
+            let t104 = T::fused(
+                k(0.5),
+                row5,
+                -T::fused(t103, row7, -T::fused(-t101, row5, t102 * row6)),
+            );
+            let t105 = T::fused(t64, t80, t95 * t84) + t104;
+            let t106 = t31 - t17;
+            let t107 = k(0.2) * t106;
+            let t108 = T::fused(t67, t68, t69 * t70);
+            let t109 = T::fused(t74, t68, t76 * t70);
+            let t110 = T::fused(
+                k(0.5),
+                row6,
+                T::fused(t109, row7, -T::fused(-t102, row5, t108 * row6)),
+            );
+            let t111 = T::fused(t71, t80, t96 * t84) - t110;
+            let t112 = t27 + t9;
+            let t113 = k(0.2) * t112;
+            let t114 = T::fused(t74, t75, t76 * t77);
+            let t115 = T::fused(
+                k(0.5),
+                row7,
+                -T::fused(t114, row7, -T::fused(-t103, row5, t109 * row6)),
+            );
+            let t116 = T::fused(t78, t80, t97 * t84) + t115;
+            let t117 = t33 + t24;
+            let t118 = k(0.2) * t117;
+            let t119 = T::fused(t118, t116, T::fused(t107, t105, t113 * t111))
+                - T::fused(t94, t87, t100 * t99);
+            let t120 = k(0.2) * t17;
+            let t121 = k(0.2) * t9;
+            let t122 = k(0.2) * t24;
+            let t123 = T::fused(t122, t116, T::fused(-t120, t105, t121 * t111));
+            let t124 = t88 + t17;
+            let t125 = k(0.2) * t124;
+            let t126 = t90 - t9;
+            let t127 = k(0.2) * t126;
+            let t128 = t92 + t24;
+            let t129 = k(0.2) * t128;
+            let t130 = T::fused(t129, t116, -T::fused(t125, t105, t127 * t111))
+                + T::fused(t35, t87, t43 * t99);
+            let t131 = t88 + t31;
+            let t132 = k(0.2) * t131;
+            let t133 = t90 + t27;
+            let t134 = k(0.2) * t133;
+            let t135 = t92 - t33;
+            let t136 = k(0.2) * t135;
+            let t137 = T::fused(t136, t116, -T::fused(t132, t105, t134 * t111));
+            let t138 = T::fused(
+                k(0.6666666666666666),
+                t137 + (t137 + T::fused(t26, t87, t44 * t99)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t123 + t119,
+                    k(0.6666666666666666) * (t123 + t130),
+                ),
+            );
+            let t139 = T::fused(t122, t103, T::fused(-t120, t101, t121 * t102));
+            let t140 = k(0.4) * t17;
+            let t141 = t140 + t139;
+            let t142 = T::fused(t94, t64, t100 * t95);
+            let t143 = T::fused(t118, t103, T::fused(t107, t101, t113 * t102));
+            let t144 = T::fused(-k(0.1), t106, t143) - t142;
+            let t145 = T::fused(t35, t64, t43 * t95);
+            let t146 = T::fused(t129, t103, -T::fused(t125, t101, t127 * t102));
+            let t147 = T::fused(k(0.1), t124, t146) + t145;
+            let t148 = T::fused(t136, t103, -T::fused(t132, t101, t134 * t102));
+            let t149 = T::fused(t26, t64, t44 * t95);
+            let t150 = T::fused(k(0.1), t131, t148) + t149;
+            let t151 = T::fused(
+                k(0.6666666666666666),
+                t150 + T::fused(k(0.4), t131, t148),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t144 + t141,
+                    k(0.6666666666666666) * (t147 + t141),
+                ),
+            );
+            let t152 = T::fused(t122, t109, T::fused(-t120, t102, t121 * t108));
+            let t153 = k(0.4) * t9;
+            let t154 = t153 - t152;
+            let t155 = T::fused(t94, t71, t100 * t96);
+            let t156 = T::fused(t118, t109, T::fused(t107, t102, t113 * t108));
+            let t157 = T::fused(-k(0.1), t112, t156) - t155;
+            let t158 = T::fused(t35, t71, t43 * t96);
+            let t159 = T::fused(t129, t109, -T::fused(t125, t102, t127 * t108));
+            let t160 = T::fused(k(0.1), t126, t159) + t158;
+            let t161 = T::fused(t136, t109, -T::fused(t132, t102, t134 * t108));
+            let t162 = T::fused(t26, t71, t44 * t96);
+            let t163 = T::fused(k(0.1), t133, t161) + t162;
+            let t164 = T::fused(
+                k(0.6666666666666666),
+                t163 + T::fused(k(0.4), t133, t161),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t157 - t154,
+                    k(0.6666666666666666) * (t160 - t154),
+                ),
+            );
+            let t165 = T::fused(t122, t114, T::fused(-t120, t103, t121 * t109));
+            let t166 = k(0.4) * t24;
+            let t167 = t166 - t165;
+            let t168 = T::fused(t94, t78, t100 * t97);
+            let t169 = T::fused(t118, t114, T::fused(t107, t103, t113 * t109));
+            let t170 = T::fused(-k(0.1), t117, t169) - t168;
+            let t171 = T::fused(t35, t78, t43 * t97);
+            let t172 = T::fused(t129, t114, -T::fused(t125, t103, t127 * t109));
+            let t173 = T::fused(-k(0.1), t128, t172) + t171;
+            let t174 = T::fused(t136, t114, -T::fused(t132, t103, t134 * t109));
+            let t175 = T::fused(t26, t78, t44 * t97);
+            let t176 = T::fused(-k(0.1), t135, t174) + t175;
+            let t177 = T::fused(
+                k(0.6666666666666666),
+                t176 + T::fused(-k(0.4), t135, t174),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t170 - t167,
+                    k(0.6666666666666666) * (t173 - t167),
+                ),
+            );
+            let t178 = k(0.6666666666666666) * t33;
+            let t179 = k(1.3333333333333333) * t92;
+            let t180 = t179 - t178;
+            let t181 = k(0.6666666666666666) * t27;
+            let t182 = k(1.3333333333333333) * t90;
+            let t183 = t182 + t181;
+            let t184 = k(1.3333333333333333) * t88;
+            let t185 = k(0.6666666666666666) * t31;
+            let t186 = t185 + t184;
+            let t187 = T::fused(
+                -k(0.3333333333333333),
+                t180,
+                k(0.6666666666666666) * (t186 + t183),
+            );
+            let t188 = k(0.6666666666666666) * t24;
+            let t189 = t179 + t188;
+            let t190 = k(0.6666666666666666) * t9;
+            let t191 = t182 - t190;
+            let t192 = k(0.6666666666666666) * t17;
+            let t193 = t192 + t184;
+            let t194 = T::fused(
+                -k(0.3333333333333333),
+                t189,
+                k(0.6666666666666666) * (t193 + t191),
+            );
+            let t195 = k(0.6666666666666666) * (t194 + t187);
+            let t196 = T::fused(
+                -k(0.8888888888888888),
+                t117,
+                T::fused(-k(0.4444444444444444), t112, k(0.8888888888888888) * t106),
+            );
+            let t197 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.4444444444444444),
+                    t117,
+                    k(0.8888888888888888) * (t106 + t112),
+                );
+            let t198 = T::fused(k(0.3333333333333333), t187, t197);
+            let t199 = T::fused(
+                k(0.6666666666666666),
+                t189,
+                T::fused(-k(0.3333333333333333), t191, k(0.6666666666666666) * t193),
+            );
+            let t200 = T::fused(k(0.3333333333333333), t194, -t197);
+            let t201 = T::fused(
+                k(0.6666666666666666),
+                t180,
+                T::fused(-k(0.3333333333333333), t183, k(0.6666666666666666) * t186),
+            );
+            let t202 = k(1.0)
+                / T::fused(t201, t200, -T::fused(-t196, t195, t199 * t198));
+            let t203 = T::fused(
+                t195 * t202,
+                row3,
+                t202 * (k(0.6666666666666666) * (t199 + t201)) * row4,
+            );
+            let t204 = T::fused(t94, t83, t100 * t86);
+            let t205 = T::fused(t94, t86, t100 * t98);
+            let t206 = T::fused(
+                k(2.0),
+                T::fused(t118, t168, T::fused(t107, t142, t113 * t155)),
+                -T::fused(t118, t169, T::fused(t107, t143, t113 * t156)),
+            );
+            let t207 = k(0.02)
+                + (k(0.02) + (t206 + (k(0.01) - T::fused(t94, t204, t100 * t205))));
+            let t208 = T::fused(t122, t170, T::fused(-t120, t144, t121 * t157));
+            let t209 = T::fused(t122, t165, T::fused(-t120, t139, t121 * t152));
+            let t210 = T::fused(t129, t168, -T::fused(t125, t142, t127 * t155))
+                - T::fused(t118, t171, T::fused(t107, t145, t113 * t158));
+            let t211 = t210 - T::fused(t118, t172, T::fused(t107, t146, t113 * t159))
+                + (k(0.005) + T::fused(t35, t204, t43 * t205));
+            let t212 = T::fused(t122, t173, T::fused(-t120, t147, t121 * t160));
+            let t213 = t209 + (t212 + t208) - (k(0.02) + t211);
+            let t214 = T::fused(t136, t168, -T::fused(t132, t142, t134 * t155))
+                - T::fused(t118, t175, T::fused(t107, t149, t113 * t162));
+            let t215 = t214 - T::fused(t118, t174, T::fused(t107, t148, t113 * t161))
+                - (k(0.005) - T::fused(t26, t204, t44 * t205));
+            let t216 = T::fused(t122, t174, T::fused(-t120, t148, t121 * t161));
+            let t217 = T::fused(t122, t176, T::fused(-t120, t150, t121 * t163));
+            let t218 = T::fused(t136, t170, -T::fused(t132, t144, t134 * t157)) + t217
+                + t216;
+            let t219 = t218 - t215;
+            let t220 = T::fused(
+                k(0.6666666666666666),
+                t219,
+                -T::fused(
+                    -k(0.3333333333333333),
+                    T::fused(k(2.0), t208, t209) - t207,
+                    k(0.6666666666666666) * t213,
+                ),
+            );
+            let t221 = k(0.6666666666666666) * t196;
+            let t222 = T::fused(
+                t198 * t202,
+                row3,
+                t202 * T::fused(k(0.3333333333333333), t201, t221) * row4,
+            );
+            let t223 = T::fused(t35, t83, t43 * t86);
+            let t224 = T::fused(t35, t86, t43 * t98);
+            let t225 = T::fused(
+                k(2.0),
+                T::fused(t129, t171, -T::fused(t125, t145, t127 * t158)),
+                T::fused(t129, t172, -T::fused(t125, t146, t127 * t159)),
+            );
+            let t226 = k(0.02)
+                + (k(0.03) - (t225 - (k(0.01) - T::fused(t35, t223, t43 * t224))));
+            let t227 = T::fused(t136, t171, -T::fused(t132, t145, t134 * t158))
+                + T::fused(t129, t175, -T::fused(t125, t149, t127 * t162));
+            let t228 = t227 + T::fused(t129, t174, -T::fused(t125, t148, t127 * t161))
+                - (k(0.005) - T::fused(t26, t223, t44 * t224));
+            let t229 = t216
+                + (t217 + T::fused(t136, t173, -T::fused(t132, t147, t134 * t160)));
+            let t230 = k(0.6666666666666666) * (t229 + t228);
+            let t231 = t230
+                - T::fused(
+                    -k(0.3333333333333333),
+                    t213,
+                    k(0.6666666666666666) * (T::fused(k(2.0), t212, t209) - t226),
+                );
+            let t232 = T::fused(
+                t200 * t202,
+                row3,
+                t202 * T::fused(k(0.3333333333333333), t199, -t221) * row4,
+            );
+            let t233 = T::fused(
+                t26,
+                T::fused(t26, t83, t44 * t86),
+                t44 * T::fused(t26, t86, t44 * t98),
+            );
+            let t234 = T::fused(t136, t174, -T::fused(t132, t148, t134 * t161));
+            let t235 = T::fused(
+                k(2.0),
+                T::fused(t136, t175, -T::fused(t132, t149, t134 * t162)),
+                t234,
+            );
+            let t236 = T::fused(
+                k(2.0),
+                T::fused(t136, t176, -T::fused(t132, t150, t134 * t163)),
+                t234,
+            );
+            let t237 = T::fused(
+                k(0.6666666666666666),
+                t236 - (k(0.04) + (k(0.025) - (t235 - (k(0.01) - t233)))),
+                T::fused(k(0.3333333333333333), t219, -t230),
+            );
+            let t238 = T::fused(t237, t232, -T::fused(t220, t203, t231 * t222))
+                - T::fused(t177, row2, -T::fused(-t151, row0, t164 * row1));
+            let t239 = k(1.0)
+                / T::fused(
+                    k(0.6666666666666666),
+                    t237,
+                    -T::fused(-k(0.3333333333333333), t220, k(0.6666666666666666) * t231),
+                );
+            let t240 = t239 * (t238 + t138);
+            let t241 = T::fused(k(0.3333333333333333), t240, t203);
+            let t242 = k(0.6666666666666666) * t240;
+            let t243 = t222 - t242;
+            let t244 = t232 - t242;
+            let t245 = t132 * t244;
+            let t246 = row0 + (t245 - T::fused(t120, t241, t120 * t243));
+            let t247 = row5 - (T::fused(-t107, t241, t125 * t243) - t245 - t246);
+            let t248 = t134 * t244;
+            let t249 = row1 - (t248 + T::fused(t121, t241, t121 * t243));
+            let t250 = row6 + (T::fused(-t113, t241, t127 * t243) - t248 + t249);
+            let t251 = t136 * t244;
+            let t252 = row2 - (t251 - T::fused(t122, t241, t122 * t243));
+            let t253 = row7 + (T::fused(t118, t241, t129 * t243) - t251 + t252);
+            let t254 = t80 + T::fused(t26, t244, -T::fused(-t94, t241, t35 * t243));
+            let t255 = t84 + T::fused(t44, t244, -T::fused(-t100, t241, t43 * t243));
+            let t256 = T::fused(t63, t254, t85 * t255)
+                - T::fused(t76, t253, -T::fused(-t59, t247, t69 * t250));
+            let t257 = t61 * t256;
+            let t258 = T::fused(t56, t255, -T::fused(t54, t257, t55 * t254))
+                + T::fused(t74, t253, -T::fused(-t46, t247, t67 * t250));
+            let t259 = t57 * t258;
+            let t260 = T::fused(t36, t259, t254);
+            let t261 = k(0.4) * t2;
+            let t262 = T::fused(-t45, t259, t255);
+            let t263 = k(0.4) * t13;
+            let t264 = t247 + T::fused(t261, t260, t263 * t262);
+            let t265 = t13 + t2;
+            let t266 = k(1.4142135623730951) * t265;
+            let t267 = k(0.4) * t38;
+            let t268 = k(0.4) * t5;
+            let t269 = t250 - T::fused(-t267, t260, t268 * t262);
+            let t270 = t5 - t38;
+            let t271 = k(1.4142135623730951) * t270;
+            let t272 = k(0.4) * t41;
+            let t273 = k(0.4) * t21;
+            let t274 = t253 + T::fused(-t272, t260, t273 * t262);
+            let t275 = t21 - t41;
+            let t276 = k(1.4142135623730951) * t275;
+            let t277 = T::fused(t53, t259, t257);
+            let t278 = k(0.1) * t275;
+            let t279 = sleeve_e0 * sleeve_e2;
+            let t280 = sleeve_e1 * sleeve_e3;
+            let t281 = t280 - t279;
+            let t282 = sleeve_e0 * sleeve_e1;
+            let t283 = sleeve_e2 * sleeve_e3;
+            let t284 = t283 + t282;
+            let t285 = sleeve_e0 * sleeve_e0;
+            let t286 = k(0.5) - T::fused(sleeve_e3, sleeve_e3, t285);
+            let t287 = sleeve_rz
+                - T::fused(k(0.1), t286, T::fused(k(0.2), t281, k(0.1) * t284))
+                - (shaft_rz
+                    + T::fused(k(0.1), t41, T::fused(k(0.4), t51, k(0.1) * t21)));
+            let t288 = k(0.1) * t270;
+            let t289 = sleeve_e0 * sleeve_e3;
+            let t290 = sleeve_e1 * sleeve_e2;
+            let t291 = t290 + t289;
+            let t292 = k(0.5) - T::fused(sleeve_e2, sleeve_e2, t285);
+            let t293 = t283 - t282;
+            let t294 = sleeve_ry
+                + T::fused(k(0.1), t293, T::fused(-k(0.2), t291, k(0.1) * t292))
+                - (shaft_ry
+                    - T::fused(k(0.1), t38, T::fused(-k(0.4), t49, k(0.1) * t5)));
+            let t295 = k(0.1) * t265;
+            let t296 = k(0.5) - T::fused(sleeve_e1, sleeve_e1, t285);
+            let t297 = t290 - t289;
+            let t298 = t280 + t279;
+            let t299 = sleeve_rx
+                + T::fused(k(0.1), t298, -T::fused(-k(0.2), t296, k(0.1) * t297))
+                - (shaft_rx
+                    - T::fused(k(0.1), t2, -T::fused(-k(0.4), t47, k(0.1) * t13)));
+            let t300 = T::fused(t266, t295, k(1.4142135623730951) * (t13 - t2) * t299)
+                - T::fused(-t271, t288, k(1.4142135623730951) * (t5 + t38) * t294);
+            let t301 = t300
+                + T::fused(t276, t278, k(1.4142135623730951) * (t21 + t41) * t287);
+            let t302 = k(0.1) * t51;
+            let t303 = t272 - t302;
+            let t304 = t287 * (k(1.4142135623730951) * t51);
+            let t305 = k(0.1) * t49;
+            let t306 = t267 + t305;
+            let t307 = t294 * (k(1.4142135623730951) * t49);
+            let t308 = k(0.1) * t47;
+            let t309 = t261 - t308;
+            let t310 = t299 * (k(1.4142135623730951) * t47);
+            let t311 = T::fused(-t266, t309, t310) - T::fused(-t271, t306, t307)
+                - T::fused(-t276, t303, t304);
+            let t312 = t273 - t302;
+            let t313 = t268 + t305;
+            let t314 = t263 + t308;
+            let t315 = T::fused(-t266, t314, t310) - T::fused(t271, t313, t307)
+                - T::fused(t276, t312, t304);
+            let t316 = T::fused(t315, t262, T::fused(-t301, t277, t311 * t260))
+                - T::fused(t276, t274, -T::fused(-t266, t264, t271 * t269));
+            let t317 = k(0.19245008972987526) * row29;
+            let t318 = k(8.0) * t298;
+            let t319 = k(0.16) * t298;
+            let t320 = k(4.2105263157894735) * t298;
+            let t321 = k(0.016) * t298;
+            let t322 = k(0.2) * t297;
+            let t323 = T::fused(k(0.4), t296, t322);
+            let t324 = k(16.0) * t323;
+            let t325 = k(0.4) * t323;
+            let t326 = T::fused(t325, t324, T::fused(t319, t318, t321 * t320));
+            let t327 = k(0.16) * t286;
+            let t328 = k(0.016) * t286;
+            let t329 = k(0.2) * t284;
+            let t330 = T::fused(-k(0.4), t281, t329);
+            let t331 = k(0.4) * t330;
+            let t332 = T::fused(t331, t324, -T::fused(t327, t318, t328 * t320));
+            let t333 = k(0.4) + self.puck_mass;
+            let t334 = T::fused(
+                k(0.9805806756909201),
+                t333,
+                T::fused(-k(0.9805806756909201), t326, k(0.19611613513818404) * t332),
+            );
+            let t335 = T::fused(
+                t331,
+                k(16.0) * t330,
+                T::fused(t327, k(8.0) * t286, t328 * (k(4.2105263157894735) * t286)),
+            );
+            let t336 = T::fused(
+                k(0.19611613513818404),
+                t333,
+                -T::fused(-k(0.9805806756909201), t332, k(0.19611613513818404) * t335),
+            );
+            let t337 = k(1.0)
+                / T::fused(k(0.9805806756909201), t334, k(0.19611613513818404) * t336);
+            let t338 = t334 * t337;
+            let t339 = k(0.16) * t293;
+            let t340 = k(0.016) * t293;
+            let t341 = k(0.2) * t292;
+            let t342 = T::fused(k(0.4), t291, t341);
+            let t343 = k(0.4) * t342;
+            let t344 = T::fused(t324, t343, -T::fused(t318, t339, t320 * t340));
+            let t345 = k(8.0) * t293;
+            let t346 = k(4.2105263157894735) * t293;
+            let t347 = k(16.0) * t342;
+            let t348 = T::fused(t331, t347, T::fused(t327, t345, t328 * t346));
+            let t349 = T::fused(
+                -k(0.9805806756909201),
+                t344,
+                k(0.19611613513818404) * t348,
+            );
+            let t350 = T::fused(t349, t338, t344);
+            let t351 = T::fused(-t336, t338, t332);
+            let t352 = T::fused(
+                k(0.1887128390240993),
+                t351,
+                T::fused(
+                    k(0.03774256780481986),
+                    T::fused(t334, t338, t326),
+                    k(0.9813067629253163) * t350,
+                ),
+            );
+            let t353 = T::fused(k(0.03774256780481986), t333, -t352);
+            let t354 = T::fused(t347, t343, T::fused(t345, t339, t346 * t340));
+            let t355 = t337 * t349;
+            let t356 = T::fused(-t336, t355, t348);
+            let t357 = T::fused(
+                k(0.1887128390240993),
+                t356,
+                T::fused(
+                    k(0.03774256780481986),
+                    t350,
+                    k(0.9813067629253163) * T::fused(t349, t355, t354),
+                ),
+            );
+            let t358 = T::fused(k(0.9813067629253163), t333, -t357);
+            let t359 = k(0.9622504486493763) * row29;
+            let t360 = t336 * t337;
+            let t361 = T::fused(
+                k(0.1887128390240993),
+                T::fused(t336, t360, t335),
+                T::fused(k(0.03774256780481986), t351, k(0.9813067629253163) * t356),
+            );
+            let t362 = T::fused(k(0.1887128390240993), t333, -t361);
+            let t363 = T::fused(
+                k(0.4),
+                row32,
+                -T::fused(t332, row34, -T::fused(-t326, row32, t344 * row33)),
+            );
+            let t364 = puck_e0 * puck_e3;
+            let t365 = puck_e1 * puck_e2;
+            let t366 = t365 - t364;
+            let t367 = k(0.2) * t366;
+            let t368 = puck_e0 * puck_e2;
+            let t369 = puck_e1 * puck_e3;
+            let t370 = t369 + t368;
+            let t371 = T::fused(k(0.4), t370, t367);
+            let t372 = T::fused(
+                k(0.4),
+                row33,
+                T::fused(t348, row34, -T::fused(-t344, row32, t354 * row33)),
+            );
+            let t373 = puck_e0 * puck_e0;
+            let t374 = k(0.5) - T::fused(puck_e2, puck_e2, t373);
+            let t375 = k(0.2) * t374;
+            let t376 = puck_e0 * puck_e1;
+            let t377 = puck_e2 * puck_e3;
+            let t378 = t377 - t376;
+            let t379 = T::fused(k(0.4), t378, -t375);
+            let t380 = T::fused(
+                k(0.4),
+                row34,
+                -T::fused(t335, row34, -T::fused(-t332, row32, t348 * row33)),
+            );
+            let t381 = t377 + t376;
+            let t382 = k(0.2) * t381;
+            let t383 = k(0.5) - T::fused(puck_e3, puck_e3, t373);
+            let t384 = T::fused(k(0.4), t383, -t382);
+            let t385 = T::fused(t382, t380, -T::fused(-t367, t363, t375 * t372))
+                - T::fused(t384, t380, -T::fused(t371, t363, t379 * t372));
+            let t386 = T::fused(
+                -k(0.9805806756909201),
+                t363,
+                k(0.19611613513818404) * t380,
+            );
+            let t387 = t337 * t386;
+            let t388 = T::fused(t384, t332, T::fused(-t371, t326, t379 * t344));
+            let t389 = T::fused(k(0.4), t371, t388);
+            let t390 = T::fused(t382, t332, T::fused(t367, t326, t375 * t344));
+            let t391 = T::fused(-t333, t367, t390) - t389;
+            let t392 = T::fused(t384, t335, T::fused(-t371, t332, t379 * t348));
+            let t393 = T::fused(-k(0.4), t384, t392);
+            let t394 = T::fused(t382, t335, T::fused(t367, t332, t375 * t348));
+            let t395 = T::fused(-t333, t382, t394) - t393;
+            let t396 = T::fused(
+                -k(0.9805806756909201),
+                t391,
+                k(0.19611613513818404) * t395,
+            );
+            let t397 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t334, t387, t363),
+                k(0.9813067629253163) * T::fused(t349, t387, -t372),
+            );
+            let t398 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t387, t380),
+                t397,
+            );
+            let t399 = k(1.0)
+                / T::fused(
+                    k(0.1887128390240993),
+                    t362,
+                    T::fused(k(0.03774256780481986), t353, k(0.9813067629253163) * t358),
+                );
+            let t400 = t399 * t398;
+            let t401 = T::fused(t338, t396, t391);
+            let t402 = T::fused(t384, t348, T::fused(-t371, t344, t379 * t354));
+            let t403 = T::fused(-k(0.4), t379, t402);
+            let t404 = T::fused(t382, t348, T::fused(t367, t344, t375 * t354));
+            let t405 = T::fused(t355, t396, T::fused(-t333, t375, t404) - t403);
+            let t406 = T::fused(-t360, t396, t395);
+            let t407 = T::fused(
+                k(0.1887128390240993),
+                t406,
+                T::fused(k(0.03774256780481986), t401, k(0.9813067629253163) * t405),
+            );
+            let t408 = k(0.5) - T::fused(puck_e1, puck_e1, t373);
+            let t409 = k(0.2) * t408;
+            let t410 = t365 + t364;
+            let t411 = k(0.2) * t410;
+            let t412 = t369 - t368;
+            let t413 = k(0.2) * t412;
+            let t414 = T::fused(t413, t332, -T::fused(t409, t326, t411 * t344));
+            let t415 = T::fused(k(0.08), t408, t414);
+            let t416 = T::fused(t333, t409, t414) + t415;
+            let t417 = T::fused(t413, t335, -T::fused(t409, t332, t411 * t348));
+            let t418 = T::fused(-k(0.08), t412, t417);
+            let t419 = T::fused(t333, t413, -t417) - t418;
+            let t420 = T::fused(
+                k(0.9805806756909201),
+                t416,
+                k(0.19611613513818404) * t419,
+            );
+            let t421 = T::fused(
+                -k(2.0),
+                T::fused(t413, t380, T::fused(-t409, t363, t411 * t372)),
+                t420 * t387,
+            );
+            let t422 = T::fused(-t338, t420, t416);
+            let t423 = T::fused(t413, t348, -T::fused(t409, t344, t411 * t354));
+            let t424 = T::fused(k(0.08), t410, t423);
+            let t425 = T::fused(t355, t420, -(T::fused(t333, t411, t423) + t424));
+            let t426 = T::fused(-t360, t420, t419);
+            let t427 = T::fused(
+                k(0.1887128390240993),
+                t426,
+                T::fused(-k(0.03774256780481986), t422, k(0.9813067629253163) * t425),
+            );
+            let t428 = T::fused(t427, t400, t421)
+                + T::fused(t407, t400, T::fused(t396, t387, t385));
+            let t429 = k(0.4) * t408;
+            let t430 = k(0.4) * t410;
+            let t431 = k(0.4) * t412;
+            let t432 = T::fused(t431, t332, -T::fused(t429, t326, t430 * t344));
+            let t433 = T::fused(k(0.16), t408, t432);
+            let t434 = T::fused(t431, t335, -T::fused(t429, t332, t430 * t348));
+            let t435 = T::fused(-k(0.16), t412, t434);
+            let t436 = T::fused(
+                -k(0.9805806756909201),
+                t433,
+                k(0.19611613513818404) * t435,
+            );
+            let t437 = T::fused(
+                t436,
+                t387,
+                T::fused(t431, t380, T::fused(-t429, t363, t430 * t372)),
+            );
+            let t438 = T::fused(t338, t436, t433);
+            let t439 = T::fused(t431, t348, -T::fused(t429, t344, t430 * t354));
+            let t440 = T::fused(k(0.16), t410, t439);
+            let t441 = T::fused(t355, t436, t440);
+            let t442 = T::fused(-t360, t436, t435);
+            let t443 = T::fused(
+                k(0.1887128390240993),
+                t442,
+                T::fused(k(0.03774256780481986), t438, k(0.9813067629253163) * t441),
+            );
+            let t444 = t353 * t399;
+            let t445 = T::fused(
+                k(0.19245008972987526),
+                T::fused(t427, t444, t422) - T::fused(-t407, t444, t401),
+                k(0.9622504486493763) * T::fused(-t443, t444, t438),
+            );
+            let t446 = t358 * t399;
+            let t447 = T::fused(
+                -k(0.19245008972987526),
+                T::fused(-t427, t446, t425) + T::fused(-t407, t446, t405),
+                k(0.9622504486493763) * T::fused(-t443, t446, t441),
+            );
+            let t448 = t362 * t399;
+            let t449 = T::fused(
+                -k(0.19245008972987526),
+                T::fused(-t427, t448, t426) + T::fused(-t407, t448, t406),
+                k(0.9622504486493763) * T::fused(-t443, t448, t442),
+            );
+            let t450 = k(0.3849001794597505) * t383;
+            let t451 = T::fused(k(1.9245008972987525), t412, t450);
+            let t452 = k(0.3849001794597505) * t378;
+            let t453 = k(0.3849001794597505) * t370;
+            let t454 = T::fused(k(1.9245008972987525), t408, t453);
+            let t455 = T::fused(
+                -k(0.1887128390240993),
+                t451,
+                T::fused(
+                    -k(0.9813067629253163),
+                    T::fused(-k(1.9245008972987525), t410, t452),
+                    k(0.03774256780481986) * t454,
+                ),
+            );
+            let t456 = t412 - t381;
+            let t457 = t408 + t366;
+            let t458 = k(0.19245008972987526)
+                * T::fused(
+                    -k(0.07263560560673482),
+                    t456,
+                    T::fused(
+                        k(0.3777051491550211),
+                        t410 + t374,
+                        k(0.014527121121346966) * t457,
+                    ),
+                );
+            let t459 = T::fused(k(0.9622504486493763), t455, t458);
+            let t460 = T::fused(k(1.9245008972987525), t381, t450);
+            let t461 = T::fused(-k(1.9245008972987525), t366, t453);
+            let t462 = T::fused(
+                k(0.19611613513818404),
+                t460,
+                k(0.9805806756909201) * t461,
+            );
+            let t463 = T::fused(
+                -k(0.1887128390240993),
+                t460,
+                T::fused(
+                    -k(0.9813067629253163),
+                    T::fused(k(1.9245008972987525), t374, t452),
+                    k(0.03774256780481986) * t461,
+                ),
+            );
+            let t464 = T::fused(k(0.9622504486493763), t463, -t458);
+            let t465 = T::fused(
+                k(0.19611613513818404),
+                t451,
+                k(0.9805806756909201) * t454,
+            );
+            let t466 = k(0.19245008972987526) * (t463 + t455);
+            let t467 = T::fused(
+                k(0.07548513560963972),
+                t456,
+                k(0.3774256780481986) * t457,
+            );
+            let t468 = k(1.0) / T::fused(t467, t466, T::fused(-t462, t459, t465 * t464));
+            let t469 = k(0.19245008972987526) * t467;
+            let t470 = T::fused(
+                t459 * t468,
+                row30,
+                t468 * T::fused(k(0.9622504486493763), t465, t469) * row31,
+            );
+            let t471 = k(0.004)
+                + (k(0.02) - T::fused(t384, t392, T::fused(-t371, t388, t379 * t402)));
+            let t472 = k(0.01) * t333;
+            let t473 = T::fused(
+                k(2.0),
+                T::fused(t382, t393, T::fused(t367, t389, t375 * t403)),
+                -T::fused(t382, t394, T::fused(t367, t390, t375 * t404)),
+            );
+            let t474 = t337 * t396;
+            let t475 = t399 * t407;
+            let t476 = T::fused(t413, t393, -T::fused(t409, t389, t411 * t403))
+                - T::fused(t382, t418, T::fused(t367, t415, t375 * t424));
+            let t477 = t476 - T::fused(t382, t417, T::fused(t367, t414, t375 * t423))
+                + T::fused(t384, t417, T::fused(-t371, t414, t379 * t423));
+            let t478 = T::fused(t427, t475, T::fused(t420, t474, t477));
+            let t479 = t478
+                + T::fused(t407, t475, T::fused(t396, t474, -(t473 + (t472 + t471))));
+            let t480 = T::fused(t382, t435, T::fused(t367, t433, t375 * t440))
+                - T::fused(t384, t434, T::fused(-t371, t432, t379 * t439));
+            let t481 = T::fused(t443, t475, T::fused(t436, t474, t480));
+            let t482 = T::fused(
+                -k(0.19245008972987526),
+                t479,
+                k(0.9622504486493763) * t481,
+            );
+            let t483 = T::fused(
+                t464 * t468,
+                row30,
+                t468 * T::fused(k(0.9622504486493763), t462, -t469) * row31,
+            );
+            let t484 = T::fused(t413, t417, -T::fused(t409, t414, t411 * t423));
+            let t485 = T::fused(
+                k(2.0),
+                T::fused(t413, t418, -T::fused(t409, t415, t411 * t424)),
+                t484,
+            );
+            let t486 = t337 * t420;
+            let t487 = t399 * t427;
+            let t488 = T::fused(
+                t427,
+                t487,
+                T::fused(t420, t486, t485 - (t472 + (k(0.005) + (k(0.004) - t484)))),
+            );
+            let t489 = T::fused(t413, t435, -T::fused(t409, t433, t411 * t440))
+                - (k(0.008) - T::fused(t413, t434, -T::fused(t409, t432, t411 * t439)));
+            let t490 = T::fused(t443, t487, T::fused(t436, t486, -t489));
+            let t491 = T::fused(
+                -k(0.19245008972987526),
+                t488 + t478,
+                k(0.9622504486493763) * t490,
+            );
+            let t492 = T::fused(
+                t466 * t468,
+                row30,
+                t468 * (k(0.19245008972987526) * (t462 + t465)) * row31,
+            );
+            let t493 = k(0.003)
+                + (k(0.016) - T::fused(t431, t434, -T::fused(t429, t432, t430 * t439)));
+            let t494 = T::fused(
+                -k(0.19245008972987526),
+                t490 + t481,
+                k(0.9622504486493763)
+                    * T::fused(t443, t399 * t443, T::fused(t436, t337 * t436, -t493)),
+            );
+            let t495 = T::fused(t494, t492, T::fused(t482, t470, t491 * t483))
+                + T::fused(t449, t359, -T::fused(-t445, t317, t447 * t317));
+            let t496 = k(1.0)
+                / T::fused(
+                    -k(0.19245008972987526),
+                    t491 + t482,
+                    k(0.9622504486493763) * t494,
+                );
+            let t497 = t496
+                * (t495
+                    + T::fused(
+                        -k(0.19245008972987526),
+                        t428,
+                        k(0.9622504486493763) * T::fused(t443, t400, t437),
+                    ));
+            let t498 = k(0.19245008972987526) * t497;
+            let t499 = t470 + t498;
+            (
+                t2,
+                t5,
+                t6,
+                t9,
+                t13,
+                t14,
+                t17,
+                t21,
+                t22,
+                t24,
+                t26,
+                t27,
+                t31,
+                t33,
+                t35,
+                t36,
+                t38,
+                t39,
+                t40,
+                t41,
+                t42,
+                t43,
+                t44,
+                t45,
+                t46,
+                t47,
+                t48,
+                t49,
+                t50,
+                t51,
+                t52,
+                t53,
+                t54,
+                t55,
+                t56,
+                t57,
+                t59,
+                t61,
+                t63,
+                t67,
+                t69,
+                t74,
+                t76,
+                t85,
+                t88,
+                t90,
+                t92,
+                t94,
+                t100,
+                t107,
+                t113,
+                t118,
+                t120,
+                t121,
+                t122,
+                t125,
+                t127,
+                t129,
+                t132,
+                t134,
+                t136,
+                t140,
+                t153,
+                t166,
+                t178,
+                t179,
+                t181,
+                t182,
+                t184,
+                t185,
+                t188,
+                t190,
+                t192,
+                t239,
+                t241,
+                t243,
+                t244,
+                t246,
+                t249,
+                t252,
+                t260,
+                t261,
+                t262,
+                t263,
+                t264,
+                t265,
+                t266,
+                t267,
+                t268,
+                t269,
+                t270,
+                t271,
+                t272,
+                t273,
+                t274,
+                t275,
+                t276,
+                t277,
+                t278,
+                t281,
+                t284,
+                t286,
+                t287,
+                t288,
+                t291,
+                t292,
+                t293,
+                t294,
+                t295,
+                t296,
+                t297,
+                t298,
+                t299,
+                t301,
+                t303,
+                t306,
+                t309,
+                t311,
+                t312,
+                t313,
+                t314,
+                t315,
+                t316,
+                t317,
+                t319,
+                t321,
+                t322,
+                t323,
+                t325,
+                t327,
+                t328,
+                t329,
+                t330,
+                t331,
+                t334,
+                t336,
+                t337,
+                t339,
+                t340,
+                t341,
+                t342,
+                t343,
+                t349,
+                t353,
+                t358,
+                t359,
+                t362,
+                t367,
+                t370,
+                t371,
+                t375,
+                t378,
+                t379,
+                t382,
+                t383,
+                t384,
+                t386,
+                t396,
+                t398,
+                t399,
+                t407,
+                t409,
+                t411,
+                t413,
+                t420,
+                t427,
+                t429,
+                t430,
+                t431,
+                t436,
+                t443,
+                t483,
+                t492,
+                t496,
+                t497,
+                t498,
+                t499,
+            )
+        });
+        let (
+            t500,
+            t501,
+            t510,
+            t513,
+            t516,
+            t520,
+            t521,
+            t522,
+            t523,
+            t524,
+            t525,
+            t526,
+            t527,
+            t528,
+            t529,
+            t530,
+            t531,
+            t548,
+            t566,
+            t567,
+            t569,
+            t572,
+            t575,
+            t583,
+            t584,
+            t585,
+            t586,
+            t587,
+            t588,
+            t609,
+            t610,
+            t618,
+            t621,
+            t624,
+            t628,
+            t629,
+            t630,
+            t631,
+            t632,
+            t633,
+            t635,
+            t655,
+            t656,
+            t657,
+            t675,
+            t676,
+            t678,
+            t681,
+            t684,
+            t692,
+            t693,
+            t694,
+            t695,
+            t696,
+            t697,
+            t718,
+            t719,
+            t727,
+            t730,
+            t733,
+            t737,
+            t738,
+            t739,
+            t740,
+            t741,
+            t742,
+            t744,
+            t748,
+            t752,
+            t756,
+            t758,
+            t759,
+            t760,
+            t764,
+            t765,
+            t768,
+            t769,
+            t770,
+            t782,
+            t783,
+            t785,
+            t786,
+            t787,
+            t803,
+            t804,
+            t806,
+            t807,
+            t809,
+            t810,
+            t812,
+            t813,
+            t820,
+            t821,
+            t822,
+            t840,
+            t841,
+            t849,
+            t850,
+            t852,
+            t853,
+            t855,
+            t856,
+            t859,
+            t860,
+            t861,
+            t863,
+            t868,
+            t870,
+            t874,
+            t875,
+            t877,
+            t878,
+            t880,
+            t881,
+            t882,
+            t898,
+            t899,
+            t901,
+            t902,
+            t904,
+            t905,
+            t907,
+            t908,
+            t915,
+            t916,
+            t917,
+            t935,
+            t936,
+            t944,
+            t945,
+            t947,
+            t948,
+            t950,
+            t951,
+            t954,
+            t955,
+            t956,
+            t958,
+            t959,
+            t960,
+            t961,
+            t964,
+            t965,
+            t968,
+            t969,
+            t970,
+            t971,
+            t972,
+            t973,
+            t974,
+            t975,
+            t976,
+            t977,
+            t978,
+            t979,
+            t980,
+            t981,
+            t982,
+            t983,
+            t984,
+            t985,
+            t986,
+            t987,
+            t988,
+            t989,
+            t990,
+            t991,
+            t992,
+            t993,
+            t994,
+            t995,
+            t996,
+            t997,
+            t998,
+            t999,
+        ) = gyro_sim::apart(move || {
+            let t500 = t483 + t498;
+            let t501 = T::fused(-k(0.9622504486493763), t497, t492);
+            let t502 = T::fused(t443, t501, T::fused(t407, t499, t427 * t500))
+                - T::fused(t362, t359, -T::fused(-t353, t317, t358 * t317));
+            let t503 = t399 * (t398 + t502);
+            let t504 = T::fused(k(0.03774256780481986), t503, t317);
+            let t505 = T::fused(-k(0.9813067629253163), t503, t317);
+            let t506 = T::fused(k(0.1887128390240993), t503, t359);
+            let t507 = T::fused(t436, t501, T::fused(t396, t499, t420 * t500))
+                - T::fused(t336, t506, T::fused(-t334, t504, t349 * t505));
+            let t508 = t337 * (t386 + t507);
+            let t509 = t409 * t500;
+            let t510 = T::fused(t367, t499, t509)
+                + T::fused(-k(0.9805806756909201), t508, t504);
+            let t511 = row32
+                + (T::fused(t429, t501, -T::fused(t371, t499, t509)) - t510);
+            let t512 = t411 * t500;
+            let t513 = t505 - T::fused(t375, t499, t512);
+            let t514 = row33
+                - (T::fused(t430, t501, T::fused(t379, t499, -t512)) + t513);
+            let t515 = t413 * t500;
+            let t516 = T::fused(-t382, t499, t515)
+                - T::fused(k(0.19611613513818404), t508, t506);
+            let t517 = row34
+                - (T::fused(t431, t501, -T::fused(t384, t499, t515)) - t516);
+            let t518 = T::fused(t328, t517, -T::fused(t321, t511, t340 * t514));
+            let t519 = T::fused(
+                k(2.1052631578947367),
+                t518,
+                -T::fused(t327, t517, -T::fused(t319, t511, t339 * t514)),
+            );
+            let t520 = k(50.0) * t519;
+            let t521 = k(0.4) * t298;
+            let t522 = k(263.1578947368421) * t518;
+            let t523 = k(0.2) * t298;
+            let t524 = k(40.0)
+                * T::fused(t331, t517, -T::fused(-t325, t511, t343 * t514));
+            let t525 = t511 - T::fused(t323, t524, -T::fused(-t521, t520, t523 * t522));
+            let t526 = k(0.4) * t293;
+            let t527 = k(0.2) * t293;
+            let t528 = t514 + T::fused(t342, t524, T::fused(-t526, t520, t527 * t522));
+            let t529 = k(0.4) * t286;
+            let t530 = k(0.2) * t286;
+            let t531 = t517 - T::fused(t330, t524, T::fused(-t529, t520, t530 * t522));
+            let t532 = k(0.1) * (t284 - t286);
+            let t533 = k(0.1) * (t292 - t293);
+            let t534 = k(0.1) * (t297 + t298);
+            let t535 = T::fused(t276, t532, T::fused(t271, t533, t266 * t534));
+            let t536 = k(0.1) * t281;
+            let t537 = t530 - t536;
+            let t538 = k(0.1) * t291;
+            let t539 = t527 + t538;
+            let t540 = k(0.1) * t296;
+            let t541 = t523 - t540;
+            let t542 = T::fused(-t276, t537, T::fused(-t271, t539, t266 * t541));
+            let t543 = t536 - t329;
+            let t544 = t538 + t341;
+            let t545 = t540 + t322;
+            let t546 = T::fused(-t276, t543, T::fused(t271, t544, t266 * t545));
+            let t547 = T::fused(t546, t524, -T::fused(-t535, t520, t542 * t522))
+                - T::fused(t276, t531, -T::fused(-t266, t525, t271 * t528));
+            let t548 = row9 - (t547 + t316);
+            let t549 = t311 + T::fused(t272, t276, T::fused(-t261, t266, t267 * t271));
+            let t550 = t315 - T::fused(t273, t276, T::fused(t263, t266, t268 * t271));
+            let t551 = T::fused(t45, t550, -T::fused(-t301, t53, t36 * t549));
+            let t552 = t551 * t57;
+            let t553 = T::fused(-t54, t552, t301);
+            let t554 = t553 * t61;
+            let t555 = T::fused(t554, t63, -T::fused(t55, t552, t549));
+            let t556 = T::fused(t554, t85, -T::fused(-t56, t552, t550));
+            let t557 = T::fused(t554, t59, -T::fused(t552, t46, t266));
+            let t558 = T::fused(t554, t69, -T::fused(t552, t67, t271));
+            let t559 = T::fused(t554, t76, -T::fused(t552, t74, t276));
+            let t560 = T::fused(t118, t559, T::fused(t107, t557, t113 * t558))
+                - T::fused(t555, t94, t556 * t100);
+            let t561 = T::fused(t122, t559, T::fused(-t120, t557, t121 * t558));
+            let t562 = T::fused(t129, t559, -T::fused(t125, t557, t127 * t558))
+                + T::fused(t35, t555, t43 * t556);
+            let t563 = T::fused(t136, t559, -T::fused(t132, t557, t134 * t558));
+            let t564 = T::fused(
+                k(0.6666666666666666),
+                t563 + (t563 + T::fused(t26, t555, t44 * t556)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t561 + t560,
+                    k(0.6666666666666666) * (t561 + t562),
+                ),
+            );
+            let t565 = t564 * t239;
+            let t566 = k(0.3333333333333333) * t565;
+            let t567 = k(0.6666666666666666) * t565;
+            let t568 = t132 * t567;
+            let t569 = t568 - T::fused(-t120, t566, t120 * t567);
+            let t570 = T::fused(t107, t566, t125 * t567) - t568 - t569;
+            let t571 = t134 * t567;
+            let t572 = t571 + T::fused(-t121, t566, t121 * t567);
+            let t573 = T::fused(t113, t566, t127 * t567) - t571 - t572;
+            let t574 = t136 * t567;
+            let t575 = t574 - T::fused(-t122, t566, t122 * t567);
+            let t576 = T::fused(-t118, t566, t129 * t567) - t574 - t575;
+            let t577 = T::fused(t26, t567, -T::fused(t94, t566, t35 * t567));
+            let t578 = T::fused(t44, t567, -T::fused(t100, t566, t43 * t567));
+            let t579 = T::fused(t63, t577, t85 * t578)
+                - T::fused(t76, t576, -T::fused(t59, t570, t69 * t573));
+            let t580 = t61 * (t553 - t579);
+            let t581 = T::fused(t56, t578, -T::fused(-t54, t580, t55 * t577))
+                + T::fused(t74, t576, -T::fused(t46, t570, t67 * t573));
+            let t582 = t57 * (t551 - t581);
+            let t583 = T::fused(-t36, t582, t577);
+            let t584 = T::fused(t45, t582, t578);
+            let t585 = t570 - T::fused(t261, t583, t263 * t584);
+            let t586 = t573 - T::fused(-t267, t583, t268 * t584);
+            let t587 = t576 + T::fused(-t272, t583, t273 * t584);
+            let t588 = T::fused(t53, t582, t580);
+            let t589 = T::fused(t315, t584, T::fused(t301, t588, t311 * t583))
+                - T::fused(t276, t587, -T::fused(t266, t585, t271 * t586));
+            let t590 = t535 - T::fused(t276, t529, T::fused(-t266, t521, t271 * t526));
+            let t591 = k(50.0) * t590;
+            let t592 = T::fused(
+                k(0.4),
+                t590,
+                -(t542 - T::fused(t276, t530, T::fused(-t266, t523, t271 * t527))),
+            );
+            let t593 = k(263.1578947368421) * t592;
+            let t594 = t546 + T::fused(t276, t330, T::fused(t266, t323, t271 * t342));
+            let t595 = k(40.0) * t594;
+            let t596 = T::fused(
+                t595,
+                t325,
+                -T::fused(t593, t321, T::fused(-t591, t319, t266)),
+            );
+            let t597 = T::fused(
+                t595,
+                t343,
+                T::fused(t593, t340, -T::fused(t591, t339, t271)),
+            );
+            let t598 = T::fused(
+                t595,
+                t331,
+                T::fused(t593, t328, -T::fused(t591, t327, t276)),
+            );
+            let t599 = T::fused(t382, t598, T::fused(t367, t596, t375 * t597))
+                - T::fused(t384, t598, T::fused(-t371, t596, t379 * t597));
+            let t600 = T::fused(
+                -k(0.9805806756909201),
+                t596,
+                k(0.19611613513818404) * t598,
+            );
+            let t601 = t600 * t337;
+            let t602 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t334, t601, t596),
+                k(0.9813067629253163) * T::fused(t601, t349, t597),
+            );
+            let t603 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t601, t598),
+                t602,
+            );
+            let t604 = t603 * t399;
+            let t605 = T::fused(
+                -k(2.0),
+                T::fused(t413, t598, -T::fused(t409, t596, t411 * t597)),
+                t601 * t420,
+            );
+            let t606 = T::fused(t604, t427, t605)
+                + T::fused(t604, t407, T::fused(t601, t396, t599));
+            let t607 = T::fused(
+                t601,
+                t436,
+                T::fused(t431, t598, -T::fused(t429, t596, t430 * t597)),
+            );
+            let t608 = T::fused(
+                -k(0.19245008972987526),
+                t606,
+                k(0.9622504486493763) * T::fused(t604, t443, t607),
+            ) * t496;
+            let t609 = k(0.19245008972987526) * t608;
+            let t610 = k(0.9622504486493763) * t608;
+            let t611 = t399
+                * (t603 - T::fused(t443, t610, -T::fused(t407, t609, t427 * t609)));
+            let t612 = k(0.03774256780481986) * t611;
+            let t613 = k(0.9813067629253163) * t611;
+            let t614 = k(0.1887128390240993) * t611;
+            let t615 = T::fused(t436, t610, -T::fused(t396, t609, t420 * t609))
+                + T::fused(t336, t614, -T::fused(t334, t612, t349 * t613));
+            let t616 = t337 * (t600 - t615);
+            let t617 = t409 * t609;
+            let t618 = T::fused(t367, t609, t617)
+                + T::fused(-k(0.9805806756909201), t616, t612);
+            let t619 = T::fused(t429, t610, T::fused(t371, t609, t617)) + t618;
+            let t620 = t411 * t609;
+            let t621 = t613 + T::fused(t375, t609, t620);
+            let t622 = T::fused(t430, t610, -T::fused(t379, t609, -t620)) + t621;
+            let t623 = t413 * t609;
+            let t624 = T::fused(-t382, t609, t623)
+                - T::fused(k(0.19611613513818404), t616, t614);
+            let t625 = T::fused(t431, t610, T::fused(t384, t609, t623)) + t624;
+            let t626 = t592 - T::fused(t328, t625, -T::fused(-t321, t619, t340 * t622));
+            let t627 = T::fused(
+                k(2.1052631578947367),
+                t626,
+                T::fused(t327, t625, -T::fused(-t319, t619, t339 * t622)),
+            );
+            let t628 = k(50.0) * (t590 + t627);
+            let t629 = k(263.1578947368421) * t626;
+            let t630 = k(40.0)
+                * (t594 - T::fused(t331, t625, -T::fused(t325, t619, t343 * t622)));
+            let t631 = t619 - T::fused(t323, t630, -T::fused(-t521, t628, t523 * t629));
+            let t632 = t622 - T::fused(t342, t630, T::fused(-t526, t628, t527 * t629));
+            let t633 = t625 + T::fused(t330, t630, T::fused(-t529, t628, t530 * t629));
+            let t634 = T::fused(t546, t630, -T::fused(-t535, t628, t542 * t629))
+                + T::fused(t276, t633, -T::fused(t266, t631, t271 * t632));
+            let t635 = k(1.0) / (t634 + t589);
+            let t636 = T::fused(
+                k(1.2792042981336627),
+                t2,
+                -T::fused(k(0.8528028654224418), t47, k(1.2792042981336627) * t13),
+            );
+            let t637 = T::fused(
+                k(1.2792042981336627),
+                t38,
+                T::fused(k(0.8528028654224418), t49, k(1.2792042981336627) * t5),
+            );
+            let t638 = T::fused(
+                k(1.2792042981336627),
+                t41,
+                T::fused(-k(0.8528028654224418), t51, k(1.2792042981336627) * t21),
+            );
+            let t639 = T::fused(t295, t636, t299 * (k(1.2792042981336627) * t265))
+                - T::fused(t288, t637, t294 * (k(1.2792042981336627) * t270));
+            let t640 = t639
+                + T::fused(-t278, t638, t287 * (k(1.2792042981336627) * t275));
+            let t641 = k(1.2792042981336627) * t51;
+            let t642 = k(1.2792042981336627) * t49;
+            let t643 = k(1.2792042981336627) * t47;
+            let t644 = T::fused(
+                -t309,
+                t636,
+                t299 * T::fused(k(0.8528028654224418), t2, t643),
+            )
+                + T::fused(
+                    -t306,
+                    t637,
+                    t294 * T::fused(k(0.8528028654224418), t38, -t642),
+                );
+            let t645 = t644
+                - T::fused(
+                    t303,
+                    t638,
+                    t287 * T::fused(k(0.8528028654224418), t41, t641),
+                );
+            let t646 = T::fused(
+                t314,
+                t636,
+                t299 * T::fused(-k(0.8528028654224418), t13, t643),
+            ) - T::fused(t313, t637, t294 * T::fused(-k(0.8528028654224418), t5, t642));
+            let t647 = t646
+                - T::fused(
+                    t312,
+                    t638,
+                    t287 * T::fused(k(0.8528028654224418), t21, t641),
+                );
+            let t648 = T::fused(t647, t262, -T::fused(-t640, t277, t645 * t260))
+                - T::fused(t638, t274, -T::fused(t636, t264, t637 * t269));
+            let t649 = T::fused(-t532, t638, T::fused(-t533, t637, t534 * t636));
+            let t650 = T::fused(t537, t638, T::fused(t539, t637, t541 * t636));
+            let t651 = T::fused(t543, t638, T::fused(-t544, t637, t545 * t636));
+            let t652 = T::fused(t651, t524, -T::fused(-t649, t520, t650 * t522))
+                + T::fused(t638, t531, -T::fused(t636, t525, t637 * t528));
+            let t653 = T::fused(t647, t584, -T::fused(t640, t588, t645 * t583))
+                - T::fused(t638, t587, -T::fused(-t636, t585, t637 * t586));
+            let t654 = T::fused(t651, t630, -T::fused(-t649, t628, t650 * t629))
+                - T::fused(t638, t633, -T::fused(-t636, t631, t637 * t632));
+            let t655 = t654 - t653;
+            let t656 = t635 * t655;
+            let t657 = T::fused(t656, t548, -(row10 - (t652 - t648)));
+            let t658 = t645 - T::fused(t272, t638, T::fused(t261, t636, t267 * t637));
+            let t659 = t647 - T::fused(t273, t638, T::fused(-t263, t636, t268 * t637));
+            let t660 = T::fused(t45, t659, T::fused(-t640, t53, t36 * t658));
+            let t661 = t57 * t660;
+            let t662 = T::fused(t54, t661, t640);
+            let t663 = t61 * t662;
+            let t664 = T::fused(t63, t663, -T::fused(-t55, t661, t658));
+            let t665 = T::fused(t85, t663, T::fused(-t56, t661, t659));
+            let t666 = T::fused(t59, t663, -T::fused(-t46, t661, t636));
+            let t667 = T::fused(t69, t663, T::fused(t67, t661, t637));
+            let t668 = T::fused(t76, t663, T::fused(t74, t661, t638));
+            let t669 = T::fused(t118, t668, T::fused(t107, t666, t113 * t667))
+                - T::fused(t94, t664, t100 * t665);
+            let t670 = T::fused(t122, t668, T::fused(-t120, t666, t121 * t667));
+            let t671 = T::fused(t129, t668, -T::fused(t125, t666, t127 * t667))
+                + T::fused(t35, t664, t43 * t665);
+            let t672 = T::fused(t136, t668, -T::fused(t132, t666, t134 * t667));
+            let t673 = T::fused(
+                k(0.6666666666666666),
+                t672 + (t672 + T::fused(t26, t664, t44 * t665)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t670 + t669,
+                    k(0.6666666666666666) * (t670 + t671),
+                ),
+            );
+            let t674 = t239 * t673;
+            let t675 = k(0.3333333333333333) * t674;
+            let t676 = k(0.6666666666666666) * t674;
+            let t677 = t132 * t676;
+            let t678 = t677 - T::fused(-t120, t675, t120 * t676);
+            let t679 = T::fused(t107, t675, t125 * t676) - t677 - t678;
+            let t680 = t134 * t676;
+            let t681 = t680 + T::fused(-t121, t675, t121 * t676);
+            let t682 = T::fused(t113, t675, t127 * t676) - t680 - t681;
+            let t683 = t136 * t676;
+            let t684 = t683 - T::fused(-t122, t675, t122 * t676);
+            let t685 = T::fused(-t118, t675, t129 * t676) - t683 - t684;
+            let t686 = T::fused(t26, t676, -T::fused(t94, t675, t35 * t676));
+            let t687 = T::fused(t44, t676, -T::fused(t100, t675, t43 * t676));
+            let t688 = T::fused(t63, t686, t85 * t687)
+                - T::fused(t76, t685, -T::fused(t59, t679, t69 * t682));
+            let t689 = t61 * (t662 - t688);
+            let t690 = T::fused(t56, t687, -T::fused(-t54, t689, t55 * t686))
+                + T::fused(t74, t685, -T::fused(t46, t679, t67 * t682));
+            let t691 = t57 * (t660 + t690);
+            let t692 = T::fused(t36, t691, t686);
+            let t693 = T::fused(-t45, t691, t687);
+            let t694 = t679 - T::fused(t261, t692, t263 * t693);
+            let t695 = t682 - T::fused(-t267, t692, t268 * t693);
+            let t696 = t685 + T::fused(-t272, t692, t273 * t693);
+            let t697 = T::fused(-t53, t691, t689);
+            let t698 = T::fused(t647, t693, -T::fused(t640, t697, t645 * t692))
+                - T::fused(t638, t696, -T::fused(-t636, t694, t637 * t695));
+            let t699 = t649 + T::fused(t638, t529, T::fused(t636, t521, t637 * t526));
+            let t700 = k(50.0) * t699;
+            let t701 = T::fused(
+                k(0.4),
+                t699,
+                -(t650 + T::fused(t530, t638, T::fused(t523, t636, t527 * t637))),
+            );
+            let t702 = k(263.1578947368421) * t701;
+            let t703 = t651 - T::fused(t638, t330, T::fused(-t636, t323, t637 * t342));
+            let t704 = k(40.0) * t703;
+            let t705 = T::fused(
+                t325,
+                t704,
+                -T::fused(t321, t702, T::fused(-t319, t700, t636)),
+            );
+            let t706 = T::fused(
+                t343,
+                t704,
+                T::fused(t340, t702, T::fused(-t339, t700, t637)),
+            );
+            let t707 = T::fused(
+                t331,
+                t704,
+                T::fused(t328, t702, T::fused(-t327, t700, t638)),
+            );
+            let t708 = T::fused(t382, t707, T::fused(t367, t705, t375 * t706))
+                - T::fused(t384, t707, T::fused(-t371, t705, t379 * t706));
+            let t709 = T::fused(
+                -k(0.9805806756909201),
+                t705,
+                k(0.19611613513818404) * t707,
+            );
+            let t710 = t337 * t709;
+            let t711 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t334, t710, t705),
+                k(0.9813067629253163) * T::fused(t349, t710, t706),
+            );
+            let t712 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t710, t707),
+                t711,
+            );
+            let t713 = t399 * t712;
+            let t714 = T::fused(
+                -k(2.0),
+                T::fused(t413, t707, -T::fused(t409, t705, t411 * t706)),
+                t420 * t710,
+            );
+            let t715 = T::fused(t427, t713, t714)
+                + T::fused(t407, t713, T::fused(t396, t710, t708));
+            let t716 = T::fused(
+                t436,
+                t710,
+                T::fused(t431, t707, -T::fused(t429, t705, t430 * t706)),
+            );
+            let t717 = t496
+                * T::fused(
+                    -k(0.19245008972987526),
+                    t715,
+                    k(0.9622504486493763) * T::fused(t443, t713, t716),
+                );
+            let t718 = k(0.19245008972987526) * t717;
+            let t719 = k(0.9622504486493763) * t717;
+            let t720 = t399
+                * (t712 - T::fused(t443, t719, -T::fused(t407, t718, t427 * t718)));
+            let t721 = k(0.03774256780481986) * t720;
+            let t722 = k(0.9813067629253163) * t720;
+            let t723 = k(0.1887128390240993) * t720;
+            let t724 = T::fused(t436, t719, -T::fused(t396, t718, t420 * t718))
+                + T::fused(t336, t723, -T::fused(t334, t721, t349 * t722));
+            let t725 = t337 * (t709 - t724);
+            let t726 = t409 * t718;
+            let t727 = T::fused(t367, t718, t726)
+                + T::fused(-k(0.9805806756909201), t725, t721);
+            let t728 = T::fused(t429, t719, T::fused(t371, t718, t726)) + t727;
+            let t729 = t411 * t718;
+            let t730 = t722 + T::fused(t375, t718, t729);
+            let t731 = T::fused(t430, t719, -T::fused(t379, t718, -t729)) + t730;
+            let t732 = t413 * t718;
+            let t733 = T::fused(-t382, t718, t732)
+                - T::fused(k(0.19611613513818404), t725, t723);
+            let t734 = T::fused(t431, t719, T::fused(t384, t718, t732)) + t733;
+            let t735 = t701 - T::fused(t328, t734, -T::fused(-t321, t728, t340 * t731));
+            let t736 = T::fused(
+                k(2.1052631578947367),
+                t735,
+                T::fused(t327, t734, -T::fused(-t319, t728, t339 * t731)),
+            );
+            let t737 = k(50.0) * (t699 + t736);
+            let t738 = k(263.1578947368421) * t735;
+            let t739 = k(40.0)
+                * (t703 - T::fused(t331, t734, -T::fused(t325, t728, t343 * t731)));
+            let t740 = t728 - T::fused(t323, t739, -T::fused(-t521, t737, t523 * t738));
+            let t741 = t731 - T::fused(t342, t739, T::fused(-t526, t737, t527 * t738));
+            let t742 = t734 + T::fused(t330, t739, T::fused(-t529, t737, t530 * t738));
+            let t743 = T::fused(t651, t739, -T::fused(-t649, t737, t650 * t738))
+                - T::fused(t638, t742, -T::fused(-t636, t740, t637 * t741));
+            let t744 = k(1.0) / T::fused(t655, t656, -(t743 - t698));
+            let t745 = k(2.0) * t296;
+            let t746 = k(2.0) * t291;
+            let t747 = k(2.0) * t281;
+            let t748 = T::fused(t22, t747, -T::fused(t14, t745, t6 * t746));
+            let t749 = k(2.0) * t292;
+            let t750 = k(2.0) * t297;
+            let t751 = k(2.0) * t284;
+            let t752 = T::fused(t22, t751, T::fused(t6, t749, t14 * t750));
+            let t753 = k(2.0) * t293;
+            let t754 = k(2.0) * t298;
+            let t755 = k(2.0) * t286;
+            let t756 = T::fused(t22, t755, -T::fused(-t6, t753, t14 * t754));
+            let t757 = T::fused(
+                k(0.30151134457776363),
+                t756,
+                T::fused(k(0.9045340337332909), t748, k(0.30151134457776363) * t752),
+            );
+            let t758 = T::fused(t42, t747, -T::fused(-t40, t745, t39 * t746));
+            let t759 = T::fused(t42, t751, -T::fused(-t39, t749, t40 * t750));
+            let t760 = T::fused(t42, t755, T::fused(t39, t753, t40 * t754));
+            let t761 = T::fused(
+                k(0.30151134457776363),
+                t760,
+                T::fused(k(0.9045340337332909), t758, k(0.30151134457776363) * t759),
+            );
+            let t762 = k(0.7071067811865476) * (t761 + t757);
+            let t763 = T::fused(t52, t747, T::fused(t48, t745, t50 * t746));
+            let t764 = T::fused(t52, t751, -T::fused(t48, t750, t50 * t749));
+            let t765 = T::fused(t52, t755, -T::fused(-t48, t754, t50 * t753));
+            let t766 = T::fused(
+                k(0.30151134457776363),
+                t765,
+                T::fused(k(0.9045340337332909), t763, k(0.30151134457776363) * t764),
+            );
+            let t767 = k(0.7071067811865476) * t766;
+            let t768 = t756 - t752;
+            let t769 = t760 - t759;
+            let t770 = t769 - t768;
+            let t771 = k(0.21320071635561044) * t770;
+            let t772 = k(0.30151134457776363) * t758;
+            let t773 = T::fused(k(0.9045340337332909), t760, -t772);
+            let t774 = k(0.30151134457776363) * t748;
+            let t775 = T::fused(k(0.9045340337332909), t756, -t774);
+            let t776 = k(0.7071067811865476) * (t775 - t773);
+            let t777 = T::fused(-k(0.9045340337332909), t759, t772);
+            let t778 = T::fused(-k(0.9045340337332909), t752, t774);
+            let t779 = t778 - t777;
+            let t780 = k(0.7071067811865476) * t779;
+            let t781 = T::fused(t780, t524, -T::fused(t771, t520, t776 * t522))
+                - T::fused(t767, t262, T::fused(t762, t277, t767 * t260));
+            let t782 = T::fused(t780, t630, -T::fused(t771, t628, t776 * t629))
+                - T::fused(t767, t584, T::fused(-t762, t588, t767 * t583));
+            let t783 = t635 * t782;
+            let t784 = T::fused(t780, t739, -T::fused(t771, t737, t776 * t738))
+                - T::fused(t767, t693, T::fused(-t762, t697, t767 * t692));
+            let t785 = T::fused(t655, t783, -t784);
+            let t786 = t744 * t785;
+            let t787 = T::fused(t786, t657, -T::fused(t783, t548, -(row11 - t781)));
+            let t788 = T::fused(t45, t767, -T::fused(t762, t53, t36 * t767));
+            let t789 = t57 * t788;
+            let t790 = T::fused(t54, t789, t762);
+            let t791 = t61 * t790;
+            let t792 = T::fused(t63, t791, T::fused(t55, t789, t767));
+            let t793 = T::fused(t85, t791, T::fused(-t56, t789, t767));
+            let t794 = T::fused(t46, t789, t59 * t791);
+            let t795 = T::fused(t67, t789, t69 * t791);
+            let t796 = T::fused(t74, t789, t76 * t791);
+            let t797 = T::fused(t118, t796, T::fused(t107, t794, t113 * t795))
+                - T::fused(t94, t792, t100 * t793);
+            let t798 = T::fused(t122, t796, T::fused(-t120, t794, t121 * t795));
+            let t799 = T::fused(t129, t796, -T::fused(t125, t794, t127 * t795))
+                + T::fused(t35, t792, t43 * t793);
+            let t800 = T::fused(t136, t796, -T::fused(t132, t794, t134 * t795));
+            let t801 = T::fused(
+                k(0.6666666666666666),
+                t800 + (t800 + T::fused(t26, t792, t44 * t793)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t798 + t797,
+                    k(0.6666666666666666) * (t798 + t799),
+                ),
+            );
+            let t802 = t239 * t801;
+            let t803 = k(0.3333333333333333) * t802;
+            let t804 = k(0.6666666666666666) * t802;
+            let t805 = t132 * t804;
+            let t806 = t805 - T::fused(-t120, t803, t120 * t804);
+            let t807 = T::fused(t107, t803, t125 * t804) - t805 - t806;
+            let t808 = t134 * t804;
+            let t809 = t808 + T::fused(-t121, t803, t121 * t804);
+            let t810 = T::fused(t113, t803, t127 * t804) - t808 - t809;
+            let t811 = t136 * t804;
+            let t812 = t811 - T::fused(-t122, t803, t122 * t804);
+            let t813 = T::fused(-t118, t803, t129 * t804) - t811 - t812;
+            let t814 = T::fused(t26, t804, -T::fused(t94, t803, t35 * t804));
+            let t815 = T::fused(t44, t804, -T::fused(t100, t803, t43 * t804));
+            let t816 = T::fused(t63, t814, t85 * t815)
+                - T::fused(t76, t813, -T::fused(t59, t807, t69 * t810));
+            let t817 = t61 * (t790 - t816);
+            let t818 = T::fused(t56, t815, -T::fused(-t54, t817, t55 * t814))
+                + T::fused(t74, t813, -T::fused(t46, t807, t67 * t810));
+            let t819 = t57 * (t788 + t818);
+            let t820 = T::fused(-t53, t819, t817);
+            let t821 = T::fused(t36, t819, t814);
+            let t822 = T::fused(-t45, t819, t815);
+            let t823 = k(10.660035817780521) * t770;
+            let t824 = T::fused(k(0.08528028654224418), t770, t776);
+            let t825 = k(263.1578947368421) * t824;
+            let t826 = k(28.284271247461902) * t779;
+            let t827 = T::fused(t325, t826, T::fused(-t319, t823, t321 * t825));
+            let t828 = T::fused(t343, t826, -T::fused(-t339, t823, t340 * t825));
+            let t829 = T::fused(t331, t826, -T::fused(-t327, t823, t328 * t825));
+            let t830 = T::fused(t382, t829, T::fused(t367, t827, t375 * t828))
+                - T::fused(t384, t829, T::fused(-t371, t827, t379 * t828));
+            let t831 = T::fused(
+                -k(0.9805806756909201),
+                t827,
+                k(0.19611613513818404) * t829,
+            );
+            let t832 = t337 * t831;
+            let t833 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t334, t832, t827),
+                k(0.9813067629253163) * T::fused(t349, t832, t828),
+            );
+            let t834 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t832, t829),
+                t833,
+            );
+            let t835 = t399 * t834;
+            let t836 = T::fused(
+                -k(2.0),
+                T::fused(t413, t829, -T::fused(t409, t827, t411 * t828)),
+                t420 * t832,
+            );
+            let t837 = T::fused(t427, t835, t836)
+                + T::fused(t407, t835, T::fused(t396, t832, t830));
+            let t838 = T::fused(
+                t436,
+                t832,
+                T::fused(t431, t829, -T::fused(t429, t827, t430 * t828)),
+            );
+            let t839 = t496
+                * T::fused(
+                    -k(0.19245008972987526),
+                    t837,
+                    k(0.9622504486493763) * T::fused(t443, t835, t838),
+                );
+            let t840 = k(0.19245008972987526) * t839;
+            let t841 = k(0.9622504486493763) * t839;
+            let t842 = t399
+                * (t834 - T::fused(t443, t841, -T::fused(t407, t840, t427 * t840)));
+            let t843 = k(0.03774256780481986) * t842;
+            let t844 = k(0.9813067629253163) * t842;
+            let t845 = k(0.1887128390240993) * t842;
+            let t846 = T::fused(t436, t841, -T::fused(t396, t840, t420 * t840))
+                + T::fused(t336, t845, -T::fused(t334, t843, t349 * t844));
+            let t847 = t337 * (t831 - t846);
+            let t848 = t409 * t840;
+            let t849 = T::fused(t367, t840, t848)
+                + T::fused(-k(0.9805806756909201), t847, t843);
+            let t850 = T::fused(t429, t841, T::fused(t371, t840, t848)) + t849;
+            let t851 = t411 * t840;
+            let t852 = t844 + T::fused(t375, t840, t851);
+            let t853 = T::fused(t430, t841, -T::fused(t379, t840, -t851)) + t852;
+            let t854 = t413 * t840;
+            let t855 = T::fused(-t382, t840, t854)
+                - T::fused(k(0.19611613513818404), t847, t845);
+            let t856 = T::fused(t431, t841, T::fused(t384, t840, t854)) + t855;
+            let t857 = t824 + T::fused(t328, t856, -T::fused(-t321, t850, t340 * t853));
+            let t858 = T::fused(
+                k(2.1052631578947367),
+                t857,
+                -T::fused(t327, t856, -T::fused(-t319, t850, t339 * t853)),
+            );
+            let t859 = k(50.0) * (t771 + t858);
+            let t860 = k(263.1578947368421) * t857;
+            let t861 = k(40.0)
+                * (t780 - T::fused(t331, t856, -T::fused(t325, t850, t343 * t853)));
+            let t862 = T::fused(t780, t861, T::fused(t771, t859, t776 * t860))
+                - T::fused(t767, t822, T::fused(-t762, t820, t767 * t821));
+            let t863 = k(1.0) / T::fused(t785, t786, -T::fused(t782, t783, -t862));
+            let t864 = k(0.6396021490668313) * (t761 - t757);
+            let t865 = k(0.6396021490668313) * t766;
+            let t866 = T::fused(k(0.4264014327112209), t761, t865);
+            let t867 = T::fused(k(0.4264014327112209), t757, t865);
+            let t868 = t765 - t764;
+            let t869 = T::fused(
+                -k(0.19284730395996752),
+                t769,
+                T::fused(-k(0.19284730395996752), t768, k(0.128564869306645) * t868),
+            );
+            let t870 = k(0.30151134457776363) * t763;
+            let t871 = T::fused(
+                -k(0.6396021490668313),
+                t773,
+                T::fused(
+                    -k(0.6396021490668313),
+                    t775,
+                    k(0.4264014327112209) * T::fused(k(0.9045340337332909), t765, -t870),
+                ),
+            );
+            let t872 = T::fused(
+                -k(0.6396021490668313),
+                t777,
+                T::fused(
+                    -k(0.6396021490668313),
+                    t778,
+                    k(0.4264014327112209) * T::fused(-k(0.9045340337332909), t764, t870),
+                ),
+            );
+            let t873 = T::fused(t872, t524, -T::fused(-t869, t520, t871 * t522))
+                + T::fused(t867, t262, -T::fused(-t864, t277, t866 * t260));
+            let t874 = T::fused(t872, t630, -T::fused(-t869, t628, t871 * t629))
+                + T::fused(t867, t584, -T::fused(t864, t588, t866 * t583));
+            let t875 = t635 * t874;
+            let t876 = T::fused(t872, t739, -T::fused(-t869, t737, t871 * t738))
+                + T::fused(t867, t693, -T::fused(t864, t697, t866 * t692));
+            let t877 = T::fused(t655, t875, -t876);
+            let t878 = t744 * t877;
+            let t879 = T::fused(t872, t861, T::fused(-t869, t859, t871 * t860))
+                + T::fused(t867, t822, -T::fused(t864, t820, t866 * t821));
+            let t880 = T::fused(t785, t878, -T::fused(t782, t875, -t879));
+            let t881 = t863 * t880;
+            let t882 = T::fused(
+                t881,
+                t787,
+                -T::fused(t878, t657, -T::fused(t875, t548, -(row12 - t873))),
+            );
+            let t883 = T::fused(t45, t867, T::fused(-t864, t53, t36 * t866));
+            let t884 = t57 * t883;
+            let t885 = T::fused(t54, t884, t864);
+            let t886 = t61 * t885;
+            let t887 = T::fused(t63, t886, -T::fused(-t55, t884, t866));
+            let t888 = T::fused(t85, t886, T::fused(-t56, t884, t867));
+            let t889 = T::fused(t46, t884, t59 * t886);
+            let t890 = T::fused(t67, t884, t69 * t886);
+            let t891 = T::fused(t74, t884, t76 * t886);
+            let t892 = T::fused(t118, t891, T::fused(t107, t889, t113 * t890))
+                - T::fused(t94, t887, t100 * t888);
+            let t893 = T::fused(t122, t891, T::fused(-t120, t889, t121 * t890));
+            let t894 = T::fused(t129, t891, -T::fused(t125, t889, t127 * t890))
+                + T::fused(t35, t887, t43 * t888);
+            let t895 = T::fused(t136, t891, -T::fused(t132, t889, t134 * t890));
+            let t896 = T::fused(
+                k(0.6666666666666666),
+                t895 + (t895 + T::fused(t26, t887, t44 * t888)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t893 + t892,
+                    k(0.6666666666666666) * (t893 + t894),
+                ),
+            );
+            let t897 = t239 * t896;
+            let t898 = k(0.3333333333333333) * t897;
+            let t899 = k(0.6666666666666666) * t897;
+            let t900 = t132 * t899;
+            let t901 = t900 - T::fused(-t120, t898, t120 * t899);
+            let t902 = T::fused(t107, t898, t125 * t899) - t900 - t901;
+            let t903 = t134 * t899;
+            let t904 = t903 + T::fused(-t121, t898, t121 * t899);
+            let t905 = T::fused(t113, t898, t127 * t899) - t903 - t904;
+            let t906 = t136 * t899;
+            let t907 = t906 - T::fused(-t122, t898, t122 * t899);
+            let t908 = T::fused(-t118, t898, t129 * t899) - t906 - t907;
+            let t909 = T::fused(t26, t899, -T::fused(t94, t898, t35 * t899));
+            let t910 = T::fused(t44, t899, -T::fused(t100, t898, t43 * t899));
+            let t911 = T::fused(t63, t909, t85 * t910)
+                - T::fused(t76, t908, -T::fused(t59, t902, t69 * t905));
+            let t912 = t61 * (t885 - t911);
+            let t913 = T::fused(t56, t910, -T::fused(-t54, t912, t55 * t909))
+                + T::fused(t74, t908, -T::fused(t46, t902, t67 * t905));
+            let t914 = t57 * (t883 + t913);
+            let t915 = T::fused(-t53, t914, t912);
+            let t916 = T::fused(t36, t914, t909);
+            let t917 = T::fused(-t45, t914, t910);
+            let t918 = k(50.0) * t869;
+            let t919 = T::fused(-k(0.4), t869, t871);
+            let t920 = k(263.1578947368421) * t919;
+            let t921 = k(40.0) * t872;
+            let t922 = T::fused(t325, t921, T::fused(t319, t918, t321 * t920));
+            let t923 = T::fused(t343, t921, -T::fused(t339, t918, t340 * t920));
+            let t924 = T::fused(t331, t921, -T::fused(t327, t918, t328 * t920));
+            let t925 = T::fused(t382, t924, T::fused(t367, t922, t375 * t923))
+                - T::fused(t384, t924, T::fused(-t371, t922, t379 * t923));
+            let t926 = T::fused(
+                -k(0.9805806756909201),
+                t922,
+                k(0.19611613513818404) * t924,
+            );
+            let t927 = t337 * t926;
+            let t928 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t334, t927, t922),
+                k(0.9813067629253163) * T::fused(t349, t927, t923),
+            );
+            let t929 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t927, t924),
+                t928,
+            );
+            let t930 = t399 * t929;
+            let t931 = T::fused(
+                -k(2.0),
+                T::fused(t413, t924, -T::fused(t409, t922, t411 * t923)),
+                t420 * t927,
+            );
+            let t932 = T::fused(t427, t930, t931)
+                + T::fused(t407, t930, T::fused(t396, t927, t925));
+            let t933 = T::fused(
+                t436,
+                t927,
+                T::fused(t431, t924, -T::fused(t429, t922, t430 * t923)),
+            );
+            let t934 = t496
+                * T::fused(
+                    -k(0.19245008972987526),
+                    t932,
+                    k(0.9622504486493763) * T::fused(t443, t930, t933),
+                );
+            let t935 = k(0.19245008972987526) * t934;
+            let t936 = k(0.9622504486493763) * t934;
+            let t937 = t399
+                * (t929 - T::fused(t443, t936, -T::fused(t407, t935, t427 * t935)));
+            let t938 = k(0.03774256780481986) * t937;
+            let t939 = k(0.9813067629253163) * t937;
+            let t940 = k(0.1887128390240993) * t937;
+            let t941 = T::fused(t436, t936, -T::fused(t396, t935, t420 * t935))
+                + T::fused(t336, t940, -T::fused(t334, t938, t349 * t939));
+            let t942 = t337 * (t926 - t941);
+            let t943 = t409 * t935;
+            let t944 = T::fused(t367, t935, t943)
+                + T::fused(-k(0.9805806756909201), t942, t938);
+            let t945 = T::fused(t429, t936, T::fused(t371, t935, t943)) + t944;
+            let t946 = t411 * t935;
+            let t947 = t939 + T::fused(t375, t935, t946);
+            let t948 = T::fused(t430, t936, -T::fused(t379, t935, -t946)) + t947;
+            let t949 = t413 * t935;
+            let t950 = T::fused(-t382, t935, t949)
+                - T::fused(k(0.19611613513818404), t942, t940);
+            let t951 = T::fused(t431, t936, T::fused(t384, t935, t949)) + t950;
+            let t952 = t919 + T::fused(t328, t951, -T::fused(-t321, t945, t340 * t948));
+            let t953 = T::fused(
+                k(2.1052631578947367),
+                t952,
+                -T::fused(t327, t951, -T::fused(-t319, t945, t339 * t948)),
+            );
+            let t954 = k(50.0) * (t869 - t953);
+            let t955 = k(263.1578947368421) * t952;
+            let t956 = k(40.0)
+                * (t872 - T::fused(t331, t951, -T::fused(t325, t945, t343 * t948)));
+            let t957 = T::fused(t872, t956, T::fused(t869, t954, t871 * t955))
+                - T::fused(t867, t917, -T::fused(t864, t915, t866 * t916));
+            let t958 = k(1.0)
+                / T::fused(
+                    t880,
+                    t881,
+                    -T::fused(t877, t878, -T::fused(t874, t875, -t957)),
+                );
+            let t959 = lid_e0 * lid_e0;
+            let t960 = k(0.5) - T::fused(lid_e1, lid_e1, t959);
+            let t961 = k(2.0) * t960;
+            let t962 = nut_e0 * nut_e3;
+            let t963 = nut_e1 * nut_e2;
+            let t964 = t963 - t962;
+            let t965 = k(2.0) * t964;
+            let t966 = lid_e0 * lid_e3;
+            let t967 = lid_e1 * lid_e2;
+            let t968 = t967 + t966;
+            let t969 = k(2.0) * t968;
+            let t970 = nut_e0 * nut_e0;
+            let t971 = k(0.5) - T::fused(nut_e2, nut_e2, t970);
+            let t972 = k(2.0) * t971;
+            let t973 = lid_e0 * lid_e2;
+            let t974 = lid_e1 * lid_e3;
+            let t975 = t974 - t973;
+            let t976 = k(2.0) * t975;
+            let t977 = nut_e0 * nut_e1;
+            let t978 = nut_e2 * nut_e3;
+            let t979 = t978 + t977;
+            let t980 = k(2.0) * t979;
+            let t981 = T::fused(t980, t976, -T::fused(t965, t961, t972 * t969));
+            let t982 = k(0.5) - T::fused(nut_e1, nut_e1, t970);
+            let t983 = k(2.0) * t982;
+            let t984 = t963 + t962;
+            let t985 = k(2.0) * t984;
+            let t986 = nut_e0 * nut_e2;
+            let t987 = nut_e1 * nut_e3;
+            let t988 = t987 - t986;
+            let t989 = k(2.0) * t988;
+            let t990 = T::fused(t989, t976, T::fused(t983, t961, t985 * t969));
+            let t991 = t967 - t966;
+            let t992 = k(2.0) * t991;
+            let t993 = k(0.5) - T::fused(lid_e2, lid_e2, t959);
+            let t994 = k(2.0) * t993;
+            let t995 = lid_e0 * lid_e1;
+            let t996 = lid_e2 * lid_e3;
+            let t997 = t996 + t995;
+            let t998 = k(2.0) * t997;
+            let t999 = T::fused(t980, t998, T::fused(t965, t992, t972 * t994));
+            (
+                t500,
+                t501,
+                t510,
+                t513,
+                t516,
+                t520,
+                t521,
+                t522,
+                t523,
+                t524,
+                t525,
+                t526,
+                t527,
+                t528,
+                t529,
+                t530,
+                t531,
+                t548,
+                t566,
+                t567,
+                t569,
+                t572,
+                t575,
+                t583,
+                t584,
+                t585,
+                t586,
+                t587,
+                t588,
+                t609,
+                t610,
+                t618,
+                t621,
+                t624,
+                t628,
+                t629,
+                t630,
+                t631,
+                t632,
+                t633,
+                t635,
+                t655,
+                t656,
+                t657,
+                t675,
+                t676,
+                t678,
+                t681,
+                t684,
+                t692,
+                t693,
+                t694,
+                t695,
+                t696,
+                t697,
+                t718,
+                t719,
+                t727,
+                t730,
+                t733,
+                t737,
+                t738,
+                t739,
+                t740,
+                t741,
+                t742,
+                t744,
+                t748,
+                t752,
+                t756,
+                t758,
+                t759,
+                t760,
+                t764,
+                t765,
+                t768,
+                t769,
+                t770,
+                t782,
+                t783,
+                t785,
+                t786,
+                t787,
+                t803,
+                t804,
+                t806,
+                t807,
+                t809,
+                t810,
+                t812,
+                t813,
+                t820,
+                t821,
+                t822,
+                t840,
+                t841,
+                t849,
+                t850,
+                t852,
+                t853,
+                t855,
+                t856,
+                t859,
+                t860,
+                t861,
+                t863,
+                t868,
+                t870,
+                t874,
+                t875,
+                t877,
+                t878,
+                t880,
+                t881,
+                t882,
+                t898,
+                t899,
+                t901,
+                t902,
+                t904,
+                t905,
+                t907,
+                t908,
+                t915,
+                t916,
+                t917,
+                t935,
+                t936,
+                t944,
+                t945,
+                t947,
+                t948,
+                t950,
+                t951,
+                t954,
+                t955,
+                t956,
+                t958,
+                t959,
+                t960,
+                t961,
+                t964,
+                t965,
+                t968,
+                t969,
+                t970,
+                t971,
+                t972,
+                t973,
+                t974,
+                t975,
+                t976,
+                t977,
+                t978,
+                t979,
+                t980,
+                t981,
+                t982,
+                t983,
+                t984,
+                t985,
+                t986,
+                t987,
+                t988,
+                t989,
+                t990,
+                t991,
+                t992,
+                t993,
+                t994,
+                t995,
+                t996,
+                t997,
+                t998,
+                t999,
+            )
+        });
+        let (
+            t1001,
+            t1009,
+            t1016,
+            t1024,
+            t1030,
+            t1036,
+            t1048,
+            t1050,
+            t1052,
+            t1057,
+            t1060,
+            t1061,
+            t1064,
+            t1065,
+            t1067,
+            t1068,
+            t1071,
+            t1075,
+            t1080,
+            t1083,
+            t1090,
+            t1093,
+            t1098,
+            t1102,
+            t1103,
+            t1104,
+            t1107,
+            t1108,
+            t1109,
+            t1110,
+            t1113,
+            t1115,
+            t1117,
+            t1119,
+            t1120,
+            t1121,
+            t1122,
+            t1123,
+            t1124,
+            t1136,
+            t1146,
+            t1156,
+            t1184,
+            t1282,
+            t1292,
+            t1293,
+            t1294,
+            t1304,
+            t1326,
+            t1337,
+            t1340,
+            t1342,
+            t1344,
+            t1351,
+            t1353,
+            t1355,
+            t1356,
+            t1357,
+            t1358,
+            t1359,
+            t1360,
+            t1361,
+            t1362,
+            t1365,
+            t1366,
+            t1367,
+            t1368,
+            t1371,
+            t1372,
+            t1373,
+            t1374,
+            t1401,
+            t1402,
+            t1404,
+            t1405,
+            t1407,
+            t1408,
+            t1411,
+            t1412,
+            t1413,
+            t1426,
+            t1427,
+            t1429,
+            t1430,
+            t1432,
+            t1433,
+            t1434,
+            t1435,
+            t1436,
+            t1438,
+            t1439,
+            t1441,
+            t1442,
+            t1453,
+            t1454,
+            t1461,
+            t1462,
+            t1463,
+            t1464,
+            t1465,
+            t1466,
+            t1469,
+            t1470,
+            t1471,
+            t1472,
+            t1473,
+            t1474,
+            t1475,
+            t1477,
+            t1479,
+            t1481,
+            t1483,
+            t1484,
+            t1486,
+            t1487,
+            t1489,
+            t1490,
+            t1492,
+            t1493,
+            t1494,
+            t1496,
+            t1497,
+            t1498,
+            t1499,
+        ) = gyro_sim::apart(move || {
+            let t1000 = t990 * t999;
+            let t1001 = T::fused(t989, t998, -T::fused(t983, t992, t985 * t994));
+            let t1002 = T::fused(t1001, t981, -t1000);
+            let t1003 = k(1.0) / (t990 * t1002);
+            let t1004 = T::fused(
+                -(t1003 * (t990 * t981)),
+                row26,
+                t1003 * (t990 * t990) * row27,
+            );
+            let t1005 = k(0.04) * t991;
+            let t1006 = T::fused(
+                -(t1000 * t1003),
+                row26,
+                t1003 * (t1001 * t990) * row27,
+            );
+            let t1007 = k(0.2) * t960;
+            let t1008 = t974 + t973;
+            let t1009 = T::fused(k(0.1), t1008, t1007);
+            let t1010 = k(0.2) * t1009;
+            let t1011 = k(2.0) * t1008;
+            let t1012 = t996 - t995;
+            let t1013 = k(2.0) * t1012;
+            let t1014 = k(0.5) - T::fused(lid_e3, lid_e3, t959);
+            let t1015 = k(2.0) * t1014;
+            let t1016 = T::fused(t989, t1015, -T::fused(-t983, t1011, t985 * t1013));
+            let t1017 = T::fused(
+                -(t1003 * (t1016 * t981)),
+                row26,
+                t1003 * (t990 * t1016) * row27,
+            );
+            let t1018 = T::fused(t1002 * t1003, row28, t1017);
+            let t1019 = k(0.02) * t991;
+            let t1020 = T::fused(
+                k(0.2),
+                row23,
+                -T::fused(t1019, t1018, T::fused(t1005, t1004, t1010 * t1006)),
+            );
+            let t1021 = k(0.5) - T::fused(nut_e3, nut_e3, t970);
+            let t1022 = k(2.0) * t1021;
+            let t1023 = slide_e0 * slide_e0;
+            let t1024 = k(0.5) - T::fused(slide_e3, slide_e3, t1023);
+            let t1025 = k(2.0) * t1024;
+            let t1026 = t978 - t977;
+            let t1027 = k(2.0) * t1026;
+            let t1028 = slide_e0 * slide_e1;
+            let t1029 = slide_e2 * slide_e3;
+            let t1030 = t1029 - t1028;
+            let t1031 = k(2.0) * t1030;
+            let t1032 = t987 + t986;
+            let t1033 = k(2.0) * t1032;
+            let t1034 = slide_e0 * slide_e2;
+            let t1035 = slide_e1 * slide_e3;
+            let t1036 = t1035 + t1034;
+            let t1037 = k(2.0) * t1036;
+            let t1038 = T::fused(t1025, t1022, T::fused(t1031, t1027, t1037 * t1033));
+            let t1039 = k(0.5) - T::fused(slide_e2, slide_e2, t1023);
+            let t1040 = k(2.0) * t1039;
+            let t1041 = slide_e0 * slide_e3;
+            let t1042 = slide_e1 * slide_e2;
+            let t1043 = t1042 - t1041;
+            let t1044 = k(2.0) * t1043;
+            let t1045 = t1029 + t1028;
+            let t1046 = k(2.0) * t1045;
+            let t1047 = T::fused(t1046, t1022, -T::fused(-t1040, t1027, t1044 * t1033));
+            let t1048 = k(0.5) - T::fused(slide_e1, slide_e1, t1023);
+            let t1049 = k(2.0) * t1048;
+            let t1050 = t1042 + t1041;
+            let t1051 = k(2.0) * t1050;
+            let t1052 = t1035 - t1034;
+            let t1053 = k(2.0) * t1052;
+            let t1054 = T::fused(t1053, t1022, -T::fused(-t1049, t1033, t1051 * t1027));
+            let t1055 = T::fused(t1053, t989, T::fused(t1049, t983, t1051 * t985));
+            let t1056 = T::fused(t1053, t980, -T::fused(t1049, t965, t1051 * t972));
+            let t1057 = T::fused(
+                k(0.4472135954999579),
+                t1055,
+                k(0.8944271909999159) * t1056,
+            );
+            let t1058 = T::fused(t1046, t989, -T::fused(t1044, t983, t1040 * t985));
+            let t1059 = T::fused(t1046, t980, T::fused(t1040, t972, t1044 * t965));
+            let t1060 = T::fused(
+                k(0.4472135954999579),
+                t1058,
+                k(0.8944271909999159) * t1059,
+            );
+            let t1061 = T::fused(
+                k(0.4472135954999579),
+                t1057,
+                k(0.8944271909999159) * t1060,
+            );
+            let t1062 = T::fused(t1025, t989, -T::fused(-t1037, t983, t1031 * t985));
+            let t1063 = T::fused(t1025, t980, -T::fused(-t1031, t972, t1037 * t965));
+            let t1064 = T::fused(
+                k(0.4472135954999579),
+                t1062,
+                k(0.8944271909999159) * t1063,
+            );
+            let t1065 = T::fused(
+                k(0.7453559924999299),
+                t1064,
+                -T::fused(-k(0.5962847939999439), t1057, k(0.29814239699997197) * t1060),
+            );
+            let t1066 = T::fused(
+                -t1061,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1038,
+                    T::fused(
+                        -k(0.26666666666666666),
+                        t1047,
+                        k(0.5333333333333333) * t1054,
+                    ),
+                ),
+                t1065 * T::fused(k(0.8), t1047, k(0.4) * t1054),
+            );
+            let t1067 = k(1.0) / T::fused(t1061, t1061, t1065 * t1065);
+            let t1068 = t1067 * t1066;
+            let t1069 = k(0.3333333333333333) * t1038;
+            let t1070 = T::fused(
+                -t1061,
+                T::fused(-k(0.13333333333333333), t1047, k(0.26666666666666666) * t1054)
+                    + t1069,
+                t1065 * T::fused(k(0.4), t1047, k(0.2) * t1054),
+            );
+            let t1071 = t1067 * t1070;
+            let t1072 = T::fused(
+                -k(0.8944271909999159),
+                t1058,
+                k(0.4472135954999579) * t1059,
+            );
+            let t1073 = T::fused(
+                -k(0.8944271909999159),
+                t1055,
+                k(0.4472135954999579) * t1056,
+            );
+            let t1074 = T::fused(
+                k(0.7453559924999299),
+                T::fused(-k(0.8944271909999159), t1062, k(0.4472135954999579) * t1063),
+                T::fused(-k(0.29814239699997197), t1072, k(0.5962847939999439) * t1073),
+            );
+            let t1075 = t1067
+                * T::fused(
+                    -t1061,
+                    t1074,
+                    t1065
+                        * T::fused(
+                            k(0.8944271909999159),
+                            t1072,
+                            k(0.4472135954999579) * t1073,
+                        ),
+                );
+            let t1076 = T::fused(
+                k(0.0021220659078919376),
+                t1075,
+                -T::fused(
+                    k(0.0021220659078919376),
+                    t1068,
+                    k(0.0010610329539459688) * t1071,
+                ),
+            );
+            let t1077 = k(0.6666666666666666) * t1043;
+            let t1078 = k(1.3333333333333333) * t1036;
+            let t1079 = t1078 - T::fused(k(1.3333333333333333), t1048, t1077);
+            let t1080 = t1079 * t1076;
+            let t1081 = k(0.04) * t993;
+            let t1082 = k(0.2) * t968;
+            let t1083 = T::fused(k(0.1), t1012, -t1082);
+            let t1084 = k(0.2) * t1083;
+            let t1085 = k(0.02) * t993;
+            let t1086 = T::fused(
+                k(0.2),
+                row24,
+                T::fused(t1085, t1018, -T::fused(-t1081, t1004, t1084 * t1006)),
+            );
+            let t1087 = k(0.6666666666666666) * t1039;
+            let t1088 = k(1.3333333333333333) * t1030;
+            let t1089 = t1088 + T::fused(k(1.3333333333333333), t1050, t1087);
+            let t1090 = t1089 * t1076;
+            let t1091 = k(0.04) * t997;
+            let t1092 = k(0.2) * t975;
+            let t1093 = T::fused(k(0.1), t1014, t1092);
+            let t1094 = k(0.2) * t1093;
+            let t1095 = k(0.02) * t997;
+            let t1096 = T::fused(
+                k(0.2),
+                row25,
+                -T::fused(t1095, t1018, -T::fused(-t1091, t1004, t1094 * t1006)),
+            );
+            let t1097 = T::fused(
+                k(1.3333333333333333),
+                t1024,
+                T::fused(-k(1.3333333333333333), t1052, k(0.6666666666666666) * t1045),
+            );
+            let t1098 = t1097 * t1076;
+            let t1099 = T::fused(k(0.003), t1004, k(0.001) * t1018)
+                - T::fused(t1091, row25, -T::fused(-t1005, row23, t1081 * row24));
+            let t1100 = T::fused(
+                k(0.004),
+                t1006,
+                T::fused(t1094, row25, -T::fused(t1010, row23, t1084 * row24)),
+            );
+            let t1101 = T::fused(k(0.001), t1004, k(0.0025) * t1018)
+                - T::fused(t1095, row25, -T::fused(-t1019, row23, t1085 * row24));
+            let t1102 = k(0.2) * t964;
+            let t1103 = k(0.2) * t971;
+            let t1104 = k(0.2) * t979;
+            let t1105 = T::fused(t1104, t1096, -T::fused(-t1102, t1020, t1103 * t1086));
+            let t1106 = t1105
+                + (t1105 - T::fused(t1016, t1101, T::fused(t990, t1099, t1001 * t1100)));
+            let t1107 = T::fused(t980, t1015, T::fused(-t965, t1011, t972 * t1013));
+            let t1108 = T::fused(k(0.2), t982, k(0.1) * t1032);
+            let t1109 = T::fused(-k(0.2), t984, k(0.1) * t1026);
+            let t1110 = T::fused(k(0.2), t988, k(0.1) * t1021);
+            let t1111 = T::fused(t1110, t1096, -T::fused(t1108, t1020, t1109 * t1086))
+                + T::fused(t1107, t1101, T::fused(t981, t1099, t999 * t1100));
+            let t1112 = t982 + t1032;
+            let t1113 = k(0.2) * t1112;
+            let t1114 = t984 - t1026;
+            let t1115 = k(0.2) * t1114;
+            let t1116 = t988 + t1021;
+            let t1117 = k(0.2) * t1116;
+            let t1118 = T::fused(
+                k(0.6666666666666666),
+                t1106,
+                k(0.3333333333333333)
+                    * (T::fused(t1117, t1096, T::fused(-t1113, t1020, t1115 * t1086))
+                        + t1111),
+            );
+            let t1119 = T::fused(t1022, t976, -T::fused(-t1033, t961, t1027 * t969));
+            let t1120 = T::fused(t1022, t998, T::fused(-t1033, t992, t1027 * t994));
+            let t1121 = T::fused(t1022, t1015, T::fused(t1033, t1011, t1027 * t1013));
+            let t1122 = k(0.1) * t964;
+            let t1123 = k(0.1) * t971;
+            let t1124 = k(0.1) * t979;
+            let t1125 = T::fused(t1124, t1096, -T::fused(-t1122, t1020, t1123 * t1086))
+                - T::fused(t1121, t1101, T::fused(t1119, t1099, t1120 * t1100));
+            let t1126 = T::fused(k(0.6666666666666666), t1125 + t1105, -t1118)
+                - T::fused(t1098, t1096, -T::fused(t1080, t1020, t1090 * t1086));
+            let t1127 = T::fused(t1016, t1019, T::fused(t990, t1005, t1001 * t1010));
+            let t1128 = T::fused(k(0.04), t964, t1127);
+            let t1129 = t1122 + t1128;
+            let t1130 = T::fused(t1107, t1019, T::fused(t981, t1005, t999 * t1010));
+            let t1131 = T::fused(k(0.2), t1108, t1130);
+            let t1132 = T::fused(k(0.1), t1112, t1131);
+            let t1133 = T::fused(t1121, t1019, T::fused(t1119, t1005, t1120 * t1010));
+            let t1134 = T::fused(k(0.02), t964, t1133);
+            let t1135 = t1122 + t1134;
+            let t1136 = T::fused(
+                k(0.5),
+                t1080,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1135,
+                    T::fused(
+                        -k(0.6666666666666666),
+                        t1129,
+                        k(0.3333333333333333) * t1132,
+                    ),
+                ),
+            );
+            let t1137 = T::fused(t1016, t1085, -T::fused(-t990, t1081, t1001 * t1084));
+            let t1138 = T::fused(k(0.04), t971, t1137);
+            let t1139 = t1123 + t1138;
+            let t1140 = T::fused(t1107, t1085, -T::fused(-t981, t1081, t999 * t1084));
+            let t1141 = T::fused(k(0.2), t1109, -t1140);
+            let t1142 = T::fused(-k(0.1), t1114, t1141);
+            let t1143 = T::fused(t1121, t1085, -T::fused(-t1119, t1081, t1120 * t1084));
+            let t1144 = T::fused(k(0.02), t971, t1143);
+            let t1145 = t1123 + t1144;
+            let t1146 = T::fused(
+                -k(0.5),
+                t1090,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1145,
+                    -T::fused(
+                        k(0.6666666666666666),
+                        t1139,
+                        k(0.3333333333333333) * t1142,
+                    ),
+                ),
+            );
+            let t1147 = T::fused(t1016, t1095, -T::fused(-t990, t1091, t1001 * t1094));
+            let t1148 = T::fused(k(0.04), t979, t1147);
+            let t1149 = t1124 + t1148;
+            let t1150 = T::fused(t1107, t1095, -T::fused(-t981, t1091, t999 * t1094));
+            let t1151 = T::fused(k(0.2), t1110, -t1150);
+            let t1152 = T::fused(k(0.1), t1116, t1151);
+            let t1153 = T::fused(t1121, t1095, -T::fused(-t1119, t1091, t1120 * t1094));
+            let t1154 = T::fused(k(0.02), t979, t1153);
+            let t1155 = t1124 + t1154;
+            let t1156 = T::fused(
+                -k(0.5),
+                t1098,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1155,
+                    -T::fused(
+                        k(0.6666666666666666),
+                        t1149,
+                        k(0.3333333333333333) * t1152,
+                    ),
+                ),
+            );
+            let t1157 = T::fused(t1104, t1148, T::fused(t1102, t1128, t1103 * t1138));
+            let t1158 = T::fused(k(0.003), t990, k(0.001) * t1016);
+            let t1159 = k(0.004) * t1001;
+            let t1160 = T::fused(k(0.001), t990, k(0.0025) * t1016);
+            let t1161 = T::fused(
+                k(2.0),
+                T::fused(t1104, t1147, T::fused(t1102, t1127, t1103 * t1137)),
+                k(0.002) + T::fused(t1016, t1160, T::fused(t990, t1158, t1001 * t1159)),
+            );
+            let t1162 = T::fused(t1110, t1147, T::fused(-t1108, t1127, t1109 * t1137))
+                - T::fused(t1104, t1150, T::fused(t1102, t1130, t1103 * t1140));
+            let t1163 = T::fused(t1104, t1151, T::fused(-t1102, t1131, t1103 * t1141));
+            let t1164 = t1163
+                + T::fused(t1117, t1148, -T::fused(t1113, t1128, t1115 * t1138))
+                + (t1162 - T::fused(t1107, t1160, T::fused(t981, t1158, t999 * t1159)));
+            let t1165 = T::fused(
+                k(0.6666666666666666),
+                T::fused(k(2.0), t1157, k(0.005) + (k(0.002) + t1161)),
+                k(0.3333333333333333) * t1164,
+            );
+            let t1166 = T::fused(t1104, t1154, T::fused(t1102, t1134, t1103 * t1144));
+            let t1167 = T::fused(t1124, t1147, T::fused(t1122, t1127, t1123 * t1137))
+                + T::fused(t1104, t1153, T::fused(t1102, t1133, t1103 * t1143));
+            let t1168 = k(0.001)
+                + T::fused(t1121, t1160, T::fused(t1119, t1158, t1120 * t1159)) + t1167;
+            let t1169 = k(0.6666666666666666) * (k(0.005) + t1168 + (t1166 + t1157));
+            let t1170 = t1169 - t1165
+                - T::fused(t1098, t1149, T::fused(-t1080, t1129, t1090 * t1139));
+            let t1171 = T::fused(k(0.003), t981, k(0.001) * t1107);
+            let t1172 = k(0.004) * t999;
+            let t1173 = T::fused(k(0.001), t981, k(0.0025) * t1107);
+            let t1174 = T::fused(
+                -k(2.0),
+                T::fused(t1110, t1150, T::fused(-t1108, t1130, t1109 * t1140)),
+                k(0.0025) + T::fused(t1107, t1173, T::fused(t981, t1171, t999 * t1172)),
+            );
+            let t1175 = T::fused(
+                k(2.0),
+                T::fused(t1117, t1151, -T::fused(-t1113, t1131, t1115 * t1141)),
+                k(0.01) + (k(0.0025) + t1174),
+            );
+            let t1176 = T::fused(t1124, t1150, T::fused(t1122, t1130, t1123 * t1140))
+                - T::fused(t1110, t1153, T::fused(-t1108, t1133, t1109 * t1143));
+            let t1177 = T::fused(t1117, t1154, -T::fused(t1113, t1134, t1115 * t1144))
+                + t1163
+                - (t1176
+                    + T::fused(t1121, t1173, T::fused(t1119, t1171, t1120 * t1172)));
+            let t1178 = T::fused(
+                k(0.6666666666666666),
+                t1177,
+                -T::fused(k(0.6666666666666666), t1164, k(0.3333333333333333) * t1175),
+            ) - T::fused(t1098, t1152, T::fused(t1080, t1132, t1090 * t1142));
+            let t1179 = T::fused(
+                t1119,
+                T::fused(k(0.003), t1119, k(0.001) * t1121),
+                t1120 * (k(0.004) * t1120),
+            );
+            let t1180 = T::fused(
+                k(2.0),
+                T::fused(t1124, t1153, T::fused(t1122, t1133, t1123 * t1143)),
+                k(0.0005)
+                    + T::fused(
+                        t1121,
+                        T::fused(k(0.001), t1119, k(0.0025) * t1121),
+                        t1179,
+                    ),
+            );
+            let t1181 = T::fused(
+                k(0.6666666666666666),
+                T::fused(k(2.0), t1166, k(0.005) + (k(0.003) + t1180)),
+                -T::fused(k(0.3333333333333333), t1177, t1169),
+            );
+            let t1182 = t1181
+                - T::fused(t1098, t1155, T::fused(-t1080, t1135, t1090 * t1145));
+            let t1183 = T::fused(
+                k(0.6666666666666666),
+                t1182,
+                -T::fused(k(0.6666666666666666), t1170, k(0.3333333333333333) * t1178),
+            ) - T::fused(t1098, t1156, T::fused(-t1080, t1136, t1090 * t1146));
+            let t1184 = k(1.0) / t1183;
+            let t1185 = t1184 * t1126;
+            let t1186 = k(0.6666666666666666) * t1059;
+            let t1187 = T::fused(k(0.3333333333333333), t1058, t1186);
+            let t1188 = k(0.6666666666666666) * t1056;
+            let t1189 = T::fused(k(0.3333333333333333), t1055, t1188);
+            let t1190 = T::fused(
+                k(0.8944271909999159),
+                t1187,
+                k(0.4472135954999579) * t1189,
+            );
+            let t1191 = t1058 + t1047;
+            let t1192 = t1055 + t1054;
+            let t1193 = T::fused(
+                k(0.5962847939999439),
+                t1191,
+                k(0.29814239699997197) * t1192,
+            );
+            let t1194 = k(0.6666666666666666) * t1193;
+            let t1195 = k(0.6666666666666666) * t1063;
+            let t1196 = T::fused(
+                k(0.7453559924999299),
+                T::fused(k(0.3333333333333333), t1062, t1195),
+                T::fused(-k(0.29814239699997197), t1187, k(0.5962847939999439) * t1189),
+            );
+            let t1197 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.49690399499995325),
+                    t1062 + t1038,
+                    T::fused(
+                        -k(0.1987615979999813),
+                        t1191,
+                        k(0.3975231959999626) * t1192,
+                    ),
+                );
+            let t1198 = T::fused(k(0.3333333333333333), t1196, t1197);
+            let t1199 = T::fused(k(0.3333333333333333), t1047, -t1186);
+            let t1200 = T::fused(k(0.3333333333333333), t1054, -t1188);
+            let t1201 = T::fused(
+                k(0.8944271909999159),
+                t1199,
+                k(0.4472135954999579) * t1200,
+            );
+            let t1202 = T::fused(
+                k(0.7453559924999299),
+                t1069 - t1195,
+                T::fused(-k(0.29814239699997197), t1199, k(0.5962847939999439) * t1200),
+            );
+            let t1203 = k(0.6666666666666666) * (t1202 - t1196);
+            let t1204 = T::fused(k(0.3333333333333333), t1202, t1197);
+            let t1205 = k(1.0)
+                / T::fused(t1190, t1204, T::fused(-t1201, t1198, t1193 * t1203));
+            let t1206 = t1205 * T::fused(k(0.3333333333333333), t1190, t1194);
+            let t1207 = k(0.0031830988618379067) * t1068;
+            let t1208 = t1205 * (k(0.6666666666666666) * (t1201 - t1190));
+            let t1209 = k(0.0031830988618379067) * t1071;
+            let t1210 = t1205 * T::fused(k(0.3333333333333333), t1201, t1194);
+            let t1211 = k(0.0031830988618379067) * t1075;
+            let t1212 = T::fused(t1211, t1210, T::fused(t1207, t1206, t1209 * t1208));
+            let t1213 = t1198 * t1205;
+            let t1214 = t1203 * t1205;
+            let t1215 = t1204 * t1205;
+            let t1216 = T::fused(t1211, t1215, T::fused(t1207, t1213, t1209 * t1214));
+            let t1217 = T::fused(
+                T::fused(-k(0.8944271909999159), t1048, k(1.7888543819998317) * t1043),
+                row18,
+                T::fused(
+                    k(1.4907119849998598),
+                    t1036,
+                    T::fused(k(1.1925695879998879), t1048, k(0.5962847939999439) * t1043),
+                ) * row19,
+            );
+            let t1218 = T::fused(
+                t1079 * t1212,
+                row22,
+                T::fused(t1079 * t1216, row21, T::fused(t1079, row20, t1217)),
+            );
+            let t1219 = t1136 * t1184;
+            let t1220 = t1136 * t1219;
+            let t1221 = T::fused(
+                -T::fused(-k(0.8944271909999159), t1050, k(1.7888543819998317) * t1039),
+                row18,
+                T::fused(
+                    k(1.4907119849998598),
+                    t1030,
+                    -T::fused(
+                        k(1.1925695879998879),
+                        t1050,
+                        k(0.5962847939999439) * t1039,
+                    ),
+                ) * row19,
+            );
+            let t1222 = T::fused(
+                t1089 * t1212,
+                row22,
+                T::fused(t1089 * t1216, row21, T::fused(t1089, row20, t1221)),
+            );
+            let t1223 = t1146 * t1219;
+            let t1224 = T::fused(
+                -T::fused(k(0.8944271909999159), t1052, k(1.7888543819998317) * t1045),
+                row18,
+                T::fused(
+                    k(1.4907119849998598),
+                    t1024,
+                    -T::fused(
+                        -k(1.1925695879998879),
+                        t1052,
+                        k(0.5962847939999439) * t1045,
+                    ),
+                ) * row19,
+            );
+            let t1225 = T::fused(
+                t1097 * t1212,
+                row22,
+                T::fused(t1097 * t1216, row21, T::fused(t1097, row20, t1224)),
+            );
+            let t1226 = t1156 * t1219;
+            let t1227 = T::fused(
+                k(0.5),
+                t1218,
+                T::fused(t1226, t1225, T::fused(-t1220, t1218, t1223 * t1222)),
+            );
+            let t1228 = T::fused(t1213, row21, t1206 * row22);
+            let t1229 = T::fused(-t1170, t1219, t1129);
+            let t1230 = T::fused(t1214, row21, t1208 * row22);
+            let t1231 = T::fused(t1178, t1219, t1132);
+            let t1232 = T::fused(t1215, row21, t1210 * row22);
+            let t1233 = T::fused(-t1182, t1219, t1135);
+            let t1234 = T::fused(t1233, t1232, -T::fused(-t1229, t1228, t1231 * t1230))
+                + t1227 + T::fused(-t1136, t1185, t1020);
+            let t1235 = t1146 * t1184;
+            let t1236 = t1146 * t1235;
+            let t1237 = t1156 * t1235;
+            let t1238 = T::fused(
+                -k(0.5),
+                t1222,
+                T::fused(t1237, t1225, T::fused(-t1223, t1218, t1236 * t1222)),
+            );
+            let t1239 = T::fused(-t1170, t1235, t1139);
+            let t1240 = T::fused(-t1178, t1235, t1142);
+            let t1241 = T::fused(-t1182, t1235, t1145);
+            let t1242 = T::fused(t1241, t1232, T::fused(t1239, t1228, t1240 * t1230))
+                + t1238 - T::fused(t1146, t1185, t1086);
+            let t1243 = t1156 * t1184;
+            let t1244 = t1156 * t1243;
+            let t1245 = T::fused(
+                -k(0.5),
+                t1225,
+                T::fused(t1244, t1225, T::fused(-t1226, t1218, t1237 * t1222)),
+            );
+            let t1246 = T::fused(-t1170, t1243, t1149);
+            let t1247 = T::fused(-t1178, t1243, t1152);
+            let t1248 = T::fused(-t1182, t1243, t1155);
+            let t1249 = T::fused(t1248, t1232, T::fused(t1246, t1228, t1247 * t1230))
+                + t1245 + T::fused(-t1156, t1185, t1096);
+            let t1250 = k(0.6666666666666666) * row14;
+            let t1251 = k(0.7071067811865476) * row13;
+            let t1252 = t1251 - t1250;
+            let t1253 = k(0.3064129385141706)
+                - T::fused(
+                    k(0.23570226039551584),
+                    t1223 + t1220,
+                    k(0.9428090415820634) * t1226,
+                );
+            let t1254 = t1251 + t1250;
+            let t1255 = k(0.3064129385141706)
+                - T::fused(
+                    k(0.23570226039551584),
+                    t1236 + t1223,
+                    k(0.9428090415820634) * t1237,
+                );
+            let t1256 = k(0.3333333333333333) * row14;
+            let t1257 = k(1.2256517540566825)
+                - T::fused(
+                    k(0.23570226039551584),
+                    t1237 + t1226,
+                    k(0.9428090415820634) * t1244,
+                );
+            let t1258 = t1048 - t1043;
+            let t1259 = t1050 - t1039;
+            let t1260 = T::fused(
+                k(0.15713484026367722),
+                t1052 + t1045,
+                k(0.31426968052735443) * (t1259 + t1258),
+            );
+            let t1261 = k(0.4714045207910317) * t1030;
+            let t1262 = T::fused(-k(1.8856180831641267), t1050, t1261);
+            let t1263 = k(0.4714045207910317) * t1036;
+            let t1264 = T::fused(k(1.8856180831641267), t1048, t1263);
+            let t1265 = k(0.7071067811865476) * (t1264 + t1262);
+            let t1266 = k(0.4714045207910317) * t1024;
+            let t1267 = T::fused(
+                k(0.3333333333333333),
+                T::fused(k(1.8856180831641267), t1052, t1266),
+                k(0.6666666666666666) * (t1264 - t1262),
+            );
+            let t1268 = t1259 - t1258;
+            let t1269 = k(0.3333333333333333) * t1268;
+            let t1270 = T::fused(t1265, t1260, t1269 * t1267);
+            let t1271 = k(0.7071067811865476) * (t1078 - t1077 + (t1088 + t1087));
+            let t1272 = T::fused(-k(1.8856180831641267), t1039, t1261);
+            let t1273 = T::fused(k(1.8856180831641267), t1043, t1263);
+            let t1274 = T::fused(
+                k(0.3333333333333333),
+                T::fused(-k(1.8856180831641267), t1045, t1266),
+                k(0.6666666666666666) * (t1273 - t1272),
+            );
+            let t1275 = k(0.7071067811865476) * (t1273 + t1272);
+            let t1276 = T::fused(t1269, t1274, t1275 * t1260);
+            let t1277 = k(0.7071067811865476)
+                * (T::fused(-k(0.6666666666666666), t1048, t1078)
+                    + T::fused(k(0.6666666666666666), t1050, t1088));
+            let t1278 = T::fused(-t1275, t1267, t1265 * t1274);
+            let t1279 = k(0.9428090415820634) * t1268;
+            let t1280 = k(1.0)
+                / T::fused(t1279, t1278, -T::fused(-t1271, t1270, t1277 * t1276));
+            let t1281 = T::fused(
+                t1280 * T::fused(t1267, t1279, t1260 * t1277),
+                row15,
+                t1280 * T::fused(-t1269, t1277, t1265 * t1279) * row16,
+            );
+            let t1282 = T::fused(t1270 * t1280, row17, t1281);
+            let t1283 = slide_rx - T::fused(k(0.2), t982 - t1032, nut_rx);
+            let t1284 = slide_ry - T::fused(-k(0.2), t984 + t1026, nut_ry);
+            let t1285 = slide_rz - T::fused(-k(0.2), t988 - t1021, nut_rz);
+            let t1286 = T::fused(t1025, t1285, -T::fused(t1037, t1283, t1031 * t1284));
+            let t1287 = T::fused(t1046, t1285, -T::fused(-t1044, t1283, t1040 * t1284));
+            let t1288 = T::fused(t1044, t1286, t1037 * t1287);
+            let t1289 = T::fused(-t1040, t1286, t1031 * t1287);
+            let t1290 = T::fused(-t1046, t1286, t1025 * t1287);
+            let t1291 = T::fused(
+                k(0.5),
+                t1288,
+                T::fused(t1226, t1290, T::fused(-t1220, t1288, t1223 * t1289)),
+            );
+            let t1292 = k(0.2) * t1043;
+            let t1293 = k(0.2) * t1039;
+            let t1294 = k(0.2) * t1045;
+            let t1295 = T::fused(
+                -k(0.26),
+                t1043,
+                T::fused(t1294, t1226, T::fused(t1292, t1220, t1293 * t1223)),
+            );
+            let t1296 = t1295
+                - (t1291
+                    + T::fused(t1054, t1233, T::fused(t1055, t1229, t1056 * t1231)));
+            let t1297 = T::fused(
+                -k(0.5),
+                t1289,
+                T::fused(t1237, t1290, T::fused(-t1223, t1288, t1236 * t1289)),
+            );
+            let t1298 = T::fused(
+                -k(0.26),
+                t1039,
+                T::fused(t1294, t1237, T::fused(t1292, t1223, t1293 * t1236)),
+            );
+            let t1299 = t1298
+                - (t1297
+                    + T::fused(t1054, t1241, -T::fused(-t1055, t1239, t1056 * t1240)));
+            let t1300 = T::fused(
+                -k(0.5),
+                t1290,
+                T::fused(t1244, t1290, T::fused(-t1226, t1288, t1237 * t1289)),
+            );
+            let t1301 = T::fused(
+                -k(0.26),
+                t1045,
+                T::fused(t1294, t1244, T::fused(t1292, t1226, t1293 * t1237)),
+            );
+            let t1302 = t1301
+                - (t1300
+                    + T::fused(t1054, t1248, -T::fused(-t1055, t1246, t1056 * t1247)));
+            let t1303 = T::fused(
+                -(t1280 * T::fused(t1260, t1271, t1274 * t1279)),
+                row15,
+                t1280 * T::fused(-t1275, t1279, t1269 * t1271) * row16,
+            );
+            let t1304 = T::fused(-(t1276 * t1280), row17, t1303);
+            let t1305 = T::fused(t1053, t1285, T::fused(-t1049, t1283, t1051 * t1284));
+            let t1306 = T::fused(-t1049, t1286, t1037 * t1305);
+            let t1307 = T::fused(t1051, t1286, t1031 * t1305);
+            let t1308 = T::fused(-t1053, t1286, t1025 * t1305);
+            let t1309 = T::fused(
+                k(0.5),
+                t1306,
+                T::fused(t1226, t1308, T::fused(-t1220, t1306, t1223 * t1307)),
+            );
+            let t1310 = t1048 + t1036;
+            let t1311 = k(0.2) * t1310;
+            let t1312 = t1050 - t1030;
+            let t1313 = k(0.2) * t1312;
+            let t1314 = t1052 + t1024;
+            let t1315 = k(0.2) * t1314;
+            let t1316 = T::fused(
+                k(0.26),
+                t1310,
+                T::fused(t1315, t1226, -T::fused(t1311, t1220, t1313 * t1223)),
+            );
+            let t1317 = t1316
+                - (t1309
+                    - T::fused(t1047, t1233, T::fused(t1058, t1229, t1059 * t1231)));
+            let t1318 = T::fused(
+                -k(0.5),
+                t1307,
+                T::fused(t1237, t1308, T::fused(-t1223, t1306, t1236 * t1307)),
+            );
+            let t1319 = T::fused(
+                k(0.26),
+                t1312,
+                T::fused(t1315, t1237, -T::fused(t1311, t1223, t1313 * t1236)),
+            );
+            let t1320 = t1319
+                - (t1318
+                    - T::fused(t1047, t1241, -T::fused(-t1058, t1239, t1059 * t1240)));
+            let t1321 = T::fused(
+                -k(0.5),
+                t1308,
+                T::fused(t1244, t1308, T::fused(-t1226, t1306, t1237 * t1307)),
+            );
+            let t1322 = T::fused(
+                -k(0.26),
+                t1314,
+                T::fused(t1315, t1244, -T::fused(t1311, t1226, t1313 * t1237)),
+            );
+            let t1323 = t1322
+                - (t1321
+                    - T::fused(t1047, t1248, -T::fused(-t1058, t1246, t1059 * t1247)));
+            let t1324 = T::fused(
+                -T::fused(
+                    k(0.23570226039551584),
+                    t1299 + t1296,
+                    k(0.9428090415820634) * t1302,
+                ),
+                t1282,
+                T::fused(
+                    k(0.23570226039551584),
+                    t1320 + t1317,
+                    k(0.9428090415820634) * t1323,
+                ) * t1304,
+            );
+            let t1325 = T::fused(
+                -(t1280 * T::fused(-t1274, t1277, t1267 * t1271)),
+                row15,
+                t1280 * T::fused(-t1265, t1271, t1275 * t1277) * row16,
+            );
+            let t1326 = T::fused(t1278 * t1280, row17, t1325);
+            let t1327 = T::fused(t1049, t1287, t1044 * t1305);
+            let t1328 = T::fused(t1051, t1287, t1040 * t1305);
+            let t1329 = T::fused(-t1053, t1287, t1046 * t1305);
+            let t1330 = T::fused(
+                -k(0.5),
+                t1327,
+                T::fused(t1226, t1329, T::fused(t1220, t1327, t1223 * t1328)),
+            );
+            let t1331 = t1295
+                - (t1330
+                    + T::fused(t1038, t1233, T::fused(t1062, t1229, t1063 * t1231)));
+            let t1332 = T::fused(
+                -k(0.5),
+                t1328,
+                T::fused(t1237, t1329, T::fused(t1223, t1327, t1236 * t1328)),
+            );
+            let t1333 = t1298
+                - (t1332
+                    + T::fused(t1038, t1241, -T::fused(-t1062, t1239, t1063 * t1240)));
+            let t1334 = T::fused(
+                -k(0.5),
+                t1329,
+                T::fused(t1244, t1329, T::fused(t1226, t1327, t1237 * t1328)),
+            );
+            let t1335 = t1301
+                - (t1334
+                    + T::fused(t1038, t1248, -T::fused(-t1062, t1246, t1063 * t1247)));
+            let t1336 = T::fused(
+                T::fused(
+                    k(0.23570226039551584),
+                    t1333 + t1331,
+                    k(0.9428090415820634) * t1335,
+                ),
+                t1326,
+                -t1324,
+            ) + T::fused(t1257, t1256, -T::fused(-t1253, t1252, t1255 * t1254));
+            let t1337 = k(1.0)
+                / T::fused(
+                    k(0.23570226039551584),
+                    t1255 + t1253,
+                    k(0.9428090415820634) * t1257,
+                );
+            let t1338 = t1337
+                * (t1336
+                    + T::fused(
+                        k(0.23570226039551584),
+                        t1242 + t1234,
+                        k(0.9428090415820634) * t1249,
+                    ));
+            let t1339 = k(0.23570226039551584) * t1338;
+            let t1340 = T::fused(t1292, t1326, T::fused(t1292, t1282, t1311 * t1304))
+                - (t1252 - t1339);
+            let t1341 = t1218
+                + (T::fused(t1327, t1326, T::fused(-t1288, t1282, t1306 * t1304))
+                    - t1340);
+            let t1342 = T::fused(t1293, t1326, T::fused(t1293, t1282, t1313 * t1304))
+                + (t1254 + t1339);
+            let t1343 = t1222
+                - (T::fused(t1328, t1326, -T::fused(-t1289, t1282, t1307 * t1304))
+                    - t1342);
+            let t1344 = T::fused(t1294, t1326, -T::fused(-t1294, t1282, t1315 * t1304))
+                - T::fused(-k(0.9428090415820634), t1338, t1256);
+            let t1345 = t1225
+                - (T::fused(t1329, t1326, -T::fused(-t1290, t1282, t1308 * t1304))
+                    - t1344);
+            let t1346 = T::fused(t1062, t1326, T::fused(t1055, t1282, t1058 * t1304))
+                - t1228;
+            let t1347 = T::fused(t1063, t1326, T::fused(t1056, t1282, t1059 * t1304))
+                + t1230;
+            let t1348 = T::fused(t1038, t1326, T::fused(t1054, t1282, t1047 * t1304))
+                - t1232;
+            let t1349 = T::fused(t1182, t1348, -T::fused(-t1170, t1346, t1178 * t1347))
+                + T::fused(t1156, t1345, T::fused(-t1136, t1341, t1146 * t1343));
+            let t1350 = t1184 * (t1126 - t1349);
+            let t1351 = T::fused(k(0.3333333333333333), t1350, t1347);
+            let t1352 = k(0.6666666666666666) * t1350;
+            let t1353 = t1346 - t1352;
+            let t1354 = t1102 * t1353;
+            let t1355 = t1348 + t1352;
+            let t1356 = T::fused(t1102, t1355, T::fused(t1113, t1351, t1354))
+                - T::fused(-t1080, t1350, t1341);
+            let t1357 = t1004
+                + T::fused(t1119, t1355, T::fused(t990, t1353, t981 * t1351));
+            let t1358 = k(0.2) * t991;
+            let t1359 = t1006
+                + T::fused(t1120, t1355, T::fused(t1001, t1353, t999 * t1351));
+            let t1360 = t1018
+                + T::fused(t1121, t1355, T::fused(t1016, t1353, t1107 * t1351));
+            let t1361 = k(0.1) * t991;
+            let t1362 = T::fused(t1361, t1360, T::fused(t1358, t1357, t1009 * t1359))
+                - (row23
+                    - (T::fused(t1122, t1355, T::fused(t1108, t1351, t1354)) + t1356));
+            let t1363 = T::fused(
+                -k(0.8944271909999159),
+                t960,
+                k(1.7888543819998317) * t991,
+            );
+            let t1364 = t1103 * t1353;
+            let t1365 = T::fused(t1103, t1355, T::fused(t1115, t1351, t1364))
+                + T::fused(-t1090, t1350, t1343);
+            let t1366 = k(0.2) * t993;
+            let t1367 = k(0.1) * t993;
+            let t1368 = T::fused(t1367, t1360, -T::fused(-t1366, t1357, t1083 * t1359))
+                + (row24
+                    + (T::fused(t1123, t1355, -T::fused(t1109, t1351, -t1364)) + t1365));
+            let t1369 = T::fused(
+                -k(0.8944271909999159),
+                t968,
+                k(1.7888543819998317) * t993,
+            );
+            let t1370 = t1104 * t1353;
+            let t1371 = T::fused(t1104, t1355, T::fused(-t1117, t1351, t1370))
+                + T::fused(-t1098, t1350, t1345);
+            let t1372 = k(0.2) * t997;
+            let t1373 = k(0.1) * t997;
+            let t1374 = T::fused(t1373, t1360, -T::fused(-t1372, t1357, t1093 * t1359))
+                - (row25
+                    - (T::fused(t1124, t1355, -T::fused(t1110, t1351, -t1370)) + t1371));
+            let t1375 = T::fused(
+                k(0.8944271909999159),
+                t975,
+                k(1.7888543819998317) * t997,
+            );
+            let t1376 = t1372 * t1375;
+            let t1377 = puck_rz - t413
+                - (lid_rz + T::fused(k(0.2), t1014, k(0.4) * t975));
+            let t1378 = t1366 * t1369;
+            let t1379 = puck_ry - t411
+                - (lid_ry + T::fused(-k(0.2), t1012, k(0.4) * t968));
+            let t1380 = t1358 * t1363;
+            let t1381 = puck_rx + t409
+                - (lid_rx - T::fused(k(0.2), t1008, k(0.4) * t960));
+            let t1382 = T::fused(k(1.7888543819998317) * t1008, t1381, -t1380)
+                + T::fused(k(1.7888543819998317) * t1012, t1379, -t1378);
+            let t1383 = t1382 - T::fused(k(1.7888543819998317) * t1014, t1377, t1376);
+            let t1384 = T::fused(-k(0.4), t1014, t1092);
+            let t1385 = T::fused(k(0.4), t1012, t1082);
+            let t1386 = T::fused(-k(0.4), t1008, t1007);
+            let t1387 = T::fused(t1363, t1386, t1381 * (k(0.8944271909999159) * t1008))
+                + T::fused(t1369, t1385, t1379 * (k(0.8944271909999159) * t1012));
+            let t1388 = t1387
+                - T::fused(t1375, t1384, t1377 * (k(0.8944271909999159) * t1014));
+            let t1389 = k(0.4) * t997;
+            let t1390 = k(0.4) * t993;
+            let t1391 = k(0.4) * t991;
+            let t1392 = T::fused(
+                -t1363,
+                t1391,
+                t1381
+                    * T::fused(k(1.7888543819998317), t960, k(0.8944271909999159) * t991),
+            )
+                - T::fused(
+                    t1369,
+                    t1390,
+                    t1379
+                        * T::fused(
+                            k(1.7888543819998317),
+                            t968,
+                            k(0.8944271909999159) * t993,
+                        ),
+                );
+            let t1393 = t1392
+                + T::fused(
+                    -t1375,
+                    t1389,
+                    t1377
+                        * T::fused(
+                            -k(1.7888543819998317),
+                            t975,
+                            k(0.8944271909999159) * t997,
+                        ),
+                );
+            let t1394 = T::fused(t1393, t1360, T::fused(-t1383, t1357, t1388 * t1359))
+                - T::fused(t1375, t1374, T::fused(t1363, t1362, t1369 * t1368));
+            let t1395 = k(0.2) * t383;
+            let t1396 = k(0.2) * t378;
+            let t1397 = k(0.2) * t370;
+            let t1398 = T::fused(-t1375, t1395, T::fused(-t1369, t1396, t1363 * t1397));
+            let t1399 = T::fused(t382, t1375, T::fused(t375, t1369, t367 * t1363));
+            let t1400 = T::fused(t1398, t500, t1399 * t501)
+                + T::fused(t1375, t516, T::fused(-t1363, t510, t1369 * t513));
+            let t1401 = T::fused(-t1398, t609, t1399 * t610)
+                - T::fused(t1375, t624, -T::fused(t1363, t618, t1369 * t621));
+            let t1402 = t635 * t1401;
+            let t1403 = T::fused(-t1398, t718, t1399 * t719)
+                - T::fused(t1375, t733, -T::fused(t1363, t727, t1369 * t730));
+            let t1404 = T::fused(t655, t1402, -t1403);
+            let t1405 = t744 * t1404;
+            let t1406 = T::fused(-t1398, t840, t1399 * t841)
+                - T::fused(t1375, t855, -T::fused(t1363, t849, t1369 * t852));
+            let t1407 = T::fused(t785, t1405, -T::fused(t782, t1402, -t1406));
+            let t1408 = t863 * t1407;
+            let t1409 = T::fused(
+                t1408,
+                t787,
+                -T::fused(t1405, t657, -T::fused(t1402, t548, row35 + (t1400 + t1394))),
+            );
+            let t1410 = T::fused(-t1398, t935, t1399 * t936)
+                - T::fused(t1375, t950, -T::fused(t1363, t944, t1369 * t947));
+            let t1411 = T::fused(
+                t880,
+                t1408,
+                -T::fused(t877, t1405, -T::fused(t874, t1402, -t1410)),
+            );
+            let t1412 = t958 * t1411;
+            let t1413 = T::fused(t1412, t882, -t1409);
+            let t1414 = t1383 + (t1376 + (t1380 + t1378));
+            let t1415 = t1388
+                + T::fused(t1093, t1375, T::fused(-t1009, t1363, t1083 * t1369));
+            let t1416 = t1393
+                - T::fused(t1373, t1375, T::fused(t1361, t1363, t1367 * t1369));
+            let t1417 = T::fused(t1104, t1375, T::fused(t1102, t1363, t1103 * t1369));
+            let t1418 = t1417
+                + (t1417
+                    - T::fused(t1016, t1416, T::fused(-t990, t1414, t1001 * t1415)));
+            let t1419 = T::fused(t1110, t1375, T::fused(-t1108, t1363, t1109 * t1369))
+                + T::fused(t1107, t1416, T::fused(-t981, t1414, t999 * t1415));
+            let t1420 = T::fused(
+                k(0.6666666666666666),
+                t1418,
+                k(0.3333333333333333)
+                    * (T::fused(t1117, t1375, -T::fused(t1113, t1363, t1115 * t1369))
+                        + t1419),
+            );
+            let t1421 = T::fused(t1124, t1375, T::fused(t1122, t1363, t1123 * t1369))
+                - T::fused(t1121, t1416, T::fused(-t1414, t1119, t1120 * t1415));
+            let t1422 = T::fused(k(0.6666666666666666), t1421 + t1417, -t1420)
+                - T::fused(t1375, t1098, T::fused(-t1363, t1080, t1369 * t1090));
+            let t1423 = t1422 * t1184;
+            let t1424 = T::fused(
+                k(0.23570226039551584),
+                T::fused(-t1146, t1423, t1369) + T::fused(-t1136, t1423, t1363),
+                k(0.9428090415820634) * T::fused(-t1156, t1423, t1375),
+            );
+            let t1425 = t1424 * t1337;
+            let t1426 = k(0.23570226039551584) * t1425;
+            let t1427 = k(0.9428090415820634) * t1425;
+            let t1428 = t1184
+                * (t1422
+                    - T::fused(t1156, t1427, T::fused(t1136, t1426, t1146 * t1426)));
+            let t1429 = k(0.3333333333333333) * t1428;
+            let t1430 = k(0.6666666666666666) * t1428;
+            let t1431 = t1102 * t1430;
+            let t1432 = t1431 - T::fused(-t1113, t1429, t1431)
+                + T::fused(t1080, t1428, t1426);
+            let t1433 = T::fused(t1119, t1430, T::fused(-t990, t1430, t981 * t1429));
+            let t1434 = T::fused(t1120, t1430, T::fused(-t1001, t1430, t999 * t1429));
+            let t1435 = T::fused(t1121, t1430, T::fused(-t1016, t1430, t1107 * t1429));
+            let t1436 = T::fused(t1361, t1435, T::fused(t1358, t1433, t1009 * t1434))
+                + (T::fused(t1122, t1430, T::fused(t1108, t1429, -t1431)) + t1432);
+            let t1437 = t1103 * t1430;
+            let t1438 = t1437 - T::fused(-t1115, t1429, t1437)
+                + T::fused(-t1090, t1428, t1426);
+            let t1439 = T::fused(t1367, t1435, -T::fused(-t1366, t1433, t1083 * t1434))
+                + (T::fused(t1123, t1430, -T::fused(t1109, t1429, t1437)) + t1438);
+            let t1440 = t1104 * t1430;
+            let t1441 = t1440 - T::fused(t1117, t1429, t1440)
+                + T::fused(-t1098, t1428, t1427);
+            let t1442 = T::fused(t1373, t1435, -T::fused(-t1372, t1433, t1093 * t1434))
+                + (T::fused(t1124, t1430, -T::fused(t1110, t1429, t1440)) + t1441);
+            let t1443 = T::fused(t1393, t1435, T::fused(-t1383, t1433, t1388 * t1434))
+                - T::fused(t1375, t1442, T::fused(t1363, t1436, t1369 * t1439));
+            let t1444 = T::fused(
+                -k(0.9805806756909201),
+                t1363,
+                k(0.19611613513818404) * t1375,
+            );
+            let t1445 = t337 * t1444;
+            let t1446 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t334, t1445, t1363),
+                k(0.9813067629253163) * T::fused(t349, t1445, t1369),
+            );
+            let t1447 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t1445, t1375),
+                t1446,
+            );
+            let t1448 = t399 * t1447;
+            let t1449 = T::fused(
+                t420,
+                t1445,
+                -(t1398 + T::fused(t413, t1375, -T::fused(t409, t1363, t411 * t1369))),
+            );
+            let t1450 = T::fused(t427, t1448, t1449)
+                + T::fused(t407, t1448, T::fused(t396, t1445, t1399));
+            let t1451 = T::fused(
+                -k(0.19245008972987526),
+                t1450,
+                k(0.9622504486493763)
+                    * T::fused(t443, t1448, -T::fused(-t436, t1445, t1399)),
+            );
+            let t1452 = t496 * t1451;
+            let t1453 = k(0.19245008972987526) * t1452;
+            let t1454 = k(0.9622504486493763) * t1452;
+            let t1455 = t399
+                * (t1447 - T::fused(t443, t1454, -T::fused(t407, t1453, t427 * t1453)));
+            let t1456 = k(0.03774256780481986) * t1455;
+            let t1457 = k(0.9813067629253163) * t1455;
+            let t1458 = k(0.1887128390240993) * t1455;
+            let t1459 = T::fused(t436, t1454, -T::fused(t396, t1453, t420 * t1453))
+                + T::fused(t336, t1458, -T::fused(t334, t1456, t349 * t1457));
+            let t1460 = t337 * (t1444 - t1459);
+            let t1461 = t409 * t1453;
+            let t1462 = T::fused(t367, t1453, t1461)
+                + T::fused(-k(0.9805806756909201), t1460, t1456);
+            let t1463 = t411 * t1453;
+            let t1464 = t1457 + T::fused(t375, t1453, t1463);
+            let t1465 = t413 * t1453;
+            let t1466 = T::fused(-t382, t1453, t1465)
+                - T::fused(k(0.19611613513818404), t1460, t1458);
+            let t1467 = T::fused(-t1398, t1453, t1399 * t1454)
+                - T::fused(t1375, t1466, -T::fused(t1363, t1462, t1369 * t1464));
+            let t1468 = T::fused(
+                t1407,
+                t1408,
+                -T::fused(t1404, t1405, -T::fused(t1401, t1402, -(t1467 - t1443))),
+            );
+            let t1469 = k(1.0) / T::fused(t1411, t1412, -t1468);
+            let t1470 = T::fused(
+                k(1.4907119849998598),
+                t1008,
+                -T::fused(k(1.1925695879998879), t960, k(0.5962847939999439) * t991),
+            );
+            let t1471 = T::fused(
+                k(1.4907119849998598),
+                t1012,
+                T::fused(k(1.1925695879998879), t968, k(0.5962847939999439) * t993),
+            );
+            let t1472 = T::fused(
+                k(1.4907119849998598),
+                t1014,
+                T::fused(-k(1.1925695879998879), t975, k(0.5962847939999439) * t997),
+            );
+            let t1473 = t1372 * t1472;
+            let t1474 = t1366 * t1471;
+            let t1475 = t1358 * t1470;
+            let t1476 = T::fused(
+                t1381,
+                T::fused(k(1.4907119849998598), t991, k(0.5962847939999439) * t1008),
+                t1475,
+            )
+                + T::fused(
+                    t1379,
+                    T::fused(
+                        -k(1.4907119849998598),
+                        t993,
+                        k(0.5962847939999439) * t1012,
+                    ),
+                    -t1474,
+                );
+            let t1477 = t1476
+                - T::fused(
+                    t1377,
+                    T::fused(
+                        -k(1.4907119849998598),
+                        t997,
+                        k(0.5962847939999439) * t1014,
+                    ),
+                    t1473,
+                );
+            let t1478 = T::fused(
+                t1386,
+                t1470,
+                t1381
+                    * T::fused(
+                        k(1.4907119849998598),
+                        t960,
+                        k(1.1925695879998879) * t1008,
+                    ),
+            )
+                + T::fused(
+                    -t1385,
+                    t1471,
+                    t1379
+                        * T::fused(
+                            -k(1.4907119849998598),
+                            t968,
+                            k(1.1925695879998879) * t1012,
+                        ),
+                );
+            let t1479 = t1478
+                - T::fused(
+                    -t1384,
+                    t1472,
+                    t1377
+                        * T::fused(
+                            k(1.4907119849998598),
+                            t975,
+                            k(1.1925695879998879) * t1014,
+                        ),
+                );
+            let t1480 = T::fused(
+                -t1391,
+                t1470,
+                t1381
+                    * T::fused(
+                        -k(0.5962847939999439),
+                        t960,
+                        k(1.1925695879998879) * t991,
+                    ),
+            )
+                - T::fused(
+                    -t1390,
+                    t1471,
+                    t1379
+                        * T::fused(
+                            -k(0.5962847939999439),
+                            t968,
+                            k(1.1925695879998879) * t993,
+                        ),
+                );
+            let t1481 = t1480
+                + T::fused(
+                    t1389,
+                    t1472,
+                    t1377
+                        * T::fused(
+                            k(0.5962847939999439),
+                            t975,
+                            k(1.1925695879998879) * t997,
+                        ),
+                );
+            let t1482 = T::fused(t1481, t1360, T::fused(t1477, t1357, t1479 * t1359))
+                + T::fused(t1472, t1374, T::fused(-t1470, t1362, t1471 * t1368));
+            let t1483 = T::fused(t1395, t1472, T::fused(t1396, t1471, t1397 * t1470));
+            let t1484 = T::fused(-t382, t1472, T::fused(-t375, t1471, t367 * t1470));
+            let t1485 = T::fused(t1483, t500, t1484 * t501)
+                - T::fused(t1472, t516, T::fused(t1470, t510, t1471 * t513));
+            let t1486 = T::fused(-t1483, t609, t1484 * t610)
+                + T::fused(t1472, t624, -T::fused(-t1470, t618, t1471 * t621));
+            let t1487 = t635 * t1486;
+            let t1488 = T::fused(-t1483, t718, t1484 * t719)
+                + T::fused(t1472, t733, -T::fused(-t1470, t727, t1471 * t730));
+            let t1489 = T::fused(t655, t1487, -t1488);
+            let t1490 = t744 * t1489;
+            let t1491 = T::fused(-t1483, t840, t1484 * t841)
+                + T::fused(t1472, t855, -T::fused(-t1470, t849, t1471 * t852));
+            let t1492 = T::fused(t785, t1490, -T::fused(t782, t1487, -t1491));
+            let t1493 = t863 * t1492;
+            let t1494 = T::fused(
+                t1493,
+                t787,
+                -T::fused(t1490, t657, -T::fused(t1487, t548, row36 + (t1485 + t1482))),
+            );
+            let t1495 = T::fused(-t1483, t935, t1484 * t936)
+                + T::fused(t1472, t950, -T::fused(-t1470, t944, t1471 * t947));
+            let t1496 = T::fused(
+                t880,
+                t1493,
+                -T::fused(t877, t1490, -T::fused(t874, t1487, -t1495)),
+            );
+            let t1497 = t958 * t1496;
+            let t1498 = T::fused(t1481, t1435, T::fused(t1477, t1433, t1479 * t1434))
+                + T::fused(t1472, t1442, T::fused(-t1470, t1436, t1471 * t1439));
+            let t1499 = T::fused(-t1483, t1453, t1484 * t1454)
+                + T::fused(t1472, t1466, -T::fused(-t1470, t1462, t1471 * t1464));
+            (
+                t1001,
+                t1009,
+                t1016,
+                t1024,
+                t1030,
+                t1036,
+                t1048,
+                t1050,
+                t1052,
+                t1057,
+                t1060,
+                t1061,
+                t1064,
+                t1065,
+                t1067,
+                t1068,
+                t1071,
+                t1075,
+                t1080,
+                t1083,
+                t1090,
+                t1093,
+                t1098,
+                t1102,
+                t1103,
+                t1104,
+                t1107,
+                t1108,
+                t1109,
+                t1110,
+                t1113,
+                t1115,
+                t1117,
+                t1119,
+                t1120,
+                t1121,
+                t1122,
+                t1123,
+                t1124,
+                t1136,
+                t1146,
+                t1156,
+                t1184,
+                t1282,
+                t1292,
+                t1293,
+                t1294,
+                t1304,
+                t1326,
+                t1337,
+                t1340,
+                t1342,
+                t1344,
+                t1351,
+                t1353,
+                t1355,
+                t1356,
+                t1357,
+                t1358,
+                t1359,
+                t1360,
+                t1361,
+                t1362,
+                t1365,
+                t1366,
+                t1367,
+                t1368,
+                t1371,
+                t1372,
+                t1373,
+                t1374,
+                t1401,
+                t1402,
+                t1404,
+                t1405,
+                t1407,
+                t1408,
+                t1411,
+                t1412,
+                t1413,
+                t1426,
+                t1427,
+                t1429,
+                t1430,
+                t1432,
+                t1433,
+                t1434,
+                t1435,
+                t1436,
+                t1438,
+                t1439,
+                t1441,
+                t1442,
+                t1453,
+                t1454,
+                t1461,
+                t1462,
+                t1463,
+                t1464,
+                t1465,
+                t1466,
+                t1469,
+                t1470,
+                t1471,
+                t1472,
+                t1473,
+                t1474,
+                t1475,
+                t1477,
+                t1479,
+                t1481,
+                t1483,
+                t1484,
+                t1486,
+                t1487,
+                t1489,
+                t1490,
+                t1492,
+                t1493,
+                t1494,
+                t1496,
+                t1497,
+                t1498,
+                t1499,
+            )
+        });
+        let (
+            t1544,
+            t1552,
+            t1554,
+            t1556,
+            t1604,
+            t1607,
+            t1609,
+            t1611,
+            t1659,
+            t1660,
+            t1661,
+            t1670,
+            t1671,
+            t1672,
+            t1687,
+            t1688,
+            t1712,
+            t1715,
+            t1718,
+            t1721,
+            t1730,
+            t1731,
+            t1750,
+            t1758,
+            t1761,
+            t1764,
+            t1768,
+            t1769,
+            t1770,
+            t1834,
+            t1838,
+            t1839,
+            t1840,
+            t1841,
+            t1843,
+            t1853,
+            t1855,
+            t1856,
+            t1858,
+            t1859,
+            t1861,
+            t1862,
+            t1870,
+            t1871,
+            t1883,
+            t1884,
+            t1885,
+            t1888,
+            t1891,
+            t1893,
+            t1894,
+            t1895,
+            t1900,
+            t1905,
+            t1910,
+            t1911,
+            t1912,
+            t1913,
+            t1914,
+            t1915,
+            t1916,
+            t1917,
+            t1918,
+            t1923,
+            t1928,
+            t1933,
+            t1934,
+            t1935,
+            t1936,
+            t1937,
+            t1938,
+            t1947,
+            t1950,
+            t1953,
+            t1954,
+            t1955,
+            t1956,
+            t1957,
+            t1958,
+            t1959,
+            t1967,
+            t1968,
+            t1969,
+        ) = gyro_sim::apart(move || {
+            let t1500 = T::fused(
+                t1407,
+                t1493,
+                -T::fused(t1404, t1490, -T::fused(t1401, t1487, -(t1499 - t1498))),
+            );
+            let t1501 = T::fused(t1411, t1497, -t1500);
+            let t1502 = t1469 * t1501;
+            let t1503 = T::fused(t1502, t1413, -T::fused(t1497, t882, -t1494));
+            let t1504 = t1477 + (t1473 - (t1475 - t1474));
+            let t1505 = t1479
+                - T::fused(t1093, t1472, T::fused(t1009, t1470, t1083 * t1471));
+            let t1506 = t1481
+                + T::fused(t1373, t1472, T::fused(-t1361, t1470, t1367 * t1471));
+            let t1507 = T::fused(t1104, t1472, T::fused(-t1102, t1470, t1103 * t1471));
+            let t1508 = t1507
+                + (t1507 + T::fused(t1016, t1506, T::fused(t990, t1504, t1001 * t1505)));
+            let t1509 = T::fused(t1110, t1472, T::fused(t1108, t1470, t1109 * t1471))
+                - T::fused(t1107, t1506, T::fused(t981, t1504, t999 * t1505));
+            let t1510 = T::fused(
+                k(0.6666666666666666),
+                t1508,
+                k(0.3333333333333333)
+                    * (T::fused(t1117, t1472, -T::fused(-t1113, t1470, t1115 * t1471))
+                        + t1509),
+            );
+            let t1511 = T::fused(t1124, t1472, T::fused(-t1122, t1470, t1123 * t1471))
+                + T::fused(t1121, t1506, T::fused(t1119, t1504, t1120 * t1505));
+            let t1512 = T::fused(k(0.6666666666666666), t1511 + t1507, -t1510)
+                - T::fused(t1472, t1098, T::fused(t1470, t1080, t1471 * t1090));
+            let t1513 = t1184 * t1512;
+            let t1514 = T::fused(
+                k(0.23570226039551584),
+                T::fused(-t1146, t1513, t1471) - T::fused(t1136, t1513, t1470),
+                k(0.9428090415820634) * T::fused(-t1156, t1513, t1472),
+            );
+            let t1515 = t1337 * t1514;
+            let t1516 = k(0.23570226039551584) * t1515;
+            let t1517 = k(0.9428090415820634) * t1515;
+            let t1518 = t1184
+                * (t1512
+                    - T::fused(t1156, t1517, T::fused(t1136, t1516, t1146 * t1516)));
+            let t1519 = k(0.3333333333333333) * t1518;
+            let t1520 = k(0.6666666666666666) * t1518;
+            let t1521 = t1102 * t1520;
+            let t1522 = t1521 - T::fused(-t1113, t1519, t1521)
+                + T::fused(t1080, t1518, t1516);
+            let t1523 = T::fused(t1119, t1520, T::fused(-t990, t1520, t981 * t1519));
+            let t1524 = T::fused(t1120, t1520, T::fused(-t1001, t1520, t999 * t1519));
+            let t1525 = T::fused(t1121, t1520, T::fused(-t1016, t1520, t1107 * t1519));
+            let t1526 = T::fused(t1361, t1525, T::fused(t1358, t1523, t1009 * t1524))
+                + (T::fused(t1122, t1520, T::fused(t1108, t1519, -t1521)) + t1522);
+            let t1527 = t1103 * t1520;
+            let t1528 = t1527 - T::fused(-t1115, t1519, t1527)
+                + T::fused(-t1090, t1518, t1516);
+            let t1529 = T::fused(t1367, t1525, -T::fused(-t1366, t1523, t1083 * t1524))
+                + (T::fused(t1123, t1520, -T::fused(t1109, t1519, t1527)) + t1528);
+            let t1530 = t1104 * t1520;
+            let t1531 = t1530 - T::fused(t1117, t1519, t1530)
+                + T::fused(-t1098, t1518, t1517);
+            let t1532 = T::fused(t1373, t1525, -T::fused(-t1372, t1523, t1093 * t1524))
+                + (T::fused(t1124, t1520, -T::fused(t1110, t1519, t1530)) + t1531);
+            let t1533 = T::fused(t1481, t1525, T::fused(t1477, t1523, t1479 * t1524))
+                + T::fused(t1472, t1532, T::fused(-t1470, t1526, t1471 * t1529));
+            let t1534 = T::fused(
+                k(0.9805806756909201),
+                t1470,
+                k(0.19611613513818404) * t1472,
+            );
+            let t1535 = t337 * t1534;
+            let t1536 = T::fused(
+                -k(0.03774256780481986),
+                T::fused(-t334, t1535, t1470),
+                k(0.9813067629253163) * T::fused(t349, t1535, t1471),
+            );
+            let t1537 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t1535, t1472),
+                t1536,
+            );
+            let t1538 = t399 * t1537;
+            let t1539 = T::fused(
+                t420,
+                t1535,
+                t1483 - T::fused(t413, t1472, -T::fused(-t409, t1470, t411 * t1471)),
+            );
+            let t1540 = T::fused(t427, t1538, t1539)
+                + T::fused(t407, t1538, -T::fused(-t396, t1535, t1484));
+            let t1541 = T::fused(
+                -k(0.19245008972987526),
+                t1540,
+                k(0.9622504486493763)
+                    * T::fused(t443, t1538, T::fused(t436, t1535, t1484)),
+            );
+            let t1542 = t496 * t1541;
+            let t1543 = k(0.19245008972987526) * t1542;
+            let t1544 = k(0.9622504486493763) * t1542;
+            let t1545 = t399
+                * (t1537 - T::fused(t443, t1544, -T::fused(t407, t1543, t427 * t1543)));
+            let t1546 = k(0.03774256780481986) * t1545;
+            let t1547 = k(0.9813067629253163) * t1545;
+            let t1548 = k(0.1887128390240993) * t1545;
+            let t1549 = T::fused(t436, t1544, -T::fused(t396, t1543, t420 * t1543))
+                + T::fused(t336, t1548, -T::fused(t334, t1546, t349 * t1547));
+            let t1550 = t337 * (t1534 - t1549);
+            let t1551 = t409 * t1543;
+            let t1552 = T::fused(t367, t1543, t1551)
+                + T::fused(-k(0.9805806756909201), t1550, t1546);
+            let t1553 = t411 * t1543;
+            let t1554 = t1547 + T::fused(t375, t1543, t1553);
+            let t1555 = t413 * t1543;
+            let t1556 = T::fused(-t382, t1543, t1555)
+                - T::fused(k(0.19611613513818404), t1550, t1548);
+            let t1557 = T::fused(-t1483, t1543, t1484 * t1544)
+                + T::fused(t1472, t1556, -T::fused(-t1470, t1552, t1471 * t1554));
+            let t1558 = T::fused(
+                t1492,
+                t1493,
+                -T::fused(t1489, t1490, -T::fused(t1486, t1487, t1557 - t1533)),
+            );
+            let t1559 = k(1.0) / T::fused(t1501, t1502, -T::fused(t1496, t1497, -t1558));
+            let t1560 = carrier_rx
+                + T::fused(k(0.8), t17, T::fused(-k(0.2), t88, k(0.4) * t31))
+                - (slide_rx - t1292);
+            let t1561 = k(1.0) / self.rod_length;
+            let t1562 = t1561 * (k(2.0) * t1560);
+            let t1563 = k(0.5) * t1562;
+            let t1564 = carrier_ry
+                + T::fused(k(0.8), t9, -T::fused(-k(0.2), t90, k(0.4) * t27))
+                - (slide_ry + t1293);
+            let t1565 = t1561 * (k(2.0) * t1564);
+            let t1566 = k(0.5) * t1565;
+            let t1567 = carrier_rz
+                - T::fused(k(0.8), t24, -T::fused(k(0.2), t92, k(0.4) * t33))
+                - (slide_rz - t1294);
+            let t1568 = t1561 * (k(2.0) * t1567);
+            let t1569 = k(0.5) * t1568;
+            let t1570 = T::fused(
+                t1564,
+                T::fused(k(0.8), t27, t153),
+                t1560 * T::fused(-k(0.8), t31, t140),
+            );
+            let t1571 = k(0.5)
+                * (t1561
+                    * (k(2.0) * T::fused(-t1567, T::fused(k(0.8), t33, t166), t1570)));
+            let t1572 = T::fused(
+                t1564,
+                T::fused(-k(0.8), t90, t121),
+                t1560 * T::fused(k(0.8), t88, t120),
+            );
+            let t1573 = k(0.5)
+                * (t1561
+                    * (k(2.0) * T::fused(-t1567, T::fused(k(0.8), t92, t122), t1572)));
+            let t1574 = T::fused(
+                -t1564,
+                T::fused(k(0.2), t27, k(0.4) * t90),
+                t1560 * T::fused(k(0.2), t31, k(0.4) * t88),
+            );
+            let t1575 = t1561
+                * (k(2.0)
+                    * T::fused(-t1567, T::fused(-k(0.2), t33, k(0.4) * t92), t1574));
+            let t1576 = k(0.5) * t1575;
+            let t1577 = T::fused(t1576, t244, -T::fused(t1571, t241, t1573 * t243))
+                + T::fused(t1569, t252, T::fused(t1563, t246, t1566 * t249));
+            let t1578 = T::fused(
+                -t1567,
+                k(0.2) * t1024,
+                T::fused(t1564, k(0.2) * t1030, t1560 * (k(0.2) * t1036)),
+            );
+            let t1579 = T::fused(
+                -t1567,
+                k(0.2) * t1052,
+                T::fused(-t1564, k(0.2) * t1050, t1560 * (k(0.2) * t1048)),
+            );
+            let t1580 = T::fused(
+                -(k(0.5) * (t1561 * (k(2.0) * t1578))),
+                t1282,
+                k(0.5) * (t1561 * (k(2.0) * t1579)) * t1326,
+            );
+            let t1581 = t1580
+                - T::fused(t1569, t1344, -T::fused(-t1563, t1340, t1566 * t1342))
+                - t1577;
+            let t1582 = T::fused(t1576, t567, -T::fused(-t1571, t566, t1573 * t567))
+                - T::fused(t1569, t575, T::fused(-t1563, t569, t1566 * t572));
+            let t1583 = t635 * t1582;
+            let t1584 = T::fused(t1576, t676, -T::fused(-t1571, t675, t1573 * t676))
+                - T::fused(t1569, t684, T::fused(-t1563, t678, t1566 * t681));
+            let t1585 = T::fused(t655, t1583, -t1584);
+            let t1586 = t744 * t1585;
+            let t1587 = T::fused(t1576, t804, -T::fused(-t1571, t803, t1573 * t804))
+                - T::fused(t1569, t812, T::fused(-t1563, t806, t1566 * t809));
+            let t1588 = T::fused(t785, t1586, -T::fused(t782, t1583, -t1587));
+            let t1589 = t863 * t1588;
+            let t1590 = T::fused(
+                t1589,
+                t787,
+                -T::fused(t1586, t657, -T::fused(t1583, t548, -(row37 + t1581))),
+            );
+            let t1591 = T::fused(t1576, t899, -T::fused(-t1571, t898, t1573 * t899))
+                - T::fused(t1569, t907, T::fused(-t1563, t901, t1566 * t904));
+            let t1592 = T::fused(
+                t880,
+                t1589,
+                -T::fused(t877, t1586, -T::fused(t874, t1583, t1591)),
+            );
+            let t1593 = t958 * t1592;
+            let t1594 = T::fused(
+                t1401,
+                t1583,
+                T::fused(t1569, t1427, -T::fused(-t1563, t1426, t1566 * t1426)),
+            );
+            let t1595 = T::fused(
+                t1411,
+                t1593,
+                -T::fused(t1407, t1589, -T::fused(t1404, t1586, -t1594)),
+            );
+            let t1596 = t1469 * t1595;
+            let t1597 = T::fused(
+                t1486,
+                t1583,
+                -T::fused(t1569, t1517, -T::fused(-t1563, t1516, t1566 * t1516)),
+            );
+            let t1598 = T::fused(
+                t1501,
+                t1596,
+                -T::fused(
+                    t1496,
+                    t1593,
+                    -T::fused(t1492, t1589, -T::fused(t1489, t1586, -t1597)),
+                ),
+            );
+            let t1599 = t1559 * t1598;
+            let t1600 = T::fused(
+                t1599,
+                t1503,
+                -T::fused(t1596, t1413, -T::fused(t1593, t882, -t1590)),
+            );
+            let t1601 = T::fused(t122, t1569, -T::fused(t120, t1563, t121 * t1566));
+            let t1602 = T::fused(
+                k(0.6666666666666666),
+                t1576 - T::fused(t136, t1569, T::fused(-t132, t1563, t134 * t1566)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t1571 - t1601,
+                    k(0.6666666666666666) * (t1573 - t1601),
+                ),
+            );
+            let t1603 = t239 * t1602;
+            let t1604 = k(0.3333333333333333) * t1603;
+            let t1605 = k(0.6666666666666666) * t1603;
+            let t1606 = t132 * t1605;
+            let t1607 = t1606 - T::fused(-t120, t1604, t120 * t1605);
+            let t1608 = t134 * t1605;
+            let t1609 = t1608 + T::fused(-t121, t1604, t121 * t1605);
+            let t1610 = t136 * t1605;
+            let t1611 = t1610 - T::fused(-t122, t1604, t122 * t1605);
+            let t1612 = T::fused(t1576, t1605, -T::fused(-t1571, t1604, t1573 * t1605))
+                - T::fused(t1569, t1611, T::fused(-t1563, t1607, t1566 * t1609));
+            let t1613 = t1337
+                * T::fused(
+                    k(0.11785113019775792),
+                    t1562 - t1565,
+                    k(0.4714045207910317) * t1568,
+                );
+            let t1614 = k(0.23570226039551584) * t1613;
+            let t1615 = k(0.9428090415820634) * t1613;
+            let t1616 = T::fused(
+                t1582,
+                t1583,
+                -(T::fused(t1569, t1615, -T::fused(-t1563, t1614, t1566 * t1614))
+                    - t1612),
+            );
+            let t1617 = T::fused(
+                t1595,
+                t1596,
+                -T::fused(
+                    t1592,
+                    t1593,
+                    -T::fused(t1588, t1589, -T::fused(t1585, t1586, -t1616)),
+                ),
+            );
+            let t1618 = k(1.0) / T::fused(t1598, t1599, -t1617);
+            let t1619 = k(0.5) * t770;
+            let t1620 = T::fused(
+                k(0.45226701686664544),
+                t769,
+                T::fused(-k(0.30151134457776363), t868, k(0.45226701686664544) * t768),
+            );
+            let t1621 = k(1.0) / T::fused(t1619, t1619, t1620 * t1620);
+            let t1622 = T::fused(
+                k(0.45226701686664544) * t770,
+                t1619,
+                k(0.5) * (t769 + t768) * t1620,
+            ) * t1621;
+            let t1623 = k(0.45226701686664544) * t868;
+            let t1624 = t1620 * (k(0.5) * t868);
+            let t1625 = t1621
+                * T::fused(-t1619, T::fused(k(0.30151134457776363), t769, t1623), t1624);
+            let t1626 = t1621
+                * T::fused(t1619, T::fused(k(0.30151134457776363), t768, t1623), t1624);
+            let t1627 = t760 + t759;
+            let t1628 = t756 + t752;
+            let t1629 = T::fused(
+                -t1619,
+                T::fused(
+                    -k(0.45226701686664544),
+                    t1627,
+                    T::fused(
+                        -k(0.45226701686664544),
+                        t1628,
+                        k(0.30151134457776363) * (t765 + t764),
+                    ),
+                ),
+                t1620 * (k(0.5) * (t1628 - t1627)),
+            );
+            let t1630 = t1621 * t1629;
+            let t1631 = T::fused(
+                t1619,
+                T::fused(
+                    -k(0.45226701686664544),
+                    t758,
+                    T::fused(-k(0.45226701686664544), t748, t870),
+                ),
+                t1620 * (k(0.5) * (t758 - t748)),
+            );
+            let t1632 = t1621 * t1631;
+            let t1633 = T::fused(t1632, t524, -T::fused(t1630, t520, t1632 * t522))
+                - T::fused(t1626, t262, T::fused(t1622, t277, t1625 * t260));
+            let t1634 = T::fused(
+                T::fused(k(0.7453559924999299), t1060, k(0.29814239699997197) * t1064),
+                t1061,
+                k(0.8944271909999159) * t1064 * t1065,
+            );
+            let t1635 = T::fused(
+                -t1061,
+                T::fused(-k(0.7453559924999299), t1057, k(0.5962847939999439) * t1064),
+                t1065 * (k(0.4472135954999579) * t1064),
+            );
+            let t1636 = T::fused(
+                -(self.gear_ratio * (t1634 * t1067)),
+                t1282,
+                self.gear_ratio * (t1067 * t1635) * t1304,
+            );
+            let t1637 = T::fused(
+                -t1061,
+                T::fused(k(0.29814239699997197), t1057, k(0.5962847939999439) * t1060),
+                t1065
+                    * T::fused(
+                        -k(0.8944271909999159),
+                        t1057,
+                        k(0.4472135954999579) * t1060,
+                    ),
+            );
+            let t1638 = self.gear_ratio * t1068;
+            let t1639 = self.gear_ratio * t1071;
+            let t1640 = self.gear_ratio * t1075;
+            let t1641 = T::fused(t1640, t1355, -T::fused(-t1638, t1353, t1639 * t1351))
+                + (T::fused(self.gear_ratio * (t1067 * t1637), t1326, -t1636) + t1633);
+            let t1642 = T::fused(t1632, t630, -T::fused(t1630, t628, t1632 * t629))
+                - T::fused(t1626, t584, T::fused(-t1622, t588, t1625 * t583));
+            let t1643 = t635 * t1642;
+            let t1644 = T::fused(t1632, t739, -T::fused(t1630, t737, t1632 * t738))
+                - T::fused(t1626, t693, T::fused(-t1622, t697, t1625 * t692));
+            let t1645 = T::fused(t655, t1643, -t1644);
+            let t1646 = t744 * t1645;
+            let t1647 = T::fused(t1632, t861, T::fused(t1630, t859, t1632 * t860))
+                - T::fused(t1626, t822, T::fused(-t1622, t820, t1625 * t821));
+            let t1648 = T::fused(t785, t1646, -T::fused(t782, t1643, -t1647));
+            let t1649 = t863 * t1648;
+            let t1650 = T::fused(
+                t1649,
+                t787,
+                -T::fused(t1646, t657, -T::fused(t1643, t548, -(row38 - t1641))),
+            );
+            let t1651 = T::fused(t1632, t956, T::fused(-t1630, t954, t1632 * t955))
+                + T::fused(t1626, t917, T::fused(-t1622, t915, t1625 * t916));
+            let t1652 = T::fused(
+                t880,
+                t1649,
+                -T::fused(t877, t1646, -T::fused(t874, t1643, -t1651)),
+            );
+            let t1653 = t958 * t1652;
+            let t1654 = t1462 + T::fused(t429, t1454, T::fused(t371, t1453, t1461));
+            let t1655 = t1464 + T::fused(t430, t1454, T::fused(-t379, t1453, t1463));
+            let t1656 = t1466 + T::fused(t431, t1454, T::fused(t384, t1453, t1465));
+            let t1657 = T::fused(t328, t1656, -T::fused(-t321, t1654, t340 * t1655));
+            let t1658 = T::fused(
+                k(2.1052631578947367),
+                t1657,
+                -T::fused(t327, t1656, -T::fused(-t319, t1654, t339 * t1655)),
+            );
+            let t1659 = k(50.0) * t1658;
+            let t1660 = k(263.1578947368421) * t1657;
+            let t1661 = k(40.0)
+                * T::fused(t331, t1656, -T::fused(t325, t1654, t343 * t1655));
+            let t1662 = T::fused(t1640, t1430, -T::fused(t1638, t1430, t1639 * t1429))
+                + T::fused(t1632, t1661, -T::fused(t1630, t1659, t1632 * t1660));
+            let t1663 = T::fused(
+                t1411,
+                t1653,
+                -T::fused(
+                    t1407,
+                    t1649,
+                    -T::fused(t1404, t1646, -T::fused(t1401, t1643, t1662)),
+                ),
+            );
+            let t1664 = t1469 * t1663;
+            let t1665 = t1552 + T::fused(t429, t1544, T::fused(t371, t1543, t1551));
+            let t1666 = t1554 + T::fused(t430, t1544, T::fused(-t379, t1543, t1553));
+            let t1667 = t1556 + T::fused(t431, t1544, T::fused(t384, t1543, t1555));
+            let t1668 = T::fused(t328, t1667, -T::fused(-t321, t1665, t340 * t1666));
+            let t1669 = T::fused(
+                k(2.1052631578947367),
+                t1668,
+                -T::fused(t327, t1667, -T::fused(-t319, t1665, t339 * t1666)),
+            );
+            let t1670 = k(50.0) * t1669;
+            let t1671 = k(263.1578947368421) * t1668;
+            let t1672 = k(40.0)
+                * T::fused(t331, t1667, -T::fused(t325, t1665, t343 * t1666));
+            let t1673 = T::fused(t1640, t1520, -T::fused(t1638, t1520, t1639 * t1519))
+                + T::fused(t1632, t1672, -T::fused(t1630, t1670, t1632 * t1671));
+            let t1674 = T::fused(
+                t1496,
+                t1653,
+                -T::fused(
+                    t1492,
+                    t1649,
+                    -T::fused(t1489, t1646, -T::fused(t1486, t1643, -t1673)),
+                ),
+            );
+            let t1675 = T::fused(t1501, t1664, -t1674);
+            let t1676 = t1559 * t1675;
+            let t1677 = t1607 + (t1606 - T::fused(t107, t1604, t125 * t1605));
+            let t1678 = t1609 + (t1608 - T::fused(t113, t1604, t127 * t1605));
+            let t1679 = t1611 + (t1610 - T::fused(-t118, t1604, t129 * t1605));
+            let t1680 = T::fused(t26, t1605, -T::fused(t94, t1604, t35 * t1605));
+            let t1681 = T::fused(t44, t1605, -T::fused(t100, t1604, t43 * t1605));
+            let t1682 = T::fused(t63, t1680, t85 * t1681)
+                + T::fused(t76, t1679, -T::fused(t59, t1677, t69 * t1678));
+            let t1683 = t61 * t1682;
+            let t1684 = T::fused(t56, t1681, -T::fused(t54, t1683, t55 * t1680))
+                - T::fused(t74, t1679, -T::fused(t46, t1677, t67 * t1678));
+            let t1685 = t57 * t1684;
+            let t1686 = T::fused(t53, t1685, t1683);
+            let t1687 = T::fused(t36, t1685, t1680);
+            let t1688 = T::fused(-t45, t1685, t1681);
+            let t1689 = t1184
+                * T::fused(t1156, t1615, T::fused(t1136, t1614, t1146 * t1614));
+            let t1690 = k(0.6666666666666666) * t1689;
+            let t1691 = k(0.3333333333333333) * t1689;
+            let t1692 = T::fused(t1640, t1690, -T::fused(t1638, t1690, t1639 * t1691))
+                - T::fused(t1626, t1688, T::fused(t1622, t1686, t1625 * t1687));
+            let t1693 = T::fused(
+                t1592,
+                t1653,
+                -T::fused(
+                    t1588,
+                    t1649,
+                    -T::fused(t1585, t1646, -T::fused(t1582, t1643, t1692)),
+                ),
+            );
+            let t1694 = T::fused(t1598, t1676, -T::fused(t1595, t1664, -t1693));
+            let t1695 = t1618 * t1694;
+            let t1696 = T::fused(
+                t1695,
+                t1600,
+                -T::fused(
+                    t1676,
+                    t1503,
+                    -T::fused(t1664, t1413, -T::fused(t1653, t882, -t1650)),
+                ),
+            );
+            let t1697 = T::fused(t45, t1626, -T::fused(t1622, t53, t36 * t1625));
+            let t1698 = t57 * t1697;
+            let t1699 = T::fused(t54, t1698, t1622);
+            let t1700 = t61 * t1699;
+            let t1701 = T::fused(t63, t1700, T::fused(t55, t1698, t1625));
+            let t1702 = T::fused(t85, t1700, T::fused(-t56, t1698, t1626));
+            let t1703 = T::fused(t46, t1698, t59 * t1700);
+            let t1704 = T::fused(t67, t1698, t69 * t1700);
+            let t1705 = T::fused(t74, t1698, t76 * t1700);
+            let t1706 = T::fused(t118, t1705, T::fused(t107, t1703, t113 * t1704))
+                - T::fused(t94, t1701, t100 * t1702);
+            let t1707 = T::fused(t122, t1705, T::fused(-t120, t1703, t121 * t1704));
+            let t1708 = T::fused(t129, t1705, -T::fused(t125, t1703, t127 * t1704))
+                + T::fused(t35, t1701, t43 * t1702);
+            let t1709 = T::fused(t136, t1705, -T::fused(t132, t1703, t134 * t1704));
+            let t1710 = T::fused(
+                k(0.6666666666666666),
+                t1709 + (t1709 + T::fused(t26, t1701, t44 * t1702)),
+                -T::fused(
+                    -k(0.3333333333333333),
+                    t1707 + t1706,
+                    k(0.6666666666666666) * (t1707 + t1708),
+                ),
+            );
+            let t1711 = t239 * t1710;
+            let t1712 = k(0.3333333333333333) * t1711;
+            let t1713 = k(0.6666666666666666) * t1711;
+            let t1714 = t132 * t1713;
+            let t1715 = t1714 - T::fused(-t120, t1712, t120 * t1713);
+            let t1716 = T::fused(t107, t1712, t125 * t1713) - t1714 - t1715;
+            let t1717 = t134 * t1713;
+            let t1718 = t1717 + T::fused(-t121, t1712, t121 * t1713);
+            let t1719 = T::fused(t113, t1712, t127 * t1713) - t1717 - t1718;
+            let t1720 = t136 * t1713;
+            let t1721 = t1720 - T::fused(-t122, t1712, t122 * t1713);
+            let t1722 = T::fused(-t118, t1712, t129 * t1713) - t1720 - t1721;
+            let t1723 = T::fused(t26, t1713, -T::fused(t94, t1712, t35 * t1713));
+            let t1724 = T::fused(t44, t1713, -T::fused(t100, t1712, t43 * t1713));
+            let t1725 = T::fused(t63, t1723, t85 * t1724)
+                - T::fused(t76, t1722, -T::fused(t59, t1716, t69 * t1719));
+            let t1726 = t61 * (t1699 - t1725);
+            let t1727 = T::fused(t56, t1724, -T::fused(-t54, t1726, t55 * t1723))
+                + T::fused(t74, t1722, -T::fused(t46, t1716, t67 * t1719));
+            let t1728 = t57 * (t1697 + t1727);
+            let t1729 = T::fused(-t53, t1728, t1726);
+            let t1730 = T::fused(t36, t1728, t1723);
+            let t1731 = T::fused(-t45, t1728, t1724);
+            let t1732 = k(50.0) * t1630;
+            let t1733 = T::fused(k(0.4), t1630, t1632);
+            let t1734 = k(263.1578947368421) * t1733;
+            let t1735 = k(40.0) * t1632;
+            let t1736 = T::fused(t325, t1735, T::fused(-t319, t1732, t321 * t1734));
+            let t1737 = T::fused(t343, t1735, -T::fused(-t339, t1732, t340 * t1734));
+            let t1738 = T::fused(t331, t1735, -T::fused(-t327, t1732, t328 * t1734));
+            let t1739 = T::fused(t382, t1738, T::fused(t367, t1736, t375 * t1737))
+                - T::fused(t384, t1738, T::fused(-t371, t1736, t379 * t1737));
+            let t1740 = T::fused(
+                -k(0.9805806756909201),
+                t1736,
+                k(0.19611613513818404) * t1738,
+            );
+            let t1741 = t337 * t1740;
+            let t1742 = T::fused(
+                k(0.03774256780481986),
+                T::fused(t334, t1741, t1736),
+                k(0.9813067629253163) * T::fused(t349, t1741, t1737),
+            );
+            let t1743 = T::fused(
+                k(0.1887128390240993),
+                T::fused(-t336, t1741, t1738),
+                t1742,
+            );
+            let t1744 = t399 * t1743;
+            let t1745 = T::fused(
+                -k(2.0),
+                T::fused(t413, t1738, -T::fused(t409, t1736, t411 * t1737)),
+                t420 * t1741,
+            );
+            let t1746 = T::fused(t427, t1744, t1745)
+                + T::fused(t407, t1744, T::fused(t396, t1741, t1739));
+            let t1747 = T::fused(
+                t436,
+                t1741,
+                T::fused(t431, t1738, -T::fused(t429, t1736, t430 * t1737)),
+            );
+            let t1748 = t496
+                * T::fused(
+                    -k(0.19245008972987526),
+                    t1746,
+                    k(0.9622504486493763) * T::fused(t443, t1744, t1747),
+                );
+            let t1749 = k(0.19245008972987526) * t1748;
+            let t1750 = k(0.9622504486493763) * t1748;
+            let t1751 = t399
+                * (t1743 - T::fused(t443, t1750, -T::fused(t407, t1749, t427 * t1749)));
+            let t1752 = k(0.03774256780481986) * t1751;
+            let t1753 = k(0.9813067629253163) * t1751;
+            let t1754 = k(0.1887128390240993) * t1751;
+            let t1755 = T::fused(t436, t1750, -T::fused(t396, t1749, t420 * t1749))
+                + T::fused(t336, t1754, -T::fused(t334, t1752, t349 * t1753));
+            let t1756 = t337 * (t1740 - t1755);
+            let t1757 = t409 * t1749;
+            let t1758 = T::fused(t367, t1749, t1757)
+                + T::fused(-k(0.9805806756909201), t1756, t1752);
+            let t1759 = T::fused(t429, t1750, T::fused(t371, t1749, t1757)) + t1758;
+            let t1760 = t411 * t1749;
+            let t1761 = t1753 + T::fused(t375, t1749, t1760);
+            let t1762 = T::fused(t430, t1750, -T::fused(t379, t1749, -t1760)) + t1761;
+            let t1763 = t413 * t1749;
+            let t1764 = T::fused(-t382, t1749, t1763)
+                - T::fused(k(0.19611613513818404), t1756, t1754);
+            let t1765 = T::fused(t431, t1750, T::fused(t384, t1749, t1763)) + t1764;
+            let t1766 = t1733
+                + T::fused(t328, t1765, -T::fused(-t321, t1759, t340 * t1762));
+            let t1767 = T::fused(
+                k(2.1052631578947367),
+                t1766,
+                -T::fused(t327, t1765, -T::fused(-t319, t1759, t339 * t1762)),
+            );
+            let t1768 = k(50.0) * (t1630 + t1767);
+            let t1769 = k(263.1578947368421) * t1766;
+            let t1770 = k(40.0)
+                * (t1632 - T::fused(t331, t1765, -T::fused(t325, t1759, t343 * t1762)));
+            let t1771 = T::fused(t1632, t1770, T::fused(t1630, t1768, t1632 * t1769))
+                - T::fused(t1626, t1731, T::fused(-t1622, t1729, t1625 * t1730));
+            let t1772 = T::fused(
+                k(0.6666666666666666),
+                t1640,
+                -T::fused(k(0.6666666666666666), t1638, k(0.3333333333333333) * t1639),
+            );
+            let t1773 = t1184 * t1772;
+            let t1774 = T::fused(
+                k(0.23570226039551584),
+                T::fused(t1136, t1773, t1146 * t1773),
+                k(0.9428090415820634) * (t1156 * t1773),
+            );
+            let t1775 = t1337 * t1774;
+            let t1776 = k(0.23570226039551584) * t1775;
+            let t1777 = k(0.9428090415820634) * t1775;
+            let t1778 = t1184
+                * (t1772
+                    + T::fused(t1156, t1777, T::fused(t1136, t1776, t1146 * t1776)));
+            let t1779 = k(0.6666666666666666) * t1778;
+            let t1780 = k(0.3333333333333333) * t1778;
+            let t1781 = T::fused(
+                t1642,
+                t1643,
+                -(T::fused(t1640, t1779, -T::fused(t1638, t1779, t1639 * t1780)) + t1771),
+            );
+            let t1782 = T::fused(
+                t1663,
+                t1664,
+                -T::fused(
+                    t1652,
+                    t1653,
+                    -T::fused(t1648, t1649, -T::fused(t1645, t1646, -t1781)),
+                ),
+            );
+            let t1783 = k(1.0) / T::fused(t1694, t1695, -T::fused(t1675, t1676, -t1782));
+            let t1784 = T::fused(k(1.3333333333333333), t17, -(t185 - t184));
+            let t1785 = T::fused(k(1.3333333333333333), t9, -(t182 - t181));
+            let t1786 = T::fused(k(1.3333333333333333), t24, t179 + t178);
+            let t1787 = T::fused(
+                k(0.6666666666666666),
+                t1786,
+                T::fused(k(0.6666666666666666), t1784, k(0.3333333333333333) * t1785),
+            );
+            let t1788 = T::fused(
+                k(0.6666666666666666),
+                t1785 - t1784,
+                k(0.3333333333333333) * t1786,
+            );
+            let t1789 = k(1.0) / T::fused(t1787, t1787, t1788 * t1788);
+            let t1790 = k(1.3333333333333333) * t33;
+            let t1791 = t188 - t1790;
+            let t1792 = k(1.3333333333333333) * t27;
+            let t1793 = t190 - t1792;
+            let t1794 = k(1.3333333333333333) * t31;
+            let t1795 = t192 + t1794;
+            let t1796 = T::fused(
+                T::fused(
+                    -k(0.3333333333333333),
+                    t1791,
+                    k(0.6666666666666666) * (t1795 - t1793),
+                ),
+                t1787,
+                T::fused(
+                    k(0.6666666666666666),
+                    t1791,
+                    T::fused(k(0.3333333333333333), t1793, k(0.6666666666666666) * t1795),
+                ) * t1788,
+            );
+            let t1797 = t1796 * t1789;
+            let t1798 = t92 - t24;
+            let t1799 = t90 + t9;
+            let t1800 = t88 - t17;
+            let t1801 = T::fused(
+                t1787,
+                T::fused(
+                    -k(0.4444444444444444),
+                    t1798,
+                    k(0.8888888888888888) * (t1800 + t1799),
+                ),
+                t1788
+                    * T::fused(
+                        k(0.8888888888888888),
+                        t1798,
+                        T::fused(
+                            -k(0.4444444444444444),
+                            t1799,
+                            k(0.8888888888888888) * t1800,
+                        ),
+                    ),
+            );
+            let t1802 = t1789 * t1801;
+            let t1803 = T::fused(-k(0.6666666666666666), t92, t1790);
+            let t1804 = T::fused(k(0.6666666666666666), t90, t1792);
+            let t1805 = T::fused(k(0.6666666666666666), t88, t1794);
+            let t1806 = T::fused(
+                t1787,
+                T::fused(
+                    k(0.3333333333333333),
+                    t1803,
+                    k(0.6666666666666666) * (t1805 + t1804),
+                ),
+                t1788
+                    * T::fused(
+                        -k(0.6666666666666666),
+                        t1803,
+                        T::fused(
+                            -k(0.3333333333333333),
+                            t1804,
+                            k(0.6666666666666666) * t1805,
+                        ),
+                    ),
+            );
+            let t1807 = t1789 * t1806;
+            let t1808 = T::fused(t1807, t567, T::fused(t1797, t566, t1802 * t567));
+            let t1809 = t635 * t1808;
+            let t1810 = T::fused(
+                t1809,
+                t548,
+                -(row39 - T::fused(t1807, t244, T::fused(-t1797, t241, t1802 * t243))),
+            );
+            let t1811 = T::fused(
+                t655,
+                t1809,
+                -T::fused(t1807, t676, T::fused(t1797, t675, t1802 * t676)),
+            );
+            let t1812 = t744 * t1811;
+            let t1813 = T::fused(
+                t782,
+                t1809,
+                -T::fused(t1807, t804, T::fused(t1797, t803, t1802 * t804)),
+            );
+            let t1814 = T::fused(t785, t1812, -t1813);
+            let t1815 = t863 * t1814;
+            let t1816 = T::fused(
+                t874,
+                t1809,
+                T::fused(t1807, t899, T::fused(t1797, t898, t1802 * t899)),
+            );
+            let t1817 = T::fused(t880, t1815, -T::fused(t877, t1812, -t1816));
+            let t1818 = t958 * t1817;
+            let t1819 = T::fused(
+                t1411,
+                t1818,
+                -T::fused(t1407, t1815, -T::fused(-t1401, t1809, t1404 * t1812)),
+            );
+            let t1820 = t1469 * t1819;
+            let t1821 = T::fused(
+                t1820,
+                t1413,
+                -T::fused(
+                    t1818,
+                    t882,
+                    -T::fused(t1815, t787, -T::fused(t1812, t657, -t1810)),
+                ),
+            );
+            let t1822 = T::fused(
+                t1496,
+                t1818,
+                -T::fused(t1492, t1815, -T::fused(-t1486, t1809, t1489 * t1812)),
+            );
+            let t1823 = T::fused(t1501, t1820, -t1822);
+            let t1824 = t1559 * t1823;
+            let t1825 = T::fused(
+                t1582,
+                t1809,
+                T::fused(t1807, t1605, T::fused(t1797, t1604, t1802 * t1605)),
+            );
+            let t1826 = T::fused(
+                t1595,
+                t1820,
+                -T::fused(
+                    t1592,
+                    t1818,
+                    -T::fused(t1588, t1815, -T::fused(t1585, t1812, -t1825)),
+                ),
+            );
+            let t1827 = T::fused(t1598, t1824, -t1826);
+            let t1828 = t1618 * t1827;
+            let t1829 = T::fused(
+                t1642,
+                t1809,
+                -T::fused(t1807, t1713, T::fused(t1797, t1712, t1802 * t1713)),
+            );
+            let t1830 = T::fused(
+                t1663,
+                t1820,
+                -T::fused(
+                    t1652,
+                    t1818,
+                    -T::fused(t1648, t1815, -T::fused(t1645, t1812, -t1829)),
+                ),
+            );
+            let t1831 = T::fused(t1694, t1828, -T::fused(t1675, t1824, -t1830));
+            let t1832 = t1783 * t1831;
+            let t1833 = t239
+                * T::fused(
+                    k(0.6666666666666666),
+                    t1807,
+                    T::fused(k(0.3333333333333333), t1797, k(0.6666666666666666) * t1802),
+                );
+            let t1834 = k(0.3333333333333333) * t1833;
+            let t1835 = k(0.6666666666666666) * t1833;
+            let t1836 = T::fused(
+                t1808,
+                t1809,
+                T::fused(t1807, t1835, T::fused(t1797, t1834, t1802 * t1835)),
+            );
+            let t1837 = T::fused(
+                t1819,
+                t1820,
+                -T::fused(
+                    t1817,
+                    t1818,
+                    -T::fused(t1814, t1815, -T::fused(t1811, t1812, -t1836)),
+                ),
+            );
+            let t1838 = T::fused(
+                t1832,
+                t1696,
+                -T::fused(t1828, t1600, -T::fused(t1824, t1503, -t1821)),
+            )
+                / T::fused(
+                    t1831,
+                    t1832,
+                    -T::fused(t1827, t1828, -T::fused(t1823, t1824, -t1837)),
+                );
+            let t1839 = T::fused(-t1783, t1696, t1832 * t1838);
+            let t1840 = T::fused(t1828, t1838, -T::fused(t1618, t1600, t1695 * t1839));
+            let t1841 = T::fused(
+                t1824,
+                t1838,
+                -T::fused(t1676, t1839, T::fused(t1559, t1503, t1599 * t1840)),
+            );
+            let t1842 = T::fused(
+                t1664,
+                t1839,
+                T::fused(t1596, t1840, T::fused(t1469, t1413, t1502 * t1841)),
+            );
+            let t1843 = T::fused(t1820, t1838, -t1842);
+            let t1844 = T::fused(
+                t1593,
+                t1840,
+                T::fused(t1497, t1841, T::fused(t958, t882, t1412 * t1843)),
+            );
+            let t1845 = T::fused(t1818, t1838, -T::fused(t1653, t1839, t1844));
+            let t1846 = T::fused(
+                t1493,
+                t1841,
+                T::fused(t1408, t1843, T::fused(t863, t787, t881 * t1845)),
+            );
+            let t1847 = T::fused(
+                t1815,
+                t1838,
+                -T::fused(t1649, t1839, T::fused(t1589, t1840, t1846)),
+            );
+            let t1848 = T::fused(
+                t1405,
+                t1843,
+                T::fused(t878, t1845, T::fused(t744, t657, t786 * t1847)),
+            );
+            let t1849 = T::fused(
+                t1812,
+                t1838,
+                -T::fused(
+                    t1646,
+                    t1839,
+                    T::fused(t1586, t1840, T::fused(t1490, t1841, t1848)),
+                ),
+            );
+            let t1850 = T::fused(
+                t875,
+                t1845,
+                T::fused(t783, t1847, T::fused(t635, t548, t656 * t1849)),
+            );
+            let t1851 = T::fused(
+                t1643,
+                t1839,
+                T::fused(
+                    t1583,
+                    t1840,
+                    T::fused(t1487, t1841, T::fused(t1402, t1843, t1850)),
+                ),
+            );
+            let t1852 = T::fused(t1809, t1838, -t1851);
+            let t1853 = T::fused(
+                t901,
+                t1845,
+                -T::fused(
+                    t806,
+                    t1847,
+                    T::fused(t678, t1849, -T::fused(-t569, t1852, t246)),
+                ),
+            );
+            let t1854 = t132 * t1835;
+            let t1855 = t1854 - T::fused(-t120, t1834, t120 * t1835);
+            let t1856 = T::fused(
+                t904,
+                t1845,
+                -T::fused(
+                    t809,
+                    t1847,
+                    T::fused(t681, t1849, T::fused(t572, t1852, t249)),
+                ),
+            );
+            let t1857 = t134 * t1835;
+            let t1858 = t1857 + T::fused(-t121, t1834, t121 * t1835);
+            let t1859 = T::fused(
+                t907,
+                t1845,
+                -T::fused(
+                    t812,
+                    t1847,
+                    T::fused(t684, t1849, T::fused(t575, t1852, t252)),
+                ),
+            );
+            let t1860 = t136 * t1835;
+            let t1861 = t1860 - T::fused(-t122, t1834, t122 * t1835);
+            let t1862 = T::fused(
+                t898,
+                t1845,
+                -T::fused(
+                    t803,
+                    t1847,
+                    T::fused(t675, t1849, T::fused(t566, t1852, t241)),
+                ),
+            );
+            let t1863 = t567 * t1852;
+            let t1864 = t676 * t1849;
+            let t1865 = t804 * t1847;
+            let t1866 = t899 * t1845;
+            let t1867 = t1605 * t1840;
+            let t1868 = t1713 * t1839;
+            let t1869 = t1835 * t1838;
+            let t1870 = t1869
+                + (t1868 - (t1867 + (t1866 - (t1865 + (t1864 - (t243 - t1863))))));
+            let t1871 = t1869
+                + (t1868 - (t1867 + (t1866 - (t1865 + (t1864 - (t244 - t1863))))));
+            let t1872 = T::fused(
+                t807 - T::fused(t261, t821, t263 * t822),
+                t1847,
+                T::fused(t694, t1849, T::fused(t585, t1852, t264)),
+            );
+            let t1873 = T::fused(
+                t1677 + T::fused(t261, t1687, t263 * t1688),
+                t1840,
+                -T::fused(t902 - T::fused(t261, t916, t263 * t917), t1845, -t1872),
+            );
+            let t1874 = t1855 + (t1854 - T::fused(t107, t1834, t125 * t1835));
+            let t1875 = t1858 + (t1857 - T::fused(t113, t1834, t127 * t1835));
+            let t1876 = t1861 + (t1860 - T::fused(-t118, t1834, t129 * t1835));
+            let t1877 = T::fused(t26, t1835, -T::fused(t94, t1834, t35 * t1835));
+            let t1878 = T::fused(t44, t1835, -T::fused(t100, t1834, t43 * t1835));
+            let t1879 = T::fused(t63, t1877, t85 * t1878)
+                + T::fused(t76, t1876, -T::fused(t59, t1874, t69 * t1875));
+            let t1880 = t61 * t1879;
+            let t1881 = T::fused(t56, t1878, -T::fused(t54, t1880, t55 * t1877))
+                - T::fused(t74, t1876, -T::fused(t46, t1874, t67 * t1875));
+            let t1882 = t57 * t1881;
+            let t1883 = T::fused(t36, t1882, t1877);
+            let t1884 = T::fused(-t45, t1882, t1878);
+            let t1885 = T::fused(
+                t1874 + T::fused(t261, t1883, t263 * t1884),
+                t1838,
+                -T::fused(t1716 - T::fused(t261, t1730, t263 * t1731), t1839, t1873),
+            );
+            let t1886 = T::fused(
+                t810 - T::fused(-t267, t821, t268 * t822),
+                t1847,
+                T::fused(t695, t1849, -T::fused(-t586, t1852, t269)),
+            );
+            let t1887 = T::fused(
+                t1678 + T::fused(-t267, t1687, t268 * t1688),
+                t1840,
+                -T::fused(t905 - T::fused(-t267, t916, t268 * t917), t1845, -t1886),
+            );
+            let t1888 = T::fused(
+                t1875 + T::fused(-t267, t1883, t268 * t1884),
+                t1838,
+                -T::fused(t1719 - T::fused(-t267, t1730, t268 * t1731), t1839, t1887),
+            );
+            let t1889 = T::fused(
+                t813 + T::fused(-t272, t821, t273 * t822),
+                t1847,
+                T::fused(t696, t1849, -T::fused(-t587, t1852, t274)),
+            );
+            let t1890 = T::fused(
+                t1679 - T::fused(-t272, t1687, t273 * t1688),
+                t1840,
+                -T::fused(t908 + T::fused(-t272, t916, t273 * t917), t1845, -t1889),
+            );
+            let t1891 = T::fused(
+                t1876 - T::fused(-t272, t1883, t273 * t1884),
+                t1838,
+                -T::fused(t1722 + T::fused(-t272, t1730, t273 * t1731), t1839, t1890),
+            );
+            let t1892 = T::fused(
+                t915,
+                t1845,
+                -T::fused(
+                    t820,
+                    t1847,
+                    T::fused(t697, t1849, T::fused(t588, t1852, t277)),
+                ),
+            );
+            let t1893 = T::fused(
+                T::fused(t53, t1882, t1880),
+                t1838,
+                -T::fused(t1729, t1839, T::fused(t1686, t1840, -t1892)),
+            );
+            let t1894 = T::fused(
+                t916,
+                t1845,
+                -T::fused(
+                    t821,
+                    t1847,
+                    T::fused(t692, t1849, -T::fused(-t583, t1852, t260)),
+                ),
+            );
+            let t1895 = T::fused(
+                t917,
+                t1845,
+                -T::fused(
+                    t822,
+                    t1847,
+                    T::fused(t693, t1849, -T::fused(-t584, t1852, t262)),
+                ),
+            );
+            let t1896 = T::fused(
+                t850 - T::fused(t323, t861, T::fused(-t521, t859, t523 * t860)),
+                t1847,
+                T::fused(t740, t1849, -T::fused(-t631, t1852, t525)),
+            );
+            let t1897 = T::fused(
+                t945 - T::fused(t323, t956, T::fused(t521, t954, t523 * t955)),
+                t1845,
+                t1896,
+            );
+            let t1898 = T::fused(
+                t1654 + T::fused(t323, t1661, -T::fused(-t521, t1659, t523 * t1660)),
+                t1843,
+                t1897,
+            );
+            let t1899 = T::fused(
+                t1665 + T::fused(t323, t1672, -T::fused(-t521, t1670, t523 * t1671)),
+                t1841,
+                -t1898,
+            );
+            let t1900 = T::fused(
+                t1759 - T::fused(t323, t1770, T::fused(-t521, t1768, t523 * t1769)),
+                t1839,
+                -t1899,
+            );
+            let t1901 = T::fused(
+                t853 - T::fused(t342, t861, -T::fused(-t526, t859, t527 * t860)),
+                t1847,
+                T::fused(t741, t1849, T::fused(t632, t1852, t528)),
+            );
+            let t1902 = T::fused(
+                t948 - T::fused(t342, t956, -T::fused(t526, t954, t527 * t955)),
+                t1845,
+                t1901,
+            );
+            let t1903 = T::fused(
+                t1655 + T::fused(t342, t1661, T::fused(-t526, t1659, t527 * t1660)),
+                t1843,
+                t1902,
+            );
+            let t1904 = T::fused(
+                t1666 + T::fused(t342, t1672, T::fused(-t526, t1670, t527 * t1671)),
+                t1841,
+                -t1903,
+            );
+            let t1905 = T::fused(
+                t1762 - T::fused(t342, t1770, -T::fused(-t526, t1768, t527 * t1769)),
+                t1839,
+                -t1904,
+            );
+            let t1906 = T::fused(
+                t856 + T::fused(t330, t861, -T::fused(-t529, t859, t530 * t860)),
+                t1847,
+                T::fused(t742, t1849, T::fused(t633, t1852, t531)),
+            );
+            let t1907 = T::fused(
+                t951 + T::fused(t330, t956, -T::fused(t529, t954, t530 * t955)),
+                t1845,
+                t1906,
+            );
+            let t1908 = T::fused(
+                t1656 - T::fused(t330, t1661, T::fused(-t529, t1659, t530 * t1660)),
+                t1843,
+                t1907,
+            );
+            let t1909 = T::fused(
+                t1667 - T::fused(t330, t1672, T::fused(-t529, t1670, t530 * t1671)),
+                t1841,
+                -t1908,
+            );
+            let t1910 = T::fused(
+                t1765 + T::fused(t330, t1770, -T::fused(-t529, t1768, t530 * t1769)),
+                t1839,
+                -t1909,
+            );
+            let t1911 = T::fused(
+                t954,
+                t1845,
+                -T::fused(
+                    t859,
+                    t1847,
+                    -T::fused(t737, t1849, -T::fused(-t628, t1852, t520)),
+                ),
+            );
+            let t1912 = T::fused(
+                t955,
+                t1845,
+                T::fused(
+                    t860,
+                    t1847,
+                    -T::fused(t738, t1849, -T::fused(-t629, t1852, t522)),
+                ),
+            );
+            let t1913 = T::fused(
+                t956,
+                t1845,
+                T::fused(
+                    t861,
+                    t1847,
+                    T::fused(t739, t1849, -T::fused(-t630, t1852, t524)),
+                ),
+            );
+            let t1914 = t1426 * t1843;
+            let t1915 = t1516 * t1841;
+            let t1916 = t1614 * t1840;
+            let t1917 = t1776 * t1839;
+            let t1918 = T::fused(
+                t1777,
+                t1839,
+                -T::fused(
+                    t1615,
+                    t1840,
+                    T::fused(t1517, t1841, -T::fused(t1427, t1843, t1344)),
+                ),
+            );
+            let t1919 = t1102 * t1690;
+            let t1920 = t1919 + T::fused(t1113, t1691, -t1919)
+                - T::fused(-t1080, t1689, t1614);
+            let t1921 = t1102 * t1779;
+            let t1922 = t1921 + T::fused(t1113, t1780, -t1921)
+                - T::fused(-t1080, t1778, t1776);
+            let t1923 = T::fused(
+                t1922,
+                t1839,
+                -T::fused(
+                    t1920,
+                    t1840,
+                    -T::fused(t1522, t1841, -T::fused(t1432, t1843, t1356)),
+                ),
+            );
+            let t1924 = t1103 * t1690;
+            let t1925 = t1924 + T::fused(t1115, t1691, -t1924)
+                - T::fused(t1090, t1689, t1614);
+            let t1926 = t1103 * t1779;
+            let t1927 = t1926 + T::fused(t1115, t1780, -t1926)
+                - T::fused(t1090, t1778, t1776);
+            let t1928 = T::fused(
+                t1927,
+                t1839,
+                -T::fused(
+                    t1925,
+                    t1840,
+                    -T::fused(t1528, t1841, -T::fused(t1438, t1843, t1365)),
+                ),
+            );
+            let t1929 = t1104 * t1690;
+            let t1930 = t1929 - T::fused(t1117, t1691, t1929)
+                - T::fused(t1098, t1689, t1615);
+            let t1931 = t1104 * t1779;
+            let t1932 = t1931 - T::fused(t1117, t1780, t1931)
+                - T::fused(t1098, t1778, t1777);
+            let t1933 = T::fused(
+                t1932,
+                t1839,
+                -T::fused(
+                    t1930,
+                    t1840,
+                    -T::fused(t1531, t1841, -T::fused(t1441, t1843, t1371)),
+                ),
+            );
+            let t1934 = t1430 * t1843;
+            let t1935 = t1520 * t1841;
+            let t1936 = t1690 * t1840;
+            let t1937 = t1779 * t1839;
+            let t1938 = T::fused(
+                t1780,
+                t1839,
+                -T::fused(
+                    t1691,
+                    t1840,
+                    -T::fused(t1519, t1841, -T::fused(t1429, t1843, t1351)),
+                ),
+            );
+            let t1939 = T::fused(t1119, t1690, T::fused(-t990, t1690, t981 * t1691));
+            let t1940 = T::fused(t1120, t1690, T::fused(-t1001, t1690, t999 * t1691));
+            let t1941 = T::fused(t1121, t1690, T::fused(-t1016, t1690, t1107 * t1691));
+            let t1942 = T::fused(t1361, t1941, T::fused(t1358, t1939, t1009 * t1940))
+                + (t1920 + T::fused(t1122, t1690, -T::fused(-t1108, t1691, t1919)));
+            let t1943 = T::fused(t1119, t1779, T::fused(-t990, t1779, t981 * t1780));
+            let t1944 = T::fused(t1120, t1779, T::fused(-t1001, t1779, t999 * t1780));
+            let t1945 = T::fused(t1121, t1779, T::fused(-t1016, t1779, t1107 * t1780));
+            let t1946 = T::fused(t1361, t1945, T::fused(t1358, t1943, t1009 * t1944))
+                + (t1922 + T::fused(t1122, t1779, -T::fused(-t1108, t1780, t1921)));
+            let t1947 = T::fused(
+                t1946,
+                t1839,
+                -T::fused(
+                    t1942,
+                    t1840,
+                    -T::fused(t1526, t1841, -T::fused(t1436, t1843, t1362)),
+                ),
+            );
+            let t1948 = T::fused(t1367, t1941, -T::fused(-t1366, t1939, t1083 * t1940))
+                + (t1925 + T::fused(t1123, t1690, -T::fused(t1109, t1691, t1924)));
+            let t1949 = T::fused(t1367, t1945, -T::fused(-t1366, t1943, t1083 * t1944))
+                + (t1927 + T::fused(t1123, t1779, -T::fused(t1109, t1780, t1926)));
+            let t1950 = T::fused(
+                t1949,
+                t1839,
+                -T::fused(
+                    t1948,
+                    t1840,
+                    -T::fused(t1529, t1841, -T::fused(t1439, t1843, t1368)),
+                ),
+            );
+            let t1951 = T::fused(t1373, t1941, -T::fused(-t1372, t1939, t1093 * t1940))
+                + (t1930 + T::fused(t1124, t1690, -T::fused(t1110, t1691, t1929)));
+            let t1952 = T::fused(t1373, t1945, -T::fused(-t1372, t1943, t1093 * t1944))
+                + (t1932 + T::fused(t1124, t1779, -T::fused(t1110, t1780, t1931)));
+            let t1953 = T::fused(
+                t1952,
+                t1839,
+                -T::fused(
+                    t1951,
+                    t1840,
+                    -T::fused(t1532, t1841, -T::fused(t1442, t1843, t1374)),
+                ),
+            );
+            let t1954 = T::fused(
+                t1943,
+                t1839,
+                -T::fused(
+                    t1939,
+                    t1840,
+                    -T::fused(t1523, t1841, -T::fused(t1433, t1843, t1357)),
+                ),
+            );
+            let t1955 = T::fused(
+                t1944,
+                t1839,
+                -T::fused(
+                    t1940,
+                    t1840,
+                    -T::fused(t1524, t1841, -T::fused(t1434, t1843, t1359)),
+                ),
+            );
+            let t1956 = T::fused(
+                t1945,
+                t1839,
+                -T::fused(
+                    t1941,
+                    t1840,
+                    -T::fused(t1525, t1841, -T::fused(t1435, t1843, t1360)),
+                ),
+            );
+            let t1957 = T::fused(
+                t944,
+                t1845,
+                T::fused(t849, t1847, T::fused(t727, t1849, T::fused(t618, t1852, t510))),
+            );
+            let t1958 = T::fused(
+                t947,
+                t1845,
+                T::fused(
+                    t852,
+                    t1847,
+                    T::fused(t730, t1849, -T::fused(-t621, t1852, t513)),
+                ),
+            );
+            let t1959 = T::fused(
+                t950,
+                t1845,
+                T::fused(t855, t1847, T::fused(t733, t1849, T::fused(t624, t1852, t516))),
+            );
+            let t1960 = t609 * t1852;
+            let t1961 = t718 * t1849;
+            let t1962 = t840 * t1847;
+            let t1963 = t935 * t1845;
+            let t1964 = t1453 * t1843;
+            let t1965 = t1543 * t1841;
+            let t1966 = t1749 * t1839;
+            let t1967 = t1966
+                - (t1965 - (t1964 + (t1963 + (t1962 + (t1961 + (t499 + t1960))))));
+            let t1968 = t1966
+                - (t1965 - (t1964 + (t1963 + (t1962 + (t1961 + (t500 + t1960))))));
+            let t1969 = T::fused(
+                t936,
+                t1845,
+                T::fused(
+                    t841,
+                    t1847,
+                    T::fused(t719, t1849, -T::fused(-t610, t1852, t501)),
+                ),
+            );
+            (
+                t1544,
+                t1552,
+                t1554,
+                t1556,
+                t1604,
+                t1607,
+                t1609,
+                t1611,
+                t1659,
+                t1660,
+                t1661,
+                t1670,
+                t1671,
+                t1672,
+                t1687,
+                t1688,
+                t1712,
+                t1715,
+                t1718,
+                t1721,
+                t1730,
+                t1731,
+                t1750,
+                t1758,
+                t1761,
+                t1764,
+                t1768,
+                t1769,
+                t1770,
+                t1834,
+                t1838,
+                t1839,
+                t1840,
+                t1841,
+                t1843,
+                t1853,
+                t1855,
+                t1856,
+                t1858,
+                t1859,
+                t1861,
+                t1862,
+                t1870,
+                t1871,
+                t1883,
+                t1884,
+                t1885,
+                t1888,
+                t1891,
+                t1893,
+                t1894,
+                t1895,
+                t1900,
+                t1905,
+                t1910,
+                t1911,
+                t1912,
+                t1913,
+                t1914,
+                t1915,
+                t1916,
+                t1917,
+                t1918,
+                t1923,
+                t1928,
+                t1933,
+                t1934,
+                t1935,
+                t1936,
+                t1937,
+                t1938,
+                t1947,
+                t1950,
+                t1953,
+                t1954,
+                t1955,
+                t1956,
+                t1957,
+                t1958,
+                t1959,
+                t1967,
+                t1968,
+                t1969,
+            )
+        });
+        *out = [
+            -T::fused(
+                t1855,
+                t1838,
+                T::fused(t1715, t1839, -T::fused(t1607, t1840, t1853)),
+            ),
+            T::fused(
+                t1858,
+                t1838,
+                T::fused(t1718, t1839, -T::fused(t1609, t1840, t1856)),
+            ),
+            T::fused(
+                t1861,
+                t1838,
+                T::fused(t1721, t1839, -T::fused(t1611, t1840, t1859)),
+            ),
+            -T::fused(
+                t1834,
+                t1838,
+                T::fused(t1712, t1839, -T::fused(t1604, t1840, t1862)),
+            ),
+            -t1870,
+            -t1871,
+            -t1885,
+            t1888,
+            t1891,
+            -t1893,
+            T::fused(
+                t1883,
+                t1838,
+                T::fused(t1730, t1839, -T::fused(t1687, t1840, t1894)),
+            ),
+            -T::fused(
+                t1884,
+                t1838,
+                T::fused(t1731, t1839, -T::fused(t1688, t1840, t1895)),
+            ),
+            t1900,
+            -t1905,
+            -t1910,
+            T::fused(
+                -t1768,
+                t1839,
+                T::fused(t1670, t1841, -T::fused(t1659, t1843, -t1911)),
+            ),
+            T::fused(
+                -t1769,
+                t1839,
+                T::fused(t1671, t1841, -T::fused(t1660, t1843, t1912)),
+            ),
+            T::fused(
+                t1770,
+                t1839,
+                T::fused(t1672, t1841, -T::fused(t1661, t1843, -t1913)),
+            ),
+            t1916 + (t1915 - (t1340 + t1914)) - t1917,
+            t1917 - (t1916 + (t1915 - (t1342 + t1914))),
+            -t1918,
+            t1282,
+            t1304,
+            -t1326,
+            t1923,
+            -t1928,
+            t1933,
+            t1937 - (t1936 - (t1935 + (t1353 - t1934))),
+            -t1938,
+            t1937 - (t1936 - (t1935 - (t1355 + t1934))),
+            t1947,
+            -t1950,
+            t1953,
+            -t1954,
+            -t1955,
+            t1956,
+            T::fused(
+                t1758,
+                t1839,
+                -T::fused(t1552, t1841, -T::fused(t1462, t1843, t1957)),
+            ),
+            T::fused(
+                -t1761,
+                t1839,
+                T::fused(t1554, t1841, -T::fused(t1464, t1843, t1958)),
+            ),
+            T::fused(
+                -t1764,
+                t1839,
+                T::fused(t1556, t1841, -T::fused(t1466, t1843, t1959)),
+            ),
+            -t1967,
+            -t1968,
+            T::fused(
+                -t1750,
+                t1839,
+                T::fused(t1544, t1841, -T::fused(t1454, t1843, t1969)),
+            ),
         ];
     }
 }

@@ -12,9 +12,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 145 operations by rotations of the bodies; 145 operations by relative Euler parameters
+//! * project: 112 operations by rotations of the bodies; 112 operations by relative Euler parameters
 //! * joint_accelerations: 0 operations by recursion; 0 operations by normal form
 //! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 1 more compared
 //! * corrected_accelerations: 69 operations by recursion in the bodies' frames; 69 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 | 4 | 4 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 52 | 91 | 2 | 145 | 0 of 6 | 3356 | 147 |
 //! | multipliers | λ, the accelerations being known | 28 | 59 | 1 | 88 | 0 of 4 | 485 | 88 |
+//! | project | (δr, δπ') that changes the rows as given | 37 | 73 | 2 | 112 | 0 of 6 | 5297 | 113 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 15 | 20 | 0 | 35 | 0 of 5 | 40 | 35 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 44 | 0 | 69 | 0 of 6 | 150 | 69 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 24 | 46 | 0 | 70 | 0 of 4 | 165 | 70 |
 //! | corrected_solution | both | 41 | 81 | 0 | 122 | 0 of 10 | 959 | 122 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 18 of 20 | 0 | 0 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 547 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-157.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -783,6 +788,76 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         *lambda = [-t0, -t1, -t25, T::fused(t24, t18 * (k(0.6) * t6), t26)];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Cylindrical<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 112 operations (37 ±, 73 ×, 2 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let spindle_e0 = y[3];
+        let spindle_e1 = y[4];
+        let spindle_e2 = y[5];
+        let spindle_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let t0 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
+        let t1 = spindle_e0 * spindle_e3;
+        let t2 = spindle_e1 * spindle_e2;
+        let t3 = t2 - t1;
+        let t4 = spindle_e0 * spindle_e1;
+        let t5 = spindle_e2 * spindle_e3;
+        let t6 = t5 - t4;
+        let t7 = spindle_e0 * spindle_e0;
+        let t8 = k(0.5) - T::fused(spindle_e2, spindle_e2, t7);
+        let t9 = T::fused(
+            -T::fused(-k(0.144), t0, k(0.192) * t3),
+            row0,
+            T::fused(k(0.144), t6, k(0.192) * t8) * row1,
+        );
+        let t10 = T::fused(-k(1.6), t3, k(1.2) * t0);
+        let t11 = k(2.0) * (t2 + t1);
+        let t12 = T::fused(k(1.6), t8, k(1.2) * t6);
+        let t13 = k(0.8) * t12;
+        let t14 = k(0.5) - T::fused(spindle_e1, spindle_e1, t7);
+        let t15 = k(0.6) * t12;
+        let t16 = T::fused(k(1.2) * t14, t15, T::fused(t11, t10, k(1.6) * t14 * t13));
+        let t17 = k(1.0) / t16;
+        let t18 = T::fused(-row2, t13 * t17, row3 * (t17 * (k(0.8) * t10)));
+        let t19 = k(0.5) - T::fused(spindle_e3, spindle_e3, t7);
+        let t20 = k(0.24) * t19;
+        let t21 = k(0.3) * t19;
+        let t22 = t5 + t4;
+        let t23 = k(0.24) * t22;
+        let t24 = t21 * t23;
+        let t25 = T::fused(-k(0.6), T::fused(-t21, t20, k(0.038)), k(0.8) * t24);
+        let t26 = T::fused(-row2, t15 * t17, row3 * (t17 * (k(0.6) * t10)));
+        let t27 = k(0.3) * t22;
+        let t28 = T::fused(-k(0.6), t24, k(0.8) * T::fused(-t27, t23, k(0.038)));
+        let t29 = (T::fused(t25, t18, t28 * t26) + t9)
+            / T::fused(-k(0.6), t25, k(0.8) * t28);
+        let t30 = T::fused(k(0.6), t29, t18);
+        let t31 = T::fused(-k(0.8), t29, t26);
+        let t32 = T::fused(
+            -k(1.25),
+            T::fused(-t20, t30, t23 * t31),
+            T::fused(-t21, t30, t27 * t31),
+        );
+        *out = [
+            row0 - T::fused(k(0.3) * t0, t30, k(0.3) * t3 * t31),
+            row1 + T::fused(-(k(0.3) * t6), t30, k(0.3) * t8 * t31),
+            -t32,
+            T::fused(row2, t11 * t17, row3 * (k(2.0) * t14 * t17)),
+            t30,
+            -t31,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
     type Joints = [T; 4];
     type Rates = [T; 2];
@@ -1092,6 +1167,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let t41 = T::fused(k(0.6) * t39, t32, T::fused(k(0.8) * t39, t37, t35 * t38));
         *out = [-t18, -t23, t26, -t27, -t13, t6, t28, t29, t40, -t41];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Cylindrical<T> {
+    type Jacobian = [T; 16];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 16]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        _y: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cylindrical<T> {
     type Outputs = [T; 6];

@@ -12,6 +12,7 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 1334 operations by rotations of the bodies; 1334 operations by relative Euler parameters
+//! * project: 1118 operations by rotations of the bodies; 1118 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -26,6 +27,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 550 | 773 | 11 | 1334 | 0 of 22 | 7.4e10 | 1335 |
 //! | multipliers | λ, the accelerations being known | 107 | 170 | 4 | 281 | 0 of 18 | 1698 | 282 |
+//! | project | (δr, δπ') that changes the rows as given | 465 | 642 | 11 | 1118 | 0 of 18 | 6.7e10 | 1119 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 23 | 76 | 76 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
@@ -36,7 +38,7 @@
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
@@ -2753,6 +2755,781 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             closing1,
             closing2,
             closing3,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenFourBar<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 1118 operations (465 ±, 642 ×, 11 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let row15 = rows[15];
+        let row16 = rows[16];
+        let row17 = rows[17];
+        let (
+            t3,
+            t6,
+            t9,
+            t11,
+            t17,
+            t21,
+            t25,
+            t28,
+            t31,
+            t35,
+            t36,
+            t38,
+            t41,
+            t42,
+            t43,
+            t47,
+            t48,
+            t49,
+            t50,
+            t51,
+            t53,
+            t55,
+            t58,
+            t60,
+            t61,
+            t62,
+            t64,
+            t67,
+            t68,
+            t69,
+            t71,
+            t79,
+            t91,
+            t95,
+            t99,
+            t111,
+            t139,
+            t140,
+            t142,
+            t145,
+            t146,
+            t148,
+            t149,
+            t150,
+            t155,
+            t156,
+            t157,
+            t159,
+            t162,
+            t163,
+            t165,
+            t166,
+            t168,
+            t169,
+            t170,
+            t171,
+            t172,
+            t173,
+            t175,
+            t176,
+            t178,
+            t179,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t197,
+            t199,
+        ) = {
+            let t0 = crank_e0 * crank_e0;
+            let t1 = k(0.5) - T::fused(crank_e2, crank_e2, t0);
+            let t2 = k(2.0) * t1;
+            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t0));
+            let t4 = crank_e0 * crank_e3;
+            let t5 = crank_e1 * crank_e2;
+            let t6 = k(2.0) * (t5 + t4);
+            let t7 = t5 - t4;
+            let t8 = k(2.0) * t7;
+            let t9 = T::fused(-t3, t2, t8 * t6);
+            let t10 = k(1.0) / t9;
+            let t11 = T::fused(t2 * t10, row3, t8 * t10 * row4);
+            let t12 = crank_e0 * crank_e2;
+            let t13 = crank_e1 * crank_e3;
+            let t14 = t13 + t12;
+            let t15 = k(0.2) * t14;
+            let t16 = coupler_e0 * coupler_e0;
+            let t17 = k(0.5) - T::fused(coupler_e2, coupler_e2, t16);
+            let t18 = crank_e0 * crank_e1;
+            let t19 = crank_e2 * crank_e3;
+            let t20 = t19 - t18;
+            let t21 = k(2.0) * t20;
+            let t22 = coupler_e0 * coupler_e3;
+            let t23 = coupler_e1 * coupler_e2;
+            let t24 = t23 - t22;
+            let t25 = k(2.0) * t14;
+            let t26 = coupler_e0 * coupler_e1;
+            let t27 = coupler_e2 * coupler_e3;
+            let t28 = t27 + t26;
+            let t29 = k(0.5) - T::fused(crank_e3, crank_e3, t0);
+            let t30 = k(2.0) * t29;
+            let t31 = T::fused(
+                t30,
+                k(2.0) * t28,
+                -T::fused(-t21, k(2.0) * t17, t25 * (k(2.0) * t24)),
+            );
+            let t32 = coupler_e0 * coupler_e2;
+            let t33 = coupler_e1 * coupler_e3;
+            let t34 = t33 + t32;
+            let t35 = k(0.5) * t34;
+            let t36 = k(0.5) - T::fused(coupler_e3, coupler_e3, t16);
+            let t37 = k(2.0) * t36;
+            let t38 = t27 - t26;
+            let t39 = k(2.0) * t38;
+            let t40 = k(2.0) * t34;
+            let t41 = T::fused(t30, t37, T::fused(t21, t39, t25 * t40));
+            let t42 = k(0.5) * t24;
+            let t43 = T::fused(t35, t31, t42 * t41);
+            let t44 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t16));
+            let t45 = k(2.0) * (t23 + t22);
+            let t46 = k(2.0) * (t33 - t32);
+            let t47 = T::fused(t30, t46, -T::fused(-t25, t44, t21 * t45));
+            let t48 = k(5e-5) * t47;
+            let t49 = k(0.0835) * t31;
+            let t50 = k(0.0835) * t41;
+            let t51 = k(1.0) / T::fused(t41, t50, T::fused(t47, t48, t31 * t49));
+            let t52 = t51 * t43;
+            let t53 = T::fused(-t49, t52, t35);
+            let t54 = t49 * t51;
+            let t55 = k(1.0) / T::fused(-t49, t54, k(0.0835));
+            let t56 = t55 * t53;
+            let t57 = t48 * t51;
+            let t58 = t49 * t57;
+            let t59 = T::fused(-t48, t52, t58 * t56);
+            let t60 = k(0.5) * t38;
+            let t61 = k(0.5) * t17;
+            let t62 = T::fused(-t60, t31, t61 * t41);
+            let t63 = t51 * t62;
+            let t64 = T::fused(t49, t63, t60);
+            let t65 = t55 * t64;
+            let t66 = T::fused(t48, t63, t58 * t65);
+            let t67 = k(0.5) * t36;
+            let t68 = k(0.5) * t28;
+            let t69 = T::fused(-t67, t31, t68 * t41);
+            let t70 = t51 * t69;
+            let t71 = T::fused(t49, t70, t67);
+            let t72 = t55 * t71;
+            let t73 = T::fused(t48, t70, t58 * t72);
+            let t74 = k(1.0) / T::fused(t41, t41, t47 * t47);
+            let t75 = t41 * t74 * row13;
+            let t76 = t55 * t58;
+            let t77 = T::fused(t58, t76, -T::fused(-t48, t57, k(5e-5)));
+            let t78 = t47 * t74 * row13;
+            let t79 = t50 * t54;
+            let t80 = T::fused(t50, t57, t79 * t76);
+            let t81 = T::fused(-t77, t75, t80 * t78)
+                + T::fused(t73, row12, -T::fused(t59, row10, t66 * row11));
+            let t82 = T::fused(t79, t56, T::fused(-t50, t52, t42));
+            let t83 = T::fused(t79, t65, -T::fused(-t50, t63, t61));
+            let t84 = T::fused(t79, t72, -T::fused(-t50, t70, t68));
+            let t85 = T::fused(t79, t55 * t79, -T::fused(-t50, t50 * t51, k(0.0835)));
+            let t86 = T::fused(-t80, t75, t85 * t78)
+                + T::fused(t84, row12, -T::fused(t82, row10, t83 * row11));
+            let t87 = T::fused(t43, t52, t53 * t56);
+            let t88 = T::fused(-t62, t52, t64 * t56);
+            let t89 = T::fused(-t69, t52, t71 * t56);
+            let t90 = T::fused(-t59, t75, t82 * t78)
+                + (row10 + T::fused(t89, row12, -T::fused(t87, row10, t88 * row11)));
+            let t91 = k(0.2) * t7;
+            let t92 = T::fused(t62, t63, t64 * t65);
+            let t93 = T::fused(t69, t63, t71 * t65);
+            let t94 = T::fused(-t66, t75, t83 * t78)
+                + (row11 + T::fused(t93, row12, -T::fused(t88, row10, t92 * row11)));
+            let t95 = k(0.2) * t1;
+            let t96 = T::fused(t69, t70, t71 * t72);
+            let t97 = T::fused(-t73, t75, t84 * t78)
+                - (row12 - T::fused(t96, row12, -T::fused(t89, row10, t93 * row11)));
+            let t98 = t19 + t18;
+            let t99 = k(0.2) * t98;
+            let t100 = T::fused(t99, t97, T::fused(-t91, t90, t95 * t94));
+            let t101 = T::fused(t99, t89, T::fused(-t91, t87, t95 * t88));
+            let t102 = T::fused(t47, t59, t41 * t82);
+            let t103 = t91 + t101 + t102;
+            let t104 = T::fused(t99, t93, T::fused(-t91, t88, t95 * t92));
+            let t105 = T::fused(t47, t66, t41 * t83);
+            let t106 = t95 - t104 - t105;
+            let t107 = T::fused(
+                -(t103 + T::fused(k(0.28), t7, t101)),
+                row0,
+                (t106 - T::fused(-k(0.28), t1, t104)) * row1,
+            );
+            let t108 = T::fused(t99, t96, T::fused(-t91, t89, t95 * t93));
+            let t109 = T::fused(t47, t73, t41 * t84);
+            let t110 = t99 - t108 - t109;
+            let t111 = T::fused(t6 * t10, row3, t3 * t10 * row4);
+            let t112 = k(2.0) * (t13 - t12);
+            let t113 = T::fused(t112, t46, T::fused(t3, t44, t6 * t45));
+            let t114 = T::fused(t112, t37, -T::fused(-t3, t40, t6 * t39));
+            let t115 = T::fused(
+                t47,
+                T::fused(t77, t113, t80 * t114),
+                t41 * T::fused(t80, t113, t85 * t114),
+            );
+            let t116 = T::fused(
+                -t91,
+                T::fused(t59, t113, t82 * t114),
+                t95 * T::fused(t66, t113, t83 * t114),
+            );
+            let t117 = T::fused(t99, T::fused(t73, t113, t84 * t114), t116);
+            let t118 = k(2.0) * t98;
+            let t119 = T::fused(t118, t46, -T::fused(t8, t44, t2 * t45));
+            let t120 = T::fused(t118, t37, -T::fused(-t2, t39, t8 * t40));
+            let t121 = T::fused(
+                t47,
+                T::fused(t77, t119, t80 * t120),
+                t41 * T::fused(t80, t119, t85 * t120),
+            );
+            let t122 = k(0.2) * t20;
+            let t123 = k(0.2) * t29;
+            let t124 = T::fused(t59, t119, t82 * t120);
+            let t125 = T::fused(t66, t119, t83 * t120);
+            let t126 = T::fused(t73, t119, t84 * t120);
+            let t127 = T::fused(t99, t126, T::fused(-t91, t124, t95 * t125))
+                - T::fused(t123, t109, T::fused(t15, t102, t122 * t105));
+            let t128 = T::fused(t123, t108, T::fused(t15, t101, t122 * t104));
+            let t129 = t15 - T::fused(t123, t89, T::fused(t15, t87, t122 * t88)) + t124;
+            let t130 = t122 - T::fused(t123, t93, T::fused(t15, t88, t122 * t92)) + t125;
+            let t131 = t123 - T::fused(t123, t96, T::fused(t15, t89, t122 * t93)) + t126;
+            let t132 = T::fused(t99, t131, T::fused(-t91, t129, t95 * t130))
+                + T::fused(t123, t110, T::fused(-t15, t103, t122 * t106));
+            let t133 = T::fused(
+                -(t117 + (t117 + t115)),
+                t111,
+                (t132 - t128 - (t128 - t127 - t121)) * t11,
+            );
+            let t134 = t133 + T::fused(t110 - T::fused(-k(0.28), t98, t108), row2, -t107)
+                - (t100 + (t100 + T::fused(t47, t81, t41 * t86)));
+            let t135 = T::fused(
+                t47,
+                T::fused(t47, t77, t41 * t80),
+                t41 * T::fused(t47, t80, t41 * t85),
+            );
+            let t136 = T::fused(t99, t108, T::fused(-t91, t101, t95 * t104));
+            let t137 = T::fused(
+                k(2.0),
+                T::fused(t99, t109, T::fused(-t91, t102, t95 * t105)),
+                t136,
+            );
+            let t138 = T::fused(
+                k(2.0),
+                T::fused(t99, t110, T::fused(t91, t103, t95 * t106)),
+                -t136,
+            );
+            let t139 = k(1.0)
+                / (t138 + (k(0.014) + (k(0.00135) - (t137 - (k(0.01) - t135)))));
+            let t140 = t139 * t134;
+            let t141 = T::fused(t15, t11, t91 * t140);
+            let t142 = row0 - t141;
+            let t143 = row10 - (t141 - t142);
+            let t144 = T::fused(-t122, t11, t95 * t140);
+            let t145 = row1 + t144;
+            let t146 = row11 + (t144 + t145);
+            let t147 = T::fused(-t123, t11, t99 * t140);
+            let t148 = row2 - t147;
+            let t149 = row12 - (t147 - t148);
+            let t150 = t75 + T::fused(t47, t140, T::fused(-t113, t111, t119 * t11));
+            let t151 = t78 - T::fused(t41, t140, T::fused(-t114, t111, t120 * t11));
+            let t152 = T::fused(-t58, t150, t79 * t151)
+                + T::fused(t71, t149, -T::fused(t53, t143, t64 * t146));
+            let t153 = t55 * t152;
+            let t154 = T::fused(t50, t151, T::fused(-t48, t150, t49 * t153))
+                + T::fused(t69, t149, -T::fused(-t43, t143, t62 * t146));
+            let t155 = t51 * t154;
+            let t156 = T::fused(-t31, t155, t153);
+            let t157 = T::fused(-t41, t155, t151);
+            let t158 = T::fused(t35, t156, t42 * t157);
+            let t159 = t143 + t158;
+            let t160 = rocker_e0 * rocker_e3;
+            let t161 = rocker_e1 * rocker_e2;
+            let t162 = k(2.0) * (t161 + t160);
+            let t163 = t161 - t160;
+            let t164 = k(2.0) * t163;
+            let t165 = rocker_e0 * rocker_e0;
+            let t166 = k(0.5) - T::fused(rocker_e2, rocker_e2, t165);
+            let t167 = k(2.0) * t166;
+            let t168 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t165));
+            let t169 = k(1.0) / T::fused(-t164, t162, t168 * t167);
+            let t170 = T::fused(t167 * t169, row8, t164 * t169 * row9);
+            let t171 = rocker_e0 * rocker_e1;
+            let t172 = rocker_e2 * rocker_e3;
+            let t173 = t172 + t171;
+            let t174 = T::fused(
+                k(0.32) * t173,
+                row7,
+                -T::fused(-(k(0.32) * t163), row5, k(0.32) * t166 * row6),
+            );
+            let t175 = k(23.364485981308412) * t174;
+            let t176 = k(0.4) * t163;
+            let t177 = T::fused(
+                -(k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3)),
+                t170,
+                t176 * t175,
+            );
+            let t178 = row5 - t177;
+            let t179 = row14 + (t177 - t178 + (t158 + t159));
+            let t180 = T::fused(t34, t31, t24 * t41);
+            let t181 = t180 * t51;
+            let t182 = T::fused(-t49, t181, t34);
+            let t183 = t182 * t55;
+            let t184 = T::fused(
+                t47,
+                T::fused(-t48, t181, t183 * t58),
+                t41 * T::fused(t183, t79, T::fused(-t50, t181, t24)),
+            );
+            let t185 = T::fused(
+                -t91,
+                T::fused(t183, t53, -T::fused(-t181, t43, k(1.0))),
+                t95 * T::fused(-t181, t62, t183 * t64),
+            );
+            let t186 = T::fused(t99, T::fused(-t181, t69, t183 * t71), t185);
+            let t187 = (t186 + (t186 + t184)) * t139;
+            let t188 = t91 * t187;
+            let t189 = k(2.0) * t188;
+            let t190 = t95 * t187;
+            let t191 = k(2.0) * t190;
+            let t192 = t99 * t187;
+            let t193 = k(2.0) * t192;
+            let t194 = t47 * t187;
+            let t195 = t41 * t187;
+            let t196 = T::fused(t58, t194, t79 * t195)
+                + T::fused(t71, t193, T::fused(-t53, t189, t64 * t191));
+            let t197 = t55 * (t182 + t196);
+            let t198 = T::fused(t50, t195, T::fused(t48, t194, t49 * t197))
+                + T::fused(t69, t193, T::fused(t43, t189, t62 * t191));
+            let t199 = t51 * (t180 - t198);
+            (
+                t3,
+                t6,
+                t9,
+                t11,
+                t17,
+                t21,
+                t25,
+                t28,
+                t31,
+                t35,
+                t36,
+                t38,
+                t41,
+                t42,
+                t43,
+                t47,
+                t48,
+                t49,
+                t50,
+                t51,
+                t53,
+                t55,
+                t58,
+                t60,
+                t61,
+                t62,
+                t64,
+                t67,
+                t68,
+                t69,
+                t71,
+                t79,
+                t91,
+                t95,
+                t99,
+                t111,
+                t139,
+                t140,
+                t142,
+                t145,
+                t146,
+                t148,
+                t149,
+                t150,
+                t155,
+                t156,
+                t157,
+                t159,
+                t162,
+                t163,
+                t165,
+                t166,
+                t168,
+                t169,
+                t170,
+                t171,
+                t172,
+                t173,
+                t175,
+                t176,
+                t178,
+                t179,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t197,
+                t199,
+            )
+        };
+        let (
+            t204,
+            t242,
+            t249,
+            t252,
+            t257,
+            t285,
+            t286,
+            t301,
+            t302,
+            t303,
+            t304,
+            t306,
+            t308,
+            t310,
+            t311,
+            t314,
+            t322,
+            t323,
+            t324,
+            t325,
+            t326,
+            t328,
+            t329,
+            t330,
+            t331,
+            t332,
+        ) = {
+            let t200 = T::fused(t31, t199, t197);
+            let t201 = T::fused(t41, t199, t195);
+            let t202 = T::fused(t35, t200, t42 * t201);
+            let t203 = t189 + t202;
+            let t204 = k(18.69158878504673) * t163;
+            let t205 = t176 * t204;
+            let t206 = k(1.0) / T::fused(k(2.0), t205, t202 + t203);
+            let t207 = T::fused(-t60, t156, t61 * t157);
+            let t208 = t146 - t207;
+            let t209 = k(0.4) * t166;
+            let t210 = T::fused(k(0.4) * (t172 - t171), t170, t209 * t175);
+            let t211 = row6 + t210;
+            let t212 = T::fused(-t60, t200, t61 * t201);
+            let t213 = t191 + t212;
+            let t214 = t209 * t204;
+            let t215 = T::fused(k(2.0), t214, t212 + t213);
+            let t216 = t206 * t215;
+            let t217 = T::fused(t216, t179, row15 - (t210 + t211 + (t207 - t208)));
+            let t218 = T::fused(-t38, t31, t17 * t41);
+            let t219 = t51 * t218;
+            let t220 = T::fused(t49, t219, t38);
+            let t221 = t55 * t220;
+            let t222 = T::fused(
+                t47,
+                T::fused(t48, t219, t58 * t221),
+                t41 * T::fused(t79, t221, -T::fused(-t50, t219, t17)),
+            );
+            let t223 = T::fused(
+                -t91,
+                T::fused(-t43, t219, t53 * t221),
+                t95 * T::fused(t64, t221, -T::fused(-t62, t219, k(1.0))),
+            );
+            let t224 = T::fused(t99, T::fused(t69, t219, t71 * t221), t223);
+            let t225 = t139 * (t224 + (t224 + t222));
+            let t226 = t91 * t225;
+            let t227 = k(2.0) * t226;
+            let t228 = t95 * t225;
+            let t229 = k(2.0) * t228;
+            let t230 = t99 * t225;
+            let t231 = k(2.0) * t230;
+            let t232 = t47 * t225;
+            let t233 = t41 * t225;
+            let t234 = T::fused(t58, t232, t79 * t233)
+                + T::fused(t71, t231, T::fused(-t53, t227, t64 * t229));
+            let t235 = t55 * (t220 + t234);
+            let t236 = T::fused(t50, t233, T::fused(t48, t232, t49 * t235))
+                + T::fused(t69, t231, T::fused(t43, t227, t62 * t229));
+            let t237 = t51 * (t218 + t236);
+            let t238 = T::fused(-t31, t237, t235);
+            let t239 = T::fused(-t41, t237, t233);
+            let t240 = T::fused(-t60, t238, t61 * t239);
+            let t241 = t229 + t240;
+            let t242 = k(18.69158878504673) * t166;
+            let t243 = t209 * t242;
+            let t244 = k(1.0)
+                / T::fused(t215, t216, -T::fused(k(2.0), t243, -(t240 + t241)));
+            let t245 = T::fused(-t67, t156, t68 * t157);
+            let t246 = t149 + t245;
+            let t247 = k(0.4) * t173;
+            let t248 = T::fused(
+                k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t165)),
+                t170,
+                t247 * t175,
+            );
+            let t249 = row7 - t248;
+            let t250 = T::fused(-t67, t200, t68 * t201);
+            let t251 = t193 + t250;
+            let t252 = t247 * t204;
+            let t253 = T::fused(k(2.0), t252, t250 + t251);
+            let t254 = t206 * t253;
+            let t255 = T::fused(-t67, t238, t68 * t239);
+            let t256 = t231 + t255;
+            let t257 = t247 * t242;
+            let t258 = T::fused(t215, t254, -T::fused(k(2.0), t257, -(t255 + t256)));
+            let t259 = t244 * t258;
+            let t260 = T::fused(
+                t259,
+                t217,
+                -T::fused(t254, t179, -(row16 + (t248 - t249 + (t245 + t246)))),
+            );
+            let t261 = T::fused(-t36, t31, t28 * t41);
+            let t262 = t51 * t261;
+            let t263 = T::fused(t49, t262, t36);
+            let t264 = t55 * t263;
+            let t265 = T::fused(
+                t47,
+                T::fused(t48, t262, t58 * t264),
+                t41 * T::fused(t79, t264, -T::fused(-t50, t262, t28)),
+            );
+            let t266 = T::fused(
+                -t91,
+                T::fused(-t43, t262, t53 * t264),
+                t95 * T::fused(t62, t262, t64 * t264),
+            );
+            let t267 = T::fused(
+                t99,
+                T::fused(t71, t264, -T::fused(-t69, t262, k(1.0))),
+                t266,
+            );
+            let t268 = t139 * (t267 + (t267 + t265));
+            let t269 = t91 * t268;
+            let t270 = k(2.0) * t269;
+            let t271 = t95 * t268;
+            let t272 = k(2.0) * t271;
+            let t273 = t99 * t268;
+            let t274 = k(2.0) * t273;
+            let t275 = t47 * t268;
+            let t276 = t41 * t268;
+            let t277 = T::fused(t58, t275, t79 * t276)
+                + T::fused(t71, t274, T::fused(-t53, t270, t64 * t272));
+            let t278 = t55 * (t263 + t277);
+            let t279 = T::fused(t50, t276, T::fused(t48, t275, t49 * t278))
+                + T::fused(t69, t274, T::fused(t43, t270, t62 * t272));
+            let t280 = t51 * (t261 + t279);
+            let t281 = T::fused(-t31, t280, t278);
+            let t282 = T::fused(-t41, t280, t276);
+            let t283 = T::fused(-t67, t281, t68 * t282);
+            let t284 = t274 + t283;
+            let t285 = k(18.69158878504673) * t173;
+            let t286 = t247 * t285;
+            let t287 = T::fused(
+                t258,
+                t259,
+                -T::fused(t253, t254, -T::fused(k(2.0), t286, -(t283 + t284))),
+            );
+            let t288 = k(1.0) / t287;
+            let t289 = k(1.0) / T::fused(t3, t3, t6 * t6);
+            let t290 = t289 * t9;
+            let t291 = T::fused(T::fused(t3, t21, t25 * t6) * t289, t11, t290 * t140);
+            let t292 = t290 * t187;
+            let t293 = t206 * t292;
+            let t294 = T::fused(t290, t225, t215 * t293);
+            let t295 = t244 * t294;
+            let t296 = T::fused(t258, t295, -T::fused(t290, t268, t253 * t293));
+            let t297 = t288 * t296;
+            let t298 = T::fused(
+                t297,
+                t260,
+                -T::fused(t295, t217, -T::fused(t293, t179, -(row17 - t291))),
+            );
+            let t299 = t290 * t139;
+            let t300 = T::fused(
+                t296,
+                t297,
+                -T::fused(t294, t295, -T::fused(-t290, t299, t292 * t293)),
+            );
+            let t301 = t298 / t300;
+            let t302 = T::fused(-t288, t260, t297 * t301);
+            let t303 = T::fused(t295, t301, -T::fused(t244, t217, t259 * t302));
+            let t304 = T::fused(
+                t293,
+                t301,
+                -T::fused(t254, t302, T::fused(t206, t179, t216 * t303)),
+            );
+            let t305 = t91 * t299;
+            let t306 = T::fused(
+                t305,
+                t301,
+                T::fused(t269, t302, T::fused(t226, t303, -T::fused(t188, t304, t142))),
+            );
+            let t307 = t95 * t299;
+            let t308 = T::fused(
+                t307,
+                t301,
+                T::fused(t271, t302, T::fused(t228, t303, T::fused(-t190, t304, t145))),
+            );
+            let t309 = t99 * t299;
+            let t310 = T::fused(
+                t309,
+                t301,
+                T::fused(t273, t302, T::fused(t230, t303, -T::fused(t192, t304, t148))),
+            );
+            let t311 = T::fused(
+                t299,
+                t301,
+                T::fused(t268, t302, T::fused(t225, t303, T::fused(-t187, t304, t140))),
+            );
+            let t312 = T::fused(
+                t227 + T::fused(t35, t238, t42 * t239),
+                t303,
+                -T::fused(t203, t304, t159),
+            );
+            let t313 = k(2.0) * t305;
+            let t314 = k(2.0) * t307;
+            let t315 = k(2.0) * t309;
+            let t316 = t47 * t299;
+            let t317 = t41 * t299;
+            let t318 = T::fused(t58, t316, t79 * t317)
+                + T::fused(t71, t315, T::fused(-t53, t313, t64 * t314));
+            let t319 = t55 * t318;
+            let t320 = T::fused(t50, t317, T::fused(t48, t316, t49 * t319))
+                + T::fused(t69, t315, T::fused(t43, t313, t62 * t314));
+            let t321 = t51 * t320;
+            let t322 = T::fused(-t31, t321, t319);
+            let t323 = T::fused(-t41, t321, t317);
+            let t324 = T::fused(
+                t313 + T::fused(t35, t322, t42 * t323),
+                t301,
+                T::fused(t270 + T::fused(t35, t281, t42 * t282), t302, t312),
+            );
+            let t325 = T::fused(
+                t272 + T::fused(-t60, t281, t61 * t282),
+                t302,
+                T::fused(t241, t303, T::fused(-t213, t304, t208)),
+            );
+            let t326 = T::fused(
+                t315 + T::fused(-t67, t322, t68 * t323),
+                t301,
+                T::fused(t284, t302, T::fused(t256, t303, -T::fused(t251, t304, t246))),
+            );
+            let t327 = T::fused(
+                T::fused(-t47, t237, t232),
+                t303,
+                -T::fused(T::fused(t47, t199, t194), t304, -T::fused(t47, t155, t150)),
+            );
+            let t328 = T::fused(
+                T::fused(-t47, t321, t316),
+                t301,
+                T::fused(T::fused(-t47, t280, t275), t302, t327),
+            );
+            let t329 = T::fused(
+                t322,
+                t301,
+                T::fused(t281, t302, T::fused(t238, t303, -T::fused(t200, t304, t156))),
+            );
+            let t330 = T::fused(
+                t323,
+                t301,
+                T::fused(t282, t302, T::fused(t239, t303, -T::fused(t201, t304, t157))),
+            );
+            let t331 = T::fused(
+                t176 * t285,
+                t302,
+                T::fused(t176 * t242, t303, -T::fused(-t205, t304, t178)),
+            );
+            let t332 = T::fused(
+                t209 * t285,
+                t302,
+                T::fused(t243, t303, T::fused(t214, t304, t211)),
+            );
+            (
+                t204,
+                t242,
+                t249,
+                t252,
+                t257,
+                t285,
+                t286,
+                t301,
+                t302,
+                t303,
+                t304,
+                t306,
+                t308,
+                t310,
+                t311,
+                t314,
+                t322,
+                t323,
+                t324,
+                t325,
+                t326,
+                t328,
+                t329,
+                t330,
+                t331,
+                t332,
+            )
+        };
+        *out = [
+            -t306,
+            t308,
+            -t310,
+            -t111,
+            t11,
+            -t311,
+            -t324,
+            T::fused(t314 + T::fused(-t60, t322, t61 * t323), t301, t325),
+            -t326,
+            t328,
+            t329,
+            -t330,
+            -t331,
+            t332,
+            -T::fused(t286, t302, T::fused(t257, t303, -T::fused(-t252, t304, t249))),
+            T::fused(t162 * t169, row8, t168 * t169 * row9),
+            -t170,
+            -T::fused(t285, t302, T::fused(t242, t303, T::fused(t204, t304, t175))),
         ];
     }
 }

@@ -14,8 +14,10 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 121 operations by rotations of the bodies; 121 operations by relative Euler parameters
+//! * project: 76 operations by rotations of the bodies; 76 operations by relative Euler parameters
 //! * joint_accelerations_at: 25 operations by recursion; 25 operations by recursion on the bodies' spins
 //! * corrected_accelerations: 43 operations by recursion in the bodies' frames; 43 operations by recursion in the global frame; 3 more compared
+//! * joint_jacobian: 19 operations by derivatives of u̇, from its leaves; 19 operations by derivatives of u̇, from its roots
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -30,6 +32,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 25 | 0 | 32 | 9 of 18 | 41 | 32 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 35 | 84 | 2 | 121 | 8 of 18 | 525 | 122 |
 //! | multipliers | λ, the accelerations being known | 25 | 69 | 2 | 96 | 0 of 13 | 451 | 96 |
+//! | project | (δr, δπ') that changes the rows as given | 21 | 53 | 2 | 76 | 5 of 18 | 412 | 76 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 28 | 59 | 0 | 87 | 0 of 23 | 87 | 87 |
 //! | energy | T and V | 23 | 43 | 0 | 66 | 0 of 2 | 100 | 66 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 12 | 18 | 15 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 11 | 32 | 0 | 43 | 9 of 18 | 54 | 43 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 7 | 23 | 0 | 30 | 0 of 13 | 42 | 30 |
 //! | corrected_solution | both | 14 | 47 | 0 | 61 | 16 of 31 | 96 | 61 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2 | 17 | 0 | 19 | 119 of 156 | 42 | 19 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-150.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -1316,6 +1321,80 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Friction<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Friction<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 76 operations (21 ±, 53 ×, 2 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[17];
+        let carriage_e1 = y[18];
+        let carriage_e2 = y[19];
+        let carriage_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let t0 = disc_e0 * disc_e3;
+        let t1 = disc_e1 * disc_e2;
+        let t2 = k(2.0) * (t1 + t0);
+        let t3 = k(2.0) * (t1 - t0);
+        let t4 = disc_e0 * disc_e0;
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
+        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        let t8 = carriage_e0 * carriage_e2;
+        let t9 = carriage_e1 * carriage_e3;
+        let t10 = k(2.0) * (t9 - t8);
+        let t11 = carriage_e0 * carriage_e0;
+        let t12 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t11));
+        let t13 = t12 * (k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t11)));
+        let t14 = k(2.0) * (t9 + t8);
+        let t15 = T::fused(t14, t10, -t13);
+        let t16 = k(1.0) / (t12 * t15);
+        let t17 = T::fused(-(t16 * (t12 * t10)), row10, t16 * (t12 * t12) * row11);
+        let t18 = k(2.0)
+            * T::fused(-carriage_e0, carriage_e3, carriage_e1 * carriage_e2);
+        let t19 = T::fused(-(t16 * (t18 * t10)), row10, t16 * (t12 * t18) * row11);
+        *out = [
+            row0,
+            row1,
+            row2,
+            T::fused(row3, t2 * t7, row4 * (t6 * t7)),
+            -T::fused(row3, t5 * t7, row4 * (t3 * t7)),
+            k(0.0),
+            row5,
+            row6,
+            row7,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            row8,
+            k(0.0),
+            -row9,
+            -t17,
+            T::fused(t15 * t16, row12, t19),
+            T::fused(-(t13 * t16), row10, t16 * (t12 * t14) * row11),
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
     type Joints = [T; 12];
     type Rates = [T; 5];
@@ -1714,6 +1793,210 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Friction<T> {
             -(k(0.1) * (carriage_wx * carriage_wz)),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Friction<T> {
+    type Jacobian = [T; 144];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 144]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 19 operations (2 ±, 17 ×, 0 ÷) and 1 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let u0 = x[6];
+        let u1 = x[7];
+        let u2 = x[8];
+        let u3 = x[9];
+        let u4 = x[10];
+        let t0 = k(0.5) * u1;
+        let t1 = k(0.5) * u2;
+        let t2 = k(0.5) * u3;
+        let t3 = k(0.5) * x2;
+        let t4 = k(0.5) * x3;
+        let t5 = k(0.5) * x4;
+        let t6 = k(0.5) * x1;
+        let t7 = (k(10.0) * u0).tanh();
+        let t8 = T::fused(-t7, t7, k(1.0));
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t1,
+            -t2,
+            k(0.0),
+            k(0.0),
+            -t3,
+            -t4,
+            -t5,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0,
+            k(0.0),
+            t2,
+            -t1,
+            k(0.0),
+            k(0.0),
+            t6,
+            -t5,
+            t4,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            -t2,
+            k(0.0),
+            t0,
+            k(0.0),
+            k(0.0),
+            t5,
+            t6,
+            -t3,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t2,
+            t1,
+            -t0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t4,
+            t3,
+            t6,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(-25.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(25.0) * t8),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(-0.8),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(-0.8),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(-0.8),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(-0.25),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -T::fused(k(10.0), t8 * (k(0.05) * u0), k(0.05) * t7),
+            -(k(0.08) * u1),
+            -(k(0.08) * u2),
+            -(k(0.08) * u3),
+            -u4,
+            k(0.0),
+        ];
+        *dfdt = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Friction<T> {
     type Outputs = [T; 0];

@@ -14,6 +14,7 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 227 operations by rotations of the bodies; 227 operations by relative Euler parameters
+//! * project: 106 operations by rotations of the bodies; 106 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +29,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 6 of 12 | 35 | 26 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 148 | 5 | 227 | 6 of 13 | 3849 | 228 |
 //! | multipliers | λ, the accelerations being known | 32 | 75 | 4 | 111 | 0 of 11 | 444 | 113 |
+//! | project | (δr, δπ') that changes the rows as given | 29 | 72 | 5 | 106 | 0 of 12 | 1106 | 107 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 | 49 | 49 |
 //! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 | 87 | 52 |
 //! | read_joints | joint coordinates and rates | 15 | 16 | 0 | 31 | 0 of 6 | 36 | 31 |
@@ -37,7 +39,7 @@
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
@@ -1103,6 +1105,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             T::fused(t19, t16 * t18, t12 * t18 * t21),
             T::fused(t19, t13 * t18, t17 * t18 * t21),
             closing0,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gear<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 106 operations (29 ±, 72 ×, 5 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let pinion_e0 = y[3];
+        let pinion_e1 = y[4];
+        let pinion_e2 = y[5];
+        let pinion_e3 = y[6];
+        let wheel_e0 = y[10];
+        let wheel_e1 = y[11];
+        let wheel_e2 = y[12];
+        let wheel_e3 = y[13];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let t0 = pinion_e0 * pinion_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
+        let t3 = pinion_e0 * pinion_e3;
+        let t4 = pinion_e1 * pinion_e2;
+        let t5 = k(2.0) * (t4 + t3);
+        let t6 = k(2.0) * (t4 - t3);
+        let t7 = T::fused(-t2, t1, t6 * t5);
+        let t8 = k(1.0) / t7;
+        let t9 = T::fused(t1 * t8, row3, t6 * t8 * row4);
+        let t10 = k(1.0) / T::fused(t2, t2, t5 * t5);
+        let t11 = T::fused(
+            t2,
+            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3),
+            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * t5,
+        );
+        let t12 = wheel_e0 * wheel_e0;
+        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t12));
+        let t14 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t12));
+        let t15 = wheel_e0 * wheel_e1;
+        let t16 = wheel_e2 * wheel_e3;
+        let t17 = k(2.0) * (t16 + t15);
+        let t18 = k(2.0) * (t16 - t15);
+        let t19 = T::fused(-t14, t13, t18 * t17);
+        let t20 = k(1.0) / t19;
+        let t21 = T::fused(t13 * t20, row8, t18 * t20 * row9);
+        let t22 = T::fused(
+            t14,
+            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
+            k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2) * t17,
+        );
+        let t23 = k(1.0) / T::fused(t14, t14, t17 * t17);
+        let t24 = row10 - T::fused(k(2.5) * (t11 * t10), t9, t23 * t22 * t21);
+        let t25 = t10 * t7;
+        let t26 = k(125.0) * t25;
+        let t27 = t19 * t23;
+        let t28 = k(20.0) * t27;
+        let t29 = t24 / T::fused(k(2.5) * t25, t26, t27 * t28);
+        *out = [
+            row0,
+            row1,
+            row2,
+            -T::fused(t5 * t8, row3, t2 * t8 * row4),
+            t9,
+            -(t26 * t29),
+            row5,
+            row6,
+            row7,
+            -(t28 * t29),
+            -T::fused(t17 * t20, row8, t14 * t20 * row9),
+            t21,
         ];
     }
 }

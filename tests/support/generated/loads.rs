@@ -13,9 +13,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 209 operations by rotations of the bodies; 209 operations by relative Euler parameters
+//! * project: 124 operations by rotations of the bodies; 124 operations by relative Euler parameters
 //! * joint_accelerations: 14 operations by normal form; 18 operations by recursion
 //! * joint_accelerations_at: 43 operations by normal form; 51 operations by recursion; 1 more compared
 //! * corrected_accelerations: 61 operations by normal form in the global frame; 66 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_jacobian: 0 operations by normal form of that; 42 operations by derivatives of the balance, from its leaves, normal form; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -30,6 +32,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 32 | 54 | 0 | 86 | 1 of 12 | 139 | 86 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 69 | 138 | 2 | 209 | 4 of 12 | 2103 | 210 |
 //! | multipliers | λ, the accelerations being known | 69 | 122 | 2 | 193 | 0 of 10 | 1813 | 193 |
+//! | project | (δr, δπ') that changes the rows as given | 41 | 81 | 2 | 124 | 1 of 12 | 1551 | 124 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 54 | 93 | 0 | 147 | 0 of 15 | 180 | 147 |
 //! | energy | T and V | 11 | 21 | 0 | 32 | 1 of 2 | 32 | 32 |
 //! | read_joints | joint coordinates and rates | 10 | 12 | 0 | 22 | 0 of 5 | 25 | 22 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 38 | 0 | 61 | 6 of 12 | 131 | 61 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 45 | 66 | 0 | 111 | 0 of 10 | 219 | 111 |
 //! | corrected_solution | both | 51 | 80 | 0 | 131 | 6 of 22 | 430 | 131 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 26 of 30 | 0 | 0 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 550 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-158.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -1377,6 +1382,94 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Loads<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 124 operations (41 ±, 81 ×, 2 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let disc_e0 = y[3];
+        let disc_e1 = y[4];
+        let disc_e2 = y[5];
+        let disc_e3 = y[6];
+        let carriage_e0 = y[10];
+        let carriage_e1 = y[11];
+        let carriage_e2 = y[12];
+        let carriage_e3 = y[13];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let t0 = disc_e0 * disc_e3;
+        let t1 = disc_e1 * disc_e2;
+        let t2 = k(2.0) * (t1 + t0);
+        let t3 = k(2.0) * (t1 - t0);
+        let t4 = disc_e0 * disc_e0;
+        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
+        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
+        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        let t8 = carriage_e0 * carriage_e0;
+        let t9 = k(1.6) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t8));
+        let t10 = carriage_e0 * carriage_e3;
+        let t11 = carriage_e1 * carriage_e2;
+        let t12 = t11 - t10;
+        let t13 = T::fused(k(1.2), t12, t9);
+        let t14 = carriage_e0 * carriage_e1;
+        let t15 = carriage_e2 * carriage_e3;
+        let t16 = t15 - t14;
+        let t17 = carriage_e0 * carriage_e2;
+        let t18 = carriage_e1 * carriage_e3;
+        let t19 = t18 + t17;
+        let t20 = T::fused(-k(1.28), t16, k(0.96) * t19);
+        let t21 = T::fused(-k(1.2), t18 - t17, k(1.6) * (t15 + t14));
+        let t22 = k(0.5) - T::fused(carriage_e3, carriage_e3, t8);
+        let t23 = k(1.6) * t22;
+        let t24 = t11 + t10;
+        let t25 = k(1.2) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t8));
+        let t26 = T::fused(
+            k(0.8),
+            T::fused(k(1.2), t24, t9),
+            k(0.6) * T::fused(k(1.6), t12, t25),
+        );
+        let t27 = T::fused(t21, t20, t26 * t23);
+        let t28 = T::fused(k(1.6), t24, t25);
+        let t29 = k(1.2) * t22;
+        let t30 = T::fused(-k(0.96), t16, k(0.72) * t19);
+        let t31 = T::fused(t26, t29, t21 * t30);
+        let t32 = k(1.0) / T::fused(t27, t13, t31 * t28);
+        let t33 = T::fused(t32 * (t21 * t28), row7, t32 * (t26 * t28) * row8);
+        let t34 = T::fused(t32 * (t21 * t13), row7, t32 * (t26 * t13) * row8);
+        let t35 = T::fused(
+            -(t32 * T::fused(t29, t28, t23 * t13)),
+            row7,
+            t32 * T::fused(t20, t13, t30 * t28) * row8,
+        );
+        *out = [
+            row0,
+            row1,
+            row2,
+            T::fused(row3, t2 * t7, row4 * (t6 * t7)),
+            -T::fused(row3, t5 * t7, row4 * (t3 * t7)),
+            k(0.0),
+            -(k(0.6) * row5),
+            k(0.8) * row5,
+            row6,
+            T::fused(t27 * t32, row9, -t33),
+            T::fused(t31 * t32, row9, t34),
+            T::fused(t32 * T::fused(-t30, t23, t29 * t20), row9, t35),
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
     type Joints = [T; 5];
     type Rates = [T; 2];
@@ -1801,6 +1894,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
             T::fused(-k(0.06), t44, k(0.08) * t46),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Loads<T> {
+    type Jacobian = [T; 25];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 25]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        _y: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.05),
+            k(3.0),
+            k(0.0),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Loads<T> {
     type Outputs = [T; 0];

@@ -14,6 +14,7 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 1281 operations by rotations of the bodies; 1281 operations by relative Euler parameters
+//! * project: 1092 operations by rotations of the bodies; 1092 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +29,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 527 | 745 | 9 | 1281 | 0 of 21 | 1.8e10 | 1282 |
 //! | multipliers | λ, the accelerations being known | 104 | 171 | 3 | 278 | 0 of 17 | 1653 | 278 |
+//! | project | (δr, δπ') that changes the rows as given | 453 | 630 | 9 | 1092 | 0 of 18 | 1.6e10 | 1093 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 | 53 | 53 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
@@ -37,7 +39,7 @@
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
@@ -2699,6 +2701,729 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             closing0,
             closing1,
             closing2,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Parallelogram<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 1092 operations (453 ±, 630 ×, 9 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let row15 = rows[15];
+        let row16 = rows[16];
+        let (
+            t10,
+            t20,
+            t31,
+            t34,
+            t36,
+            t38,
+            t41,
+            t42,
+            t46,
+            t47,
+            t48,
+            t49,
+            t50,
+            t52,
+            t54,
+            t57,
+            t61,
+            t63,
+            t68,
+            t70,
+            t78,
+            t91,
+            t96,
+            t101,
+            t103,
+            t104,
+            t105,
+            t119,
+            t152,
+            t153,
+            t154,
+            t156,
+            t157,
+            t158,
+            t159,
+            t160,
+            t165,
+            t166,
+            t167,
+            t168,
+            t169,
+            t171,
+            t172,
+            t173,
+            t175,
+            t178,
+            t179,
+            t181,
+            t182,
+            t183,
+            t184,
+            t185,
+            t187,
+            t188,
+            t190,
+            t191,
+            t192,
+            t194,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = crank_e0 * crank_e0;
+            let t1 = k(0.5) - T::fused(crank_e2, crank_e2, t0);
+            let t2 = k(2.0) * t1;
+            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t0));
+            let t4 = crank_e0 * crank_e3;
+            let t5 = crank_e1 * crank_e2;
+            let t6 = k(2.0) * (t5 + t4);
+            let t7 = t5 - t4;
+            let t8 = k(2.0) * t7;
+            let t9 = k(1.0) / T::fused(-t3, t2, t8 * t6);
+            let t10 = T::fused(-(t8 * t9), row3, t2 * t9 * row4);
+            let t11 = crank_e0 * crank_e2;
+            let t12 = crank_e1 * crank_e3;
+            let t13 = t12 + t11;
+            let t14 = k(0.2) * t13;
+            let t15 = coupler_e0 * coupler_e2;
+            let t16 = coupler_e1 * coupler_e3;
+            let t17 = t16 + t15;
+            let t18 = k(0.4) * t17;
+            let t19 = coupler_e0 * coupler_e0;
+            let t20 = k(0.5) - T::fused(coupler_e2, coupler_e2, t19);
+            let t21 = crank_e0 * crank_e1;
+            let t22 = crank_e2 * crank_e3;
+            let t23 = t22 - t21;
+            let t24 = k(2.0) * t23;
+            let t25 = coupler_e0 * coupler_e3;
+            let t26 = coupler_e1 * coupler_e2;
+            let t27 = t26 - t25;
+            let t28 = k(2.0) * t13;
+            let t29 = coupler_e0 * coupler_e1;
+            let t30 = coupler_e2 * coupler_e3;
+            let t31 = t30 + t29;
+            let t32 = k(0.5) - T::fused(crank_e3, crank_e3, t0);
+            let t33 = k(2.0) * t32;
+            let t34 = T::fused(
+                t33,
+                k(2.0) * t31,
+                -T::fused(-t24, k(2.0) * t20, t28 * (k(2.0) * t27)),
+            );
+            let t35 = k(0.4) * t27;
+            let t36 = k(0.5) - T::fused(coupler_e3, coupler_e3, t19);
+            let t37 = k(2.0) * t36;
+            let t38 = t30 - t29;
+            let t39 = k(2.0) * t38;
+            let t40 = k(2.0) * t17;
+            let t41 = T::fused(t33, t37, T::fused(t24, t39, t28 * t40));
+            let t42 = T::fused(t34, t18, t41 * t35);
+            let t43 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t19));
+            let t44 = k(2.0) * (t26 + t25);
+            let t45 = k(2.0) * (t16 - t15);
+            let t46 = T::fused(t33, t45, -T::fused(-t28, t43, t24 * t44));
+            let t47 = k(5e-5) * t46;
+            let t48 = k(0.07) * t34;
+            let t49 = k(0.07) * t41;
+            let t50 = k(1.0) / T::fused(t41, t49, T::fused(t46, t47, t34 * t48));
+            let t51 = t50 * t42;
+            let t52 = T::fused(-t48, t51, t18);
+            let t53 = t48 * t50;
+            let t54 = k(1.0) / T::fused(-t48, t53, k(0.07));
+            let t55 = t54 * t52;
+            let t56 = t47 * t50;
+            let t57 = t48 * t56;
+            let t58 = T::fused(-t47, t51, t57 * t55);
+            let t59 = k(0.4) * t38;
+            let t60 = k(0.4) * t20;
+            let t61 = T::fused(-t34, t59, t41 * t60);
+            let t62 = t50 * t61;
+            let t63 = T::fused(t48, t62, t59);
+            let t64 = t54 * t63;
+            let t65 = T::fused(t47, t62, t57 * t64);
+            let t66 = k(0.4) * t36;
+            let t67 = k(0.4) * t31;
+            let t68 = T::fused(-t34, t66, t41 * t67);
+            let t69 = t50 * t68;
+            let t70 = T::fused(t48, t69, t66);
+            let t71 = t54 * t70;
+            let t72 = T::fused(t47, t69, t57 * t71);
+            let t73 = k(1.0) / T::fused(t41, t41, t46 * t46);
+            let t74 = t41 * t73 * row13;
+            let t75 = t54 * t57;
+            let t76 = T::fused(t57, t75, -T::fused(-t47, t56, k(5e-5)));
+            let t77 = t46 * t73 * row13;
+            let t78 = t49 * t53;
+            let t79 = T::fused(t49, t56, t78 * t75);
+            let t80 = T::fused(-t76, t74, t79 * t77)
+                + T::fused(t72, row12, -T::fused(t58, row10, t65 * row11));
+            let t81 = T::fused(t78, t55, T::fused(-t49, t51, t35));
+            let t82 = T::fused(t78, t64, -T::fused(-t49, t62, t60));
+            let t83 = T::fused(t78, t71, -T::fused(-t49, t69, t67));
+            let t84 = T::fused(t78, t54 * t78, -T::fused(-t49, t49 * t50, k(0.07)));
+            let t85 = T::fused(-t79, t74, t84 * t77)
+                + T::fused(t83, row12, -T::fused(t81, row10, t82 * row11));
+            let t86 = T::fused(t42, t51, t52 * t55);
+            let t87 = T::fused(-t61, t51, t63 * t55);
+            let t88 = T::fused(-t68, t51, t70 * t55);
+            let t89 = T::fused(
+                k(0.8),
+                row10,
+                T::fused(t88, row12, -T::fused(t86, row10, t87 * row11)),
+            );
+            let t90 = T::fused(-t58, t74, t81 * t77) + t89;
+            let t91 = k(0.4) * t7;
+            let t92 = T::fused(t61, t62, t63 * t64);
+            let t93 = T::fused(t68, t62, t70 * t64);
+            let t94 = T::fused(
+                k(0.8),
+                row11,
+                T::fused(t93, row12, -T::fused(t87, row10, t92 * row11)),
+            );
+            let t95 = T::fused(-t65, t74, t82 * t77) + t94;
+            let t96 = k(0.4) * t1;
+            let t97 = T::fused(t68, t69, t70 * t71);
+            let t98 = T::fused(
+                k(0.8),
+                row12,
+                -T::fused(t97, row12, -T::fused(t88, row10, t93 * row11)),
+            );
+            let t99 = T::fused(-t72, t74, t83 * t77) - t98;
+            let t100 = t22 + t21;
+            let t101 = k(0.4) * t100;
+            let t102 = T::fused(t101, t99, T::fused(-t91, t90, t96 * t95))
+                + T::fused(t46, t80, t41 * t85);
+            let t103 = k(0.2) * t7;
+            let t104 = k(0.2) * t1;
+            let t105 = k(0.2) * t100;
+            let t106 = T::fused(t105, t88, T::fused(-t103, t86, t104 * t87));
+            let t107 = T::fused(t46, t58, t41 * t81);
+            let t108 = T::fused(t101, t88, T::fused(-t91, t86, t96 * t87));
+            let t109 = T::fused(k(0.32), t7, t108) + t107;
+            let t110 = T::fused(t105, t93, T::fused(-t103, t87, t104 * t92));
+            let t111 = T::fused(t46, t65, t41 * t82);
+            let t112 = T::fused(t101, t93, T::fused(-t91, t87, t96 * t92));
+            let t113 = T::fused(-k(0.32), t1, t112) + t111;
+            let t114 = T::fused(
+                t109 + T::fused(k(0.26), t7, t106),
+                row0,
+                (t113 + T::fused(-k(0.26), t1, t110)) * row1,
+            );
+            let t115 = T::fused(t105, t97, T::fused(-t103, t88, t104 * t93));
+            let t116 = T::fused(t46, t72, t41 * t83);
+            let t117 = T::fused(t101, t97, T::fused(-t91, t88, t96 * t93));
+            let t118 = T::fused(-k(0.32), t100, t117) + t116;
+            let t119 = T::fused(-(t3 * t9), row3, t6 * t9 * row4);
+            let t120 = k(2.0) * (t12 - t11);
+            let t121 = T::fused(t120, t45, T::fused(t3, t43, t6 * t44));
+            let t122 = T::fused(t120, t37, -T::fused(-t3, t40, t6 * t39));
+            let t123 = T::fused(
+                t46,
+                T::fused(t76, t121, t79 * t122),
+                t41 * T::fused(t79, t121, t84 * t122),
+            );
+            let t124 = T::fused(t58, t121, t81 * t122);
+            let t125 = T::fused(t65, t121, t82 * t122);
+            let t126 = T::fused(t72, t121, t83 * t122);
+            let t127 = T::fused(t105, t126, T::fused(-t103, t124, t104 * t125))
+                + (T::fused(t101, t126, T::fused(-t91, t124, t96 * t125)) + t123);
+            let t128 = k(2.0) * t100;
+            let t129 = T::fused(t128, t45, -T::fused(t8, t43, t2 * t44));
+            let t130 = T::fused(t128, t37, -T::fused(-t2, t39, t8 * t40));
+            let t131 = T::fused(
+                t46,
+                T::fused(t76, t129, t79 * t130),
+                t41 * T::fused(t79, t129, t84 * t130),
+            );
+            let t132 = k(0.4) * t13;
+            let t133 = k(0.4) * t23;
+            let t134 = k(0.4) * t32;
+            let t135 = T::fused(t58, t129, t81 * t130);
+            let t136 = T::fused(t65, t129, t82 * t130);
+            let t137 = T::fused(t72, t129, t83 * t130);
+            let t138 = T::fused(t101, t137, T::fused(-t91, t135, t96 * t136))
+                - T::fused(t134, t116, T::fused(t132, t107, t133 * t111));
+            let t139 = t138 - T::fused(t134, t117, T::fused(t132, t108, t133 * t112))
+                + t131;
+            let t140 = k(0.2) * t23;
+            let t141 = k(0.2) * t32;
+            let t142 = T::fused(
+                -k(0.32),
+                t13,
+                T::fused(t134, t88, T::fused(t132, t86, t133 * t87)),
+            );
+            let t143 = T::fused(
+                -k(0.32),
+                t23,
+                T::fused(t134, t93, T::fused(t132, t87, t133 * t92)),
+            );
+            let t144 = T::fused(
+                -k(0.32),
+                t32,
+                T::fused(t134, t97, T::fused(t132, t88, t133 * t93)),
+            );
+            let t145 = T::fused(
+                t105,
+                t144 - t137,
+                T::fused(-t103, t142 - t135, t104 * (t143 - t136)),
+            );
+            let t146 = t145 + T::fused(t141, t118, T::fused(t14, t109, t140 * t113))
+                + T::fused(t141, t115, T::fused(t14, t106, t140 * t110));
+            let t147 = T::fused(t127, t119, (t146 - t139) * t10)
+                + T::fused(t118 + T::fused(-k(0.26), t100, t115), row2, -t114);
+            let t148 = t147
+                + (T::fused(t105, t99, T::fused(-t103, t90, t104 * t95)) + t102);
+            let t149 = T::fused(
+                t46,
+                T::fused(t46, t76, t41 * t79),
+                t41 * T::fused(t46, t79, t41 * t84),
+            );
+            let t150 = T::fused(
+                k(2.0),
+                T::fused(t101, t116, T::fused(-t91, t107, t96 * t111)),
+                T::fused(t101, t117, T::fused(-t91, t108, t96 * t112)),
+            );
+            let t151 = T::fused(
+                k(2.0),
+                T::fused(t105, t118, T::fused(-t103, t109, t104 * t113)),
+                T::fused(t105, t115, T::fused(-t103, t106, t104 * t110)),
+            );
+            let t152 = k(1.0)
+                / (t151 - (k(0.013) + (k(0.004) - (t150 - (k(0.032) - t149)))));
+            let t153 = t152 * t148;
+            let t154 = row0 - T::fused(t14, t10, t103 * t153);
+            let t155 = row10 - (T::fused(t132, t10, t91 * t153) - t154);
+            let t156 = row1 + T::fused(-t140, t10, t104 * t153);
+            let t157 = row11 + (T::fused(-t133, t10, t96 * t153) + t156);
+            let t158 = row2 - T::fused(-t141, t10, t105 * t153);
+            let t159 = row12 - (T::fused(-t134, t10, t101 * t153) - t158);
+            let t160 = t74 + T::fused(t46, t153, T::fused(-t121, t119, t129 * t10));
+            let t161 = t77 - T::fused(t41, t153, T::fused(-t122, t119, t130 * t10));
+            let t162 = T::fused(-t57, t160, t78 * t161)
+                + T::fused(t70, t159, -T::fused(t52, t155, t63 * t157));
+            let t163 = t54 * t162;
+            let t164 = T::fused(t49, t161, T::fused(-t47, t160, t48 * t163))
+                + T::fused(t68, t159, -T::fused(-t42, t155, t61 * t157));
+            let t165 = t50 * t164;
+            let t166 = T::fused(-t34, t165, t163);
+            let t167 = k(0.5) * t17;
+            let t168 = T::fused(-t41, t165, t161);
+            let t169 = k(0.5) * t27;
+            let t170 = T::fused(t167, t166, t169 * t168);
+            let t171 = t155 + t170;
+            let t172 = rocker_e0 * rocker_e0;
+            let t173 = k(0.5) - T::fused(rocker_e2, rocker_e2, t172);
+            let t174 = k(2.0) * t173;
+            let t175 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t172));
+            let t176 = rocker_e0 * rocker_e3;
+            let t177 = rocker_e1 * rocker_e2;
+            let t178 = k(2.0) * (t177 + t176);
+            let t179 = t177 - t176;
+            let t180 = k(2.0) * t179;
+            let t181 = k(1.0) / T::fused(-t175, t174, t180 * t178);
+            let t182 = T::fused(-(t180 * t181), row8, t174 * t181 * row9);
+            let t183 = rocker_e0 * rocker_e1;
+            let t184 = rocker_e2 * rocker_e3;
+            let t185 = t184 + t183;
+            let t186 = T::fused(
+                k(0.18) * t185,
+                row7,
+                -T::fused(-(k(0.18) * t179), row5, k(0.18) * t173 * row6),
+            );
+            let t187 = k(54.054054054054056) * t186;
+            let t188 = k(0.3) * t179;
+            let t189 = T::fused(
+                k(0.3) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3),
+                t182,
+                t188 * t187,
+            );
+            let t190 = row5 - t189;
+            let t191 = row14 + (t189 - t190 + (t170 + t171));
+            let t192 = T::fused(t17, t34, t27 * t41);
+            let t193 = t192 * t50;
+            let t194 = T::fused(-t48, t193, t17);
+            let t195 = t194 * t54;
+            let t196 = T::fused(
+                t46,
+                T::fused(-t47, t193, t195 * t57),
+                t41 * T::fused(t195, t78, T::fused(-t49, t193, t27)),
+            );
+            let t197 = T::fused(t195, t52, -T::fused(-t193, t42, k(1.0)));
+            let t198 = T::fused(-t193, t61, t195 * t63);
+            let t199 = T::fused(-t193, t68, t195 * t70);
+            (
+                t10,
+                t20,
+                t31,
+                t34,
+                t36,
+                t38,
+                t41,
+                t42,
+                t46,
+                t47,
+                t48,
+                t49,
+                t50,
+                t52,
+                t54,
+                t57,
+                t61,
+                t63,
+                t68,
+                t70,
+                t78,
+                t91,
+                t96,
+                t101,
+                t103,
+                t104,
+                t105,
+                t119,
+                t152,
+                t153,
+                t154,
+                t156,
+                t157,
+                t158,
+                t159,
+                t160,
+                t165,
+                t166,
+                t167,
+                t168,
+                t169,
+                t171,
+                t172,
+                t173,
+                t175,
+                t178,
+                t179,
+                t181,
+                t182,
+                t183,
+                t184,
+                t185,
+                t187,
+                t188,
+                t190,
+                t191,
+                t192,
+                t194,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t201,
+            t202,
+            t204,
+            t206,
+            t214,
+            t215,
+            t218,
+            t243,
+            t244,
+            t246,
+            t248,
+            t256,
+            t257,
+            t260,
+            t266,
+            t269,
+            t271,
+            t272,
+            t276,
+            t277,
+            t290,
+            t291,
+            t292,
+            t293,
+            t295,
+            t297,
+            t302,
+            t303,
+            t304,
+            t306,
+            t307,
+            t308,
+            t310,
+            t311,
+            t312,
+            t313,
+            t314,
+            t315,
+            t316,
+            t317,
+        ) = {
+            let t200 = T::fused(t105, t199, T::fused(-t103, t197, t104 * t198))
+                + (T::fused(t101, t199, T::fused(-t91, t197, t96 * t198)) + t196);
+            let t201 = t200 * t152;
+            let t202 = t103 * t201;
+            let t203 = T::fused(t91, t201, t202);
+            let t204 = t104 * t201;
+            let t205 = T::fused(t96, t201, t204);
+            let t206 = t105 * t201;
+            let t207 = T::fused(t101, t201, t206);
+            let t208 = t46 * t201;
+            let t209 = t41 * t201;
+            let t210 = T::fused(t57, t208, t78 * t209)
+                + T::fused(t70, t207, T::fused(-t52, t203, t63 * t205));
+            let t211 = t54 * (t194 - t210);
+            let t212 = T::fused(t49, t209, -T::fused(-t47, t208, t48 * t211))
+                + T::fused(t68, t207, T::fused(t42, t203, t61 * t205));
+            let t213 = t50 * (t192 + t212);
+            let t214 = T::fused(t34, t213, t211);
+            let t215 = T::fused(-t41, t213, t209);
+            let t216 = T::fused(-t167, t214, t169 * t215);
+            let t217 = t203 + t216;
+            let t218 = k(32.432432432432435) * t179;
+            let t219 = t188 * t218;
+            let t220 = k(1.0) / T::fused(k(2.0), t219, -(t216 + t217));
+            let t221 = k(0.5) * t38;
+            let t222 = k(0.5) * t20;
+            let t223 = T::fused(-t221, t166, t222 * t168);
+            let t224 = t157 - t223;
+            let t225 = k(0.3) * t173;
+            let t226 = T::fused(-(k(0.3) * (t184 - t183)), t182, t225 * t187);
+            let t227 = row6 + t226;
+            let t228 = T::fused(t221, t214, t222 * t215);
+            let t229 = t205 + t228;
+            let t230 = t225 * t218;
+            let t231 = T::fused(k(2.0), t230, -(t228 + t229));
+            let t232 = t220 * t231;
+            let t233 = T::fused(t232, t191, row15 - (t226 + t227 + (t223 - t224)));
+            let t234 = T::fused(-t38, t34, t20 * t41);
+            let t235 = t50 * t234;
+            let t236 = T::fused(t48, t235, t38);
+            let t237 = t54 * t236;
+            let t238 = T::fused(
+                t46,
+                T::fused(t47, t235, t57 * t237),
+                t41 * T::fused(t78, t237, -T::fused(-t49, t235, t20)),
+            );
+            let t239 = T::fused(-t42, t235, t52 * t237);
+            let t240 = T::fused(t63, t237, -T::fused(-t61, t235, k(1.0)));
+            let t241 = T::fused(t68, t235, t70 * t237);
+            let t242 = T::fused(t105, t241, T::fused(-t103, t239, t104 * t240))
+                + (T::fused(t101, t241, T::fused(-t91, t239, t96 * t240)) + t238);
+            let t243 = t152 * t242;
+            let t244 = t103 * t243;
+            let t245 = T::fused(t91, t243, t244);
+            let t246 = t104 * t243;
+            let t247 = T::fused(t96, t243, t246);
+            let t248 = t105 * t243;
+            let t249 = T::fused(t101, t243, t248);
+            let t250 = t46 * t243;
+            let t251 = t41 * t243;
+            let t252 = T::fused(t57, t250, t78 * t251)
+                + T::fused(t70, t249, T::fused(-t52, t245, t63 * t247));
+            let t253 = t54 * (t236 - t252);
+            let t254 = T::fused(t49, t251, -T::fused(-t47, t250, t48 * t253))
+                + T::fused(t68, t249, T::fused(t42, t245, t61 * t247));
+            let t255 = t50 * (t234 - t254);
+            let t256 = T::fused(-t34, t255, t253);
+            let t257 = T::fused(t41, t255, t251);
+            let t258 = T::fused(t221, t256, t222 * t257);
+            let t259 = t247 + t258;
+            let t260 = k(32.432432432432435) * t173;
+            let t261 = t225 * t260;
+            let t262 = k(1.0)
+                / T::fused(t231, t232, -T::fused(k(2.0), t261, t258 + t259));
+            let t263 = k(0.5) * t36;
+            let t264 = k(0.5) * t31;
+            let t265 = T::fused(-t263, t166, t264 * t168);
+            let t266 = t159 + t265;
+            let t267 = k(0.3) * t185;
+            let t268 = T::fused(
+                -(k(0.3) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t172))),
+                t182,
+                t267 * t187,
+            );
+            let t269 = row7 - t268;
+            let t270 = T::fused(t263, t214, t264 * t215);
+            let t271 = t207 + t270;
+            let t272 = t267 * t218;
+            let t273 = T::fused(k(2.0), t272, -(t270 + t271));
+            let t274 = t220 * t273;
+            let t275 = T::fused(t263, t256, t264 * t257);
+            let t276 = t249 + t275;
+            let t277 = t267 * t260;
+            let t278 = T::fused(t231, t274, -T::fused(k(2.0), t277, t275 + t276));
+            let t279 = t262 * t278;
+            let t280 = T::fused(
+                t279,
+                t233,
+                -T::fused(t274, t191, -(row16 + (t268 - t269 + (t265 + t266)))),
+            );
+            let t281 = T::fused(-t36, t34, t31 * t41);
+            let t282 = t50 * t281;
+            let t283 = T::fused(t48, t282, t36);
+            let t284 = t54 * t283;
+            let t285 = T::fused(
+                t46,
+                T::fused(t47, t282, t57 * t284),
+                t41 * T::fused(t78, t284, -T::fused(-t49, t282, t31)),
+            );
+            let t286 = T::fused(-t42, t282, t52 * t284);
+            let t287 = T::fused(t61, t282, t63 * t284);
+            let t288 = T::fused(t70, t284, -T::fused(-t68, t282, k(1.0)));
+            let t289 = T::fused(t105, t288, T::fused(-t103, t286, t104 * t287))
+                + (T::fused(t101, t288, T::fused(-t91, t286, t96 * t287)) + t285);
+            let t290 = t152 * t289;
+            let t291 = t103 * t290;
+            let t292 = T::fused(t91, t290, t291);
+            let t293 = t104 * t290;
+            let t294 = T::fused(t96, t290, t293);
+            let t295 = t105 * t290;
+            let t296 = T::fused(t101, t290, t295);
+            let t297 = t46 * t290;
+            let t298 = t41 * t290;
+            let t299 = T::fused(t57, t297, t78 * t298)
+                + T::fused(t70, t296, T::fused(-t52, t292, t63 * t294));
+            let t300 = t54 * (t283 - t299);
+            let t301 = T::fused(t49, t298, -T::fused(-t47, t297, t48 * t300))
+                + T::fused(t68, t296, T::fused(t42, t292, t61 * t294));
+            let t302 = t50 * (t281 - t301);
+            let t303 = T::fused(-t34, t302, t300);
+            let t304 = T::fused(t41, t302, t298);
+            let t305 = T::fused(t263, t303, t264 * t304);
+            let t306 = t296 + t305;
+            let t307 = k(32.432432432432435) * t185;
+            let t308 = t267 * t307;
+            let t309 = T::fused(
+                t278,
+                t279,
+                -T::fused(t273, t274, -T::fused(k(2.0), t308, t305 + t306)),
+            );
+            let t310 = t280 / t309;
+            let t311 = T::fused(-t262, t233, t279 * t310);
+            let t312 = T::fused(t274, t310, -T::fused(t220, t191, t232 * t311));
+            let t313 = T::fused(
+                t245 + T::fused(-t167, t256, t169 * t257),
+                t311,
+                T::fused(-t217, t312, t171),
+            );
+            let t314 = T::fused(
+                t294 + T::fused(t221, t303, t222 * t304),
+                t310,
+                -T::fused(t259, t311, -T::fused(t229, t312, t224)),
+            );
+            let t315 = T::fused(
+                T::fused(t46, t255, t250),
+                t311,
+                -T::fused(T::fused(-t46, t213, t208), t312, T::fused(t46, t165, t160)),
+            );
+            let t316 = T::fused(
+                t188 * t307,
+                t310,
+                -T::fused(t188 * t260, t311, -T::fused(-t219, t312, t190)),
+            );
+            let t317 = T::fused(
+                t225 * t307,
+                t310,
+                -T::fused(t261, t311, T::fused(t230, t312, t227)),
+            );
+            (
+                t201,
+                t202,
+                t204,
+                t206,
+                t214,
+                t215,
+                t218,
+                t243,
+                t244,
+                t246,
+                t248,
+                t256,
+                t257,
+                t260,
+                t266,
+                t269,
+                t271,
+                t272,
+                t276,
+                t277,
+                t290,
+                t291,
+                t292,
+                t293,
+                t295,
+                t297,
+                t302,
+                t303,
+                t304,
+                t306,
+                t307,
+                t308,
+                t310,
+                t311,
+                t312,
+                t313,
+                t314,
+                t315,
+                t316,
+                t317,
+            )
+        };
+        *out = [
+            T::fused(-t291, t310, T::fused(t244, t311, T::fused(-t202, t312, t154))),
+            T::fused(t293, t310, -T::fused(t246, t311, -T::fused(t204, t312, t156))),
+            T::fused(-t295, t310, T::fused(t248, t311, T::fused(-t206, t312, t158))),
+            -t119,
+            t10,
+            T::fused(-t290, t310, T::fused(t243, t311, -T::fused(t201, t312, t153))),
+            T::fused(-(t292 + T::fused(-t167, t303, t169 * t304)), t310, t313),
+            t314,
+            T::fused(-t306, t310, T::fused(t276, t311, T::fused(-t271, t312, t266))),
+            T::fused(T::fused(t46, t302, t297), t310, -t315),
+            T::fused(-t303, t310, T::fused(t256, t311, -T::fused(t214, t312, t166))),
+            T::fused(-t304, t310, T::fused(t257, t311, T::fused(-t215, t312, t168))),
+            t316,
+            -t317,
+            T::fused(t308, t310, -T::fused(t277, t311, -T::fused(-t272, t312, t269))),
+            T::fused(-(t178 * t181), row9, t175 * t181 * row8),
+            t182,
+            T::fused(t307, t310, -T::fused(t260, t311, T::fused(t218, t312, t187))),
         ];
     }
 }

@@ -11,9 +11,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 88 operations by rotations of the bodies; 88 operations by relative Euler parameters
+//! * project: 60 operations by rotations of the bodies; 60 operations by relative Euler parameters
 //! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
 //! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
 //! * corrected_accelerations: 63 operations by recursion in the bodies' frames; 63 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 | 4 | 4 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 32 | 55 | 1 | 88 | 0 of 6 | 589 | 89 |
 //! | multipliers | λ, the accelerations being known | 18 | 34 | 1 | 53 | 0 of 5 | 170 | 53 |
+//! | project | (δr, δπ') that changes the rows as given | 22 | 37 | 1 | 60 | 0 of 6 | 398 | 60 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 40 | 0 | 63 | 0 of 6 | 111 | 63 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 14 | 22 | 0 | 36 | 0 of 5 | 74 | 36 |
 //! | corrected_solution | both | 30 | 53 | 0 | 83 | 0 of 11 | 498 | 83 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 | 1 | 1 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the size of rounding errors.
@@ -834,6 +839,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Pendulum<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Pendulum<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 60 operations (22 ±, 37 ×, 1 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let rod_e0 = y[3];
+        let rod_e1 = y[4];
+        let rod_e2 = y[5];
+        let rod_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let t0 = rod_e0 * rod_e0;
+        let t1 = k(0.5) - T::fused(rod_e2, rod_e2, t0);
+        let t2 = k(2.0) * t1;
+        let t3 = k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t0));
+        let t4 = rod_e0 * rod_e3;
+        let t5 = rod_e1 * rod_e2;
+        let t6 = k(2.0) * (t5 + t4);
+        let t7 = t5 - t4;
+        let t8 = k(2.0) * t7;
+        let t9 = k(1.0) / T::fused(-t3, t2, t8 * t6);
+        let t10 = T::fused(-(t8 * t9), row3, t2 * t9 * row4);
+        let t11 = rod_e0 * rod_e1;
+        let t12 = rod_e2 * rod_e3;
+        let t13 = t12 + t11;
+        let t14 = T::fused(
+            k(1.2) * t13,
+            row2,
+            -T::fused(-(k(1.2) * t7), row0, k(1.2) * t1 * row1),
+        );
+        let t15 = k(2.5) * t14;
+        let t16 = row0
+            - T::fused(T::fused(rod_e0, rod_e2, rod_e1 * rod_e3), t10, t7 * t15);
+        let t17 = row2
+            - T::fused(-(k(0.5) - T::fused(rod_e3, rod_e3, t0)), t10, t13 * t15);
+        *out = [
+            t16,
+            row1 + T::fused(-(t12 - t11), t10, t1 * t15),
+            t17,
+            T::fused(-(t6 * t9), row4, t3 * t9 * row3),
+            t10,
+            -t15,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Pendulum<T> {
     type Joints = [T; 2];
     type Rates = [T; 1];
@@ -1071,6 +1129,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Pendulum<T> {
             T::fused(t5, t28, t29 * t30),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Pendulum<T> {
+    type Jacobian = [T; 4];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 4]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1 operations (0 ±, 1 ×, 0 ÷) and 1 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        *dfdx = [k(0.0), k(1.0), -(k(14.715) * x0.cos()), k(0.0)];
+        *dfdt = [k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Pendulum<T> {
     type Outputs = [T; 33];

@@ -11,9 +11,11 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 553 operations by relative Euler parameters; 554 operations by rotations of the bodies
+//! * project: 417 operations by relative Euler parameters; 420 operations by rotations of the bodies
 //! * joint_accelerations: 115 operations by recursion; 124 operations by normal form
 //! * joint_accelerations_at: 145 operations by recursion on the bodies' spins; 160 operations by recursion; 1 more compared
 //! * corrected_accelerations: 554 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * joint_jacobian: 1755 operations by derivatives of u̇, from its leaves; 1755 operations by normal form of that; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 332 | 5 | 553 | 7 of 18 | 585590 | 557 |
 //! | multipliers | λ, the accelerations being known | 120 | 203 | 3 | 326 | 0 of 15 | 4184 | 326 |
+//! | project | (δr, δπ') that changes the rows as given | 155 | 257 | 5 | 417 | 1 of 18 | 429646 | 418 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 132 | 236 | 1 | 369 | 0 of 22 | 2523 | 369 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 59 | 74 | 0 | 133 | 0 of 9 | 268 | 133 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 216 | 333 | 5 | 554 | 7 of 18 | 568811 | 558 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 96 | 0 | 156 | 0 of 15 | 931 | 156 |
 //! | corrected_solution | both | 261 | 401 | 5 | 667 | 7 of 33 | 4.6e6 | 671 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 678 | 1075 | 2 | 1755 | 29 of 56 | 1.2e8 | 1755 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -3186,6 +3191,282 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for PitchingBearings<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 417 operations (155 ±, 257 ×, 5 ÷) and 6 functions.
+    fn project(
+        &self,
+        t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t2 = t1.cos();
+        let t3 = k(2.0)
+            * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
+        let t4 = t1.sin();
+        let t5 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t6 = t5.cos();
+        let t7 = t6 * t4;
+        let t8 = T::fused(
+            -t2,
+            k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0)),
+            t7 * t3,
+        );
+        let t9 = outer_ring_e0 * outer_ring_e2;
+        let t10 = outer_ring_e1 * outer_ring_e3;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = t5.sin();
+        let t13 = t12 * t4;
+        let t14 = T::fused(t13, t11, t8);
+        let t15 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t16 = k(2.0)
+            * T::fused(-outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
+        let t17 = T::fused(t6, t15, t12 * t16);
+        let t18 = T::fused(-t13, t15, T::fused(t7, t16, t2 * (k(2.0) * (t10 + t9))));
+        let t19 = T::fused(-t6, t11, t12 * t3);
+        let t20 = k(1.0) / T::fused(-t17, t14, t19 * t18);
+        let t21 = T::fused(t14 * t20, row3, t19 * t20 * row4);
+        let t22 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t23 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t24 = t23 * t22;
+        let t25 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t26 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t27 = t26 * t25;
+        let t28 = t27 - t24;
+        let t29 = k(2.0) * t28;
+        let t30 = t27 + t24;
+        let t31 = k(2.0) * t30;
+        let t32 = t23 * t23;
+        let t33 = k(0.5) - T::fused(t25, t25, t32);
+        let t34 = k(2.0) * t33;
+        let t35 = k(0.5) - T::fused(t26, t26, t32);
+        let t36 = k(2.0) * t35;
+        let t37 = k(1.0) / T::fused(-t31, t29, t36 * t34);
+        let t38 = T::fused(row13, t29 * t37, row14 * (t36 * t37));
+        let t39 = k(5e-6) * t38;
+        let t40 = T::fused(t23, t25, t22 * t26);
+        let t41 = k(2.0) * t40;
+        let t42 = T::fused(row13, t34 * t37, row14 * (t31 * t37));
+        let t43 = k(5e-6) * t42;
+        let t44 = T::fused(-t23, t26, t22 * t25);
+        let t45 = k(2.0) * t44;
+        let t46 = k(0.08) * row10;
+        let t47 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
+        let t48 = k(0.00025) * t47;
+        let t49 = k(0.08) * row11;
+        let t50 = inner_ring_e0 * inner_ring_e0;
+        let t51 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t50);
+        let t52 = k(0.00025) * t51;
+        let t53 = k(0.08) * row12;
+        let t54 = inner_ring_e0 * inner_ring_e1;
+        let t55 = inner_ring_e2 * inner_ring_e3;
+        let t56 = t55 + t54;
+        let t57 = k(0.00025) * t56;
+        let t58 = T::fused(t57, t53, -T::fused(-t48, t46, t52 * t49))
+            + T::fused(t29, t39, t34 * t43);
+        let t59 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t29, k(1e-5) * t28, t34 * (k(1e-5) * t33)));
+        let t60 = k(1.0) / t59;
+        let t61 = t60 * t58;
+        let t62 = k(1e-5) * t40;
+        let t63 = k(1e-5) * t44;
+        let t64 = T::fused(-t29, t62, t34 * t63);
+        let t65 = k(2e-5) * t47;
+        let t66 = t60 * t65;
+        let t67 = t64 * t66;
+        let t68 = k(2e-5) * t51;
+        let t69 = t60 * t68;
+        let t70 = t64 * t69;
+        let t71 = k(2e-5) * t56;
+        let t72 = t60 * t71;
+        let t73 = t64 * t72;
+        let t74 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t75 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t76 = t75 * t74;
+        let t77 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t78 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t79 = t78 * t77;
+        let t80 = k(2.0) * (t79 - t76);
+        let t81 = k(2.0) * (t79 + t76);
+        let t82 = t75 * t75;
+        let t83 = k(2.0) * (k(0.5) - T::fused(t77, t77, t82));
+        let t84 = k(2.0) * (k(0.5) - T::fused(t78, t78, t82));
+        let t85 = k(1.0) / T::fused(-t81, t80, t84 * t83);
+        let t86 = T::fused(row8, t80 * t85, row9 * (t84 * t85));
+        let t87 = t60 * t64;
+        let t88 = T::fused(t64, t87, -(k(1e-6) + T::fused(t41, t62, t45 * t63)));
+        let t89 = T::fused(row8, t83 * t85, row9 * (t81 * t85));
+        let t90 = k(1e-5) * t35;
+        let t91 = k(1e-5) * t30;
+        let t92 = T::fused(t29, t90, t34 * t91);
+        let t93 = T::fused(t92, t87, -T::fused(-t36, t62, t31 * t63));
+        let t94 = T::fused(-t88, t86, t93 * t89)
+            + T::fused(row7, t73, -T::fused(-row5, t67, row6 * t70));
+        let t95 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t96 = k(0.00025) * t95;
+        let t97 = t55 - t54;
+        let t98 = k(0.00025) * t97;
+        let t99 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t50);
+        let t100 = k(0.00025) * t99;
+        let t101 = T::fused(t100, t53, -T::fused(t96, t46, t98 * t49))
+            - T::fused(t36, t39, t31 * t43);
+        let t102 = T::fused(-t92, t66, k(2e-5) * t95);
+        let t103 = T::fused(t92, t69, k(2e-5) * t97);
+        let t104 = T::fused(t92, t72, k(2e-5) * t99);
+        let t105 = T::fused(
+            t92,
+            t60 * t92,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t36, t90, t31 * t91))),
+        );
+        let t106 = T::fused(-t93, t86, t105 * t89)
+            + T::fused(row7, t104, -T::fused(row5, t102, row6 * t103));
+        let t107 = T::fused(
+            -t80,
+            t94 + T::fused(t64, t61, -T::fused(-t41, t39, t45 * t43)),
+            t83 * (t106 + T::fused(t92, t61, t101)),
+        );
+        let t108 = T::fused(
+            row0,
+            T::fused(t80, t67, t83 * t102),
+            row1 * T::fused(-t80, t70, t83 * t103),
+        );
+        let t109 = T::fused(
+            -t80,
+            T::fused(-t84, t88, t81 * t93),
+            t83 * T::fused(-t84, t93, t81 * t105),
+        );
+        let t110 = T::fused(t18 * t20, row3, t17 * t20 * row4);
+        let t111 = T::fused(-t80, t88, t83 * t93);
+        let t112 = k(2.0) * T::fused(t75, t77, t78 * t74);
+        let t113 = T::fused(-t80, t93, t83 * t105);
+        let t114 = k(2.0) * T::fused(-t75, t78, t77 * t74);
+        let t115 = T::fused(t109, t21, T::fused(t112, t111, t114 * t113) * t110)
+            - T::fused(row2, T::fused(-t80, t73, t83 * t104), -t108);
+        let t116 = (t115 - t107) / (k(1e-6) - T::fused(-t80, t111, t83 * t113));
+        let t117 = row0 + row5;
+        let t118 = row1 + row6;
+        let t119 = row2 + row7;
+        let t120 = t86 + T::fused(t112, t110, -T::fused(t84, t21, t80 * t116));
+        let t121 = t89 - T::fused(t114, t110, T::fused(t81, t21, t83 * t116));
+        let t122 = T::fused(t119, t71, -T::fused(-t117, t65, t118 * t68))
+            + T::fused(-t64, t120, t92 * t121);
+        let t123 = t60 * (t58 + t122);
+        *out = [
+            row0,
+            row1,
+            row2,
+            t21,
+            -t116,
+            t110,
+            t117,
+            t118,
+            t119,
+            t120,
+            -t121,
+            -t123,
+            row10 + (t117 - T::fused(-t96, t121, t48 * t123)),
+            row11 + (t118 + T::fused(t98, t121, t52 * t123)),
+            row12 + (t119 - T::fused(t100, t121, t57 * t123)),
+            k(0.0),
+            t38 - T::fused(t29, t123, -T::fused(t41, t120, t36 * t121)),
+            T::fused(t34, t123, -T::fused(-t45, t120, t31 * t121)) - t42,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
@@ -4886,6 +5167,1428 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             t208,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 49]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1755 operations (678 ±, 1075 ×, 2 ÷) and 24 functions.
+    fn joint_jacobian(
+        &self,
+        t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let (
+            t0,
+            t2,
+            t4,
+            t6,
+            t7,
+            t8,
+            t9,
+            t10,
+            t11,
+            t12,
+            t13,
+            t14,
+            t15,
+            t16,
+            t17,
+            t18,
+            t19,
+            t21,
+            t23,
+            t27,
+            t29,
+            t30,
+            t32,
+            t35,
+            t36,
+            t38,
+            t39,
+            t40,
+            t41,
+            t42,
+            t45,
+            t53,
+            t54,
+            t63,
+            t69,
+            t73,
+            t75,
+            t76,
+            t77,
+            t81,
+            t86,
+            t89,
+            t90,
+            t91,
+            t93,
+            t94,
+            t95,
+            t96,
+            t98,
+            t100,
+            t102,
+            t103,
+            t104,
+            t105,
+            t106,
+            t107,
+            t108,
+            t109,
+            t110,
+            t111,
+            t112,
+            t113,
+            t114,
+            t115,
+            t116,
+            t117,
+            t118,
+            t121,
+            t122,
+            t123,
+            t124,
+            t125,
+            t126,
+            t127,
+            t128,
+            t129,
+            t130,
+            t131,
+            t132,
+            t133,
+            t134,
+            t135,
+            t136,
+            t137,
+            t138,
+            t140,
+            t141,
+            t142,
+            t143,
+            t144,
+            t145,
+            t146,
+            t147,
+            t148,
+            t149,
+            t150,
+            t151,
+            t152,
+            t153,
+            t154,
+            t155,
+            t156,
+            t157,
+            t158,
+            t159,
+            t160,
+            t161,
+            t162,
+            t163,
+            t164,
+            t166,
+            t167,
+            t168,
+            t169,
+            t170,
+            t171,
+            t172,
+            t174,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
+            t181,
+            t182,
+            t183,
+            t184,
+            t185,
+            t186,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t196,
+            t199,
+        ) = {
+            let t0 = x0.cos();
+            let t1 = k(18.84955592153876) * t;
+            let t2 = t1.sin();
+            let t3 = k(0.05) * t2;
+            let t4 = t3.cos();
+            let t5 = k(12.566370614359172) * t;
+            let t6 = t5.cos();
+            let t7 = k(1.2566370614359172) * t6;
+            let t8 = t7 * t4;
+            let t9 = x0.sin();
+            let t10 = t1.cos();
+            let t11 = k(0.9424777960769379) * t10;
+            let t12 = T::fused(-t8, t0, t11 * t9);
+            let t13 = t3.sin();
+            let t14 = t11 * t13;
+            let t15 = t5.sin();
+            let t16 = k(15.791367041742975) * t15;
+            let t17 = T::fused(t7, t14, t4 * t16);
+            let t18 = k(17.765287921960844) * t2;
+            let t19 = T::fused(t17, t9, t18 * t0);
+            let t20 = T::fused(u0, t12, t19);
+            let t21 = x1.cos();
+            let t22 = k(1e-6) * t21;
+            let t23 = x1.sin();
+            let t24 = t23 * t22;
+            let t25 = k(7.00125e-6) * t23;
+            let t26 = t21 * t25;
+            let t27 = t26 - t24;
+            let t28 = k(0.1) * t15;
+            let t29 = t28.cos();
+            let t30 = t29 * t13;
+            let t31 = k(10.0) * t30;
+            let t32 = t28.sin();
+            let t33 = k(10.0) * t32;
+            let t34 = T::fused(t0, t31, t9 * t33);
+            let t35 = k(1e-5) * t21;
+            let t36 = T::fused(t8, t9, t11 * t0);
+            let t37 = t21 * t36;
+            let t38 = T::fused(t7, t13, -u0);
+            let t39 = T::fused(t21, t12, t38 * t23);
+            let t40 = u1 + t36;
+            let t41 = k(0.000125) * t40;
+            let t42 = u2 - t39;
+            let t43 = T::fused(
+                -k(1e-5),
+                T::fused(-t39, k(0.000125) * t12, t41 * t37),
+                k(5e-6) * T::fused(u2, t12, T::fused(t40, t37, t12 * t42)),
+            );
+            let t44 = t23 * t36;
+            let t45 = T::fused(-t23, t12, t38 * t21);
+            let t46 = u1 * t44;
+            let t47 = T::fused(
+                -t21,
+                T::fused(-k(7.00125e-6), u1 * t37, t43),
+                t23 * (k(1e-6) * (t46 - T::fused(t40, t44, t12 * t45))),
+            );
+            let t48 = T::fused(k(1e-6), T::fused(-t36, t36, t12 * t12), t47)
+                - T::fused(t27, t20, t35 * t34);
+            let t49 = k(1e-6) * t23;
+            let t50 = t23 * t49;
+            let t51 = k(7.00125e-6) * t21;
+            let t52 = t21 * t51;
+            let t53 = k(1.0) / (k(1e-6) + (t52 + t50));
+            let t54 = t53 * t48;
+            let t55 = t53 * t53 * (T::fused(t21, t49, t24) - T::fused(t23, t51, t26));
+            let t56 = u1 * t45;
+            let t57 = t40 * t45;
+            let t58 = k(1e-6) * (t57 - t56);
+            let t59 = T::fused(
+                k(5e-6),
+                T::fused(u2, t40, t40 * t42),
+                k(1e-5) * (t39 * t41),
+            );
+            let t60 = u1 * t39;
+            let t61 = T::fused(k(7.00125e-6), t60, t59);
+            let t62 = T::fused(-t9, t31, t0 * t33);
+            let t63 = T::fused(-t17, t0, t18 * t9);
+            let t64 = T::fused(-u0, t36, t63);
+            let t65 = T::fused(-t35, t62, t27 * t64)
+                - T::fused(-k(1e-6), t36 * t12, T::fused(t23, t58, t21 * t61));
+            let t66 = T::fused(
+                t64,
+                T::fused(-t21, t22, t50) + T::fused(-t23, t25, t52),
+                t62 * (k(1e-5) * t23),
+            );
+            let t67 = T::fused(
+                t21,
+                T::fused(
+                    -k(7.00125e-6),
+                    t56,
+                    T::fused(-k(1e-5), t41 * t45, k(5e-6) * t57),
+                ),
+                t23 * t61,
+            );
+            let t68 = T::fused(t23, k(1e-6) * T::fused(-t39, t40, t60), t21 * t58) - t67;
+            let t69 = T::fused(t65, t55, t53 * (t68 - t66));
+            let t70 = T::fused(
+                -k(7.00125e-6),
+                u1 * t23,
+                T::fused(-k(1e-5), t23 * t41, k(5e-6) * (t23 * t40)),
+            );
+            let t71 = u1 * t21;
+            let t72 = T::fused(
+                t27,
+                t36,
+                T::fused(t21, t70, t23 * (k(1e-6) * T::fused(-t21, t40, t71))),
+            );
+            let t73 = t53 * t72;
+            let t74 = t21
+                * T::fused(
+                    k(7.00125e-6),
+                    t39,
+                    T::fused(k(1.25e-9), t39, k(5e-6) * (u2 + t42)),
+                );
+            let t75 = t53 * t74;
+            let t76 = t53 * (t21 * (k(1e-5) * t40));
+            let t77 = k(0.000125) * t45;
+            let t78 = t45 * t37;
+            let t79 = T::fused(
+                -k(1e-5),
+                T::fused(-t39, k(0.000125) * t44, t77 * t37),
+                k(5e-6) * T::fused(u2, t44, T::fused(t42, t44, t78)),
+            );
+            let t80 = T::fused(
+                -k(1e-5),
+                t23 * t62,
+                T::fused(k(1e-6), T::fused(-t39, t44, t78), -t79),
+            );
+            let t81 = T::fused(k(166631.95167673402), t80, t64);
+            let t82 = k(10.0) * (t29 * t4);
+            let t83 = t45 * t45;
+            let t84 = T::fused(
+                -k(1e-5),
+                T::fused(-t39, k(0.000125) * t39, t45 * t77),
+                k(5e-6) * T::fused(u2, t39, T::fused(t39, t42, t83)),
+            );
+            let t85 = T::fused(
+                -k(1e-5),
+                T::fused(t23, t82, t21 * t34),
+                T::fused(k(1e-6), T::fused(-t39, t39, t83), -t84),
+            );
+            let t86 = k(166631.95167673402) * t85;
+            let t87 = t23 * t45;
+            let t88 = T::fused(
+                k(1e-5),
+                T::fused(t39, k(0.000125) * t21, t23 * t77),
+                k(5e-6) * T::fused(u2, t21, -T::fused(-t21, t42, t87)),
+            );
+            let t89 = T::fused(
+                k(166631.95167673402),
+                T::fused(k(1e-6), T::fused(t21, t39, t87), t88),
+                t12,
+            );
+            let t90 = k(1.6663195167673401) * t45;
+            let t91 = t46 + T::fused(-t23, t54, t21 * t20);
+            let t92 = t65 * t53;
+            let t93 = t60 - T::fused(t23, t64, -T::fused(-t23, t69, t21 * t92));
+            let t94 = t71 - T::fused(t23, t73, t37);
+            let t95 = T::fused(t23, t75, t45);
+            let t96 = t23 * t76;
+            let t97 = k(0.5) * x0;
+            let t98 = t97.sin();
+            let t99 = k(0.025) * t2;
+            let t100 = t99.sin();
+            let t101 = k(0.05) * t15;
+            let t102 = t101.cos();
+            let t103 = t102 * t100;
+            let t104 = t97.cos();
+            let t105 = t99.cos();
+            let t106 = t101.sin();
+            let t107 = t106 * t105;
+            let t108 = T::fused(-t103, t98, t107 * t104);
+            let t109 = t106 * t100;
+            let t110 = t102 * t105;
+            let t111 = T::fused(t109, t98, t110 * t104);
+            let t112 = t111 * t111;
+            let t113 = k(2.0) * (k(0.5) - T::fused(t108, t108, t112));
+            let t114 = T::fused(t107, t98, t103 * t104);
+            let t115 = t111 * t114;
+            let t116 = T::fused(-t110, t98, t109 * t104);
+            let t117 = t108 * t116;
+            let t118 = k(2.0) * (t117 - t115);
+            let t119 = t111 * t116;
+            let t120 = t108 * t114;
+            let t121 = k(2.0) * (t120 + t119);
+            let t122 = t32 * t13;
+            let t123 = T::fused(t122, t121, -T::fused(t4, t113, t30 * t118));
+            let t124 = t111 * t108;
+            let t125 = t116 * t114;
+            let t126 = k(2.0) * (t125 + t124);
+            let t127 = k(2.0) * (k(0.5) - T::fused(t114, t114, t112));
+            let t128 = T::fused(-t32, t126, t29 * t127);
+            let t129 = k(2.0) * (t120 - t119);
+            let t130 = T::fused(t122, t127, T::fused(-t4, t129, t30 * t126));
+            let t131 = T::fused(t32, t118, t29 * t121);
+            let t132 = k(1.0) / T::fused(-t128, t123, t131 * t130);
+            let t133 = t131 * t132;
+            let t134 = k(2.0) * t98;
+            let t135 = t104 * t134;
+            let t136 = T::fused(-t98, t134, k(1.0));
+            let t137 = T::fused(t8, t135, t11 * t136);
+            let t138 = T::fused(-u0, t137, t63);
+            let t139 = k(0.5) * x1;
+            let t140 = t139.sin();
+            let t141 = t139.cos();
+            let t142 = T::fused(-t116, t140, t108 * t141);
+            let t143 = T::fused(-t114, t140, t111 * t141);
+            let t144 = t143 * t143;
+            let t145 = k(2.0) * (k(0.5) - T::fused(t142, t142, t144));
+            let t146 = T::fused(t111, t140, t114 * t141);
+            let t147 = t143 * t146;
+            let t148 = T::fused(t108, t140, t116 * t141);
+            let t149 = t142 * t148;
+            let t150 = k(2.0) * (t149 - t147);
+            let t151 = t143 * t148;
+            let t152 = t142 * t146;
+            let t153 = k(2.0) * (t152 + t151);
+            let t154 = T::fused(t121, t153, T::fused(t113, t145, t118 * t150));
+            let t155 = u1 + t137;
+            let t156 = T::fused(-t8, t136, t11 * t135);
+            let t157 = k(2.0) * t140;
+            let t158 = t141 * t157;
+            let t159 = T::fused(-t140, t157, k(1.0));
+            let t160 = T::fused(-t158, t156, t38 * t159);
+            let t161 = t11 * t4;
+            let t162 = T::fused(-t7, t161, t13 * t16);
+            let t163 = t162 - (t162 - t92);
+            let t164 = T::fused(-u1, t160, T::fused(t21, t138, t23 * t163));
+            let t165 = k(0.5) * x2;
+            let t166 = t165.sin();
+            let t167 = t165.cos();
+            let t168 = T::fused(t143, t166, t142 * t167);
+            let t169 = T::fused(-t142, t166, t143 * t167);
+            let t170 = t169 * t169;
+            let t171 = k(2.0) * (k(0.5) - T::fused(t168, t168, t170));
+            let t172 = T::fused(t148, t166, t146 * t167);
+            let t173 = t169 * t172;
+            let t174 = T::fused(-t146, t166, t148 * t167);
+            let t175 = t168 * t174;
+            let t176 = k(2.0) * (t175 - t173);
+            let t177 = t169 * t174;
+            let t178 = t168 * t172;
+            let t179 = k(2.0) * (t178 + t177);
+            let t180 = T::fused(t153, t179, T::fused(t145, t171, t150 * t176));
+            let t181 = k(1e-5) * (t56 - T::fused(t21, t64, t23 * t92) + t164);
+            let t182 = k(2.0) * (t175 + t173);
+            let t183 = k(2.0) * (k(0.5) - T::fused(t174, t174, t170));
+            let t184 = t169 * t168;
+            let t185 = t174 * t172;
+            let t186 = k(2.0) * (t185 - t184);
+            let t187 = T::fused(t153, t186, -T::fused(t145, t182, t150 * t183));
+            let t188 = k(2.0) * t166;
+            let t189 = t167 * t188;
+            let t190 = T::fused(-t166, t188, k(1.0));
+            let t191 = T::fused(t189, t160, t190 * t155);
+            let t192 = T::fused(t159, t156, t38 * t158);
+            let t193 = u2 - t192;
+            let t194 = T::fused(u1, t192, T::fused(-t23, t138, t21 * t163));
+            let t195 = x2.cos();
+            let t196 = T::fused(u0, t156, t19);
+            let t197 = T::fused(
+                k(5e-6),
+                T::fused(u2, t45, t42 * t45),
+                k(1e-5) * (t39 * t77),
+            );
+            let t198 = T::fused(
+                k(1e-5),
+                T::fused(-t23, t34, t21 * t82),
+                T::fused(k(1e-6), t39 * t45, t197),
+            );
+            let t199 = T::fused(k(166631.95167673402), t198, -t20) + t196;
+            (
+                t0,
+                t2,
+                t4,
+                t6,
+                t7,
+                t8,
+                t9,
+                t10,
+                t11,
+                t12,
+                t13,
+                t14,
+                t15,
+                t16,
+                t17,
+                t18,
+                t19,
+                t21,
+                t23,
+                t27,
+                t29,
+                t30,
+                t32,
+                t35,
+                t36,
+                t38,
+                t39,
+                t40,
+                t41,
+                t42,
+                t45,
+                t53,
+                t54,
+                t63,
+                t69,
+                t73,
+                t75,
+                t76,
+                t77,
+                t81,
+                t86,
+                t89,
+                t90,
+                t91,
+                t93,
+                t94,
+                t95,
+                t96,
+                t98,
+                t100,
+                t102,
+                t103,
+                t104,
+                t105,
+                t106,
+                t107,
+                t108,
+                t109,
+                t110,
+                t111,
+                t112,
+                t113,
+                t114,
+                t115,
+                t116,
+                t117,
+                t118,
+                t121,
+                t122,
+                t123,
+                t124,
+                t125,
+                t126,
+                t127,
+                t128,
+                t129,
+                t130,
+                t131,
+                t132,
+                t133,
+                t134,
+                t135,
+                t136,
+                t137,
+                t138,
+                t140,
+                t141,
+                t142,
+                t143,
+                t144,
+                t145,
+                t146,
+                t147,
+                t148,
+                t149,
+                t150,
+                t151,
+                t152,
+                t153,
+                t154,
+                t155,
+                t156,
+                t157,
+                t158,
+                t159,
+                t160,
+                t161,
+                t162,
+                t163,
+                t164,
+                t166,
+                t167,
+                t168,
+                t169,
+                t170,
+                t171,
+                t172,
+                t174,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
+                t181,
+                t182,
+                t183,
+                t184,
+                t185,
+                t186,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t196,
+                t199,
+            )
+        };
+        let (
+            t200,
+            t207,
+            t212,
+            t214,
+            t218,
+            t223,
+            t224,
+            t229,
+            t231,
+            t235,
+            t237,
+            t241,
+            t243,
+            t260,
+            t261,
+            t265,
+            t266,
+            t268,
+            t269,
+            t271,
+            t272,
+            t274,
+            t284,
+            t286,
+            t290,
+            t291,
+            t292,
+            t306,
+            t312,
+            t314,
+            t325,
+            t351,
+            t356,
+            t357,
+            t367,
+            t369,
+            t370,
+            t371,
+            t376,
+            t386,
+            t389,
+            t390,
+            t392,
+            t393,
+            t394,
+            t395,
+            t396,
+            t397,
+            t398,
+            t399,
+        ) = {
+            let t200 = x2.sin();
+            let t201 = T::fused(
+                -t193,
+                t191,
+                T::fused(-u2, t191, T::fused(-t195, t194, t200 * t199)),
+            );
+            let t202 = k(5e-6) * t201;
+            let t203 = k(2.0) * (t178 - t177);
+            let t204 = k(2.0) * (t185 + t184);
+            let t205 = k(2.0) * (k(0.5) - T::fused(t172, t172, t170));
+            let t206 = T::fused(t153, t205, -T::fused(-t145, t203, t150 * t204));
+            let t207 = T::fused(-t190, t160, t189 * t155);
+            let t208 = T::fused(
+                t193,
+                t207,
+                T::fused(u2, t207, T::fused(t200, t194, t195 * t199)),
+            );
+            let t209 = k(5e-6) * t208;
+            let t210 = T::fused(
+                k(1e-6),
+                T::fused(t160, t155, t164),
+                T::fused(t209, t206, T::fused(t181, t180, t202 * t187)),
+            );
+            let t211 = t149 + t147;
+            let t212 = k(2.0) * t211;
+            let t213 = k(0.5) - T::fused(t148, t148, t144);
+            let t214 = k(2.0) * t213;
+            let t215 = t143 * t142;
+            let t216 = t148 * t146;
+            let t217 = t216 - t215;
+            let t218 = k(2.0) * t217;
+            let t219 = T::fused(t121, t218, -T::fused(t113, t212, t118 * t214));
+            let t220 = T::fused(t218, t179, -T::fused(t212, t171, t214 * t176));
+            let t221 = T::fused(t218, t186, T::fused(t212, t182, t214 * t183));
+            let t222 = T::fused(t218, t205, T::fused(-t212, t203, t214 * t204));
+            let t223 = k(0.000125) * t160;
+            let t224 = k(0.000125) * t155;
+            let t225 = T::fused(t160, t223, t155 * t224);
+            let t226 = t223 * t192;
+            let t227 = t224 * t192;
+            let t228 = t152 - t151;
+            let t229 = k(2.0) * t228;
+            let t230 = k(0.00025) * t228;
+            let t231 = k(0.00025) * t211;
+            let t232 = T::fused(-t194, t230, t199 * t231)
+                - T::fused(t229, t227, T::fused(-t145, t225, t212 * t226));
+            let t233 = k(0.08) * t232;
+            let t234 = t216 + t215;
+            let t235 = k(2.0) * t234;
+            let t236 = k(0.00025) * t234;
+            let t237 = k(0.00025) * t213;
+            let t238 = T::fused(t194, t236, t199 * t237)
+                + T::fused(t235, t227, -T::fused(-t150, t225, t214 * t226));
+            let t239 = T::fused(k(0.08), t238, k(0.8));
+            let t240 = k(0.5) - T::fused(t146, t146, t144);
+            let t241 = k(2.0) * t240;
+            let t242 = k(0.00025) * t240;
+            let t243 = k(0.00025) * t217;
+            let t244 = T::fused(t194, t242, t199 * t243)
+                + T::fused(t241, t227, -T::fused(t153, t225, t218 * t226));
+            let t245 = k(0.08) * t244;
+            let t246 = T::fused(t242, t245, T::fused(-t230, t233, t236 * t239))
+                - T::fused(t209, t222, T::fused(t181, t220, t202 * t221));
+            let t247 = T::fused(k(2e-6), t194, t246);
+            let t248 = T::fused(t121, t241, -T::fused(-t113, t229, t118 * t235));
+            let t249 = T::fused(t241, t179, -T::fused(-t229, t171, t235 * t176));
+            let t250 = T::fused(t241, t186, T::fused(-t229, t182, t235 * t183));
+            let t251 = T::fused(t241, t205, T::fused(t229, t203, t235 * t204));
+            let t252 = T::fused(t243, t245, T::fused(t231, t233, t237 * t239))
+                + T::fused(t209, t251, T::fused(t181, t249, t202 * t250));
+            let t253 = T::fused(k(1e-6), T::fused(-t160, t192, t199), t252);
+            let t254 = T::fused(
+                k(2e-6),
+                t138,
+                T::fused(t253, t248, -T::fused(-t210, t154, t247 * t219)),
+            );
+            let t255 = t128 * t132;
+            let t256 = T::fused(t127, t153, -T::fused(-t129, t145, t126 * t150));
+            let t257 = T::fused(t127, t218, T::fused(-t129, t212, t126 * t214));
+            let t258 = T::fused(t127, t241, T::fused(t129, t229, t126 * t235));
+            let t259 = T::fused(
+                k(1e-6),
+                T::fused(t38, t156, t196),
+                T::fused(t253, t258, -T::fused(-t210, t256, t247 * t257)),
+            );
+            let t260 = T::fused(t254, t133, t259 * t255);
+            let t261 = t7 * t29;
+            let t262 = T::fused(t32, t161, t13 * t261);
+            let t263 = t123 * t132;
+            let t264 = t130 * t132;
+            let t265 = T::fused(t254, t263, t259 * t264);
+            let t266 = t7 * t32;
+            let t267 = T::fused(t262, t260, t266 * t265);
+            let t268 = k(2.0) * (t125 - t124);
+            let t269 = k(2.0) * (k(0.5) - T::fused(t116, t116, t112));
+            let t270 = T::fused(t266, t268, t261 * t269);
+            let t271 = T::fused(-t29, t161, t13 * t266);
+            let t272 = k(2.0) * (t117 + t115);
+            let t273 = T::fused(-t262, t268, T::fused(t271, t269, t14 * t272));
+            let t274 = T::fused(-t264, t270, t255 * t273);
+            let t275 = t253 * t274;
+            let t276 = t247 * t274;
+            let t277 = t210 * t274;
+            let t278 = t259 * t270;
+            let t279 = t259 * t273;
+            let t280 = t254 * t273;
+            let t281 = t254 * t270;
+            let t282 = T::fused(
+                t123,
+                t281,
+                T::fused(t130, t278, -T::fused(t128, t279, t131 * t280)),
+            );
+            let t283 = t132 * t132 * t282;
+            let t284 = T::fused(-t132, t278, t131 * t283);
+            let t285 = T::fused(
+                t30,
+                t284,
+                -T::fused(t150, t277, T::fused(-t235, t275, t214 * t276)),
+            );
+            let t286 = T::fused(-t132, t279, t123 * t283);
+            let t287 = T::fused(t32, t286, t285);
+            let t288 = k(2.0) * (t287 + t267);
+            let t289 = T::fused(
+                t4,
+                t284,
+                -T::fused(t145, t277, T::fused(t229, t275, t212 * t276)),
+            );
+            let t290 = T::fused(t132, t280, t130 * t283);
+            let t291 = T::fused(t132, t281, t128 * t283);
+            let t292 = T::fused(-t263, t270, t133 * t273);
+            let t293 = t253 * t292;
+            let t294 = t247 * t292;
+            let t295 = T::fused(
+                t218,
+                t294,
+                -T::fused(t241, t293, -T::fused(-t29, t290, t122 * t291)),
+            );
+            let t296 = t210 * t292;
+            let t297 = T::fused(t153, t296, -t295);
+            let t298 = k(2.0) * (t297 - t289);
+            let t299 = t14 * t260;
+            let t300 = T::fused(
+                t214,
+                t294,
+                -T::fused(t235, t293, -T::fused(t32, t290, t30 * t291)),
+            );
+            let t301 = T::fused(t150, t296, t300);
+            let t302 = k(2.0) * (t301 + t299);
+            let t303 = T::fused(
+                t145,
+                t296,
+                T::fused(t212, t294, T::fused(t4, t291, t229 * t293)),
+            );
+            let t304 = t108 * (k(2.0) * t303);
+            let t305 = t304
+                + (t304 - T::fused(t116, t302, T::fused(t111, t288, t114 * t298)));
+            let t306 = T::fused(t248, t292, t258 * t274);
+            let t307 = t209 * t306;
+            let t308 = t202 * t306;
+            let t309 = T::fused(
+                t183,
+                t308,
+                T::fused(t204, t307, -T::fused(-t126, t275, t118 * t293)),
+            );
+            let t310 = t181 * t306;
+            let t311 = T::fused(t219, t292, t257 * t274);
+            let t312 = k(0.08) * T::fused(-t236, t311, t237 * t306);
+            let t313 = T::fused(
+                k(2.0),
+                T::fused(t227, t312, -T::fused(t176, t310, -t309)),
+                k(0.00025) * T::fused(-t239, t311, t194 * t312),
+            );
+            let t314 = k(0.08) * T::fused(-t242, t311, t243 * t306);
+            let t315 = t209 * t311;
+            let t316 = T::fused(
+                t205,
+                t315,
+                -T::fused(t226, t314, T::fused(t127, t276, t121 * t294)),
+            );
+            let t317 = t202 * t311;
+            let t318 = t181 * t311;
+            let t319 = T::fused(
+                k(0.00025),
+                T::fused(t245, t306, t199 * t314),
+                k(2.0) * T::fused(t179, t318, T::fused(t186, t317, t316)),
+            );
+            let t320 = t319 + t313;
+            let t321 = T::fused(
+                t204,
+                t315,
+                -T::fused(t226, t312, -T::fused(-t126, t276, t118 * t294)),
+            );
+            let t322 = T::fused(
+                -k(0.00025),
+                T::fused(t239, t306, t199 * t312),
+                k(2.0) * T::fused(t176, t318, -T::fused(t183, t317, t321)),
+            );
+            let t323 = t148 * t322;
+            let t324 = T::fused(
+                t182,
+                t308,
+                -T::fused(t203, t307, T::fused(t129, t275, t113 * t293)),
+            );
+            let t325 = k(0.08) * T::fused(t230, t311, t231 * t306);
+            let t326 = T::fused(
+                k(2.0),
+                T::fused(t227, t325, -T::fused(t171, t310, -t324)),
+                k(0.00025) * T::fused(-t233, t311, t194 * t325),
+            );
+            let t327 = T::fused(t154, t292, t256 * t274);
+            let t328 = t209 * t327;
+            let t329 = T::fused(
+                t205,
+                t328,
+                T::fused(t121, t296, -T::fused(-t127, t277, t225 * t314)),
+            );
+            let t330 = t202 * t327;
+            let t331 = t181 * t327;
+            let t332 = k(2.0) * T::fused(t179, t331, T::fused(t186, t330, t329));
+            let t333 = t332 + t326;
+            let t334 = T::fused(
+                t203,
+                t315,
+                T::fused(t226, t325, -T::fused(t129, t276, t113 * t294)),
+            );
+            let t335 = T::fused(
+                -k(0.00025),
+                T::fused(t233, t306, t199 * t325),
+                k(2.0) * T::fused(t171, t318, -T::fused(t182, t317, -t334)),
+            );
+            let t336 = T::fused(
+                t204,
+                t328,
+                -T::fused(t118, t296, T::fused(-t126, t277, t225 * t312)),
+            );
+            let t337 = k(2.0) * T::fused(t176, t331, -T::fused(t183, t330, t336));
+            let t338 = t337 - t335;
+            let t339 = T::fused(
+                t142,
+                t338,
+                T::fused(t143, t333, t323 + T::fused(t146, t320, t323)),
+            );
+            let t340 = T::fused(t150, t328, -T::fused(t235, t307, t214 * t315));
+            let t341 = T::fused(t153, t330, T::fused(t241, t308, t218 * t317));
+            let t342 = k(2.0) * (t341 - t340);
+            let t343 = T::fused(t150, t330, -T::fused(t235, t308, t214 * t317));
+            let t344 = t174 * (k(2.0) * t343);
+            let t345 = T::fused(t145, t328, -T::fused(-t229, t307, t212 * t315));
+            let t346 = T::fused(t153, t331, T::fused(t241, t310, t218 * t318));
+            let t347 = k(2.0) * (t346 - t345);
+            let t348 = T::fused(t145, t330, -T::fused(-t229, t308, t212 * t317));
+            let t349 = T::fused(t150, t331, -T::fused(t235, t310, t214 * t318));
+            let t350 = k(2.0) * (t349 - t348);
+            let t351 = T::fused(
+                t168,
+                t350,
+                T::fused(t169, t347, t344 + T::fused(t172, t342, t344)),
+            );
+            let t352 = T::fused(t153, t328, T::fused(t241, t307, t218 * t315));
+            let t353 = k(2.0) * (t346 + t345);
+            let t354 = T::fused(
+                t168,
+                t353,
+                T::fused(-k(2.0), t172 * (k(2.0) * t352), t174 * t342),
+            );
+            let t355 = k(2.0) * (t349 + t348);
+            let t356 = T::fused(t169, t355, -t354);
+            let t357 = T::fused(t166, t356, -T::fused(t167, t351, t339));
+            let t358 = t319 - t313;
+            let t359 = t332 - t326;
+            let t360 = T::fused(
+                t203,
+                t328,
+                T::fused(t113, t296, T::fused(t129, t277, t225 * t325)),
+            );
+            let t361 = k(2.0) * T::fused(t171, t331, -T::fused(t182, t330, -t360));
+            let t362 = t142 * t361;
+            let t363 = t362
+                + (t362 - T::fused(t148, t338, T::fused(-t143, t358, t146 * t359)));
+            let t364 = k(2.0) * (t341 + t340);
+            let t365 = T::fused(t145, t331, -T::fused(-t229, t310, t212 * t318));
+            let t366 = t169 * (k(2.0) * (t365 - (t343 - t352)));
+            let t367 = t366
+                + (t366 + T::fused(t172, t355, -T::fused(-t168, t364, t174 * t347)));
+            let t368 = t168 * (k(2.0) * t365);
+            let t369 = t368
+                + (t368 - T::fused(t174, t350, T::fused(-t169, t364, t172 * t353)));
+            let t370 = T::fused(t167, t369, -T::fused(t166, t367, -t363));
+            let t371 = T::fused(t141, t370, T::fused(t140, t357, t305));
+            let t372 = T::fused(-t271, t260, t261 * t265);
+            let t373 = k(2.0) * (t287 - t267);
+            let t374 = k(2.0) * (t297 + t289);
+            let t375 = T::fused(
+                t111,
+                t374,
+                T::fused(k(2.0), t116 * (k(2.0) * t372), t114 * t373),
+            );
+            let t376 = T::fused(
+                t140,
+                t370,
+                -T::fused(t141, t357, -T::fused(t108, t302, t375)),
+            );
+            let t377 = k(2.0) * (t301 - t299);
+            let t378 = T::fused(
+                t122,
+                t284,
+                T::fused(t153, t277, -T::fused(-t241, t275, t218 * t276)),
+            );
+            let t379 = T::fused(t29, t286, -t378);
+            let t380 = t111 * (k(2.0) * (t303 - (t379 + t372)));
+            let t381 = t380
+                + (t380 + T::fused(t114, t377, -T::fused(t108, t288, t116 * t374)));
+            let t382 = T::fused(
+                t186,
+                t308,
+                T::fused(t205, t307, T::fused(t127, t275, t121 * t293)),
+            );
+            let t383 = T::fused(
+                k(2.0),
+                T::fused(t227, t314, T::fused(t179, t310, t382)),
+                k(0.00025) * T::fused(-t245, t311, t194 * t314),
+            );
+            let t384 = t337 + t335;
+            let t385 = T::fused(
+                t143,
+                t384,
+                -T::fused(t142, t359, T::fused(-k(2.0), t146 * t383, t148 * t320)),
+            );
+            let t386 = T::fused(t167, t356, T::fused(t166, t351, t385));
+            let t387 = t143 * (t361 - (t322 - t383));
+            let t388 = t387
+                + (t387 + T::fused(t146, t384, -T::fused(-t142, t358, t148 * t333)));
+            let t389 = T::fused(t166, t369, T::fused(t167, t367, t388));
+            let t390 = T::fused(t141, t389, T::fused(t140, t386, t381));
+            let t391 = T::fused(
+                t108,
+                t298,
+                T::fused(k(2.0), t114 * (k(2.0) * t379), t116 * t373),
+            );
+            let t392 = T::fused(
+                t140,
+                t389,
+                -T::fused(t141, t386, T::fused(t111, t377, -t391)),
+            );
+            let t393 = T::fused(
+                t103,
+                t392,
+                -T::fused(t110, t390, -T::fused(-t107, t371, t109 * t376)),
+            );
+            let t394 = k(1e-6) * t327;
+            let t395 = k(1e-5) * T::fused(t180, t327, T::fused(t220, t311, t249 * t306));
+            let t396 = t395 + t394;
+            let t397 = k(5e-6) * T::fused(t187, t327, T::fused(t221, t311, t250 * t306));
+            let t398 = k(5e-6) * T::fused(t206, t327, T::fused(t222, t311, t251 * t306));
+            let t399 = T::fused(
+                -k(2e-6),
+                t311,
+                T::fused(-t230, t325, T::fused(t236, t312, t242 * t314)),
+            );
+            (
+                t200,
+                t207,
+                t212,
+                t214,
+                t218,
+                t223,
+                t224,
+                t229,
+                t231,
+                t235,
+                t237,
+                t241,
+                t243,
+                t260,
+                t261,
+                t265,
+                t266,
+                t268,
+                t269,
+                t271,
+                t272,
+                t274,
+                t284,
+                t286,
+                t290,
+                t291,
+                t292,
+                t306,
+                t312,
+                t314,
+                t325,
+                t351,
+                t356,
+                t357,
+                t367,
+                t369,
+                t370,
+                t371,
+                t376,
+                t386,
+                t389,
+                t390,
+                t392,
+                t393,
+                t394,
+                t395,
+                t396,
+                t397,
+                t398,
+                t399,
+            )
+        };
+        let (
+            t418,
+            t427,
+            t428,
+            t435,
+            t436,
+            t441,
+            t443,
+            t444,
+            t445,
+            t462,
+            t466,
+            t467,
+            t495,
+        ) = {
+            let t400 = T::fused(-t195, t397, T::fused(t200, t398, t399));
+            let t401 = T::fused(t21, t396, T::fused(-t23, t400, k(2e-6) * t292));
+            let t402 = T::fused(u2, t397, t193 * t397);
+            let t403 = T::fused(u2, t398, t193 * t398);
+            let t404 = T::fused(-t145, t325, T::fused(-t150, t312, t153 * t314));
+            let t405 = T::fused(-t229, t325, T::fused(t235, t312, t241 * t314));
+            let t406 = T::fused(
+                -t189,
+                t403,
+                T::fused(-k(0.000125), T::fused(-t155, t404, t192 * t405), t224 * t404),
+            );
+            let t407 = T::fused(-t160, t394, T::fused(t190, t402, t406));
+            let t408 = T::fused(u0, t401, t407);
+            let t409 = T::fused(t212, t325, T::fused(t214, t312, t218 * t314));
+            let t410 = k(1e-6) * t306;
+            let t411 = T::fused(
+                k(0.000125),
+                T::fused(t160, t404, t192 * t409),
+                T::fused(t223, t404, t192 * t410),
+            );
+            let t412 = T::fused(
+                u1,
+                t396,
+                T::fused(-t155, t394, T::fused(t189, t402, T::fused(t190, t403, t411))),
+            );
+            let t413 = t191 * t397;
+            let t414 = t207 * t398;
+            let t415 = t414 - t413;
+            let t416 = T::fused(
+                -u1,
+                t400,
+                T::fused(t223, t409, T::fused(-t224, t405, t160 * t410)) + t415,
+            );
+            let t417 = T::fused(
+                t195,
+                t398,
+                T::fused(t231, t325, T::fused(t237, t312, T::fused(t243, t314, t410))),
+            );
+            let t418 = T::fused(t200, t397, t417);
+            let t419 = k(1e-6) * t274;
+            let t420 = t419 + t418;
+            let t421 = T::fused(
+                t158,
+                t412,
+                T::fused(-t159, t416, T::fused(u0, t420, t38 * t419)),
+            );
+            let t422 = T::fused(-t8, t408, t11 * t421);
+            let t423 = T::fused(
+                t107,
+                t392,
+                -T::fused(t109, t390, T::fused(-t103, t371, t110 * t376)),
+            );
+            let t424 = T::fused(t11, t408, t8 * t421);
+            let t425 = T::fused(
+                k(2.0),
+                T::fused(t104, t422, t98 * t424),
+                T::fused(t134, t424, t423),
+            );
+            let t426 = T::fused(
+                -t9,
+                T::fused(-t17, t401, t18 * t420),
+                t0 * T::fused(t18, t401, t17 * t420),
+            );
+            let t427 = T::fused(
+                k(0.5),
+                T::fused(-t98, T::fused(t134, t422, t393), t104 * t425),
+                t426,
+            );
+            let t428 = T::fused(t23, t396, t21 * t400);
+            let t429 = T::fused(
+                t111,
+                t389,
+                T::fused(t108, t370, T::fused(t114, t386, t116 * t357)),
+            );
+            let t430 = T::fused(-t156, t412, t38 * t416);
+            let t431 = T::fused(
+                t114,
+                t389,
+                T::fused(t116, t370, -T::fused(t111, t386, t108 * t357)),
+            );
+            let t432 = T::fused(t38, t412, t156 * t416);
+            let t433 = T::fused(
+                k(2.0),
+                T::fused(-t141, t430, t140 * t432),
+                T::fused(t157, t432, t431),
+            );
+            let t434 = T::fused(
+                -k(0.5),
+                T::fused(t140, T::fused(t157, t430, t429), t141 * t433),
+                t23 * T::fused(t163, t400, t138 * t396),
+            );
+            let t435 = T::fused(
+                t69,
+                t428,
+                T::fused(t21, T::fused(-t163, t396, t138 * t400), t434),
+            );
+            let t436 = T::fused(
+                t195,
+                T::fused(t194, t398, t199 * t397),
+                t200 * T::fused(-t199, t398, t194 * t397),
+            );
+            let t437 = T::fused(-t160, t402, t155 * t403);
+            let t438 = T::fused(
+                t143,
+                t367,
+                T::fused(t146, t356, -T::fused(t148, t351, t188 * t437)),
+            );
+            let t439 = T::fused(t155, t402, t160 * t403);
+            let t440 = T::fused(
+                -t146,
+                t351,
+                T::fused(k(2.0), T::fused(t167, t437, t166 * t439), t188 * t439),
+            );
+            let t441 = T::fused(
+                -t166,
+                T::fused(t142, t369, t438),
+                t167
+                    * T::fused(
+                        t143,
+                        t369,
+                        -T::fused(t142, t367, -T::fused(t148, t356, -t440)),
+                    ),
+            );
+            let t442 = T::fused(-t159, t412, T::fused(-t158, t416, t156 * t419));
+            let t443 = T::fused(
+                -t89,
+                t418,
+                T::fused(-t73, t428, T::fused(-t137, t401, T::fused(t156, t420, -t442))),
+            );
+            let t444 = T::fused(
+                t95,
+                t395,
+                T::fused(-t75, t428, T::fused(-t160, t396, T::fused(t192, t400, -t407))),
+            );
+            let t445 = T::fused(
+                -t96,
+                t395,
+                T::fused(-t90, t418, T::fused(t76, t428, t413 - (t414 + t415))),
+            );
+            let t446 = k(198.44017075391884) * t6;
+            let t447 = t161 * t16;
+            let t448 = T::fused(t7, T::fused(t11, t14, t4 * t18), t447)
+                + T::fused(t13, t446, t447);
+            let t449 = k(334.86778814723806) * t10;
+            let t450 = t14 * t16;
+            let t451 = T::fused(t7, T::fused(-t11, t161, t13 * t18), t450)
+                + T::fused(-t4, t446, t450);
+            let t452 = T::fused(u0, t19, T::fused(t9, t449, t0 * t451));
+            let t453 = k(10.0) * t261;
+            let t454 = k(10.0) * t271;
+            let t455 = T::fused(t21, t63, t162 * t23);
+            let t456 = T::fused(
+                k(1e-5),
+                T::fused(t39, k(0.000125) * t19, t41 * t455),
+                k(5e-6) * T::fused(u2, t19, T::fused(-t40, t455, t42 * t19)),
+            );
+            let t457 = T::fused(-t23, t63, t162 * t21);
+            let t458 = u1 * t457;
+            let t459 = T::fused(
+                -t21,
+                T::fused(k(7.00125e-6), u1 * t455, t456),
+                t23 * (k(1e-6) * (t458 - T::fused(t40, t457, t45 * t19))),
+            );
+            let t460 = T::fused(k(1e-6), T::fused(t63, t36, t12 * t19), t459)
+                + T::fused(-t27, t452, t35 * T::fused(t0, t453, t9 * t454));
+            let t461 = t53 * t460;
+            let t462 = t461 + t448;
+            let t463 = T::fused(
+                -t21,
+                k(10.0) * T::fused(t29, t14, t4 * t266),
+                t23 * T::fused(-t9, t453, t0 * t454),
+            );
+            let t464 = t45 * t455;
+            let t465 = T::fused(
+                k(1e-5),
+                T::fused(t39, k(0.000125) * t457, t77 * t455),
+                k(5e-6) * T::fused(u2, t457, -T::fused(-t42, t457, t464)),
+            );
+            let t466 = T::fused(
+                -k(166631.95167673402),
+                T::fused(
+                    -k(1e-5),
+                    t463,
+                    T::fused(k(1e-6), T::fused(t39, t457, t464), t465),
+                ),
+                T::fused(u0, t63, T::fused(-t0, t449, t9 * t451)),
+            );
+            let t467 = t458 + T::fused(-t23, t461, t21 * t452);
+            let t468 = t268 * t260;
+            let t469 = t269 * t260;
+            let t470 = T::fused(-t13, t469, t268 * t265);
+            let t471 = T::fused(
+                t126,
+                t286,
+                T::fused(t118, t290, -T::fused(t161, t468, t7 * t470)),
+            );
+            let t472 = T::fused(-t127, t284, t121 * t291);
+            let t473 = T::fused(t13, t468, t269 * t265);
+            let t474 = T::fused(
+                t127,
+                t286,
+                -T::fused(t121, t290, -T::fused(t161, t469, t7 * t473)),
+            );
+            let t475 = T::fused(t126, t284, t118 * t291);
+            let t476 = T::fused(
+                t29,
+                T::fused(t13, t472, -t471),
+                t32 * T::fused(t13, t475, -t474),
+            );
+            let t477 = T::fused(t98, t376, t104 * t390);
+            let t478 = T::fused(t98, t371, t104 * t392);
+            let t479 = T::fused(-t104, t376, t98 * t390);
+            let t480 = T::fused(-t104, t371, t98 * t392);
+            let t481 = T::fused(
+                -t106,
+                T::fused(-t105, t477, t100 * t478),
+                t102 * T::fused(-t100, t479, t105 * t480),
+            );
+            let t482 = T::fused(-t0, t401, t9 * t420);
+            let t483 = T::fused(
+                k(15.791367041742975),
+                T::fused(t13, t428, t4 * t482),
+                T::fused(-k(0.1), t476, k(0.05) * t481),
+            );
+            let t484 = T::fused(
+                t14,
+                t482,
+                T::fused(t13, t442, -T::fused(t29, t473, t32 * t470)),
+            );
+            let t485 = T::fused(t135, t408, t136 * t421);
+            let t486 = T::fused(
+                t6,
+                t483,
+                t15
+                    * (k(1.2566370614359172)
+                        * T::fused(t161, t428, T::fused(t4, t485, -t484))),
+            );
+            let t487 = T::fused(t272, t260, t7 * t482);
+            let t488 = T::fused(t7, t428, T::fused(t29, t469, t32 * t468));
+            let t489 = T::fused(
+                t4,
+                t488,
+                T::fused(t136, t408, -T::fused(t13, t487, t135 * t421)),
+            );
+            let t490 = T::fused(
+                -t105,
+                T::fused(-t106, t479, t102 * t478),
+                t100 * T::fused(-t102, t477, t106 * t480),
+            );
+            let t491 = T::fused(
+                t29,
+                t475,
+                -T::fused(t32, t472, T::fused(-t266, t469, t261 * t468)),
+            );
+            let t492 = T::fused(
+                t7,
+                t485,
+                -T::fused(t16, t482, T::fused(-t129, t284, t113 * t291)),
+            );
+            let t493 = T::fused(
+                t4,
+                T::fused(t16, t428, T::fused(t11, t487, T::fused(t7, t442, t491))),
+                t13 * T::fused(t11, t488, t492),
+            );
+            let t494 = T::fused(
+                k(0.05),
+                t493,
+                T::fused(
+                    -k(0.025),
+                    t490,
+                    k(17.765287921960844) * T::fused(t9, t401, t0 * t420),
+                ),
+            );
+            let t495 = T::fused(
+                k(12.566370614359172),
+                t486,
+                k(18.84955592153876)
+                    * T::fused(t2, k(0.9424777960769379) * t489, t10 * t494),
+            );
+            (
+                t418,
+                t427,
+                t428,
+                t435,
+                t436,
+                t441,
+                t443,
+                t444,
+                t445,
+                t462,
+                t466,
+                t467,
+                t495,
+            )
+        };
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t54,
+            -t69,
+            k(0.0),
+            -t73,
+            -t75,
+            -t76,
+            k(0.0),
+            -t81,
+            -t86,
+            k(0.0),
+            t89,
+            k(0.0),
+            -t90,
+            k(0.0),
+            -t91,
+            -t93,
+            k(0.0),
+            -t94,
+            t95,
+            t96,
+            k(0.0),
+            T::fused(-t91, t395, T::fused(t81, t418, -T::fused(t54, t428, -t427))),
+            T::fused(-t93, t395, T::fused(t86, t418, -t435)),
+            T::fused(-k(0.5), t441, t436),
+            T::fused(-t94, t395, t443),
+            t444,
+            -t445,
+            k(0.0),
+        ];
+        *dfdt = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t462,
+            -t466,
+            -t467,
+            T::fused(-t467, t395, T::fused(t466, t418, -T::fused(t462, t428, -t495))),
+        ];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
     type Outputs = [T; 26];

@@ -12,9 +12,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 154 operations by rotations of the bodies; 154 operations by relative Euler parameters
+//! * project: 122 operations by rotations of the bodies; 122 operations by relative Euler parameters
 //! * joint_accelerations: 40 operations by normal form; 77 operations by recursion
 //! * joint_accelerations_at: 44 operations by normal form; 81 operations by recursion; 1 more compared
 //! * corrected_accelerations: 130 operations by normal form in the bodies' frames; 154 operations by elimination in maximal coordinates; 5 more compared
+//! * joint_jacobian: 79 operations by derivatives of the balance, from its leaves, normal form; 79 operations by derivatives of the balance, from its roots, normal form; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 63 | 89 | 2 | 154 | 0 of 6 | 2399 | 156 |
 //! | multipliers | λ, the accelerations being known | 32 | 51 | 1 | 84 | 0 of 3 | 298 | 84 |
+//! | project | (δr, δπ') that changes the rows as given | 45 | 75 | 2 | 122 | 0 of 6 | 2491 | 123 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 7 | 14 | 0 | 21 | 0 of 2 | 21 | 21 |
 //! | read_joints | joint coordinates and rates | 30 | 40 | 0 | 70 | 0 of 7 | 132 | 70 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 79 | 2 | 130 | 0 of 6 | 6358 | 131 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 32 | 44 | 0 | 76 | 0 of 3 | 198 | 76 |
 //! | corrected_solution | both | 66 | 106 | 2 | 174 | 0 of 9 | 31989 | 175 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 28 | 49 | 2 | 79 | 33 of 42 | 5962 | 79 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -784,6 +789,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Planar<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 122 operations (45 ±, 75 ×, 2 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let block_e0 = y[3];
+        let block_e1 = y[4];
+        let block_e2 = y[5];
+        let block_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let t0 = block_e0 * block_e3;
+        let t1 = block_e1 * block_e2;
+        let t2 = t1 + t0;
+        let t3 = k(2.0) * t2;
+        let t4 = t1 - t0;
+        let t5 = k(2.0) * t4;
+        let t6 = block_e0 * block_e0;
+        let t7 = k(0.5) - T::fused(block_e2, block_e2, t6);
+        let t8 = k(2.0) * t7;
+        let t9 = k(0.5) - T::fused(block_e1, block_e1, t6);
+        let t10 = k(2.0) * t9;
+        let t11 = k(1.0) / T::fused(-t5, t3, t10 * t8);
+        let t12 = T::fused(row1, t3 * t11, row2 * (t10 * t11));
+        let t13 = block_e0 * block_e2;
+        let t14 = block_e1 * block_e3;
+        let t15 = t14 + t13;
+        let t16 = T::fused(k(0.1), t4, k(0.2) * t15);
+        let t17 = T::fused(row1, t8 * t11, row2 * (t5 * t11));
+        let t18 = T::fused(k(0.1), t9, k(0.4) * t15);
+        let t19 = t14 - t13;
+        let t20 = block_e0 * block_e1;
+        let t21 = block_e2 * block_e3;
+        let t22 = t21 + t20;
+        let t23 = T::fused(k(0.2), t19, k(0.4) * t22);
+        let t24 = T::fused(-k(0.2), t9, k(0.4) * t4);
+        let t25 = k(0.8) * t24;
+        let t26 = T::fused(-k(0.2), t2, k(0.4) * t7);
+        let t27 = k(0.8) * t26;
+        let t28 = t21 - t20;
+        let t29 = T::fused(-k(0.1), t7, k(0.2) * t28);
+        let t30 = T::fused(-k(0.1), t2, k(0.4) * t28);
+        let t31 = T::fused(
+            -T::fused(t29, t27, T::fused(-t16, t25, k(0.008))),
+            t12,
+            T::fused(t30, t27, -T::fused(t18, t25, k(0.004))) * t17,
+        );
+        let t32 = T::fused(-(k(0.8) * t23), row0, t31)
+            / T::fused(t26, t27, -T::fused(-t24, t25, k(0.065)));
+        let t33 = T::fused(t25, t32, T::fused(-(k(0.8) * t16), t12, k(0.8) * t18 * t17));
+        let t34 = T::fused(
+            -k(1.25),
+            t33,
+            T::fused(t24, t32, T::fused(-t16, t12, t18 * t17)),
+        );
+        let t35 = T::fused(
+            t27,
+            t32,
+            -T::fused(-(k(0.8) * t29), t12, k(0.8) * t30 * t17),
+        );
+        let t36 = T::fused(
+            -k(1.25),
+            t35,
+            T::fused(t26, t32, -T::fused(-t29, t12, t30 * t17)),
+        );
+        let t37 = k(0.5) - T::fused(block_e3, block_e3, t6);
+        let t38 = T::fused(
+            -T::fused(-k(0.1), t22, k(0.2) * t37),
+            t12,
+            T::fused(k(0.1), t19, k(0.4) * t37) * t17,
+        );
+        *out = [-t34, t36, row0 - T::fused(t23, t32, -t38), t12, -t17, t32];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
@@ -1199,6 +1284,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
             T::fused(-t1, t51, t2 * t49),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Planar<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 36]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 79 operations (28 ±, 49 ×, 2 ÷) and 2 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x2 = x[2];
+        let u2 = x[5];
+        let t0 = x2.sin();
+        let t1 = x2.cos();
+        let t2 = T::fused(k(0.56), t0, k(0.52) * t1);
+        let t3 = T::fused(k(0.08), t0, k(0.16) * t1);
+        let t4 = u2 * u2;
+        let t5 = t4 * t3;
+        let t6 = T::fused(-k(0.08), t1, k(0.16) * t0);
+        let t7 = k(15.384615384615385) * t6;
+        let t8 = t4 * t6;
+        let t9 = k(15.384615384615385) * t3;
+        let t10 = T::fused(t9, t2, -(k(3.2) + t8));
+        let t11 = t6 * t9;
+        let t12 = k(1.0) / T::fused(-t3, t9, k(0.8));
+        let t13 = t12 * t11;
+        let t14 = k(1.0) / T::fused(t11, t13, -T::fused(-t6, t7, k(0.8)));
+        let t15 = t14 * T::fused(t13, t10, T::fused(t7, t2, -(k(1.2) - t5)));
+        let t16 = T::fused(-t12, t10, t13 * t15);
+        let t17 = T::fused(t9, t16, T::fused(-k(15.384615384615385), t2, t7 * t15));
+        let t18 = T::fused(
+            -t3,
+            t15,
+            T::fused(t6, t16, T::fused(-k(0.52), t0, k(0.56) * t1)),
+        );
+        let t19 = T::fused(t9, t18, -T::fused(-t6, t17, t5));
+        let t20 = t14 * T::fused(t13, t19, T::fused(t7, t18, -T::fused(t3, t17, t8)));
+        let t21 = k(2.0) * u2;
+        let t22 = t6 * t21;
+        let t23 = t14 * T::fused(-t13, t22, t3 * t21);
+        let t24 = T::fused(-t12, t19, t13 * t20);
+        let t25 = T::fused(t13, t23, t12 * t22);
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            t20,
+            k(0.0),
+            k(0.0),
+            t23,
+            k(0.0),
+            k(0.0),
+            -t24,
+            k(0.0),
+            k(0.0),
+            -t25,
+            k(0.0),
+            k(0.0),
+            -T::fused(t9, t24, T::fused(-k(15.384615384615385), t18, t7 * t20)),
+            k(0.0),
+            k(0.0),
+            -T::fused(t9, t25, t7 * t23),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
     type Outputs = [T; 6];

@@ -12,9 +12,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 6 operations by rotations of the bodies; 6 operations by relative Euler parameters
+//! * project: 18 operations by rotations of the bodies; 18 operations by relative Euler parameters
 //! * joint_accelerations: 6 operations by normal form; 66 operations by recursion
 //! * joint_accelerations_at: 6 operations by normal form; 66 operations by recursion; 1 more compared
 //! * corrected_accelerations: 6 operations by elimination in maximal coordinates; 70 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_jacobian: 11 operations by derivatives of u̇, from its leaves; 11 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 1 of 6 | 6 | 6 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
 //! | multipliers | λ, the accelerations being known | 6 | 7 | 0 | 13 | 0 of 2 | 18 | 13 |
+//! | project | (δr, δπ') that changes the rows as given | 8 | 10 | 0 | 18 | 3 of 6 | 50 | 18 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 6 | 13 | 0 | 19 | 0 of 2 | 19 | 19 |
 //! | read_joints | joint coordinates and rates | 4 | 6 | 0 | 10 | 0 of 2 | 10 | 10 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 6 | 7 | 0 | 13 | 0 of 2 | 18 | 13 |
 //! | corrected_solution | both | 0 | 6 | 0 | 6 | 0 of 8 | 6 | 6 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 11 | 0 | 11 | 59 of 90 | 30 | 11 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 546 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-159.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -522,6 +527,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PointOnLine<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for PointOnLine<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 18 operations (8 ±, 10 ×, 0 ÷).
+    fn project(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let t0 = T::fused(-k(0.3333333333333333), row1, k(0.6666666666666666) * row0);
+        let t1 = T::fused(-k(0.6666666666666666), row1, k(0.3333333333333333) * row0);
+        let t2 = row0 + row1;
+        let t3 = T::fused(
+            -k(0.4666666666666667),
+            t0,
+            T::fused(k(0.4666666666666667), t1, k(0.15555555555555556) * t2),
+        );
+        let t4 = k(0.9523809523809523) * t3;
+        *out = [
+            T::fused(-k(0.47619047619047616), t3, k(0.6666666666666666) * t2),
+            t1 - t4,
+            t0 + t4,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
     type Joints = [T; 9];
     type Rates = [T; 4];
@@ -720,6 +756,130 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PointOnLine<T> {
             k(2.429),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PointOnLine<T> {
+    type Jacobian = [T; 81];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 81]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 11 operations (0 ±, 11 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let u1 = x[6];
+        let u2 = x[7];
+        let u3 = x[8];
+        let t0 = k(0.5) * u1;
+        let t1 = k(0.5) * u2;
+        let t2 = k(0.5) * u3;
+        let t3 = k(0.5) * x2;
+        let t4 = k(0.5) * x3;
+        let t5 = k(0.5) * x4;
+        let t6 = k(0.5) * x1;
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t1,
+            -t2,
+            k(0.0),
+            -t3,
+            -t4,
+            -t5,
+            k(0.0),
+            t0,
+            k(0.0),
+            t2,
+            -t1,
+            k(0.0),
+            t6,
+            -t5,
+            t4,
+            k(0.0),
+            t1,
+            -t2,
+            k(0.0),
+            t0,
+            k(0.0),
+            t5,
+            t6,
+            -t3,
+            k(0.0),
+            t2,
+            t1,
+            -t0,
+            k(0.0),
+            k(0.0),
+            -t4,
+            t3,
+            t6,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t2,
+            t1,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.4) * u3,
+            k(0.0),
+            k(0.4) * u1,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(0.75) * u2),
+            -(k(0.75) * u1),
+            k(0.0),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for PointOnLine<T> {
     type Outputs = [T; 6];

@@ -12,9 +12,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 267 operations by rotations of the bodies; 267 operations by relative Euler parameters
+//! * project: 158 operations by rotations of the bodies; 158 operations by relative Euler parameters
 //! * joint_accelerations: 2 operations by normal form; 4 operations by recursion
 //! * joint_accelerations_at: 34 operations by normal form; 36 operations by recursion; 1 more compared
 //! * corrected_accelerations: 85 operations by normal form in the bodies' frames; 86 operations by recursion in the bodies' frames; 5 more compared
+//! * joint_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 38 | 53 | 0 | 91 | 1 of 6 | 295 | 91 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 99 | 167 | 1 | 267 | 0 of 6 | 48548 | 267 |
 //! | multipliers | λ, the accelerations being known | 92 | 143 | 1 | 236 | 0 of 5 | 3265 | 236 |
+//! | project | (δr, δπ') that changes the rows as given | 57 | 100 | 1 | 158 | 0 of 6 | 8853 | 158 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 28 | 38 | 0 | 66 | 0 of 2 | 105 | 66 |
 //! | read_joints | joint coordinates and rates | 28 | 43 | 0 | 71 | 0 of 2 | 120 | 71 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 34 | 51 | 0 | 85 | 3 of 6 | 369 | 85 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 74 | 99 | 0 | 173 | 0 of 5 | 1060 | 173 |
 //! | corrected_solution | both | 80 | 123 | 0 | 203 | 3 of 11 | 3613 | 203 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 4 of 6 | 0 | 0 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 550 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-156.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -1176,6 +1181,99 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Prismatic<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 158 operations (57 ±, 100 ×, 1 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let carriage_e0 = y[3];
+        let carriage_e1 = y[4];
+        let carriage_e2 = y[5];
+        let carriage_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let t0 = carriage_e0 * carriage_e3;
+        let t1 = carriage_e1 * carriage_e2;
+        let t2 = t1 - t0;
+        let t3 = carriage_e0 * carriage_e2;
+        let t4 = carriage_e1 * carriage_e3;
+        let t5 = t4 + t3;
+        let t6 = T::fused(k(0.04), t2, k(0.1) * t5);
+        let t7 = carriage_e0 * carriage_e0;
+        let t8 = k(0.5) - T::fused(carriage_e2, carriage_e2, t7);
+        let t9 = carriage_e0 * carriage_e1;
+        let t10 = carriage_e2 * carriage_e3;
+        let t11 = t10 - t9;
+        let t12 = T::fused(-k(0.04), t8, k(0.1) * t11);
+        let t13 = k(1.6) * t8;
+        let t14 = T::fused(k(1.2), t2, t13);
+        let t15 = T::fused(-k(1.28), t11, k(0.96) * t5);
+        let t16 = t4 - t3;
+        let t17 = t10 + t9;
+        let t18 = T::fused(-k(1.2), t16, k(1.6) * t17);
+        let t19 = k(0.5) - T::fused(carriage_e3, carriage_e3, t7);
+        let t20 = k(1.6) * t19;
+        let t21 = t1 + t0;
+        let t22 = k(0.5) - T::fused(carriage_e1, carriage_e1, t7);
+        let t23 = k(1.2) * t22;
+        let t24 = T::fused(
+            k(0.8),
+            T::fused(k(1.2), t21, t13),
+            k(0.6) * T::fused(k(1.6), t2, t23),
+        );
+        let t25 = T::fused(t18, t15, t24 * t20);
+        let t26 = T::fused(k(1.6), t21, t23);
+        let t27 = k(1.2) * t19;
+        let t28 = T::fused(-k(0.96), t11, k(0.72) * t5);
+        let t29 = T::fused(t24, t27, t18 * t28);
+        let t30 = k(1.0) / T::fused(t25, t14, t29 * t26);
+        let t31 = T::fused(t30 * (t18 * t26), row2, t30 * (t24 * t26) * row3);
+        let t32 = T::fused(-(t25 * t30), row4, t31);
+        let t33 = T::fused(-k(0.04), t22, k(0.2) * t5);
+        let t34 = T::fused(k(0.04), t21, k(0.2) * t11);
+        let t35 = T::fused(t30 * (t18 * t14), row2, t30 * (t24 * t14) * row3);
+        let t36 = T::fused(t29 * t30, row4, t35);
+        let t37 = T::fused(
+            t32,
+            T::fused(k(1.04), t6, k(0.78) * t12),
+            t36 * T::fused(k(1.04), t33, k(0.78) * t34),
+        );
+        let t38 = T::fused(k(0.1), t22, k(0.2) * t2);
+        let t39 = T::fused(k(0.1), t21, k(0.2) * t8);
+        let t40 = T::fused(
+            -(t30 * T::fused(t27, t26, t20 * t14)),
+            row2,
+            t30 * T::fused(t15, t14, t28 * t26) * row3,
+        );
+        let t41 = T::fused(t30 * T::fused(-t28, t20, t27 * t15), row4, t40);
+        let t42 = T::fused(t41, T::fused(-k(1.04), t38, k(0.78) * t39), t37);
+        let t43 = T::fused(t38, t41, -T::fused(t6, t32, t33 * t36))
+            + T::fused(k(0.6153846153846154), t42, k(0.6) * row0);
+        let t44 = T::fused(t39, t41, T::fused(t12, t32, t34 * t36))
+            + T::fused(-k(0.46153846153846156), t42, k(0.8) * row0);
+        let t45 = T::fused(
+            T::fused(-k(0.04), t17, k(0.1) * t19),
+            t32,
+            T::fused(-k(0.04), t16, k(0.2) * t19) * t36,
+        );
+        *out = [
+            -t43,
+            t44,
+            row1 - T::fused(T::fused(-k(0.1), t16, k(0.2) * t17), t41, t45),
+            -t32,
+            t36,
+            t41,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
     type Joints = [T; 2];
     type Rates = [T; 1];
@@ -1630,6 +1728,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             T::fused(-k(0.8), t49, k(0.6) * t46),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Prismatic<T> {
+    type Jacobian = [T; 4];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 4]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        _y: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        *dfdx = [k(0.0), k(1.0), k(-28.46153846153846), k(0.0)];
+        *dfdt = [k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
     type Outputs = [T; 6];

@@ -13,6 +13,7 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 30 operations by rotations of the bodies; 30 operations by relative Euler parameters
+//! * project: 15 operations by rotations of the bodies; 15 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -27,6 +28,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 2 of 6 | 6 | 6 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 6 | 23 | 1 | 30 | 0 of 7 | 97 | 31 |
 //! | multipliers | λ, the accelerations being known | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
+//! | project | (δr, δπ') that changes the rows as given | 2 | 12 | 1 | 15 | 3 of 6 | 45 | 16 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | outputs | outputs, the accelerations being known | 0 | 6 | 0 | 6 | 3 of 6 | 6 | 6 |
@@ -36,7 +38,7 @@
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //!
@@ -407,6 +409,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Rod<T> {
     ) {
         let closing0 = accelerations[6];
         *lambda = [closing0];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Rod<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 15 operations (2 ±, 12 ×, 1 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let bob_rx = y[0];
+        let bob_ry = y[1];
+        let bob_rz = y[2];
+        let row0 = rows[0];
+        let t0 = k(2.857142857142857) * bob_rz;
+        let t1 = k(2.857142857142857) * bob_ry;
+        let t2 = k(2.857142857142857) * bob_rx;
+        let t3 = T::fused(
+            k(2.0) * bob_rz,
+            t0,
+            T::fused(k(2.0) * bob_ry, t1, k(2.0) * bob_rx * t2),
+        );
+        let t4 = row0 / t3;
+        *out = [t2 * t4, t1 * t4, t0 * t4, k(0.0), k(0.0), k(0.0)];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Rod<T> {

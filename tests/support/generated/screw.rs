@@ -12,9 +12,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 118 operations by rotations of the bodies; 118 operations by relative Euler parameters
+//! * project: 61 operations by rotations of the bodies; 61 operations by relative Euler parameters
 //! * joint_accelerations: 0 operations by recursion; 0 operations by normal form
 //! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 1 more compared
 //! * corrected_accelerations: 15 operations by recursion in the bodies' frames; 15 operations by recursion in the global frame; 5 more compared
+//! * joint_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 2 of 6 | 6 | 6 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 37 | 78 | 3 | 118 | 2 of 6 | 1971 | 119 |
 //! | multipliers | λ, the accelerations being known | 18 | 43 | 2 | 63 | 0 of 5 | 289 | 64 |
+//! | project | (δr, δπ') that changes the rows as given | 17 | 41 | 3 | 61 | 0 of 6 | 890 | 62 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 8 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 4 | 11 | 0 | 15 | 0 of 6 | 15 | 15 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 19 | 44 | 2 | 65 | 0 of 5 | 189 | 66 |
 //! | corrected_solution | both | 19 | 46 | 2 | 67 | 0 of 11 | 214 | 68 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 5 of 6 | 0 | 0 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-149.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -670,6 +675,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, -t14, -t16];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Screw<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 61 operations (17 ±, 41 ×, 3 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let nut_e0 = y[3];
+        let nut_e1 = y[4];
+        let nut_e2 = y[5];
+        let nut_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let t0 = nut_e0 * nut_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
+        let t3 = nut_e0 * nut_e3;
+        let t4 = nut_e1 * nut_e2;
+        let t5 = k(2.0) * (t4 + t3);
+        let t6 = k(2.0) * (t4 - t3);
+        let t7 = T::fused(-t2, t1, t6 * t5);
+        let t8 = k(1.0) / t7;
+        let t9 = t6 * t8;
+        let t10 = T::fused(
+            t2,
+            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
+            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t5,
+        );
+        let t11 = k(1.0) / T::fused(t2, t2, t5 * t5);
+        let t12 = k(0.02) * (t11 * t10);
+        let t13 = t1 * t8;
+        let t14 = T::fused(t12 * t9, row4, T::fused(t13 * t12, row3, row2));
+        let t15 = t7 * t11;
+        let t16 = k(0.04) * t15;
+        let t17 = k(0.02) * t15;
+        let t18 = t16 * t14 / T::fused(t16, t17, k(0.003));
+        *out = [
+            row0,
+            row1,
+            T::fused(-t17, t18, t14),
+            -T::fused(t5 * t8, row3, t2 * t8 * row4),
+            T::fused(t13, row3, t9 * row4),
+            t18,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
     type Joints = [T; 2];
     type Rates = [T; 1];
@@ -863,6 +920,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Screw<T> {
             -t22,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Screw<T> {
+    type Jacobian = [T; 4];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 4]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        _y: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        *dfdx = [k(0.0), k(1.0), k(0.0), k(0.0)];
+        *dfdt = [k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
     type Outputs = [T; 6];

@@ -11,9 +11,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 209 operations by rotations of the bodies; 209 operations by relative Euler parameters
+//! * project: 95 operations by rotations of the bodies; 95 operations by relative Euler parameters
 //! * joint_accelerations: 61 operations by normal form; 95 operations by recursion
 //! * joint_accelerations_at: 61 operations by normal form; 95 operations by recursion; 1 more compared
 //! * corrected_accelerations: 129 operations by normal form in the bodies' frames; 143 operations by recursion in the bodies' frames; 5 more compared
+//! * joint_jacobian: 100 operations by normal form of that; 169 operations by derivatives of u̇, from its leaves; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 12 | 18 | 0 | 30 | 2 of 6 | 36 | 30 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 89 | 120 | 0 | 209 | 0 of 6 | 39738 | 209 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
+//! | project | (δr, δπ') that changes the rows as given | 38 | 57 | 0 | 95 | 0 of 6 | 3062 | 95 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 11 | 18 | 0 | 29 | 0 of 2 | 29 | 29 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 53 | 76 | 0 | 129 | 0 of 6 | 3602 | 129 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
 //! | corrected_solution | both | 54 | 79 | 0 | 133 | 0 of 9 | 6717 | 133 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 36 | 64 | 0 | 100 | 11 of 56 | 117 | 100 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-148.
 //! Not proved: the size of rounding errors.
@@ -918,6 +923,74 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Spherical<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 95 operations (38 ±, 57 ×, 0 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let top_e0 = y[3];
+        let top_e1 = y[4];
+        let top_e2 = y[5];
+        let top_e3 = y[6];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let t0 = top_e0 * top_e2;
+        let t1 = top_e1 * top_e3;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = top_e0 * top_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t3));
+        let t5 = top_e0 * top_e3;
+        let t6 = top_e1 * top_e2;
+        let t7 = k(2.0) * (t6 + t5);
+        let t8 = T::fused(t2, row2, T::fused(-t4, row0, t7 * row1));
+        let t9 = top_e0 * top_e1;
+        let t10 = top_e2 * top_e3;
+        let t11 = k(2.0) * (t10 + t9);
+        let t12 = k(2.0) * (t6 - t5);
+        let t13 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t3));
+        let t14 = T::fused(-t11, row2, T::fused(-t12, row0, t13 * row1));
+        let t15 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t3));
+        let t16 = k(2.0) * (t1 + t0);
+        let t17 = k(2.0) * (t10 - t9);
+        let t18 = T::fused(-t15, row2, T::fused(t16, row0, t17 * row1));
+        let t19 = T::fused(
+            k(0.21313415648391018),
+            t18,
+            T::fused(k(3.177243938327682), t8, k(1.8210927004030453) * t14),
+        );
+        let t20 = T::fused(
+            k(0.7882702418008584),
+            t19,
+            -T::fused(
+                k(0.8478260869565217),
+                t18,
+                T::fused(k(3.0), t8, k(1.4608695652173913) * t14),
+            ),
+        );
+        let t21 = t8
+            - T::fused(-k(0.14714349689719147), t20, k(0.20124112641987904) * t19);
+        let t22 = T::fused(k(1.6480071652485446), t20, k(0.3541843824989871) * t19)
+            + T::fused(-k(3.0), t14, k(7.5) * t18);
+        let t23 = t14
+            - T::fused(-k(0.043478260869565216), t22, k(0.12074467585192743) * t19);
+        let t24 = t18
+            + T::fused(-k(0.10869565217391304), t22, k(0.2207152453457872) * t20);
+        *out = [
+            T::fused(t16, t24, -T::fused(t4, t21, t12 * t23)),
+            T::fused(t17, t24, T::fused(t7, t21, t13 * t23)),
+            -T::fused(t15, t24, T::fused(-t2, t21, t11 * t23)),
+            -(k(0.21739130434782608) * t22),
+            -(k(0.7357174844859574) * t20),
+            k(0.4024822528397581) * t19,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
@@ -1325,6 +1398,158 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             T::fused(k(15.0), t32, -k(147.15)),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Spherical<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 49]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 100 operations (36 ±, 64 ×, 0 ÷).
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let u0 = x[4];
+        let u1 = x[5];
+        let u2 = x[6];
+        let t0 = k(0.5) * u0;
+        let t1 = k(0.5) * u1;
+        let t2 = k(0.5) * u2;
+        let t3 = k(0.5) * x1;
+        let t4 = k(0.5) * x2;
+        let t5 = k(0.5) * x3;
+        let t6 = k(0.5) * x0;
+        *dfdx = [
+            k(0.0),
+            -t0,
+            -t1,
+            -t2,
+            -t3,
+            -t4,
+            -t5,
+            t0,
+            k(0.0),
+            t2,
+            -t1,
+            t6,
+            -t5,
+            t4,
+            t1,
+            -t2,
+            k(0.0),
+            t0,
+            t5,
+            t6,
+            -t3,
+            t2,
+            t1,
+            -t0,
+            k(0.0),
+            -t4,
+            t3,
+            t6,
+            T::fused(-k(10.222808662316206), x1, k(1.3170431574734023) * x2),
+            T::fused(
+                -k(10.222808662316206),
+                x0,
+                T::fused(-k(1.3170431574734023), x3, k(55.065172784001234) * x1),
+            ),
+            T::fused(
+                k(1.3170431574734023),
+                x0,
+                T::fused(-k(10.222808662316206), x3, k(55.065172784001234) * x2),
+            ),
+            -T::fused(k(1.3170431574734023), x1, k(10.222808662316206) * x2),
+            -T::fused(
+                k(0.28013521817558457),
+                u2,
+                T::fused(k(0.059485028193198175), u1, k(0.06813385193488754) * u0),
+            ),
+            -T::fused(
+                k(0.5099128570948537),
+                u2,
+                T::fused(k(0.5709954644465213), u1, k(0.059485028193198175) * u0),
+            ),
+            T::fused(
+                k(0.6391293163814088),
+                u2,
+                -T::fused(k(0.5099128570948537), u1, k(0.28013521817558457) * u0),
+            ),
+            -T::fused(k(7.152044488051767), x2, k(0.36601371982718833) * x1),
+            -T::fused(
+                k(0.36601371982718833),
+                x0,
+                T::fused(-k(7.152044488051767), x3, k(19.62606486501936) * x1),
+            ),
+            -T::fused(
+                k(7.152044488051767),
+                x0,
+                T::fused(k(0.36601371982718833), x3, k(19.62606486501936) * x2),
+            ),
+            T::fused(-k(0.36601371982718833), x2, k(7.152044488051767) * x1),
+            T::fused(
+                k(0.2997216278142505),
+                u2,
+                T::fused(k(0.386317431580785), u1, k(0.16746104405147788) * u0),
+            ),
+            T::fused(
+                k(0.35921032523661056),
+                u2,
+                T::fused(-k(0.08282209813218211), u1, k(0.386317431580785) * u0),
+            ),
+            T::fused(
+                -k(0.08463894591929576),
+                u2,
+                T::fused(k(0.35921032523661056), u1, k(0.2997216278142505) * u0),
+            ),
+            -T::fused(k(25.089747929106373), x2, k(14.380626006543588) * x1),
+            -T::fused(
+                k(14.380626006543588),
+                x0,
+                T::fused(-k(25.089747929106373), x3, k(3.366113754601181) * x1),
+            ),
+            -T::fused(
+                k(25.089747929106373),
+                x0,
+                T::fused(k(14.380626006543588), x3, k(3.366113754601181) * x2),
+            ),
+            T::fused(-k(14.380626006543588), x2, k(25.089747929106373) * x1),
+            T::fused(
+                -k(0.3181835796458975),
+                u2,
+                T::fused(k(0.29429792776098873), u1, k(0.782418701790674) * u0),
+            ),
+            T::fused(
+                k(0.14230712632538028),
+                u2,
+                T::fused(-k(0.703343594729648), u1, k(0.29429792776098873) * u0),
+            ),
+            -T::fused(
+                k(0.07907510706102598),
+                u2,
+                T::fused(-k(0.14230712632538028), u1, k(0.3181835796458975) * u0),
+            ),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Spherical<T> {
     type Outputs = [T; 6];

@@ -13,9 +13,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 150 operations by rotations of the bodies; 150 operations by relative Euler parameters
+//! * project: 76 operations by rotations of the bodies; 76 operations by relative Euler parameters
 //! * joint_accelerations: 38 operations by recursion; 38 operations by normal form
 //! * joint_accelerations_at: 54 operations by recursion; 54 operations by normal form; 1 more compared
 //! * corrected_accelerations: 72 operations by recursion in the bodies' frames; 72 operations by recursion in the global frame; 5 more compared
+//! * joint_jacobian: 83 operations by normal form of that; 129 operations by derivatives of u̇, from its leaves; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -30,6 +32,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 26 | 27 | 3 | 56 | 7 of 12 | 286 | 59 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 54 | 91 | 5 | 150 | 5 of 12 | 775 | 154 |
 //! | multipliers | λ, the accelerations being known | 24 | 65 | 2 | 91 | 0 of 10 | 437 | 91 |
+//! | project | (δr, δπ') that changes the rows as given | 21 | 53 | 2 | 76 | 2 of 12 | 412 | 76 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 42 | 59 | 3 | 104 | 0 of 16 | 334 | 107 |
 //! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 | 35 | 35 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 5 | 18 | 15 |
@@ -41,13 +44,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 39 | 3 | 72 | 6 of 12 | 366 | 75 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 6 | 19 | 0 | 25 | 0 of 10 | 37 | 25 |
 //! | corrected_solution | both | 33 | 50 | 3 | 86 | 11 of 22 | 466 | 89 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 33 | 46 | 4 | 83 | 20 of 30 | 310 | 84 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * to_maximal, to_joints: Φ = 0, eq. (18) and the joint coordinates
@@ -56,6 +60,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-140.
 //! Not proved: the choice of coordinates (pivoting at run time), the size of rounding errors.
@@ -1151,6 +1156,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Stops<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 76 operations (21 ±, 53 ×, 2 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let hammer_e0 = y[3];
+        let hammer_e1 = y[4];
+        let hammer_e2 = y[5];
+        let hammer_e3 = y[6];
+        let disc_e0 = y[10];
+        let disc_e1 = y[11];
+        let disc_e2 = y[12];
+        let disc_e3 = y[13];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let t0 = hammer_e0 * hammer_e3;
+        let t1 = hammer_e1 * hammer_e2;
+        let t2 = k(2.0) * (t1 + t0);
+        let t3 = hammer_e0 * hammer_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t3));
+        let t5 = t4 * (k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t3)));
+        let t6 = k(2.0) * (t1 - t0);
+        let t7 = T::fused(t6, t2, -t5);
+        let t8 = k(1.0) / (t4 * t7);
+        let t9 = T::fused(t8 * (t4 * t2), row2, t8 * (t4 * t4) * row3);
+        let t10 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
+        let t11 = T::fused(t8 * (t10 * t2), row2, t8 * (t4 * t10) * row3);
+        let t12 = disc_e0 * disc_e3;
+        let t13 = disc_e1 * disc_e2;
+        let t14 = k(2.0) * (t13 + t12);
+        let t15 = k(2.0) * (t13 - t12);
+        let t16 = disc_e0 * disc_e0;
+        let t17 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t16));
+        let t18 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t16));
+        let t19 = k(1.0) / T::fused(-t15, t14, t18 * t17);
+        *out = [
+            row0,
+            row1,
+            k(0.0),
+            -t9,
+            T::fused(t5 * t8, row2, t8 * (t4 * t6) * row3),
+            T::fused(t7 * t8, row4, t11),
+            row5,
+            row6,
+            row7,
+            T::fused(row8, t14 * t19, row9 * (t18 * t19)),
+            -T::fused(row8, t17 * t19, row9 * (t15 * t19)),
+            k(0.0),
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
     type Joints = [T; 5];
     type Rates = [T; 2];
@@ -1498,6 +1567,113 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Stops<T> {
             T::fused(t25, t21, t23 * t24),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Stops<T> {
+    type Jacobian = [T; 25];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 25]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 83 operations (33 ±, 46 ×, 4 ÷) and 4 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let u0 = x[2];
+        let u1 = x[3];
+        let t0 = x0 - k(1.6);
+        let t1 = T::fused(x0, t0, k(0.6404)).sqrt();
+        let t2 = k(1.0) / t1;
+        let t3 = T::fused(x0, x0, k(0.0001)).sqrt();
+        let t4 = k(1.0) / t3;
+        let t5 = x0 * t4;
+        let t6 = T::fused(-k(2.0), t2, k(5.0) * t4);
+        let t7 = t2 * (t2 * t2);
+        let t8 = T::fused(
+            -k(0.64),
+            t7,
+            x0 * T::fused(-t0, t7, k(2.5) * (t5 * (t4 * t4))),
+        );
+        let t9 = T::fused(
+            k(0.5),
+            k(7000.0) - T::fused(k(2400.0), t2, T::fused(k(4000.0), t5, u0 * t6)),
+            T::fused(k(1500.0), x0 * t2, u0 * t8),
+        );
+        let t10 = k(7.0) - T::fused(k(1.6), t2, x0 * t6);
+        let t11 = x1 * (x1 - k(31.4));
+        let t12 = (k(246.4925) + t11).sqrt();
+        let t13 = k(1.0) / t12;
+        let t14 = k(15.7) - x1;
+        let t15 = T::fused(
+            -k(0.002),
+            u1 * T::fused(-(t13 * t13), t11 + k(246.49), k(1.0)),
+            t14,
+        );
+        let t16 = T::fused(x1, x1 + k(19.0), k(90.2525)).sqrt();
+        let t17 = k(2.25) - T::fused(k(1.25), t13 * t15, (k(9.5) + x1) / t16);
+        let t18 = T::fused(-t14, t13, k(1.0));
+        let t19 = T::fused(
+            u0,
+            t10,
+            T::fused(
+                k(1500.0),
+                t1,
+                -T::fused(k(2000.0), t3, T::fused(-k(3500.0), x0, k(1200.0))),
+            ),
+        );
+        let t20 = T::fused(
+            k(0.1),
+            u1 * t18,
+            -T::fused(
+                k(20.0),
+                t16,
+                -T::fused(k(25.0), t12, -T::fused(-k(45.0), x1, k(202.5))),
+            ),
+        );
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -(k(2.0) * t9),
+            k(0.0),
+            -t10,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(1000.0) * t17),
+            k(0.0),
+            -(k(2.5) * t18),
+            k(0.0),
+            -(u0 * t9),
+            -(k(20.0) * (u1 * t17)),
+            -t19,
+            -t20,
+            k(0.0),
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Stops<T> {
     type Outputs = [T; 0];

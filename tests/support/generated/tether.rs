@@ -11,8 +11,10 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 31 operations by rotations of the bodies; 31 operations by relative Euler parameters
+//! * project: 0 operations by rotations of the bodies; 0 operations by relative Euler parameters
 //! * joint_accelerations_at: 215 operations by recursion; 215 operations by recursion on the bodies' spins
 //! * corrected_accelerations: 31 operations by elimination in maximal coordinates; 239 operations by recursion in the bodies' frames; 3 more compared
+//! * joint_jacobian: 1397 operations by derivatives of u̇, from its roots; 1875 operations by derivatives of u̇, from its leaves
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -22,6 +24,7 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 | 4 | 4 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 20 | 1 | 28 | 0 of 6 | 136 | 28 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 7 | 23 | 1 | 31 | 0 of 6 | 139 | 31 |
+//! | project | (δr, δπ') that changes the rows as given | 0 | 0 | 0 | 0 | 6 of 6 | 0 | 0 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 12 | 27 | 1 | 40 | 0 of 8 | 78 | 40 |
 //! | energy | T and V | 9 | 18 | 0 | 27 | 0 of 2 | 33 | 27 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
@@ -34,13 +37,14 @@
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 81 | 130 | 4 | 215 | 0 of 6 | 377970 | 216 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 23 | 1 | 31 | 0 of 6 | 139 | 31 |
 //! | corrected_solution | both | 7 | 23 | 1 | 31 | 0 of 6 | 139 | 31 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 584 | 809 | 4 | 1397 | 141 of 210 | 9.2e8 | 1397 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -51,8 +55,9 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
-//! All of it holds but with a probability below 1e-146.
+//! All of it holds but with a probability below 1e-145.
 //! Not proved: the size of rounding errors.
 
 /// The mechanism `tether`.
@@ -497,6 +502,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
         *lambda = [];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Tether<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 0 operations (0 ±, 0 ×, 0 ÷).
+    fn project(
+        &self,
+        _t: T,
+        _y: &Self::State,
+        _rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
     type Joints = [T; 14];
     type Rates = [T; 6];
@@ -924,6 +942,1229 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
             -(k(0.25) * (bob_wx * bob_wy)),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
+    type Jacobian = [T; 196];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 196]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1397 operations (584 ±, 809 ×, 4 ÷) and 1 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let x3 = x[3];
+        let x4 = x[4];
+        let x5 = x[5];
+        let x6 = x[6];
+        let u0 = x[7];
+        let u1 = x[8];
+        let u2 = x[9];
+        let u3 = x[10];
+        let u4 = x[11];
+        let u5 = x[12];
+        let (
+            t0,
+            t1,
+            t2,
+            t3,
+            t4,
+            t5,
+            t6,
+            t9,
+            t10,
+            t13,
+            t14,
+            t16,
+            t17,
+            t18,
+            t19,
+            t21,
+            t22,
+            t24,
+            t25,
+            t29,
+            t31,
+            t32,
+            t33,
+            t34,
+            t35,
+            t36,
+            t37,
+            t38,
+            t39,
+            t40,
+            t44,
+            t47,
+            t50,
+            t52,
+            t53,
+            t54,
+            t55,
+            t56,
+            t57,
+            t58,
+            t59,
+            t60,
+            t61,
+            t62,
+            t63,
+            t64,
+            t81,
+            t82,
+            t84,
+            t86,
+            t88,
+            t89,
+            t90,
+            t91,
+            t92,
+            t93,
+            t94,
+            t96,
+            t98,
+            t99,
+            t100,
+            t101,
+            t102,
+            t103,
+            t104,
+            t105,
+            t106,
+            t107,
+            t108,
+            t109,
+            t110,
+            t111,
+            t112,
+            t113,
+            t114,
+            t115,
+            t116,
+            t117,
+            t118,
+            t119,
+            t120,
+            t121,
+            t135,
+            t136,
+            t137,
+            t138,
+            t139,
+            t141,
+            t163,
+            t187,
+            t191,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = k(0.5) * u3;
+            let t1 = k(0.5) * u4;
+            let t2 = k(0.5) * u5;
+            let t3 = k(0.5) * x4;
+            let t4 = k(0.5) * x5;
+            let t5 = k(0.5) * x6;
+            let t6 = k(0.5) * x3;
+            let t7 = x3 * x5;
+            let t8 = x4 * x6;
+            let t9 = t8 + t7;
+            let t10 = k(2.0) * t9;
+            let t11 = x3 * x6;
+            let t12 = x4 * x5;
+            let t13 = t12 - t11;
+            let t14 = k(2.0) * t13;
+            let t15 = x3 * x3;
+            let t16 = k(0.5) - T::fused(x4, x4, t15);
+            let t17 = k(2.0) * t16;
+            let t18 = k(1.0) / T::fused(t9, t10, T::fused(t13, t14, t16 * t17));
+            let t19 = t16 * t18;
+            let t20 = t12 + t11;
+            let t21 = k(2.0) * t20;
+            let t22 = t13 * t18;
+            let t23 = k(0.5) - T::fused(x5, x5, t15);
+            let t24 = k(2.0) * t23;
+            let t25 = t9 * t18;
+            let t26 = x3 * x4;
+            let t27 = x5 * x6;
+            let t28 = t27 - t26;
+            let t29 = k(2.0) * t28;
+            let t30 = T::fused(-t21, t19, T::fused(-t24, t22, t29 * t25));
+            let t31 = t9 * t25;
+            let t32 = t9 * t22;
+            let t33 = t9 * t19;
+            let t34 = t28 + T::fused(-t29, t31, T::fused(t24, t32, t21 * t33));
+            let t35 = t13 * t22;
+            let t36 = t13 * t19;
+            let t37 = t23 - T::fused(-t29, t32, T::fused(t24, t35, t21 * t36));
+            let t38 = t16 * t19;
+            let t39 = t20 - T::fused(-t29, t33, T::fused(t24, t36, t21 * t38));
+            let t40 = k(1.0) / T::fused(t29, t34, T::fused(t24, t37, t21 * t39));
+            let t41 = t40 * t30;
+            let t42 = T::fused(t39, t41, t19);
+            let t43 = t8 - t7;
+            let t44 = k(2.0) * t43;
+            let t45 = T::fused(t37, t41, t22);
+            let t46 = t27 + t26;
+            let t47 = k(2.0) * t46;
+            let t48 = T::fused(-t34, t41, t25);
+            let t49 = k(0.5) - T::fused(x6, x6, t15);
+            let t50 = k(2.0) * t49;
+            let t51 = T::fused(t44, t42, T::fused(-t47, t45, t50 * t48));
+            let t52 = t34 * t40;
+            let t53 = T::fused(t34, t52, t31);
+            let t54 = t37 * t40;
+            let t55 = T::fused(-t34, t54, t32);
+            let t56 = t39 * t40;
+            let t57 = T::fused(-t34, t56, t33);
+            let t58 = t49 - T::fused(t50, t53, T::fused(-t47, t55, t44 * t57));
+            let t59 = T::fused(t37, t54, t35);
+            let t60 = T::fused(t37, t56, t36);
+            let t61 = t46 + T::fused(t50, t55, T::fused(-t47, t59, t44 * t60));
+            let t62 = T::fused(t39, t56, t38);
+            let t63 = t43 - T::fused(t50, t57, T::fused(-t47, t60, t44 * t62));
+            let t64 = k(1.0) / T::fused(t50, t58, T::fused(t47, t61, t44 * t63));
+            let t65 = t64 * t51;
+            let t66 = t44 * t65;
+            let t67 = t47 * t65;
+            let t68 = t50 * t65;
+            let t69 = T::fused(-t39, t66, T::fused(t37, t67, t34 * t68));
+            let t70 = T::fused(-t40, t69, t41);
+            let t71 = T::fused(-t21, t70, t66);
+            let t72 = T::fused(t24, t70, t67);
+            let t73 = T::fused(t29, t70, t68);
+            let t74 = T::fused(t16, t71, T::fused(-t13, t72, t9 * t73));
+            let t75 = T::fused(t18, t74, t18);
+            let t76 = T::fused(-t17, t75, t71);
+            let t77 = T::fused(t14, t75, t72);
+            let t78 = T::fused(-t10, t75, t73);
+            let t79 = T::fused(t17, t76, T::fused(-t14, t77, t10 * t78));
+            let t80 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
+            let t81 = k(1.0) / t80;
+            let t82 = x0 * t81;
+            let t83 = T::fused(-t21, t76, T::fused(t24, t77, t29 * t78));
+            let t84 = x1 * t81;
+            let t85 = T::fused(t44, t76, T::fused(t47, t77, t50 * t78));
+            let t86 = x2 * t81;
+            let t87 = T::fused(-t82, t79, T::fused(-t84, t83, t86 * t85));
+            let t88 = k(0.3) * t87;
+            let t89 = T::fused(u2, t86, T::fused(u0, t82, u1 * t84));
+            let t90 = T::fused(-k(40.0), k(0.6) - t80, k(0.3) * t89);
+            let t91 = T::fused(-u0, t88, t90 * t79);
+            let t92 = T::fused(-u1, t88, t90 * t83);
+            let t93 = T::fused(u2, t88, t90 * t85);
+            let t94 = t81 * t81;
+            let t95 = T::fused(
+                -k(40.0),
+                t87,
+                t94 * T::fused(-x0, t91, T::fused(-x1, t92, x2 * t93)),
+            );
+            let t96 = k(0.5) * t81;
+            let t97 = t96 * t95;
+            let t98 = x0 * t97;
+            let t99 = x1 * t97;
+            let t100 = x2 * t97;
+            let t101 = t82 * t90;
+            let t102 = t84 * t90;
+            let t103 = t86 * t90;
+            let t104 = T::fused(t44, t103, T::fused(-t17, t101, t21 * t102));
+            let t105 = T::fused(t47, t103, -T::fused(-t14, t101, t24 * t102));
+            let t106 = T::fused(t50, t103, -T::fused(t10, t101, t29 * t102));
+            let t107 = T::fused(t10, t106, -T::fused(-t17, t104, t14 * t105));
+            let t108 = t18 * t107;
+            let t109 = T::fused(-t16, t108, t104);
+            let t110 = T::fused(t13, t108, t105);
+            let t111 = T::fused(-t9, t108, t106);
+            let t112 = T::fused(t29, t111, T::fused(-t21, t109, t24 * t110));
+            let t113 = k(19.62) * t49;
+            let t114 = t40 * t112;
+            let t115 = T::fused(t39, t114, t109);
+            let t116 = T::fused(-t37, t114, t110);
+            let t117 = T::fused(-t34, t114, t111);
+            let t118 = k(19.62) * t46;
+            let t119 = k(19.62) * t43;
+            let t120 = T::fused(t113, t58, T::fused(t118, t61, t119 * t63))
+                + T::fused(t50, t117, T::fused(t44, t115, t47 * t116));
+            let t121 = t64 * t64;
+            let t122 = t121 * (t120 * t51);
+            let t123 = T::fused(-t113, t65, t50 * t122);
+            let t124 = t50 * t123;
+            let t125 = t34 * t124;
+            let t126 = T::fused(-t118, t65, t47 * t122);
+            let t127 = T::fused(t47, t123, t50 * t126);
+            let t128 = t47 * t126;
+            let t129 = T::fused(t34, t127, t37 * t128);
+            let t130 = T::fused(-t119, t65, t44 * t122);
+            let t131 = T::fused(t44, t123, t50 * t130);
+            let t132 = T::fused(t44, t126, t47 * t130);
+            let t133 = t44 * t130;
+            let t134 = T::fused(-t34, t131, T::fused(-t37, t132, t39 * t133));
+            let t135 = t64 * t120;
+            let t136 = T::fused(-t44, t135, t119);
+            let t137 = T::fused(-t47, t135, t118);
+            let t138 = T::fused(-t50, t135, t113);
+            let t139 = t112 + T::fused(t34, t138, T::fused(-t39, t136, t37 * t137));
+            let t140 = T::fused(
+                t34,
+                t125,
+                T::fused(t37, t129, T::fused(t39, t134, t139 * t30)),
+            );
+            let t141 = t40 * t40;
+            let t142 = t141 * T::fused(-t112, t69, t140);
+            let t143 = T::fused(
+                t52,
+                t124,
+                T::fused(t54, t127, T::fused(-t56, t131, t138 * t41)),
+            );
+            let t144 = T::fused(
+                -t29,
+                t142,
+                T::fused(-t114, t68, T::fused(t40, t125, t143)),
+            );
+            let t145 = T::fused(-t29, t144, t124);
+            let t146 = t9 * t145;
+            let t147 = T::fused(
+                t40,
+                t129,
+                T::fused(t54, t128, T::fused(-t56, t132, t137 * t41)),
+            );
+            let t148 = T::fused(-t24, t142, T::fused(-t114, t67, t147));
+            let t149 = T::fused(-t24, t144, T::fused(-t29, t148, t127));
+            let t150 = T::fused(-t24, t148, t128);
+            let t151 = T::fused(-t9, t149, t13 * t150);
+            let t152 = T::fused(
+                -t114,
+                t66,
+                T::fused(-t40, t134, T::fused(-t56, t133, t136 * t41)),
+            );
+            let t153 = T::fused(t21, t142, t152);
+            let t154 = T::fused(t21, t144, T::fused(-t29, t153, t131));
+            let t155 = T::fused(t21, t148, T::fused(-t24, t153, t132));
+            let t156 = T::fused(t21, t153, t133);
+            let t157 = T::fused(t9, t154, T::fused(-t13, t155, t16 * t156));
+            let t158 = t40 * t139;
+            let t159 = T::fused(t21, t158, t136);
+            let t160 = T::fused(-t24, t158, t137);
+            let t161 = T::fused(-t29, t158, t138);
+            let t162 = T::fused(
+                -t16,
+                t157,
+                t107 + T::fused(t9, t161, -T::fused(-t16, t159, t13 * t160)),
+            );
+            let t163 = t18 * t18;
+            let t164 = t163
+                * T::fused(t107, t74, T::fused(-t9, t146, T::fused(-t13, t151, t162)));
+            let t165 = T::fused(
+                t108,
+                t71,
+                T::fused(-t18, t157, T::fused(-t19, t156, t18 * t159)),
+            );
+            let t166 = T::fused(
+                -k(2.0),
+                T::fused(-t101, t76, T::fused(-t104, t75, t16 * t164)),
+                T::fused(-t17, t164, t165),
+            );
+            let t167 = T::fused(
+                t35,
+                t148,
+                T::fused(t37, t142, T::fused(-t36, t153, t22 * t158)),
+            );
+            let t168 = T::fused(
+                -k(2.0),
+                T::fused(t102, t77, T::fused(-t110, t70, T::fused(-t32, t144, t167))),
+                t148,
+            );
+            let t169 = T::fused(
+                -t55,
+                t126,
+                T::fused(t57, t130, T::fused(-t58, t122, t135 * t48)),
+            );
+            let t170 = T::fused(
+                -k(2.0),
+                T::fused(t103, t78, T::fused(t117, t65, T::fused(t53, t123, t169))),
+                T::fused(k(19.62), T::fused(-t58, t65, t48), t123),
+            );
+            let t171 = x3 * (t170 - t168 + t166);
+            let t172 = T::fused(
+                t36,
+                t148,
+                T::fused(-t38, t153, T::fused(t39, t142, t19 * t158)),
+            );
+            let t173 = T::fused(
+                k(2.0),
+                T::fused(-t102, t76, T::fused(t109, t70, T::fused(-t33, t144, t172))),
+                t153,
+            );
+            let t174 = T::fused(
+                t18,
+                t151,
+                T::fused(t22, t150, T::fused(-t19, t155, t18 * t160)),
+            );
+            let t175 = T::fused(
+                k(2.0),
+                T::fused(t101, t77, T::fused(t105, t75, t13 * t164)),
+                T::fused(t14, t164, T::fused(t108, t72, t174)),
+            );
+            let t176 = t175 + t173;
+            let t177 = T::fused(
+                -t60,
+                t126,
+                T::fused(t62, t130, T::fused(-t63, t122, t135 * t42)),
+            );
+            let t178 = T::fused(
+                -k(2.0),
+                T::fused(t103, t76, T::fused(t115, t65, T::fused(t57, t123, t177))),
+                T::fused(k(19.62), T::fused(-t63, t65, t42), t130),
+            );
+            let t179 = T::fused(
+                -t25,
+                t145,
+                T::fused(t22, t149, T::fused(-t19, t154, t18 * t161)),
+            );
+            let t180 = T::fused(
+                -k(2.0),
+                T::fused(-t101, t78, T::fused(-t106, t75, t9 * t164)),
+                T::fused(-t10, t164, T::fused(t108, t73, T::fused(-t18, t146, t179))),
+            );
+            let t181 = t180 - t178;
+            let t182 = T::fused(
+                -t59,
+                t126,
+                T::fused(t60, t130, T::fused(t61, t122, t135 * t45)),
+            );
+            let t183 = T::fused(
+                k(2.0),
+                T::fused(-t103, t77, T::fused(-t116, t65, T::fused(t55, t123, t182))),
+                T::fused(-k(19.62), T::fused(t61, t65, t45), t126),
+            );
+            let t184 = T::fused(
+                -t34,
+                t142,
+                T::fused(t32, t148, T::fused(-t33, t153, t25 * t158)),
+            );
+            let t185 = T::fused(
+                k(2.0),
+                T::fused(-t102, t78, T::fused(t111, t70, T::fused(-t31, t144, t184))),
+                t144,
+            );
+            let t186 = t185 + t183;
+            let t187 = t171 - (T::fused(x6, t176, T::fused(x5, t181, x4 * t186)) - t171);
+            let t188 = x4 * t166;
+            let t189 = t175 - t173;
+            let t190 = t180 + t178;
+            let t191 = t188
+                - (T::fused(-x5, t189, T::fused(x6, t190, x3 * t186)) - t188);
+            let t192 = x5 * t168;
+            let t193 = t185 - t183;
+            let t194 = T::fused(
+                -x4,
+                t189,
+                T::fused(x3, t181, t192 - T::fused(x6, t193, -t192)),
+            );
+            let t195 = T::fused(
+                -x3,
+                t176,
+                T::fused(-x4, t190, T::fused(x5, t193, k(2.0) * (x6 * t170))),
+            );
+            let t196 = T::fused(-t44, t56, T::fused(t47, t54, t50 * t52));
+            let t197 = t64 * t196;
+            let t198 = t44 * t197;
+            let t199 = t47 * t197;
+            (
+                t0,
+                t1,
+                t2,
+                t3,
+                t4,
+                t5,
+                t6,
+                t9,
+                t10,
+                t13,
+                t14,
+                t16,
+                t17,
+                t18,
+                t19,
+                t21,
+                t22,
+                t24,
+                t25,
+                t29,
+                t31,
+                t32,
+                t33,
+                t34,
+                t35,
+                t36,
+                t37,
+                t38,
+                t39,
+                t40,
+                t44,
+                t47,
+                t50,
+                t52,
+                t53,
+                t54,
+                t55,
+                t56,
+                t57,
+                t58,
+                t59,
+                t60,
+                t61,
+                t62,
+                t63,
+                t64,
+                t81,
+                t82,
+                t84,
+                t86,
+                t88,
+                t89,
+                t90,
+                t91,
+                t92,
+                t93,
+                t94,
+                t96,
+                t98,
+                t99,
+                t100,
+                t101,
+                t102,
+                t103,
+                t104,
+                t105,
+                t106,
+                t107,
+                t108,
+                t109,
+                t110,
+                t111,
+                t112,
+                t113,
+                t114,
+                t115,
+                t116,
+                t117,
+                t118,
+                t119,
+                t120,
+                t121,
+                t135,
+                t136,
+                t137,
+                t138,
+                t139,
+                t141,
+                t163,
+                t187,
+                t191,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t215,
+            t216,
+            t217,
+            t218,
+            t221,
+            t222,
+            t223,
+            t278,
+            t282,
+            t285,
+            t286,
+            t304,
+            t305,
+            t306,
+            t307,
+            t310,
+            t311,
+            t312,
+            t366,
+            t370,
+            t373,
+            t374,
+            t375,
+            t376,
+            t377,
+            t378,
+            t380,
+            t381,
+            t382,
+        ) = {
+            let t200 = t50 * t197;
+            let t201 = T::fused(-t39, t198, T::fused(t37, t199, t34 * t200));
+            let t202 = T::fused(t40, t201, t40);
+            let t203 = T::fused(t21, t202, t198);
+            let t204 = T::fused(-t24, t202, t199);
+            let t205 = T::fused(-t29, t202, t200);
+            let t206 = T::fused(t16, t203, T::fused(-t13, t204, t9 * t205));
+            let t207 = t18 * t206;
+            let t208 = T::fused(-t17, t207, t203);
+            let t209 = T::fused(t14, t207, t204);
+            let t210 = T::fused(-t10, t207, t205);
+            let t211 = T::fused(t17, t208, T::fused(-t14, t209, t10 * t210));
+            let t212 = T::fused(-t21, t208, T::fused(t24, t209, t29 * t210));
+            let t213 = T::fused(t44, t208, T::fused(t47, t209, t50 * t210));
+            let t214 = T::fused(-t82, t211, T::fused(-t84, t212, t86 * t213));
+            let t215 = k(0.3) * t214;
+            let t216 = T::fused(-u0, t215, t90 * t211);
+            let t217 = T::fused(-u1, t215, t90 * t212);
+            let t218 = T::fused(u2, t215, t90 * t213);
+            let t219 = T::fused(
+                -k(40.0),
+                t214,
+                t94 * T::fused(-x0, t216, T::fused(-x1, t217, x2 * t218)),
+            );
+            let t220 = t96 * t219;
+            let t221 = x0 * t220;
+            let t222 = x1 * t220;
+            let t223 = x2 * t220;
+            let t224 = t121 * (t120 * t196);
+            let t225 = T::fused(-t113, t197, t50 * t224);
+            let t226 = t50 * t225;
+            let t227 = t34 * t226;
+            let t228 = T::fused(-t118, t197, t47 * t224);
+            let t229 = T::fused(t47, t225, t50 * t228);
+            let t230 = t47 * t228;
+            let t231 = T::fused(t34, t229, t37 * t230);
+            let t232 = T::fused(-t119, t197, t44 * t224);
+            let t233 = T::fused(t44, t225, t50 * t232);
+            let t234 = T::fused(t44, t228, t47 * t232);
+            let t235 = t44 * t232;
+            let t236 = T::fused(-t34, t233, T::fused(-t37, t234, t39 * t235));
+            let t237 = T::fused(
+                t112,
+                t201,
+                T::fused(-t34, t227, T::fused(-t37, t231, T::fused(-t39, t236, t139))),
+            );
+            let t238 = t141 * t237;
+            let t239 = T::fused(
+                -t52,
+                t226,
+                T::fused(-t54, t229, T::fused(t56, t233, t40 * t138)),
+            );
+            let t240 = T::fused(
+                -t29,
+                t238,
+                T::fused(t114, t200, T::fused(-t40, t227, t239)),
+            );
+            let t241 = T::fused(t29, t240, t226);
+            let t242 = t9 * t241;
+            let t243 = T::fused(
+                -t40,
+                t231,
+                T::fused(-t54, t230, T::fused(t56, t234, t40 * t137)),
+            );
+            let t244 = T::fused(-t24, t238, T::fused(t114, t199, t243));
+            let t245 = T::fused(t24, t240, T::fused(t29, t244, t229));
+            let t246 = T::fused(t24, t244, t230);
+            let t247 = T::fused(-t9, t245, t13 * t246);
+            let t248 = T::fused(
+                t114,
+                t198,
+                T::fused(t40, t236, T::fused(t56, t235, t40 * t136)),
+            );
+            let t249 = T::fused(t21, t238, t248);
+            let t250 = T::fused(-t21, t240, T::fused(t29, t249, t233));
+            let t251 = T::fused(-t21, t244, T::fused(t24, t249, t234));
+            let t252 = T::fused(-t21, t249, t235);
+            let t253 = T::fused(t9, t250, T::fused(-t13, t251, t16 * t252));
+            let t254 = T::fused(
+                -t107,
+                t206,
+                T::fused(t9, t242, T::fused(t13, t247, t16 * t253)),
+            );
+            let t255 = t163 * t254;
+            let t256 = T::fused(
+                -t17,
+                t255,
+                T::fused(-t108, t203, T::fused(t18, t253, t19 * t252)),
+            );
+            let t257 = T::fused(
+                -k(2.0),
+                T::fused(t101, t208, T::fused(t104, t207, t16 * t255)),
+                t256,
+            );
+            let t258 = T::fused(
+                t32,
+                t240,
+                T::fused(-t35, t244, T::fused(-t37, t238, t36 * t249)),
+            );
+            let t259 = T::fused(
+                k(2.0),
+                T::fused(t102, t209, T::fused(t110, t202, t258)),
+                t244,
+            );
+            let t260 = T::fused(
+                -t55,
+                t228,
+                T::fused(t57, t232, T::fused(-t58, t224, t52 * t135)),
+            );
+            let t261 = T::fused(
+                -k(2.0),
+                T::fused(t103, t210, T::fused(t117, t197, T::fused(t53, t225, t260))),
+                T::fused(k(19.62), T::fused(-t58, t197, t52), t225),
+            );
+            let t262 = x3 * (t261 + t259 - t257);
+            let t263 = T::fused(
+                -t33,
+                t240,
+                T::fused(t36, t244, T::fused(-t38, t249, t39 * t238)),
+            );
+            let t264 = T::fused(
+                k(2.0),
+                T::fused(t102, t208, T::fused(t109, t202, t263)),
+                t249,
+            );
+            let t265 = T::fused(
+                -t108,
+                t204,
+                T::fused(-t18, t247, T::fused(-t22, t246, t19 * t251)),
+            );
+            let t266 = T::fused(
+                k(2.0),
+                T::fused(-t101, t209, T::fused(-t105, t207, t13 * t255)),
+                T::fused(t14, t255, t265),
+            );
+            let t267 = t266 + t264;
+            let t268 = T::fused(
+                t60,
+                t228,
+                T::fused(-t62, t232, T::fused(t63, t224, t56 * t135)),
+            );
+            let t269 = T::fused(
+                k(2.0),
+                T::fused(-t103, t208, T::fused(-t115, t197, T::fused(-t57, t225, t268))),
+                T::fused(-k(19.62), T::fused(t63, t197, t56), t232),
+            );
+            let t270 = T::fused(
+                t18,
+                t242,
+                T::fused(t25, t241, T::fused(-t22, t245, t19 * t250)),
+            );
+            let t271 = T::fused(
+                -k(2.0),
+                T::fused(t101, t210, T::fused(t106, t207, t9 * t255)),
+                T::fused(-t10, t255, T::fused(-t108, t205, t270)),
+            );
+            let t272 = t271 + t269;
+            let t273 = T::fused(
+                t59,
+                t228,
+                T::fused(-t60, t232, T::fused(-t61, t224, t54 * t135)),
+            );
+            let t274 = T::fused(
+                -k(2.0),
+                T::fused(t103, t209, T::fused(t116, t197, T::fused(-t55, t225, t273))),
+                T::fused(k(19.62), T::fused(-t61, t197, t54), t228),
+            );
+            let t275 = T::fused(
+                t31,
+                t240,
+                T::fused(t34, t238, T::fused(-t32, t244, t33 * t249)),
+            );
+            let t276 = T::fused(
+                -k(2.0),
+                T::fused(-t102, t210, T::fused(-t111, t202, t275)),
+                t240,
+            );
+            let t277 = t276 - t274;
+            let t278 = t262 + (T::fused(x6, t267, T::fused(x5, t272, x4 * t277)) + t262);
+            let t279 = x4 * t257;
+            let t280 = t266 - t264;
+            let t281 = t271 - t269;
+            let t282 = t279
+                - (T::fused(-x5, t280, T::fused(x6, t281, x3 * t277)) - t279);
+            let t283 = x5 * t259;
+            let t284 = t276 + t274;
+            let t285 = T::fused(
+                -x4,
+                t280,
+                T::fused(x3, t272, t283 - T::fused(x6, t284, -t283)),
+            );
+            let t286 = T::fused(
+                x3,
+                t267,
+                T::fused(x4, t281, T::fused(-x5, t284, k(2.0) * (x6 * t261))),
+            );
+            let t287 = t44 * t64;
+            let t288 = t47 * t64;
+            let t289 = t50 * t64;
+            let t290 = T::fused(-t39, t287, T::fused(t37, t288, t34 * t289));
+            let t291 = t40 * t290;
+            let t292 = T::fused(t21, t291, t287);
+            let t293 = T::fused(-t24, t291, t288);
+            let t294 = T::fused(-t29, t291, t289);
+            let t295 = T::fused(t16, t292, T::fused(-t13, t293, t9 * t294));
+            let t296 = t18 * t295;
+            let t297 = T::fused(-t17, t296, t292);
+            let t298 = T::fused(t14, t296, t293);
+            let t299 = T::fused(-t10, t296, t294);
+            let t300 = T::fused(t17, t297, T::fused(-t14, t298, t10 * t299));
+            let t301 = T::fused(-t21, t297, T::fused(t24, t298, t29 * t299));
+            let t302 = T::fused(t44, t297, T::fused(t47, t298, t50 * t299));
+            let t303 = T::fused(-t82, t300, T::fused(-t84, t301, t86 * t302));
+            let t304 = k(0.3) * t303;
+            let t305 = T::fused(-u0, t304, t90 * t300);
+            let t306 = T::fused(-u1, t304, t90 * t301);
+            let t307 = T::fused(u2, t304, t90 * t302);
+            let t308 = T::fused(
+                -k(40.0),
+                t303,
+                t94 * T::fused(-x0, t305, T::fused(-x1, t306, x2 * t307)),
+            );
+            let t309 = t96 * t308;
+            let t310 = x0 * t309;
+            let t311 = x1 * t309;
+            let t312 = x2 * t309;
+            let t313 = t120 * t121;
+            let t314 = T::fused(-t113, t64, t50 * t313);
+            let t315 = t50 * t314;
+            let t316 = t34 * t315;
+            let t317 = T::fused(-t118, t64, t47 * t313);
+            let t318 = T::fused(t47, t314, t50 * t317);
+            let t319 = t47 * t317;
+            let t320 = T::fused(t34, t318, t37 * t319);
+            let t321 = T::fused(-t119, t64, t44 * t313);
+            let t322 = T::fused(t44, t314, t50 * t321);
+            let t323 = T::fused(t44, t317, t47 * t321);
+            let t324 = t44 * t321;
+            let t325 = T::fused(-t34, t322, T::fused(-t37, t323, t39 * t324));
+            let t326 = T::fused(
+                -t112,
+                t290,
+                T::fused(t34, t316, T::fused(t37, t320, t39 * t325)),
+            );
+            let t327 = t141 * t326;
+            let t328 = T::fused(
+                -t40,
+                t316,
+                T::fused(-t52, t315, T::fused(-t54, t318, t56 * t322)),
+            );
+            let t329 = T::fused(t29, t327, T::fused(t114, t289, t328));
+            let t330 = T::fused(t29, t329, t315);
+            let t331 = t9 * t330;
+            let t332 = T::fused(
+                t114,
+                t288,
+                T::fused(-t40, t320, T::fused(-t54, t319, t56 * t323)),
+            );
+            let t333 = T::fused(t24, t327, t332);
+            let t334 = T::fused(t24, t329, T::fused(t29, t333, t318));
+            let t335 = T::fused(t24, t333, t319);
+            let t336 = T::fused(-t9, t334, t13 * t335);
+            let t337 = T::fused(
+                -t21,
+                t327,
+                T::fused(t114, t287, T::fused(t40, t325, t56 * t324)),
+            );
+            let t338 = T::fused(-t21, t329, T::fused(t29, t337, t322));
+            let t339 = T::fused(-t21, t333, T::fused(t24, t337, t323));
+            let t340 = T::fused(-t21, t337, t324);
+            let t341 = T::fused(t9, t338, T::fused(-t13, t339, t16 * t340));
+            let t342 = T::fused(
+                -t107,
+                t295,
+                T::fused(t9, t331, T::fused(t13, t336, t16 * t341)),
+            );
+            let t343 = t163 * t342;
+            let t344 = T::fused(
+                -t17,
+                t343,
+                T::fused(-t108, t292, T::fused(t18, t341, t19 * t340)),
+            );
+            let t345 = T::fused(
+                -k(2.0),
+                T::fused(t101, t297, T::fused(t104, t296, t16 * t343)),
+                t344,
+            );
+            let t346 = T::fused(
+                t32,
+                t329,
+                T::fused(-t35, t333, T::fused(t37, t327, t36 * t337)),
+            );
+            let t347 = T::fused(
+                k(2.0),
+                T::fused(t102, t298, T::fused(t110, t291, t346)),
+                t333,
+            );
+            let t348 = T::fused(
+                -t53,
+                t314,
+                T::fused(t55, t317, T::fused(-t57, t321, t58 * t313)),
+            );
+            let t349 = T::fused(
+                k(2.0),
+                T::fused(-t103, t299, T::fused(-t64, t117, t348)),
+                T::fused(-k(19.62), t58 * t64, t314),
+            );
+            let t350 = x3 * (t349 + t347 - t345);
+            let t351 = T::fused(
+                t33,
+                t329,
+                T::fused(-t36, t333, T::fused(t38, t337, t39 * t327)),
+            );
+            let t352 = T::fused(
+                -k(2.0),
+                T::fused(-t102, t297, T::fused(-t109, t291, t351)),
+                t337,
+            );
+            let t353 = T::fused(
+                -t108,
+                t293,
+                T::fused(-t18, t336, T::fused(-t22, t335, t19 * t339)),
+            );
+            let t354 = T::fused(
+                k(2.0),
+                T::fused(-t101, t298, T::fused(-t105, t296, t13 * t343)),
+                T::fused(t14, t343, t353),
+            );
+            let t355 = t354 + t352;
+            let t356 = T::fused(
+                -t57,
+                t314,
+                T::fused(t60, t317, T::fused(-t62, t321, t63 * t313)),
+            );
+            let t357 = T::fused(
+                k(2.0),
+                T::fused(-t103, t297, T::fused(-t64, t115, t356)),
+                T::fused(-k(19.62), t63 * t64, t321),
+            );
+            let t358 = T::fused(
+                t18,
+                t331,
+                T::fused(t25, t330, T::fused(-t22, t334, t19 * t338)),
+            );
+            let t359 = T::fused(
+                -k(2.0),
+                T::fused(t101, t299, T::fused(t106, t296, t9 * t343)),
+                T::fused(-t10, t343, T::fused(-t108, t294, t358)),
+            );
+            let t360 = t359 + t357;
+            let t361 = T::fused(
+                t55,
+                t314,
+                T::fused(-t59, t317, T::fused(t60, t321, t61 * t313)),
+            );
+            let t362 = T::fused(
+                k(2.0),
+                T::fused(-t103, t298, T::fused(-t64, t116, t361)),
+                T::fused(-k(19.62), t61 * t64, t317),
+            );
+            let t363 = T::fused(
+                t31,
+                t329,
+                T::fused(-t34, t327, T::fused(-t32, t333, t33 * t337)),
+            );
+            let t364 = T::fused(
+                -k(2.0),
+                T::fused(-t102, t299, T::fused(-t111, t291, t363)),
+                t329,
+            );
+            let t365 = t364 - t362;
+            let t366 = t350 + (T::fused(x6, t355, T::fused(x5, t360, x4 * t365)) + t350);
+            let t367 = x4 * t345;
+            let t368 = t354 - t352;
+            let t369 = t359 - t357;
+            let t370 = t367
+                - (T::fused(-x5, t368, T::fused(x6, t369, x3 * t365)) - t367);
+            let t371 = x5 * t347;
+            let t372 = t364 + t362;
+            let t373 = T::fused(
+                -x4,
+                t368,
+                T::fused(x3, t360, t371 - T::fused(x6, t372, -t371)),
+            );
+            let t374 = T::fused(
+                x3,
+                t355,
+                T::fused(x4, t369, T::fused(-x5, t372, k(2.0) * (x6 * t349))),
+            );
+            let t375 = k(0.6) * t89;
+            let t376 = u0 * t375;
+            let t377 = u1 * t375;
+            let t378 = u2 * t375;
+            let t379 = t96 * (t94 * T::fused(x0, t376, T::fused(x1, t377, x2 * t378)));
+            let t380 = x0 * t379;
+            let t381 = x1 * t379;
+            let t382 = x2 * t379;
+            (
+                t215,
+                t216,
+                t217,
+                t218,
+                t221,
+                t222,
+                t223,
+                t278,
+                t282,
+                t285,
+                t286,
+                t304,
+                t305,
+                t306,
+                t307,
+                t310,
+                t311,
+                t312,
+                t366,
+                t370,
+                t373,
+                t374,
+                t375,
+                t376,
+                t377,
+                t378,
+                t380,
+                t381,
+                t382,
+            )
+        };
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t0,
+            -t1,
+            -t2,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t3,
+            -t4,
+            -t5,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t0,
+            k(0.0),
+            t2,
+            -t1,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t6,
+            -t5,
+            t4,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t1,
+            -t2,
+            k(0.0),
+            t0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t5,
+            t6,
+            -t3,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t2,
+            t1,
+            -t0,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t4,
+            t3,
+            t6,
+            k(0.0),
+            t98 + T::fused(t81, t91, t98),
+            t99 + T::fused(t81, t92, t99),
+            t100 - T::fused(t81, t93, -t100),
+            -t187,
+            -t191,
+            t194,
+            -t195,
+            -(t82 * t88),
+            -(t84 * t88),
+            -(t86 * t88),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t221 + T::fused(t81, t216, t221),
+            t222 + T::fused(t81, t217, t222),
+            t223 - T::fused(t81, t218, -t223),
+            -t278,
+            t282,
+            -t285,
+            -t286,
+            -(t82 * t215),
+            -(t84 * t215),
+            -(t86 * t215),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t310 + T::fused(t81, t305, t310),
+            t311 + T::fused(t81, t306, t311),
+            t312 - T::fused(t81, t307, -t312),
+            -t366,
+            t370,
+            -t373,
+            -t374,
+            -(t82 * t304),
+            -(t84 * t304),
+            -(t86 * t304),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -t2,
+            -t1,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.6666666666666666) * u5,
+            k(0.0),
+            k(0.6666666666666666) * u3,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(k(0.25) * u4),
+            -(k(0.25) * u3),
+            k(0.0),
+            k(0.0),
+            t380 - T::fused(t81, t376, -t380),
+            t381 - T::fused(t81, t377, -t381),
+            t382 - T::fused(t81, t378, -t382),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            -(t82 * t375),
+            -(t84 * t375),
+            -(t86 * t375),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+        *dfdt = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+        ];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Tether<T> {
     type Outputs = [T; 0];

@@ -11,9 +11,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 485 operations by rotations of the bodies; 499 operations by relative Euler parameters
+//! * project: 354 operations by rotations of the bodies; 368 operations by relative Euler parameters
 //! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
 //! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
 //! * corrected_accelerations: 126 operations by recursion in the bodies' frames; 126 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 5 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 8 | 0 | 8 | 6 of 12 | 8 | 8 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 191 | 291 | 3 | 485 | 0 of 12 | 449505 | 487 |
 //! | multipliers | λ, the accelerations being known | 70 | 129 | 2 | 201 | 0 of 11 | 2637 | 201 |
+//! | project | (δr, δπ') that changes the rows as given | 136 | 215 | 3 | 354 | 0 of 12 | 217876 | 355 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 32 | 0 | 48 | 0 of 14 | 48 | 48 |
 //! | energy | T and V | 12 | 22 | 0 | 34 | 0 of 2 | 34 | 34 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 52 | 74 | 0 | 126 | 0 of 12 | 342 | 126 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 39 | 59 | 0 | 98 | 0 of 11 | 258 | 98 |
 //! | corrected_solution | both | 75 | 115 | 0 | 190 | 0 of 23 | 3168 | 190 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 | 1 | 1 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints, outputs: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-146.
 //! Not proved: the size of rounding errors.
@@ -1892,6 +1897,174 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Weld<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for Weld<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 354 operations (136 ±, 215 ×, 3 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let inner_e0 = y[3];
+        let inner_e1 = y[4];
+        let inner_e2 = y[5];
+        let inner_e3 = y[6];
+        let outer_e0 = y[10];
+        let outer_e1 = y[11];
+        let outer_e2 = y[12];
+        let outer_e3 = y[13];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let t0 = inner_e0 * inner_e2;
+        let t1 = inner_e1 * inner_e3;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = inner_e0 * inner_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(inner_e1, inner_e1, t3));
+        let t5 = inner_e0 * inner_e3;
+        let t6 = inner_e1 * inner_e2;
+        let t7 = k(2.0) * (t6 + t5);
+        let t8 = T::fused(t2, row2, T::fused(-t4, row0, t7 * row1));
+        let t9 = outer_e0 * outer_e2;
+        let t10 = outer_e1 * outer_e3;
+        let t11 = k(2.0) * (t10 + t9);
+        let t12 = k(2.0) * (t6 - t5);
+        let t13 = outer_e0 * outer_e1;
+        let t14 = outer_e2 * outer_e3;
+        let t15 = k(2.0) * (t14 - t13);
+        let t16 = k(2.0) * (k(0.5) - T::fused(inner_e2, inner_e2, t3));
+        let t17 = outer_e0 * outer_e0;
+        let t18 = k(2.0) * (k(0.5) - T::fused(outer_e3, outer_e3, t17));
+        let t19 = inner_e0 * inner_e1;
+        let t20 = inner_e2 * inner_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = T::fused(t21, t18, T::fused(-t12, t11, t16 * t15));
+        let t23 = T::fused(t2, t18, -T::fused(-t4, t11, t7 * t15));
+        let t24 = k(2.0) * (k(0.5) - T::fused(outer_e1, outer_e1, t17));
+        let t25 = outer_e0 * outer_e3;
+        let t26 = outer_e1 * outer_e2;
+        let t27 = k(2.0) * (t26 + t25);
+        let t28 = k(2.0) * (t10 - t9);
+        let t29 = T::fused(t21, t28, -T::fused(t12, t24, t16 * t27));
+        let t30 = t23 * t29;
+        let t31 = T::fused(t2, t28, T::fused(t4, t24, t7 * t27));
+        let t32 = T::fused(t31, t22, -t30);
+        let t33 = k(1.0) / (t23 * t32);
+        let t34 = T::fused(-(t33 * (t23 * t22)), row8, t33 * (t23 * t23) * row9);
+        let t35 = k(2.0) * (t1 + t0);
+        let t36 = k(2.0) * (t20 - t19);
+        let t37 = k(2.0) * (k(0.5) - T::fused(inner_e3, inner_e3, t3));
+        let t38 = T::fused(t37, t18, T::fused(t35, t11, t36 * t15));
+        let t39 = T::fused(-(t30 * t33), row8, t33 * (t23 * t31) * row9);
+        let t40 = k(2.0) * (t14 + t13);
+        let t41 = k(2.0) * (t26 - t25);
+        let t42 = k(2.0) * (k(0.5) - T::fused(outer_e2, outer_e2, t17));
+        let t43 = T::fused(-t40, row7, T::fused(-t41, row5, t42 * row6));
+        let t44 = T::fused(t37, t28, -T::fused(-t35, t24, t36 * t27));
+        let t45 = T::fused(t2, t40, -T::fused(t4, t41, t7 * t42));
+        let t46 = T::fused(-(t33 * (t22 * t45)), row8, t33 * (t23 * t45) * row9);
+        let t47 = T::fused(-(t32 * t33), row10, t46);
+        let t48 = T::fused(t28, row7, T::fused(-t24, row5, t27 * row6));
+        let t49 = T::fused(t37, t40, T::fused(-t35, t41, t36 * t42));
+        let t50 = T::fused(
+            t44,
+            T::fused(-k(0.05), t39, k(0.15) * t43),
+            t49 * T::fused(-k(0.05), t47, k(0.15) * t48),
+        );
+        let t51 = T::fused(t21, t40, T::fused(t12, t41, t16 * t42));
+        let t52 = T::fused(
+            -t29,
+            T::fused(-k(0.6), t48, k(0.15) * t47),
+            t51 * T::fused(-k(0.6), t43, k(0.15) * t39),
+        );
+        let t53 = T::fused(-t18, row7, T::fused(t11, row5, t15 * row6));
+        let t54 = k(0.25) * T::fused(t22, k(0.6) * t53, -t52);
+        let t55 = T::fused(-t21, row2, T::fused(-t12, row0, t16 * row1));
+        let t56 = k(0.15) * t51;
+        let t57 = k(0.15) * t29;
+        let t58 = T::fused(-t44, t56, t49 * t57);
+        let t59 = k(0.15) - t58;
+        let t60 = T::fused(
+            T::fused(-t44, k(0.15) * t45, t49 * (k(0.15) * t31)),
+            t8,
+            (k(0.3) + t59) * t55,
+        );
+        let t61 = T::fused(-t37, row2, T::fused(t35, row0, t36 * row1));
+        let t62 = T::fused(-t44, k(0.15) * t49, t49 * (k(0.15) * t44));
+        let t63 = k(1.0) / T::fused(-t4, t16, t12 * t7);
+        let t64 = T::fused(-(t4 * t63), row3, t7 * t63 * row4);
+        let t65 = T::fused(
+            t38,
+            k(5e-5) * t23,
+            T::fused(t44, k(0.05) * t31, t49 * (k(0.05) * t45)),
+        );
+        let t66 = k(0.25) * T::fused(-t31, t56, t45 * t57);
+        let t67 = T::fused(-(t12 * t63), row3, t16 * t63 * row4);
+        let t68 = T::fused(
+            k(5e-5) * t22,
+            t38,
+            T::fused(t44, k(0.05) * t29, t49 * (k(0.05) * t51)),
+        );
+        let t69 = k(0.25) * (t62 - T::fused(-t29, t56, t51 * t57));
+        let t70 = T::fused(t66 + (t66 - t65), t64, (t69 + (t69 + t68)) * t67);
+        let t71 = t70 - T::fused(t62, t61, -t60)
+            + (t54 + (t54 + T::fused(-t38, k(5e-5) * t34, t50)));
+        let t72 = T::fused(
+            t38,
+            k(5e-5) * t38,
+            T::fused(t44, k(0.05) * t44, t49 * (k(0.05) * t49)),
+        );
+        let t73 = T::fused(
+            k(0.5),
+            t59,
+            k(0.075) + (k(0.0125) - T::fused(k(0.5), t58, -(k(0.0375) + t72))),
+        );
+        let t74 = t71 / t73;
+        let t75 = k(0.25) * t74;
+        let t76 = t55 - t75;
+        let t77 = k(0.25) * t67;
+        let t78 = t77 - t61;
+        let t79 = t75 - t76;
+        let t80 = t77 + t78;
+        let t81 = t47 + T::fused(t49, t74, -T::fused(-t45, t64, t51 * t67));
+        let t82 = T::fused(
+            k(0.25),
+            t81,
+            -(t48 + T::fused(t44, t80, T::fused(t31, t8, t29 * t79))),
+        );
+        let t83 = t39 + T::fused(t44, t74, -T::fused(-t31, t64, t29 * t67));
+        let t84 = T::fused(
+            k(0.25),
+            t83,
+            -(t43 - T::fused(t49, t80, T::fused(t45, t8, t51 * t79))),
+        );
+        let t85 = t53 - T::fused(t38, t80, T::fused(t23, t8, t22 * t79));
+        *out = [
+            -T::fused(t35, t78, T::fused(t4, t8, t12 * t76)),
+            T::fused(-t36, t78, T::fused(t7, t8, t16 * t76)),
+            T::fused(t37, t78, -T::fused(-t2, t8, t21 * t76)),
+            -t64,
+            t67,
+            t74,
+            T::fused(t11, t85, T::fused(t24, t82, t41 * t84)),
+            T::fused(t15, t85, -T::fused(t27, t82, t42 * t84)),
+            T::fused(-t18, t85, T::fused(-t28, t82, t40 * t84)),
+            -t83,
+            -t81,
+            t34 + T::fused(t38, t74, -T::fused(-t23, t64, t22 * t67)),
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
     type Joints = [T; 2];
     type Rates = [T; 1];
@@ -2320,6 +2493,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Weld<T> {
             t66 + T::fused(-k(0.1839375), t5, k(0.01245) * (outer_wx * outer_wz)),
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Weld<T> {
+    type Jacobian = [T; 4];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 4]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1 operations (0 ±, 1 ×, 0 ÷) and 1 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        *dfdx = [k(0.0), k(1.0), -(k(14.715) * x0.cos()), k(0.0)];
+        *dfdt = [k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for Weld<T> {
     type Outputs = [T; 6];

@@ -23,6 +23,8 @@ pub enum Known {
     State,
     /// The argument or buffer of accelerations or rates.
     Accelerations,
+    /// The argument `rows`.
+    Changes,
     /// The argument x.
     Joints,
     /// The argument `charts`: unit vectors.
@@ -38,6 +40,7 @@ pub enum Known {
 pub struct Sizes {
     pub state: usize,
     pub accelerations: usize,
+    pub rows: usize,
     pub joints: usize,
     pub charts: usize,
     pub tables: usize,
@@ -56,6 +59,8 @@ pub enum Form {
     Stores,
     /// `x[0] = ...; x[1] = ...;`, all of them.
     Joints,
+    /// `*dfdx = [...]; *dfdt = [...];`
+    Jacobian,
 }
 
 /// What a function has another one compute first: the buffer and the call.
@@ -103,6 +108,7 @@ impl<'a> Reader<'a> {
             "y" => Known::State,
             "x" => Known::Joints,
             "accelerations" => Known::Accelerations,
+            "rows" => Known::Changes,
             "charts" => Known::Charts,
             "out" => Known::Target,
             _ => return,
@@ -224,6 +230,7 @@ impl<'a> Reader<'a> {
         }
         let (size, source): (usize, fn(usize) -> Source) = match self.known(array)? {
             Known::State => (self.sizes.state, Source::State),
+            Known::Changes => (self.sizes.rows, Source::Change),
             Known::Joints => (self.sizes.joints, Source::Joint),
             _ => return Ok(None),
         };
@@ -279,15 +286,10 @@ impl<'a> Reader<'a> {
 
     fn results(&mut self, statements: &[Stmt], block: &Block, form: Form) -> Result<(), Refusal> {
         match (form, statements) {
-            (Form::Filling, [Stmt::Expr(Expr::Assign(assign), Some(_))]) => {
-                match (&*assign.left, &*assign.right) {
-                    (Expr::Unary(left), Expr::Array(array))
-                        if matches!(left.op, UnOp::Deref(_)) && self.known(&left.expr)? == Known::Target =>
-                    {
-                        self.all(array)
-                    }
-                    _ => Err(refused(assign)),
-                }
+            (Form::Filling, [fill]) => self.fill(fill, None),
+            (Form::Jacobian, [by_state, by_time]) => {
+                self.fill(by_state, Some("dfdx"))?;
+                self.fill(by_time, Some("dfdt"))
             }
             // A function without results has an empty body.
             (Form::Filling, []) => Ok(()),
@@ -322,6 +324,21 @@ impl<'a> Reader<'a> {
                 statements.first().map_or(block.span(), Spanned::span),
                 "the function does not end as it must",
             )),
+        }
+    }
+
+    /// `*out = [...];`, of this name if one is given.
+    fn fill(&mut self, statement: &Stmt, name: Option<&str>) -> Result<(), Refusal> {
+        let Stmt::Expr(Expr::Assign(assign), Some(_)) = statement else { return Err(refused(statement)) };
+        match (&*assign.left, &*assign.right) {
+            (Expr::Unary(left), Expr::Array(array))
+                if matches!(left.op, UnOp::Deref(_))
+                    && self.known(&left.expr)? == Known::Target
+                    && name.is_none_or(|name| is_name(&left.expr, name)) =>
+            {
+                self.all(array)
+            }
+            _ => Err(refused(assign)),
         }
     }
 

@@ -21,7 +21,7 @@ pub fn text(
     model: &Model,
     type_name: &str,
     tables: &[Spline],
-    choice: Choice,
+    (choice, has_jacobian): (Choice, bool),
     joints: Option<&JointLayout>,
 ) -> String {
     [
@@ -31,7 +31,12 @@ pub fn text(
         mechanism(model, type_name, joints.is_some()),
         partition(model, type_name, choice),
         equations(model, type_name),
+        projection(type_name),
         joints.map(|joints| joint_space(model, type_name, joints)).unwrap_or_default(),
+        joints
+            .filter(|_| has_jacobian)
+            .map(|joints| joint_jacobian(model, type_name, joints))
+            .unwrap_or_default(),
         ports(model, type_name),
     ]
     .concat()
@@ -381,6 +386,16 @@ fn multipliers(name: &str, accelerations: &str) -> String {
     )
 }
 
+fn projection(name: &str) -> String {
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::Projection for {name}<T> {{
+            fn project(
+                &self, ANY_t: T, ANY_y: &Self::State, ANY_rows: &Self::Rows, ANY_out: &mut Self::Velocities,
+            ) {{ HOLE_project }}
+        }}"
+    )
+}
+
 fn joint_space(model: &Model, name: &str, joints: &JointLayout) -> String {
     let n_solution = 6 * model.coordinate_bodies().len() + model.rows().len();
     let (n_state, n_rates) = (joints.n_state(), joints.n_rates);
@@ -408,6 +423,29 @@ fn joint_space(model: &Model, name: &str, joints: &JointLayout) -> String {
         fillings(&[("joint_accelerations_at", "Rates"), ("corrected_accelerations", "Velocities")]),
         multipliers("corrected_multipliers", "Velocities"),
         fillings(&[("corrected_solution", "Solution")]),
+    )
+}
+
+fn joint_jacobian(model: &Model, name: &str, joints: &JointLayout) -> String {
+    let (n_state, n_inputs) = (joints.n_state().pow(2), joints.n_state() * model.inputs.len());
+    format!(
+        "impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for {name}<T> {{
+            type Jacobian = [T; {n_state}];
+            type InputJacobian = [T; {n_inputs}];
+            {}
+            fn joint_jacobian(
+                &self, ANY_t: T, ANY_x: &Self::Joints, dfdx: &mut Self::Jacobian, dfdt: &mut Self::Joints,
+            ) {{
+                HOLE_joint_jacobian
+            }}
+            fn joint_input_jacobian(&self, ANY_t: T, ANY_x: &Self::Joints, ANY_out: &mut Self::InputJacobian) {{
+                HOLE_joint_input_jacobian
+            }}
+        }}",
+        buffers(&[
+            ("joint_jacobian_buffer", "Jacobian", &n_state.to_string()),
+            ("input_jacobian_buffer", "InputJacobian", &n_inputs.to_string()),
+        ]),
     )
 }
 

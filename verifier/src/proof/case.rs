@@ -20,6 +20,10 @@ pub(super) struct Case<'a> {
     pub point: Point<Term<'a>>,
     /// A factor for each body, by which Euler parameters are made longer where that must not matter.
     pub factors: Vec<Term<'a>>,
+    /// By how much each row is asked to change.
+    pub changes: Vec<Term<'a>>,
+    /// (δr, δπ') of any motion.
+    pub motion: Vec<Term<'a>>,
     /// A vector for each chart.
     pub charts: Vec<[Term<'a>; 4]>,
     /// A joint state, with Euler parameters of length one.
@@ -28,6 +32,19 @@ pub(super) struct Case<'a> {
     pub before: Vec<Term<'a>>,
     textbook: &'a Textbook<'a>,
     tape: &'a Tape,
+}
+
+/// What a function is given.
+#[derive(Clone, Copy)]
+pub(super) struct Arguments<'s, 'a> {
+    /// Where.
+    pub point: &'s Point<Term<'a>>,
+    /// What it reads of other functions' accelerations or rates.
+    pub accelerations: &'s [Term<'a>],
+    /// By how much the rows are asked to change.
+    pub changes: &'s [Term<'a>],
+    /// A joint state.
+    pub joints: &'s [Term<'a>],
 }
 
 impl<'a> Case<'a> {
@@ -41,6 +58,8 @@ impl<'a> Case<'a> {
             module,
             point: point(model, tape),
             factors: (0..model.coordinate_bodies().len()).map(|slot| read(Source::Factor(slot))).collect(),
+            changes: (0..model.rows().len()).map(|row| read(Source::Change(row))).collect(),
+            motion: (0..6 * model.coordinate_bodies().len()).map(|k| read(Source::Motion(k))).collect(),
             charts: charts.map(|chart| [0, 1, 2, 3].map(|k| read(Source::Chart(chart, k)))).collect(),
             joints: joints.clone().map(|k| read(Source::Joint(k))).collect(),
             before: joints.map(|k| read(Source::Before(k))).collect(),
@@ -59,9 +78,14 @@ impl<'a> Case<'a> {
         self.textbook.at(point, &Written)
     }
 
+    /// A point, the case's own joint state and changes of rows.
+    pub fn given<'s>(&'s self, point: &'s Point<Term<'a>>) -> Arguments<'s, 'a> {
+        Arguments { point, accelerations: &[], changes: &self.changes, joints: &self.joints }
+    }
+
     /// What a function of the module gives at a point.
     pub fn run(&self, function: &str, point: &Point<Term<'a>>) -> Vec<Term<'a>> {
-        self.run_with(function, point, &[])
+        self.results(function, self.given(point))
     }
 
     /// The same for one that reads accelerations.
@@ -71,23 +95,25 @@ impl<'a> Case<'a> {
         point: &Point<Term<'a>>,
         accelerations: &[Term<'a>],
     ) -> Vec<Term<'a>> {
-        let nodes = self.nodes(function, point, accelerations, &self.joints);
+        self.results(function, Arguments { accelerations, ..self.given(point) })
+    }
+
+    /// What a function gives.
+    pub fn results(&self, function: &str, arguments: Arguments<'_, 'a>) -> Vec<Term<'a>> {
+        let nodes = self.nodes(function, arguments);
         self.module.programs[function].results.iter().map(|&id| nodes[id]).collect()
     }
 
-    /// All nodes of a function, which may read a joint state.
-    fn nodes(
-        &self,
-        function: &str,
-        point: &Point<Term<'a>>,
-        accelerations: &[Term<'a>],
-        joints: &[Term<'a>],
-    ) -> Vec<Term<'a>> {
+    /// All nodes of a function.
+    fn nodes(&self, function: &str, arguments: Arguments<'_, 'a>) -> Vec<Term<'a>> {
+        let Arguments { point, accelerations, changes, joints } = arguments;
         let read = |source| match source {
             Source::Acceleration(k) => accelerations[k],
+            Source::Change(row) => changes[row],
             Source::Joint(k) => joints[k],
             Source::Chart(chart, k) => self.charts[chart][k],
             Source::Factor(slot) => self.factors[slot],
+            Source::Motion(k) => self.motion[k],
             Source::Before(k) => self.before[k],
             source => *point.given(source).expect("the rest is the point's"),
         };
@@ -95,15 +121,14 @@ impl<'a> Case<'a> {
         self.tape.copy(&programs[function], &constants.values, tables, &read)
     }
 
-    /// What a function gives whose buffer holds a joint state before, and how fast that changes.
+    /// What a function gives, and how fast that changes if what it reads changes at these rates.
     pub fn run_along(
         &self,
         function: &str,
-        point: &Point<Term<'a>>,
-        joints: &[Term<'a>],
+        arguments: Arguments<'_, 'a>,
         rate: &dyn Fn(Source) -> Option<Term<'a>>,
     ) -> Option<[Vec<Term<'a>>; 2]> {
-        let nodes = self.nodes(function, point, &[], joints);
+        let nodes = self.nodes(function, arguments);
         let program = &self.module.programs[function];
         let rates = rates(program, &nodes, &self.module.tables, &Written, rate)?;
         let zero = Term::zero(self.tape);

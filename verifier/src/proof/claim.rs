@@ -1,6 +1,6 @@
 //! What is proved of each function: numbers that must be zero wherever they exist.
 
-use super::case::Case;
+use super::case::{Arguments, Case};
 use super::point::stretched;
 use super::{joints, partition};
 use crate::field::Field;
@@ -28,6 +28,8 @@ pub enum Claim {
     AppliedForce,
     /// `accelerations` and `multipliers` satisfy eq. (17).
     Motion,
+    /// `project` changes the rows as asked, by the least motion in the metric of the masses.
+    Projection,
     /// `derivative` gives eqs. (14), (16), these accelerations, the power and the rates of the turn references.
     Derivative,
     /// `energy` gives both energies.
@@ -60,6 +62,10 @@ pub enum Claim {
     CorrectedMultipliers,
     /// `corrected_solution` is both.
     CorrectedSolution,
+    /// `joint_jacobian` is ∂f/∂x and ∂f/∂t of `joint_derivative`.
+    JointJacobian,
+    /// `joint_input_jacobian` is ∂f/∂(inputs).
+    JointInputJacobian,
 }
 
 impl Claim {
@@ -75,6 +81,7 @@ impl Claim {
             VelocityResidual,
             AppliedForce,
             Motion,
+            Projection,
             Derivative,
             Energy,
             Readings,
@@ -96,6 +103,10 @@ impl Claim {
                 CorrectedSolution,
             ]);
         }
+        let gives =
+            |function: &str| module.programs.get(function).is_some_and(|program| !program.results.is_empty());
+        claims.extend(gives("joint_jacobian").then_some(JointJacobian));
+        claims.extend(gives("joint_input_jacobian").then_some(JointInputJacobian));
         claims
     }
 
@@ -110,6 +121,7 @@ impl Claim {
             Self::VelocityResidual => &["velocity_residual"],
             Self::AppliedForce => &["applied_force"],
             Self::Motion => &["accelerations", "multipliers"],
+            Self::Projection => &["project"],
             Self::Derivative => &["derivative"],
             Self::Energy => &["energy"],
             Self::Readings => &["read_joints"],
@@ -126,6 +138,8 @@ impl Claim {
             Self::CorrectedDerivative => &["corrected_derivative"],
             Self::CorrectedMultipliers => &["corrected_multipliers"],
             Self::CorrectedSolution => &["corrected_solution"],
+            Self::JointJacobian => &["joint_jacobian"],
+            Self::JointInputJacobian => &["joint_input_jacobian"],
         }
     }
 
@@ -140,6 +154,7 @@ impl Claim {
             Self::VelocityResidual => "Φ_r s + Φ_π' w' − ν",
             Self::AppliedForce => "(f, n' − w̃'J'w')",
             Self::Motion => "eq. (17) leaves no residual",
+            Self::Projection => "rows change as asked; M δ ⊥ all that changes no row",
             Self::Derivative => "eqs. (14), (16), power, rates of turn references",
             Self::Energy => "T and V",
             Self::Readings => "joint coordinates and rates, also for |p| ≠ 1",
@@ -156,6 +171,8 @@ impl Claim {
             Self::CorrectedDerivative => "eqs. (14), (16), v̇, turns; power at the state of (x, u)",
             Self::CorrectedMultipliers => "M v̇ + Φ_π'ᵀ λ = f at the state of (x, u)",
             Self::CorrectedSolution => "the proved v̇ there, M v̇ + Φ_π'ᵀ λ = f",
+            Self::JointJacobian => "`joint_derivative` by dual numbers, of x and of t",
+            Self::JointInputJacobian => "`joint_derivative` by dual numbers, of the inputs",
         }
     }
 
@@ -166,7 +183,7 @@ impl Claim {
             Self::PhiQ | Self::PhiPi | Self::Nu | Self::Gamma | Self::VelocityResidual => {
                 "the derivatives of Φ by dual numbers"
             }
-            Self::AppliedForce | Self::Motion => "eq. (17)",
+            Self::AppliedForce | Self::Motion | Self::Projection => "eq. (17)",
             Self::Derivative => "eqs. (14) and (16)",
             Self::Energy | Self::Readings | Self::Outputs => "their definitions",
             Self::ChartVectors | Self::NewtonStep => "Newton's step for Φ = 0",
@@ -177,6 +194,9 @@ impl Claim {
             | Self::CorrectedAccelerations
             | Self::CorrectedMultipliers
             | Self::CorrectedSolution => "eq. (17) on the constraints",
+            Self::JointJacobian | Self::JointInputJacobian => {
+                "the derivatives of `joint_derivative` by dual numbers"
+            }
             Self::JointDerivative | Self::CorrectedDerivative => "eqs. (14) and (16) on the constraints",
         }
     }
@@ -209,6 +229,7 @@ impl Claim {
                 let (accelerations, multipliers) = case.motion();
                 textbook.residual_of_motion(&accelerations[..6 * case.n_bodies()], &multipliers)
             }
+            Self::Projection => projection(case),
             Self::Derivative => derivative(case),
             Self::Outputs => {
                 let (accelerations, multipliers) = case.motion();
@@ -231,6 +252,8 @@ impl Claim {
             Self::CorrectedDerivative => joints::corrected_derivative(case),
             Self::CorrectedMultipliers => joints::corrected_multipliers(case),
             Self::CorrectedSolution => joints::corrected_solution(case),
+            Self::JointJacobian => joints::jacobian(case),
+            Self::JointInputJacobian => joints::input_jacobian(case),
         }
     }
 }
@@ -257,6 +280,22 @@ fn sparse_differences<F: Field>(
         }
     }
     differences
+}
+
+/// With `δ = P(rows)` what the module gives: `Φ_π' P(rows) = rows` for any rows, and `(z − P(Φ_π' z))ᵀ M P(rows) = 0` for any motion z. What is in the
+/// brackets changes no row, and every motion that changes none is of this form: of z = 0 and no rows the second claim says that P(0) = 0. So
+/// `M δ` does no work on any motion that the rows leave free, and is `−Φ_π'ᵀ μ`.
+fn projection<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let textbook = case.textbook(&case.point)?;
+    let (phi_pi, mass) = (textbook.phi_pi()?, textbook.mass_matrix());
+    let project =
+        |changes: &[Term<'a>]| case.results("project", Arguments { changes, ..case.given(&case.point) });
+    let projected = project(&case.changes);
+    let mut residuals = differences(&textbook.product(&phi_pi, &projected), &case.changes);
+    let other = project(&textbook.product(&phi_pi, &case.motion));
+    let rest = differences(&case.motion, &other);
+    residuals.extend(textbook.product(&[rest], &textbook.product(&mass, &projected)));
+    Some(residuals)
 }
 
 fn derivative<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {

@@ -132,5 +132,11 @@ fn run<F: Field>(
 }
 
 fn given<'d, F: Field>(draw: &'d Draw<F>, accelerations: &'d [F]) -> Given<'d, F> {
-    Given { point: &draw.point, accelerations, charts: &draw.charts, joints: &draw.joints[0] }
+    Given {
+        point: &draw.point,
+        accelerations,
+        charts: &draw.charts,
+        changes: &draw.changes,
+        joints: &draw.joints[0],
+    }
 }

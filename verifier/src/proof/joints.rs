@@ -6,7 +6,7 @@
 //! constraints only what does no work on any free motion, `Bᵀ (M v̇ − f) = 0`: multipliers are not needed. B and v̇ are
 //! derivatives of `to_maximal` by dual numbers.
 
-use super::case::Case;
+use super::case::{Arguments, Case};
 use super::claim::differences;
 use crate::atoms::Atoms;
 use crate::field::Field;
@@ -37,7 +37,7 @@ impl<'c, 'a> Motion<'c, 'a> {
         let derivative = case.run_with("joint_derivative", &case.point, &rates_of_rates);
         let one = Term::one(case.point.context);
         let [state, maximal_rates] =
-            case.run_along("to_maximal", &case.point, &case.joints, &|source| match source {
+            case.run_along("to_maximal", case.given(&case.point), &|source| match source {
                 Source::Joint(k) => derivative.get(k).copied(),
                 Source::Time => Some(one),
                 _ => None,
@@ -57,7 +57,7 @@ impl<'c, 'a> Motion<'c, 'a> {
         let one = Term::one(case.point.context);
         let column = |rate: usize| {
             let only = |source| (source == Source::Joint(start + rate)).then_some(one);
-            let [_, rates] = case.run_along("to_maximal", &case.point, &case.joints, &only)?;
+            let [_, rates] = case.run_along("to_maximal", case.given(&case.point), &only)?;
             Some(velocities(case, &rates).to_vec())
         };
         (0..self.layout.n_rates).map(column).collect()
@@ -127,13 +127,13 @@ pub fn to_joints<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let (rates, one) = (textbook.position_rates(), Term::one(case.point.context));
     // The buffer changes by its own next elements: as good as any other numbers.
     let next = |k: usize| case.before[(k + 1) % case.before.len()];
-    let [found, found_rates] =
-        case.run_along("to_joints", &case.point, &case.before, &|source| match source {
-            Source::State(k) => rates.get(k).copied(),
-            Source::Joint(k) => Some(next(k)),
-            Source::Time => Some(one),
-            _ => None,
-        })?;
+    let buffer = Arguments { joints: &case.before, ..case.given(&case.point) };
+    let [found, found_rates] = case.run_along("to_joints", buffer, &|source| match source {
+        Source::State(k) => rates.get(k).copied(),
+        Source::Joint(k) => Some(next(k)),
+        Source::Time => Some(one),
+        _ => None,
+    })?;
     for place in &layout.places {
         let (coordinates, rates) = place.of.sizes();
         let u = &found[layout.n_coordinates + place.u..][..rates];
@@ -240,4 +240,35 @@ pub fn corrected_multipliers<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
     let motion = Motion::new(case)?;
     let lambda = case.run_with("corrected_multipliers", &motion.maximal, motion.accelerations());
     case.textbook(&motion.maximal)?.residual_of_motion(motion.accelerations(), &lambda)
+}
+
+/// ∂f/∂x row by row, then ∂f/∂t.
+pub fn jacobian<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let by_state = derivatives(case, (0..case.joints.len()).map(Source::Joint))?;
+    let by_time = derivatives(case, [Source::Time].into_iter())?;
+    Some(differences(&case.run("joint_jacobian", &case.point), &[by_state, by_time].concat()))
+}
+
+/// ∂f/∂(inputs) row by row.
+pub fn input_jacobian<'a>(case: &Case<'a>) -> Option<Vec<Term<'a>>> {
+    let by_inputs = derivatives(case, (0..case.model.inputs.len()).map(Source::Input))?;
+    Some(differences(&case.run("joint_input_jacobian", &case.point), &by_inputs))
+}
+
+/// The matrix of the derivatives of `joint_derivative`, with the u̇ that it has computed first, by rows.
+fn derivatives<'a>(case: &Case<'a>, by: impl Iterator<Item = Source>) -> Option<Vec<Term<'a>>> {
+    let one = Term::one(case.point.context);
+    let columns = by.map(|source| {
+        let only = |read: Source| (read == source).then_some(one);
+        let [rates, of_rates] = case.run_along("joint_accelerations", case.given(&case.point), &only)?;
+        let given = Arguments { accelerations: &rates, ..case.given(&case.point) };
+        let [_, column] = case.run_along("joint_derivative", given, &|read| match read {
+            Source::Acceleration(k) => Some(of_rates[k]),
+            read => only(read),
+        })?;
+        Some(column)
+    });
+    let columns = columns.collect::<Option<Vec<_>>>()?;
+    let row = |k: usize| columns.iter().map(move |column| column[k]);
+    Some((0..case.joints.len()).flat_map(row).collect())
 }

@@ -17,6 +17,10 @@ pub(super) struct Draw<F: Field> {
     pub charts: Vec<[F; 4]>,
     /// A factor for each body.
     pub factors: Vec<F>,
+    /// A number for each row.
+    pub changes: Vec<F>,
+    /// A motion.
+    pub motion: Vec<F>,
     /// A joint state, and another one.
     pub joints: [Vec<F>; 2],
 }
@@ -27,6 +31,8 @@ impl<F: Field> Draw<F> {
         match source {
             Source::Chart(chart, k) => self.charts[chart][k].clone(),
             Source::Factor(slot) => self.factors[slot].clone(),
+            Source::Change(row) => self.changes[row].clone(),
+            Source::Motion(k) => self.motion[k].clone(),
             Source::Joint(k) => self.joints[0][k].clone(),
             Source::Before(k) => self.joints[1][k].clone(),
             Source::Acceleration(_) => unreachable!("accelerations are formulas too"),
@@ -59,7 +65,9 @@ impl<F: Field> Draw<F> {
         let charts = (0..module.n_charts.unwrap_or(0)).map(|_| [(); 4].map(|()| draw())).collect();
         let factors = (0..n).map(|_| draw()).collect();
         let joints = [joint_state(module, context, &mut draw)?, joint_state(module, context, &mut draw)?];
-        Some(Self { point, charts, factors, joints })
+        let changes = model.rows().iter().map(|_| draw()).collect();
+        let motion = (0..6 * n).map(|_| draw()).collect();
+        Some(Self { point, charts, factors, changes, motion, joints })
     }
 }
 

@@ -44,6 +44,8 @@ pub struct Sample {
     pub raw: Vec<f64>,
     /// The state in `f64`: Euler parameters of length one to rounding.
     pub state: Vec<f64>,
+    /// By how much the rows are asked to change, each number one of `f32`.
+    pub changes: Vec<f64>,
     /// A joint state, raw like the state; empty where there are no joint coordinates.
     pub raw_joints: Vec<f64>,
     /// The joint state in `f64`.
@@ -58,12 +60,17 @@ const EXTREME: f64 = 6.0;
 
 /// Some states of each kind.
 pub fn draw(model: &Model, module: &Module, states: usize, seed: u64) -> Vec<Sample> {
-    let [mut random, mut of_joints] = [0, 1].map(|stream| ChaCha8Rng::seed_from_u64(seed + (stream << 32)));
+    let mut streams = [0, 1, 2].map(|stream| ChaCha8Rng::seed_from_u64(seed + (stream << 32)));
     let kinds = Kind::ALL.into_iter().flat_map(|kind| (0..states).map(move |_| kind));
-    kinds.map(|kind| sample(model, module, kind, [&mut random, &mut of_joints])).collect()
+    kinds.map(|kind| sample(model, module, kind, &mut streams)).collect()
 }
 
-fn sample(model: &Model, module: &Module, kind: Kind, [random, of_joints]: [&mut ChaCha8Rng; 2]) -> Sample {
+fn sample(
+    model: &Model,
+    module: &Module,
+    kind: Kind,
+    [random, of_joints, of_rows]: &mut [ChaCha8Rng; 3],
+) -> Sample {
     let n = model.coordinate_bodies().len();
     let euler: Vec<usize> = (0..n).map(|slot| 7 * slot + 3).collect();
     let raw = raw(kind, &module.start, &euler, 7 * n..13 * n, random);
@@ -74,7 +81,9 @@ fn sample(model: &Model, module: &Module, kind: Kind, [random, of_joints]: [&mut
     let raw_joints = self::raw(kind, &module.joint_start, &euler_of_joints, rates, of_joints);
     let t = to_single(random.random_range(0.0..1.0));
     let (state, joints) = (of_length_one(&raw, &euler), of_length_one(&raw_joints, &euler_of_joints));
-    Sample { kind, t, raw, state, raw_joints, joints }
+    let zeros = vec![0.0; model.rows().len()];
+    let changes = self::raw(kind, &zeros, &[], 0..zeros.len(), of_rows);
+    Sample { kind, t, raw, state, changes, raw_joints, joints }
 }
 
 /// Numbers of a kind; `euler` says where Euler parameters start, `rates` where velocities are.

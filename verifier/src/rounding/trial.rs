@@ -50,7 +50,7 @@ pub fn trial<'c>(
     let constants = interpreter::constants(precision, module);
     let start = numeric::point(model, precision, &module.start, 0.0, exactly);
     let run = |function: &str, point: &Point<Real<'c>>| {
-        let given = Given { point, accelerations: &[], charts: &[], joints: &exact_joints };
+        let given = Given { point, accelerations: &[], charts: &[], changes: &[], joints: &exact_joints };
         interpreter::run(module, module.programs.get(function)?, &constants, &Elementary, &given).ok()
     };
     let corrected = Point { state: run("to_maximal", &start)?, ..start };
@@ -63,7 +63,7 @@ pub fn trial<'c>(
     let short_constants: Vec<f64> = interpreter::constants((), module);
     let short_joints = rounded(&exact_joints);
     let run_short = |function: &str, point: &Point<f64>| {
-        let given = Given { point, accelerations: &[], charts: &[], joints: &short_joints };
+        let given = Given { point, accelerations: &[], charts: &[], changes: &[], joints: &short_joints };
         interpreter::run(module, module.programs.get(function)?, &short_constants, &Elementary, &given).ok()
     };
     // Both are told the same state, the one that is rounded: what is left is the kernel's own error.

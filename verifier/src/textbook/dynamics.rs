@@ -99,6 +99,11 @@ impl<F: Field> Evaluation<'_, F> {
         Some(phi_pi.iter().zip(&gamma).map(|(row, gamma)| self.dot(row, accelerations).sub(gamma)).collect())
     }
 
+    /// `matrix · vector`.
+    pub fn product(&self, matrix: &[Vec<F>], vector: &[F]) -> Vec<F> {
+        matrix.iter().map(|row| self.dot(row, vector)).collect()
+    }
+
     fn dot<'f>(&self, a: impl IntoIterator<Item = &'f F>, b: &[F]) -> F
     where
         F: 'f,

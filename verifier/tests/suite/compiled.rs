@@ -1,6 +1,6 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
-use gyro_sim::{Equations, JointSpace, Mechanism, Ode, Partition, Ports};
+use gyro_sim::{JointSpace, Partition, Ports, Projection};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
 use gyro_verifier::module::{Module, source_of_accelerations};
@@ -48,7 +48,7 @@ fn literals(code: &str) -> String {
 
 fn check<M>(page: &str, code: &str, mechanism: &M)
 where
-    M: Ode<Scalar = f64> + Mechanism + Equations + Ports,
+    M: Projection<Scalar = f64> + Ports,
 {
     let (page, module) = read(page, code);
     let mut random = ChaCha8Rng::seed_from_u64(9);
@@ -82,7 +82,7 @@ where
         x.as_mut().iter_mut().chain(y.as_mut()).for_each(|x| *x = random.random_range(-1.0..1.0));
         let point = point(&page.model, t, y.as_ref());
         let run = |function: &str, accelerations: &[f64]| {
-            let given = Given { point: &point, accelerations, charts: &[], joints: x.as_ref() };
+            let given = Given { point: &point, accelerations, charts: &[], changes: &[], joints: x.as_ref() };
             run(&module, &module.programs[function], &numbers, &Elementary, &given).expect("numbers")
         };
         let same = |function: &str, compiled: &[f64]| {
@@ -131,14 +131,17 @@ fn assert_same(function: &str, interpreted: &[f64], compiled: &[f64]) {
 
 fn compare<M>(module: &Module, model: &gyro_model::Model, mechanism: &M, t: f64, y: &M::State)
 where
-    M: Ode<Scalar = f64> + Mechanism + Equations + Ports,
+    M: Projection<Scalar = f64> + Ports,
 {
     let point = point(model, t, y.as_ref());
     let numbers: Vec<f64> = constants((), module);
     let mut accelerations = mechanism.accelerations_buffer();
     mechanism.accelerations(t, y, &mut accelerations);
+    let mut changes = mechanism.rows();
+    changes.as_mut().iter_mut().zip(y.as_ref()).for_each(|(change, y)| *change = *y);
     let same = |function: &str, compiled: &[f64]| {
-        let given = Given { point: &point, accelerations: accelerations.as_ref(), charts: &[], joints: &[] };
+        let (accelerations, changes) = (accelerations.as_ref(), changes.as_ref());
+        let given = Given { point: &point, accelerations, charts: &[], changes, joints: &[] };
         let program = &module.programs[function];
         let interpreted = run(module, program, &numbers, &Elementary, &given).expect("numbers");
         assert_same(function, &interpreted, compiled);
@@ -159,6 +162,9 @@ where
     let mut lambda = mechanism.rows();
     mechanism.multipliers(t, y, &accelerations, &mut lambda);
     same("multipliers", lambda.as_ref());
+    let mut motion = mechanism.velocities();
+    mechanism.project(t, y, &changes, &mut motion);
+    same("project", motion.as_ref());
     let energy = mechanism.energy(t, y);
     same("energy", &[energy.kinetic, energy.potential]);
     let mut readings = mechanism.readings();

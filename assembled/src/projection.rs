@@ -1,0 +1,71 @@
+//! The smallest motion, in the metric of the masses, that changes the rows as asked: eq. (17) whole and dense, without forces.
+
+use crate::assembled::{Assembled, Solver};
+use crate::lowered::{Lowered, Moment};
+use crate::number::{Number, abs};
+use gyro_sim::Projection;
+
+/// All forms alike: by Gaussian elimination with row pivoting, in work space that the first call allocates.
+impl<T: Number, S: Solver<T>> Projection for Assembled<T, S> {
+    fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, out: &mut Vec<T>) {
+        let n = self.lowered.n_v() + self.lowered.n_rows();
+        let work = &mut *self.work();
+        build(&self.lowered, Moment { t, y }, rows, work);
+        solve(work, n);
+        // The solution has taken the place of the right-hand side.
+        for (out, row) in out.iter_mut().zip(work.chunks_exact(n + 1)) {
+            *out = row[n];
+        }
+    }
+}
+
+/// `[M 0 Φ_rᵀ; 0 J' Φ_π'ᵀ; Φ_r Φ_π' 0]` by rows, each with its right-hand side at its end.
+fn build<T: Number>(lowered: &Lowered<T>, at: Moment<'_, T>, rows: &[T], work: &mut Vec<T>) {
+    let n_v = lowered.n_v();
+    let stride = n_v + lowered.n_rows() + 1;
+    work.clear();
+    work.resize((stride - 1) * stride, T::zero());
+    for (slot, body) in lowered.bodies.iter().enumerate() {
+        for i in 0..3 {
+            let (linear, angular) = (6 * slot + i, 6 * slot + 3 + i);
+            work[linear * stride + linear] = body.mass;
+            (0..3).for_each(|j| work[angular * stride + 6 * slot + 3 + j] = body.inertia[(i, j)]);
+        }
+    }
+    lowered.phi_pi(at, |row, column, value| {
+        work[(n_v + row) * stride + column] = value;
+        work[column * stride + n_v + row] = value;
+    });
+    for (row, &change) in rows.iter().enumerate() {
+        work[(n_v + row + 1) * stride - 1] = change;
+    }
+}
+
+/// Solves n equations; not finite where the matrix is singular.
+fn solve<T: Number>(work: &mut [T], n: usize) {
+    let stride = n + 1;
+    for k in 0..n {
+        let size = |row: usize| abs(work[row * stride + k]);
+        let pivot = (k + 1..n).fold(k, |best, row| if size(row) > size(best) { row } else { best });
+        let (above, below) = work.split_at_mut((k + 1) * stride);
+        let top = &mut above[k * stride..];
+        if pivot > k {
+            top.swap_with_slice(&mut below[(pivot - k - 1) * stride..(pivot - k) * stride]);
+        }
+        let inverse = T::one() / top[k];
+        top[k..].iter_mut().for_each(|x| *x *= inverse);
+        for row in below.chunks_exact_mut(stride) {
+            let factor = row[k];
+            if factor != T::zero() {
+                row[k..].iter_mut().zip(&top[k..]).for_each(|(x, top)| *x -= factor * *top);
+            }
+        }
+    }
+    for k in (0..n).rev() {
+        let x = work[k * stride + n];
+        for row in 0..k {
+            let factor = work[row * stride + k];
+            work[row * stride + n] -= factor * x;
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! The derivatives of the joint form ẋ = f(t, x): of the accelerations as they are solved, or of what they balance.
+//!
+//! With the force `r(x, u, t, u̇)` that is left along each rate, zero at the solution, and `M = −∂r/∂u̇`,
+//!
+//! ```text
+//! ∂u̇/∂z = M⁻¹ ∂r/∂z     (u̇ held)
+//! ```
+//!
+//! which differentiates no elimination and shares that of the accelerations. For small mechanisms what is solved may be shorter. Both are
+//! written out, from within and from without, and the cheapest is taken.
+
+use super::dynamics::Reduced;
+use super::layout::Layout;
+use super::maps::Values;
+use super::{MAX_FACTORED, NORMAL_FORM, expanded};
+use crate::definitions::{Definitions, Expansion};
+use crate::differentiate::{Derivative, gradient};
+use crate::graph::{ExprId, Graph, Node};
+use crate::normal_form::normal_form;
+use crate::schedule::cheapest;
+use crate::sheet::Form;
+use crate::symbol::Symbol;
+use crate::system::{Direction, System};
+
+/// Beyond this many rates the Jacobian is left out: its text grows with the square of their number, and faster where chains are long.
+const MAX_RATES: usize = 12;
+
+/// The derivatives of f, row by row.
+#[derive(Debug)]
+pub struct Jacobian {
+    /// By the joint state.
+    pub by_state: Vec<ExprId>,
+    /// By time.
+    pub by_time: Vec<ExprId>,
+    /// By the inputs.
+    pub by_inputs: Vec<ExprId>,
+    /// What was compared for the first two, and for the third.
+    pub forms: [Vec<Form>; 2],
+}
+
+/// The joint form, in terms of joint coordinates and rates.
+pub struct JointForm<'a> {
+    pub layout: &'a Layout,
+    pub in_joints: &'a Values,
+    /// ẋ.
+    pub coordinates: &'a [ExprId],
+    /// u̇ as it is emitted.
+    pub accelerations: &'a [ExprId],
+    /// In terms of [`Symbol::RateOfRate`].
+    pub power: Option<ExprId>,
+    /// What u̇ is the solution of.
+    pub reduced: &'a Reduced,
+    pub unit: &'a [Vec<ExprId>],
+}
+
+/// The columns of a matrix.
+type Columns = Vec<Vec<ExprId>>;
+
+impl Jacobian {
+    /// `None` if there are too many rates, or if the third derivative of a table's curve would be needed.
+    pub fn derive(system: &mut System, form: &JointForm<'_>) -> Option<Self> {
+        let layout = form.layout;
+        if layout.n_rates > MAX_RATES {
+            return None;
+        }
+        let n_inputs = system.model.inputs.len();
+        let state =
+            (0..layout.n_coordinates).map(Symbol::Coordinate).chain((0..layout.n_rates).map(Symbol::Rate));
+        let variables: Vec<_> = state.chain([Symbol::Time]).chain((0..n_inputs).map(Symbol::Input)).collect();
+        let candidates = form.candidates(system, &variables);
+        let rows = |graph: &mut Graph, of_rates: &Columns| form.rows(graph, &variables, of_rates);
+        let graph = &mut system.graph;
+        let (mut of_state, mut of_inputs) = (Vec::new(), Vec::new());
+        let n = layout.n_coordinates + layout.n_rates;
+        for (name, of_rates) in candidates {
+            let rows = rows(graph, &of_rates);
+            // Nothing depends on the work that has been done.
+            let work = rows.len() - n;
+            let zeros = vec![Graph::ZERO; work];
+            let by_state = rows.iter().flat_map(|row| row[..n].iter().chain(&zeros));
+            let by_time = rows.iter().map(|row| &row[n]);
+            of_state.push((name.clone(), by_state.chain(by_time).copied().collect::<Vec<_>>()));
+            let by_inputs = rows.iter().flat_map(|row| &row[n + 1..]);
+            of_inputs.push((name, by_inputs.copied().collect::<Vec<_>>()));
+        }
+        let factored = |graph: &mut Graph, candidates: Vec<(String, Vec<ExprId>)>| {
+            let (taken, _) = cheapest(graph, candidates.clone());
+            let mut candidates = candidates;
+            if layout.n_rates <= MAX_FACTORED {
+                let unit = form.unit;
+                candidates.push((format!("{NORMAL_FORM} of that"), normal_form(graph, unit, &taken)));
+            }
+            cheapest(graph, candidates)
+        };
+        let (mut by_state, forms) = factored(graph, of_state);
+        let (by_inputs, forms_of_inputs) = factored(graph, of_inputs);
+        let by_time = by_state.split_off(by_state.len() - (n + usize::from(form.power.is_some())));
+        let jacobian = Self { by_state, by_time, by_inputs, forms: [forms, forms_of_inputs] };
+        jacobian.exists(graph).then_some(jacobian)
+    }
+
+    /// Tables have two derivatives.
+    fn exists(&self, graph: &Graph) -> bool {
+        let roots = [&self.by_state[..], &self.by_time, &self.by_inputs].concat();
+        let is_third = |id| matches!(graph.node(id), Node::Symbol(Symbol::Table { order, .. }) if *order > 2);
+        !graph.reachable(&roots).into_iter().any(is_third)
+    }
+}
+
+impl JointForm<'_> {
+    /// ∂u̇ by each variable, in several ways.
+    fn candidates(&self, system: &mut System, variables: &[Symbol]) -> Vec<(String, Columns)> {
+        let graph = &mut system.graph;
+        let solved =
+            [forward(graph, self.accelerations, variables), backward(graph, self.accelerations, variables)];
+        let names = ["derivatives of u̇, from its leaves", "derivatives of u̇, from its roots"];
+        let mut candidates: Vec<_> = names.map(str::to_owned).into_iter().zip(solved).collect();
+        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form which is emitted.
+        if self.layout.links.iter().any(|link| link.orientation.is_some()) {
+            return candidates;
+        }
+        let rates_of_rates: Vec<_> =
+            (0..self.layout.n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
+        let left = self.reduced.left_over(system, &rates_of_rates);
+        let left = expanded(system, self.in_joints, &left);
+        let graph = &mut system.graph;
+        let unbalanced = [forward(graph, &left, variables), backward(graph, &left, variables)];
+        for (way, columns) in ["leaves", "roots"].into_iter().zip(unbalanced) {
+            let solved = self.reduced.accelerations_of(system, &columns);
+            let solved = self.finished(system, &solved);
+            candidates.push((format!("derivatives of the balance, from its {way}, recursion"), solved));
+            if self.layout.n_rates <= MAX_FACTORED {
+                let solved =
+                    self.reduced.factored_accelerations_of(system, (self.in_joints, self.unit), &columns);
+                let solved = self.finished(system, &solved);
+                candidates
+                    .push((format!("derivatives of the balance, from its {way}, {NORMAL_FORM}"), solved));
+            }
+        }
+        candidates
+    }
+
+    /// With u̇ for the symbols that stand for it.
+    fn at_accelerations(&self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
+        let by_rate = |(rate, &value): (usize, &ExprId)| (Symbol::RateOfRate(rate), value);
+        let (definitions, values) =
+            (Definitions::default(), self.accelerations.iter().enumerate().map(by_rate).collect());
+        Expansion::with_values(&definitions, values).all(graph, roots)
+    }
+
+    /// The same of columns in which the elimination is yet to be expanded.
+    fn finished(&self, system: &mut System, columns: &Columns) -> Columns {
+        let expand = |column: &Vec<ExprId>| {
+            let column = expanded(system, self.in_joints, column);
+            self.at_accelerations(&mut system.graph, &column)
+        };
+        columns.iter().map(expand).collect()
+    }
+
+    /// The rows of ∂f, from the columns of ∂u̇.
+    fn rows(&self, graph: &mut Graph, variables: &[Symbol], of_rates: &Columns) -> Vec<Vec<ExprId>> {
+        let row_of_rate = |rate: usize| of_rates.iter().map(|column| column[rate]).collect::<Vec<_>>();
+        let mut rows: Vec<_> =
+            self.coordinates.iter().map(|&root| gradient(graph, root, variables)).collect();
+        rows.extend((0..self.layout.n_rates).map(row_of_rate));
+        if let Some(power) = self.power {
+            rows.push(self.row_of_power(graph, power, variables, of_rates));
+        }
+        rows
+    }
+
+    /// The power may depend on u̇.
+    fn row_of_power(
+        &self,
+        graph: &mut Graph,
+        power: ExprId,
+        variables: &[Symbol],
+        of_rates: &Columns,
+    ) -> Vec<ExprId> {
+        let rates_of_rates: Vec<_> = (0..self.layout.n_rates).map(Symbol::RateOfRate).collect();
+        let mut row = gradient(graph, power, variables);
+        let by_rates = gradient(graph, power, &rates_of_rates);
+        for (entry, column) in row.iter_mut().zip(of_rates) {
+            for (&by_rate, &of_rate) in by_rates.iter().zip(column) {
+                let product = graph.mul(by_rate, of_rate);
+                *entry = graph.add(*entry, product);
+            }
+        }
+        self.at_accelerations(graph, &row)
+    }
+}
+
+/// One variable after the other.
+fn forward(graph: &mut Graph, roots: &[ExprId], variables: &[Symbol]) -> Columns {
+    let definitions = Definitions::default();
+    let column = |&variable: &Symbol| {
+        let mut derivative = Derivative::new(&definitions, Direction::from([(variable, Graph::ONE)]));
+        roots.iter().map(|&root| derivative.of(graph, root)).collect()
+    };
+    variables.iter().map(column).collect()
+}
+
+/// One root after the other.
+fn backward(graph: &mut Graph, roots: &[ExprId], variables: &[Symbol]) -> Columns {
+    let rows: Vec<_> = roots.iter().map(|&root| gradient(graph, root, variables)).collect();
+    (0..variables.len()).map(|column| rows.iter().map(|row| row[column]).collect()).collect()
+}

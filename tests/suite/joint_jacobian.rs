@@ -1,0 +1,156 @@
+//! The Jacobian of the joint form against differences of the dense twin's accelerations, by state, time and inputs.
+#![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
+
+use crate::joint_space::random_state;
+use gyro_sim::{Equations, JointJacobian, Mechanism, Ode, Ports, generated as shipped};
+use gyro_sim_suite::generated as own;
+use gyro_sim_suite::{Engine, Random, dense, model};
+use nalgebra::{DMatrix, DVector};
+
+const STATES: usize = 20;
+
+/// Of the five-point formula. Its error is the fourth power of this times a fifth derivative; the accelerations have errors of 1e-11.
+const STEP: f64 = 2e-3;
+
+/// Relative to the largest derivative of a state.
+const TOLERANCE: f64 = 1e-6;
+
+/// The derivative at zero.
+fn slope(step: f64, mut f: impl FnMut(f64) -> Vec<f64>) -> Vec<f64> {
+    let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|k| f(k * step));
+    (0..a.len()).map(|k| (a[k] - d[k] + 8.0 * (c[k] - b[k])) / (12.0 * step)).collect()
+}
+
+/// The joint form as the twin has it.
+struct Twin<'a, M> {
+    mechanism: &'a M,
+    dense: Engine,
+    n_coordinates: usize,
+    n_rates: usize,
+}
+
+impl<M: JointJacobian<Scalar = f64>> Twin<'_, M> {
+    fn maximal(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let (mut joints, mut y) = (self.mechanism.joint_start(), self.mechanism.start());
+        joints.as_mut().copy_from_slice(x);
+        self.mechanism.to_maximal(t, &joints, &mut y);
+        y.as_ref().to_vec()
+    }
+
+    fn velocities(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let n = self.dense.n_bodies();
+        self.maximal(t, x)[7 * n..13 * n].to_vec()
+    }
+
+    /// u̇ is what makes of the velocities `v = B u + v₀(x, t)` the accelerations that the twin solves eq. (17) for.
+    fn derivative(&self, t: f64, x: &[f64]) -> Vec<f64> {
+        let (mut joints, mut dx) = (self.mechanism.joint_start(), self.mechanism.joint_start());
+        joints.as_mut().copy_from_slice(x);
+        self.mechanism.joint_derivative(t, &joints, &mut dx);
+        let mut dx = dx.as_ref().to_vec();
+        let (y, mut dy) = (self.maximal(t, x), self.dense.start());
+        self.dense.derivative(t, &y, &mut dy);
+        let n = self.dense.n_bodies();
+        let still = slope(STEP, |h| {
+            let moved = x.iter().zip(&dx[..self.n_coordinates]).map(|(x, dx)| x + h * dx);
+            let moved: Vec<_> = moved.chain(x[self.n_coordinates..].iter().copied()).collect();
+            self.velocities(t + h, &moved)
+        });
+        let wanted = DVector::from_iterator(6 * n, dy[7 * n..13 * n].iter().zip(&still).map(|(a, b)| a - b));
+        let velocities = self.velocities(t, x);
+        let columns = (0..self.n_rates).map(|rate| {
+            let mut faster = x.to_vec();
+            faster[self.n_coordinates + rate] += 1.0;
+            DVector::from_iterator(
+                6 * n,
+                self.velocities(t, &faster).iter().zip(&velocities).map(|(a, b)| a - b),
+            )
+        });
+        let b = DMatrix::from_columns(&columns.collect::<Vec<_>>());
+        let normal = (b.transpose() * &b).cholesky().expect("rates that all move something");
+        let rates = normal.solve(&(b.transpose() * wanted));
+        dx[self.n_coordinates..][..self.n_rates].copy_from_slice(rates.as_slice());
+        if let Some(work) = dx.get_mut(self.n_coordinates + self.n_rates) {
+            *work = dy[13 * n];
+        }
+        dx
+    }
+}
+
+fn check<M>(page: &str, mechanism: &M)
+where
+    M: JointJacobian<Scalar = f64> + Ports + Clone,
+{
+    let (model, mut random) = (model(page), Random::new(5));
+    let (n_rates, n) = (mechanism.rates().as_ref().len(), mechanism.joint_start().as_ref().len());
+    let n_coordinates = n - n_rates - usize::from(model.has_work());
+    let mut worst = 0.0_f64;
+    for _ in 0..STATES {
+        let (t, x) = (random.signed(), random_state(&model, mechanism, &mut random));
+        let (mut mechanism, mut dense) = (mechanism.clone(), dense(&model));
+        let inputs: Vec<f64> = (0..mechanism.n_inputs()).map(|_| random.signed()).collect();
+        for (index, &value) in inputs.iter().enumerate() {
+            assert!(mechanism.set_input(index, value) && dense.set_input(index, value));
+        }
+        let (mut by_state, mut by_time) = (mechanism.joint_jacobian_buffer(), mechanism.joint_start());
+        mechanism.joint_jacobian(t, &x, &mut by_state, &mut by_time);
+        let mut by_inputs = mechanism.input_jacobian_buffer();
+        mechanism.joint_input_jacobian(t, &x, &mut by_inputs);
+
+        let twin = Twin { mechanism: &mechanism, dense, n_coordinates, n_rates };
+        let x = x.as_ref();
+        let mut columns: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
+        for k in 0..n {
+            let expected = slope(STEP, |h| {
+                let mut moved = x.to_vec();
+                moved[k] += h;
+                twin.derivative(t, &moved)
+            });
+            columns.push((by_state.as_ref().iter().skip(k).step_by(n).copied().collect(), expected));
+        }
+        columns.push((by_time.as_ref().to_vec(), slope(STEP, |h| twin.derivative(t + h, x))));
+        for k in 0..inputs.len() {
+            let expected = slope(STEP, |h| {
+                let mut dense = twin.dense.clone();
+                assert!(dense.set_input(k, inputs[k] + h));
+                Twin { mechanism: &mechanism, dense, ..twin }.derivative(t, x)
+            });
+            let column = by_inputs.as_ref().iter().skip(k).step_by(inputs.len());
+            columns.push((column.copied().collect(), expected));
+        }
+        let entries = columns.iter().flat_map(|(_, expected)| expected);
+        let largest = entries.fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        for (found, expected) in &columns {
+            assert_eq!(found.len(), expected.len(), "{page}");
+            let errors = found.iter().zip(expected).map(|(a, b)| (a - b).abs() / largest);
+            worst = errors.fold(worst, |worst, error| if error <= worst { worst } else { error });
+        }
+    }
+    println!("{page}: {worst:.1e}");
+    assert!(worst <= TOLERANCE, "{page}: {worst:e}");
+}
+
+#[test]
+fn jacobians_are_limits_of_the_twin_s_differences() {
+    check("compound-pendulum", &shipped::compound_pendulum::CompoundPendulum::default());
+    check("gyroscope", &shipped::gyroscope::Gyroscope::default());
+    check(
+        "gyroscope-combined-offsets",
+        &shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default(),
+    );
+    check("gyroscope-maximal", &shipped::gyroscope_maximal::GyroscopeMaximal::default());
+    check("gyroscope-viscous", &shipped::gyroscope_viscous::GyroscopeViscous::default());
+    check("pitching-gyroscope", &shipped::pitching_gyroscope::PitchingGyroscope::default());
+    check("torsion", &shipped::torsion::Torsion::default());
+    check("cylindrical", &own::cylindrical::Cylindrical::default());
+    check("friction", &own::friction::Friction::default());
+    check("gyroscope-bearings", &own::gyroscope_bearings::GyroscopeBearings::default());
+    check("motor", &own::motor::Motor::default());
+    check("pendulum", &own::pendulum::Pendulum::default());
+    check("pitching-bearings", &own::pitching_bearings::PitchingBearings::default());
+    check("planar", &own::planar::Planar::default());
+    check("prismatic", &own::prismatic::Prismatic::default());
+    check("screw", &own::screw::Screw::default());
+    check("universal", &own::universal::Universal::default());
+    check("carried", &own::carried::Carried::default());
+}
