@@ -3,7 +3,7 @@
 use crate::{BuildError, Careful, Dense, Recursive};
 use gyro_model::Model;
 use gyro_runner::{Approach, Event, Failure, Settings, Start, Summary, motion, run_by};
-use gyro_sim::{Partition, Ports};
+use gyro_sim::{Partition, Ports, Projection};
 use std::fmt;
 
 /// Which of the twin's forms.
@@ -76,7 +76,7 @@ pub fn quick_look(
     }
 }
 
-fn simulate<M: Partition + Ports + 'static>(
+fn simulate<M: Partition + Ports + Projection + 'static>(
     mechanism: Result<M, BuildError>,
     plan: (&Settings, &Approach),
     start: &Start,
@@ -87,5 +87,5 @@ fn simulate<M: Partition + Ports + 'static>(
         tell(event);
         Ok(())
     };
-    run_by(&mut mechanism, &motion::Any, plan, start, told).map_err(QuickLookError::Run)
+    run_by(&mut mechanism, &motion::Projecting, plan, start, told).map_err(QuickLookError::Run)
 }
