@@ -2,8 +2,8 @@
 
 use crate::scene::Scene;
 use crate::sheet::Sheet;
-use gyro_yardstick::{FLOPS, STEP};
 use gyro_sim::{Equations, JointForm, JointSpace, Ode, Partition, Partitioned, Rk4};
+use gyro_yardstick::{FLOPS, STEP};
 use std::fmt;
 use std::hint::black_box;
 

@@ -10,7 +10,7 @@ mod round;
 mod scene;
 mod sheet;
 
+pub use gyro_yardstick::Floor;
 pub use kernels::{Kernel, kernels, runs};
 pub use round::{Clock, Figure, counted, interleaved};
-pub use gyro_yardstick::Floor;
 pub use scene::Scene;

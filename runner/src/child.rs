@@ -20,9 +20,7 @@ pub fn main<M: Partition + Ports + 'static, K: Kit<M>>(build: impl Fn(&[f64]) ->
 }
 
 /// The same for whatever can answer a request.
-pub fn answer_all(
-    mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Summary, String>,
-) -> ExitCode {
+pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Summary, String>) -> ExitCode {
     let mut input = io::stdin().lock();
     let mut output = BufWriter::new(io::stdout().lock());
     let mut is_well = true;

@@ -33,8 +33,7 @@ pub fn time_by<M: Partition + Ports + 'static>(
     let mut statistics = Statistics::default();
     let once = || -> Result<(), Failure> {
         let mut motion = kit.begin(mechanism, approach, &y).map_err(Failure::Run)?;
-        let in_words =
-            |error: Error| Failure::Run(describe_in(mechanism, approach.coordinates, &error));
+        let in_words = |error: Error| Failure::Run(describe_in(mechanism, approach.coordinates, &error));
         if approach.tolerance.is_some() {
             while motion.time() < settings.t_end {
                 motion.step_towards(mechanism, settings.t_end).map_err(in_words)?;

@@ -11,8 +11,8 @@ use crate::scene::Scene;
 use crate::verify::verify_quickly;
 use crate::{files, machine_code};
 use gyro_codegen::Module;
-use gyro_runner::protocol::{Reply, Request};
 use gyro_model::Model;
+use gyro_runner::protocol::{Reply, Request};
 use gyro_runner::{Event, Summary, Timing};
 use std::collections::hash_map::DefaultHasher;
 use std::fs::{self, File};
@@ -353,8 +353,10 @@ mod tests {
     #[test]
     fn replies_are_heard_to_their_end() {
         let sample = "sample 0.0 1.0 0.0 0.0 0.0 0.0 0.0 0 angle 0.0 1.0\n";
-        let (outcome, n_samples) =
-            heard(&format!("{sample}progress 0.5\n{sample}{}\n", Reply::Done(Summary { steps: 10, ..Summary::default() }).to_line()));
+        let (outcome, n_samples) = heard(&format!(
+            "{sample}progress 0.5\n{sample}{}\n",
+            Reply::Done(Summary { steps: 10, ..Summary::default() }).to_line()
+        ));
         assert_eq!((outcome.unwrap().unwrap().0.steps, n_samples), (10, 2));
         let (outcome, n_samples) = heard(&format!("{sample}failed at t = 0.5 s\n"));
         assert!(matches!(outcome, Err(Failure::Run(words)) if words == "at t = 0.5 s"));
