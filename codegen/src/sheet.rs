@@ -4,6 +4,7 @@
 use crate::equations::Equations;
 use crate::functions::Functions;
 use crate::graph::{ExprId, Graph};
+use crate::joint_space::MAX_RATES;
 use crate::schedule::{Operations, Passes};
 use gyro_model::{Model, RowOwner, Support};
 use std::fmt::Write;
@@ -217,9 +218,6 @@ pub fn large(number: u64) -> String {
     }
 }
 
-const WITHOUT_JACOBIAN: &str =
-    "the Jacobian of the joint form (for up to 12 rates, where it takes no third derivative of a table)";
-
 fn left_out(equations: &Equations) -> Vec<String> {
     let model = equations.model;
     let mut left_out: Vec<String> = model
@@ -244,7 +242,9 @@ fn left_out(equations: &Equations) -> Vec<String> {
                 let name = &model.bodies[body].name;
                 format!("the turning of `{name}` from u̇ (it looks the same all around its axis)")
             }));
-            left_out.extend(space.jacobian.is_none().then(|| WITHOUT_JACOBIAN.to_owned()));
+            left_out.extend(space.jacobian.is_none().then(|| {
+                format!("the Jacobian of the joint form (for up to {MAX_RATES} rates, without third derivatives of tables)")
+            }));
         }
         None => left_out.push("joint coordinates (for trees without couplers and drivers)".into()),
     }

@@ -195,6 +195,9 @@ impl<M: JointSpace> Ode for JointForm<'_, M> {
 }
 
 /// A tree whose joint form `ẋ = f(t, x)` comes with its derivatives, for implicit methods and linearisation.
+///
+/// They are those of the emitted functions as they stand, also along what the state cannot do (of Euler parameters, across their unit sphere).
+/// Generated trees have them up to eight rates, unless a third derivative of a table would be needed.
 pub trait JointJacobian: JointSpace {
     /// ∂f/∂x, n × n for a joint state of n numbers, row by row.
     type Jacobian: Storage<Self::Scalar>;

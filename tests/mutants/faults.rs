@@ -29,8 +29,8 @@ const FAULTS: &[Fault] = &[
     fault("differentiate.rs", "chain", "let cos = «graph.cos(a)»;", "graph.sin(a)"),
     fault("differentiate.rs", "chain", "let product = graph.mul(sin, self.memo[&a]);\n                «graph.neg(product)»", "product"),
     fault("differentiate.rs", "screw", "let turned = «graph.sub(plus, minus)»;", "graph.add(plus, minus)"),
-    fault("differentiate.rs", "screw", "let square = «graph.dot(&[x, y], &[x, y])»;", "graph.mul(x, x)"),
-    fault("differentiate.rs", "cam", "Symbol::Table { table, order: «order + 1» }", "order"),
+    fault("differentiate.rs", "screw", "let square = «graph.dot(&[x, y], &[x, y])»;\n    graph.div(turned", "graph.mul(x, x)"),
+    fault("differentiate.rs", "cam", "let slope = graph.symbol(Symbol::Table { table, order: «order + 1» });", "order"),
     // Φ and its derivatives.
     fault("kinematics.rs", "bob", "let gamma = second.iter().map(|&row| «system.graph.neg(row)»)", "row"),
     fault("kinematics.rs", "driven-four-bar", "let nu = phi_t.iter().map(|&row| «system.graph.neg(row)»)", "row"),
@@ -94,6 +94,10 @@ const FAULTS: &[Fault] = &[
     fault("ldl.rs", "four-bar", "let factor = «graph.mul(value, inverse)»;", "value"),
     fault("ldl.rs", "four-bar", "let moved = graph.mul(factor, rhs[pivot]);\n                rhs[i] = «graph.sub(rhs[i], moved)»;", "graph.add(rhs[i], moved)"),
     fault("ldl.rs", "four-bar", "x = «graph.sub(x, product)»;", "graph.add(x, product)"),
+    // The projection in the metric of the masses.
+    fault("null_space.rs", "four-bar", "closing::close(graph, kinematics, tree, (&self.closing, «&changes»), free)", "&kinematics.gamma"),
+    fault("null_space.rs", "pair", "let free = «tree.respond(graph, Excitation { bias, forced, along }).motions»;", "forced"),
+    fault("freedom.rs", "pair", "accelerated(graph, «&changes[self.rows.clone()]», &self.forced)", "changes"),
     // The coordinate partition.
     fault("partition.rs", "bob", "let factor = «graph.mul(half, difference)»;", "difference"),
     fault("partition.rs", "spherical", "let (residual, two) = (graph.sub(Graph::ONE, square), «graph.integer(2)»);", "graph.integer(1)"),
@@ -129,6 +133,11 @@ const FAULTS: &[Fault] = &[
     fault("joint_space/multipliers.rs", "pair", "lacking[parent.slot] = «lacking[parent.slot].plus(graph, &carried)»;", "carried"),
     fault("joint_space/multipliers.rs", "pair", "let turned = «graph.mat_vec(&carriage.rotation, &at_joint.rho)»;", "at_joint.rho"),
     fault("joint_space/multipliers.rs", "pair", "let relative = if reversed { transposed(&carriage.rotation) } else { «carriage.rotation» };", "transposed(&carriage.rotation)"),
+    // The Jacobian of the joint form.
+    fault("differentiate.rs", "gyroscope-viscous", "Node::Mul(a, b) => vec![(a, b), «(b, a)»],", "(b, b)"),
+    fault("differentiate.rs", "friction", "vec![(a, «graph.sub(Graph::ONE, square)»)]", "Graph::ONE"),
+    fault("joint_space/jacobian.rs", "pitching-gyroscope", "*entry = «graph.add(*entry, product)»;", "product"),
+    fault("joint_space/dynamics.rs", "gyroscope-free-nutation", "let own = «twist.scaled(graph, rates_of_rates[rate])»;", "Twist::ZERO"),
     // Writing.
     fault("emit.rs", "bob", "return self.difference(«*y», *x);", "*x"),
     fault("emit.rs", "bob", "let second = self.expression(subtracted, «Binding::Product»);", "Binding::Sum"),

@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::joint_space::random_state;
-use gyro_sim::{Equations, JointJacobian, Mechanism, Ode, Ports, generated as shipped};
+use gyro_sim::{JointJacobian, Mechanism, Ode, Ports, generated as shipped};
 use gyro_sim_suite::generated as own;
 use gyro_sim_suite::{Engine, Random, dense, model};
 use nalgebra::{DMatrix, DVector};

@@ -22,8 +22,9 @@ use crate::sheet::Form;
 use crate::symbol::Symbol;
 use crate::system::{Direction, System};
 
-/// Beyond this many rates the Jacobian is left out: its text grows with the square of their number, and faster where chains are long.
-const MAX_RATES: usize = 12;
+/// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 9400 operations for six rates and 17600 for eight, and as many lines:
+/// then a module is longer than it is worth.
+pub const MAX_RATES: usize = 8;
 
 /// The derivatives of f, row by row.
 #[derive(Debug)]
@@ -123,12 +124,21 @@ impl JointForm<'_> {
             (0..self.layout.n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
         let left = self.reduced.left_over(system, &rates_of_rates);
         let left = expanded(system, self.in_joints, &left);
+        let unit =
+            |k: usize| (0..self.layout.n_rates).map(move |l| if k == l { Graph::ONE } else { Graph::ZERO });
+        let units: Vec<_> = (0..self.layout.n_rates).map(|k| unit(k).collect()).collect();
+        let inverse = self.reduced.accelerations_of(system, &units);
         let graph = &mut system.graph;
         let unbalanced = [forward(graph, &left, variables), backward(graph, &left, variables)];
         for (way, columns) in ["leaves", "roots"].into_iter().zip(unbalanced) {
             let solved = self.reduced.accelerations_of(system, &columns);
             let solved = self.finished(system, &solved);
             candidates.push((format!("derivatives of the balance, from its {way}, recursion"), solved));
+            let inverse = self.finished(system, &inverse);
+            let columns = self.finished(system, &columns);
+            let graph = &mut system.graph;
+            let solved = columns.iter().map(|column| weighted(graph, &inverse, column)).collect();
+            candidates.push((format!("derivatives of the balance, from its {way}, by M⁻¹"), solved));
             if self.layout.n_rates <= MAX_FACTORED {
                 let solved =
                     self.reduced.factored_accelerations_of(system, (self.in_joints, self.unit), &columns);
@@ -188,6 +198,18 @@ impl JointForm<'_> {
         }
         self.at_accelerations(graph, &row)
     }
+}
+
+/// The sum of some columns, each with its weight.
+fn weighted(graph: &mut Graph, columns: &Columns, weights: &[ExprId]) -> Vec<ExprId> {
+    let mut sum = vec![Graph::ZERO; weights.len()];
+    for (column, &weight) in columns.iter().zip(weights) {
+        for (sum, &entry) in sum.iter_mut().zip(column) {
+            let product = graph.mul(entry, weight);
+            *sum = graph.add(*sum, product);
+        }
+    }
+    sum
 }
 
 /// One variable after the other.

@@ -16,7 +16,7 @@
 //! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
 //! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
 //! * corrected_accelerations: 63 operations by recursion in the bodies' frames; 63 operations by normal form in the bodies' frames; 5 more compared
-//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 5 more compared
+//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

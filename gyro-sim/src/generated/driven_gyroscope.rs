@@ -16,7 +16,7 @@
 //! * joint_accelerations: 68 operations by normal form; 84 operations by recursion
 //! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 1 more compared
 //! * corrected_accelerations: 486 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
-//! * joint_jacobian: 1393 operations by derivatives of the balance, from its roots, normal form; 1393 operations by normal form of that; 5 more compared
+//! * joint_jacobian: 1406 operations by derivatives of u̇, from its roots; 1406 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 | 497223 | 490 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 | 771 | 142 |
 //! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 | 4.1e6 | 590 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 530 | 860 | 3 | 1393 | 29 of 56 | 8.8e6 | 1394 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 528 | 876 | 2 | 1406 | 29 of 56 | 8.8e6 | 1406 |
 //!
 //! # Proof
 //!
@@ -4780,7 +4780,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1393 operations (530 ±, 860 ×, 3 ÷) and 18 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1406 operations (528 ±, 876 ×, 2 ÷) and 18 functions.
     fn joint_jacobian(
         &self,
         t: T,
@@ -4797,114 +4797,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
         let u2 = x[5];
         let (
             t0,
-            t1,
-            t2,
-            t3,
-            t4,
             t5,
             t7,
-            t8,
             t9,
-            t16,
+            t12,
+            t13,
+            t18,
             t19,
+            t20,
             t21,
-            t24,
-            t27,
+            t22,
             t28,
             t29,
-            t30,
-            t32,
-            t33,
-            t35,
-            t36,
-            t37,
+            t38,
+            t39,
             t40,
-            t50,
+            t41,
+            t42,
+            t47,
+            t48,
+            t49,
             t52,
-            t53,
-            t56,
-            t57,
+            t54,
+            t55,
             t58,
             t59,
             t60,
-            t61,
-            t62,
-            t64,
-            t65,
+            t63,
             t66,
             t67,
-            t68,
-            t69,
-            t70,
-            t71,
             t73,
+            t74,
             t75,
-            t76,
             t77,
-            t78,
-            t80,
-            t81,
             t82,
+            t83,
             t84,
             t85,
             t86,
             t88,
-            t89,
             t90,
             t91,
             t92,
             t93,
-            t94,
             t95,
-            t98,
+            t96,
+            t97,
             t99,
             t100,
             t101,
-            t102,
             t103,
+            t104,
             t105,
             t106,
             t107,
             t108,
+            t109,
             t110,
-            t111,
             t113,
+            t114,
             t115,
+            t116,
+            t117,
             t118,
-            t119,
             t120,
             t121,
             t122,
             t123,
-            t124,
+            t125,
             t126,
-            t127,
             t128,
-            t129,
-            t131,
-            t132,
+            t130,
+            t133,
             t134,
+            t135,
             t136,
+            t137,
+            t138,
             t139,
-            t140,
+            t141,
             t142,
+            t143,
             t144,
-            t148,
+            t146,
+            t147,
             t149,
-            t150,
             t151,
-            t152,
             t154,
-            t156,
+            t155,
+            t157,
             t158,
             t159,
-            t160,
-            t161,
             t162,
             t163,
             t164,
             t165,
             t166,
+            t167,
             t169,
             t170,
             t171,
@@ -4918,8 +4907,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             t179,
             t180,
             t181,
-            t182,
-            t183,
             t184,
             t185,
             t186,
@@ -4928,6 +4915,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             t189,
             t190,
             t191,
+            t192,
             t193,
             t194,
             t195,
@@ -4937,376 +4925,364 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             t199,
         ) = {
             let t0 = x1.cos();
-            let t1 = u0 * t0;
-            let t2 = x0.cos();
-            let t3 = x1.sin();
-            let t4 = u1 * t3;
-            let t5 = x0.sin();
+            let t1 = t0 * t0;
+            let t2 = k(1.0) / T::fused(k(6.00125e-6), t1, k(2e-6));
+            let t3 = k(9.476794145926002e-5) * t2;
+            let t4 = t0 * t3;
+            let t5 = k(1.05520916103247) * t4;
             let t6 = k(12.566370614359172) * t;
-            let t7 = t6.cos();
-            let t8 = t6.sin();
-            let t9 = k(0.00015791367041742975) * t8;
-            let t10 = T::fused(
-                k(1.2566370614359173e-5),
-                t7 * T::fused(-t2, t1, t5 * t4),
-                t5 * t0 * t9,
+            let t7 = t6.sin();
+            let t8 = k(0.1) * t7;
+            let t9 = t8.sin();
+            let t10 = k(0.021130563449675212) * t4;
+            let t11 = u1 * t10;
+            let t12 = x0.sin();
+            let t13 = t6.cos();
+            let t14 = t13 * t12;
+            let t15 = t2 * t14;
+            let t16 = t0 * t15;
+            let t17 = T::fused(
+                -k(1.2566370614359172),
+                t11,
+                k(6.314572895816972e-6) * t16,
             );
-            let t11 = t3 * t3;
-            let t12 = k(1.2629145791633944e-5) * t11;
-            let t13 = t12 - k(1.8945692608331133e-5);
-            let t14 = t7 * t7;
-            let t15 = t3 * t0;
-            let t16 = t8 * t15;
-            let t17 = t7 * t5;
-            let t18 = T::fused(k(1.0049954898833748e-5), t11, k(2.5164157155254244e-6));
-            let t19 = T::fused(t17, t13, u1 * t18);
-            let t20 = T::fused(
-                -k(0.5),
-                t14 * t13,
-                t5 * T::fused(k(6.314572895816971e-5), t16, t7 * t19),
+            let t18 = T::fused(t0, t17, k(3.1582734083485947e-6) * t15);
+            let t19 = x1.sin();
+            let t20 = t19 * t4;
+            let t21 = x0.cos();
+            let t22 = t13 * t21;
+            let t23 = t0 * t22;
+            let t24 = T::fused(
+                k(6.314572895816972e-6),
+                t23,
+                k(1.2566370614359173e-5) * u2,
             );
-            let t21 = t7 * t2;
-            let t22 = k(1.2566370614359173e-5) * u2;
-            let t23 = k(0.1) * t8;
-            let t24 = t23.sin();
-            let t25 = k(0.0001) * t24;
-            let t26 = t0 * T::fused(-t22, t21, t5 * t25);
-            let t27 = k(1.0)
-                / T::fused(
-                    -t3,
-                    k(1e-5) * t3,
-                    T::fused(k(3.99875e-6), t11, k(8.00125e-6)),
-                );
-            let t28 = t27 * T::fused(t3, t10, t26 - t20);
-            let t29 = t0 * t21;
-            let t30 = u0 * t3;
-            let t31 = T::fused(
-                -t24,
-                t2,
-                k(0.020025)
-                    * (u1
-                        * T::fused(
-                            -k(1.2566370614359172),
-                            T::fused(k(3.9739061945541905), u2, -t29),
-                            t30,
-                        )),
+            let t25 = u0 * t19;
+            let t26 = T::fused(k(1.2566370614359173e-5), t25, t24);
+            let t27 = T::fused(t0, t26, k(3.1582734083485947e-6) * t22);
+            let t28 = t2 * t27;
+            let t29 = T::fused(
+                -t12,
+                T::fused(t9, t5, T::fused(t13, t18, t7 * t20)),
+                t21 * (t13 * t28),
             );
-            let t32 = t8 * t2;
-            let t33 = T::fused(k(6.314572895816972e-6), t29, t22);
-            let t34 = T::fused(
-                k(9.476794145926002e-5),
-                t0 * T::fused(-k(1.05520916103247), t31, t3 * t32),
+            let t30 = T::fused(
+                -k(1.2566370614359172),
+                T::fused(k(3.9739061945541905), u2, -t23),
+                t25,
+            );
+            let t31 = t7 * t21;
+            let t32 = T::fused(
+                -k(1.05520916103247),
+                T::fused(-t9, t21, k(0.020025) * (u1 * t30)),
+                t19 * t31,
+            );
+            let t33 = t2 * t2;
+            let t34 = T::fused(k(9.476794145926002e-5), t0 * t32, t27 * t14);
+            let t35 = T::fused(
+                -t32,
+                t3,
+                T::fused(-t26, t15, k(2.0) * (t0 * (k(6.00125e-6) * (t34 * t33)))),
+            );
+            let t36 = k(1.2566370614359173e-5) * t16;
+            let t37 = t36 - t11;
+            let t38 = T::fused(
+                t19,
+                T::fused(-t22, t17, t35),
+                t0 * T::fused(u0, t37, t31 * t4),
+            );
+            let t39 = t19 * t37;
+            let t40 = t30 * t10;
+            let t41 = T::fused(k(4.9937578027465666), t11, t36);
+            let t42 = T::fused(t9, t19, k(0.9476794145926002) * t7);
+            let t43 = k(166631.95167673402) * t22;
+            let t44 = t19 * t43;
+            let t45 = k(6.314572895816972e-6) * t44;
+            let t46 = k(1.2503907471084714) - t1;
+            let t47 = T::fused(k(1.0049954898833748e-5), u0 * t46, t19 * t24);
+            let t48 = T::fused(t0, t45, k(166631.95167673402) * t47);
+            let t49 = T::fused(t21, k(16.6631951676734) * t42, t12 * (t13 * t48));
+            let t50 = k(0.6663195167673401) * t0;
+            let t51 = u0 * t50;
+            let t52 = k(16.6631951676734) * t12;
+            let t53 = T::fused(k(2.500781494216943), u2, t25);
+            let t54 = t8.cos();
+            let t55 = T::fused(-k(0.0399875), u0 * t53, t54);
+            let t56 = k(1.6746435990558215) * t22;
+            let t57 = t0 * (u0 * t56);
+            let t58 = T::fused(
+                t0,
+                T::fused(-u0, t51, T::fused(-t9, t52, t24 * t43)),
+                t19 * T::fused(-k(16.6631951676734), t55, t57 - T::fused(t22, t45, -t57)),
+            );
+            let t59 = T::fused(-t19, t51, T::fused(-t53, t50, t46 * t56));
+            let t60 = T::fused(
+                -k(2.500781494216943),
+                t51,
+                k(1.2566370614359173e-5) * t44,
+            );
+            let t61 = u0 * t0;
+            let t62 = t19 * t2;
+            let t63 = T::fused(k(1.2566370614359172), t61, t27 * t62);
+            let t64 = k(9.476794145926002e-5) * t62;
+            let t65 = t0 * t64;
+            let t66 = T::fused(k(15.791367041742975), t0, t19 * t65);
+            let t67 = u1 * t19;
+            let t68 = k(0.021130563449675212) * t65;
+            let t69 = u1 * t68;
+            let t70 = t14 * t62;
+            let t71 = t0 * t70;
+            let t72 = T::fused(
+                -k(1.2566370614359172),
+                t69,
+                k(6.314572895816972e-6) * t71,
+            );
+            let t73 = T::fused(
+                k(1.2566370614359172),
+                t67,
+                T::fused(t0, t72, k(3.1582734083485947e-6) * t70),
+            );
+            let t74 = k(1.05520916103247) * t65;
+            let t75 = T::fused(
+                -t21,
+                t13 * t63,
+                t12 * T::fused(t7, t66, T::fused(t13, t73, t9 * t74)),
+            );
+            let t76 = T::fused(-k(1.2566370614359172), t14, u1);
+            let t77 = T::fused(-k(0.06332573977646111), u0 * t76, t31);
+            let t78 = T::fused(
+                -t26,
+                t70,
+                k(2.0) * (t0 * (k(6.00125e-6) * (t33 * (t19 * t34)))),
+            );
+            let t79 = k(1.2566370614359172) * t22;
+            let t80 = k(1.2566370614359173e-5) * t71;
+            let t81 = t80 - t69;
+            let t82 = t2 * t34;
+            let t83 = T::fused(
+                t19,
                 T::fused(
-                    t0,
-                    T::fused(k(1.2566370614359173e-5), t30, t33),
-                    k(3.1582734083485947e-6) * t21,
-                ) * t17,
-            );
-            let t35 = t0 * t0;
-            let t36 = t34 / T::fused(k(6.00125e-6), t35, k(2e-6));
-            let t37 = t3 * t36;
-            let t38 = k(1.2566370614359172) * t17;
-            let t39 = T::fused(
-                k(0.00015791367041742975),
-                t0 * T::fused(-k(0.06332573977646111), u0 * (u1 - t38), t32),
-                k(1.2566370614359173e-5) * (t21 * t4),
-            );
-            let t40 = T::fused(k(100000.0), t39, t37);
-            let t41 = k(1e-5) * t0;
-            let t42 = k(6.314572895816972e-6) - t12;
-            let t43 = k(1e-5) * u2;
-            let t44 = t3 * T::fused(k(2.0099909797667496e-5), t29, t43);
-            let t45 = u0 * t42;
-            let t46 = T::fused(
-                t41,
-                T::fused(-k(0.79975), t37, t40),
-                T::fused(
-                    -k(10.0),
-                    t32 * t42,
-                    u1 * T::fused(k(1.2665147955292222), t45, -t44),
+                    -k(15.791367041742975),
+                    t77,
+                    T::fused(-t22, t72, T::fused(-t32, t64, t78)),
                 ),
+                t0 * T::fused(u1, t79, T::fused(u0, t81, T::fused(t31, t65, t82))),
             );
-            let t47 = t3
-                * T::fused(t17, T::fused(k(1.2629145791633944e-5), t29, t22), t2 * t25);
-            let t48 = T::fused(-k(1.2566370614359173e-5), t17, k(1e-5) * u1);
-            let t49 = T::fused(
-                k(1.2566370614359173e-5),
-                t0 * T::fused(k(0.7957747154594766), t36, u1 * t21),
-                t3 * T::fused(-k(0.00015791367041742975), t32, u0 * t48),
-            );
-            let t50 = t27 * T::fused(t3, t49, -(t47 - t46));
-            let t51 = t0 * t48;
-            let t52 = t27 * T::fused(-k(7.9975e-6), u1 * t15, t3 * t51);
-            let t53 = k(1.2566370614359173e-5) * t3;
-            let t54 = T::fused(-u0, t41, t21 * t53);
-            let t55 = T::fused(-t0, T::fused(k(7.9975e-6), t30, t43), t21 * t18);
-            let t56 = t27 * T::fused(-t3, t54, t55);
-            let t57 = t41 * (u1 + t38) * t27;
-            let t58 = u0 * t18;
-            let t59 = k(166631.95167673402)
-                * T::fused(t17, t58, T::fused(k(9.476794145926002e-5), t32, t47));
-            let t60 = T::fused(-t5, t5, k(1.0));
-            let t61 = t23.cos();
-            let t62 = t61 * t3;
-            let t63 = T::fused(
-                k(0.0001),
-                t62,
-                -T::fused(
-                    t14,
-                    t42 * t60,
-                    u0 * T::fused(-k(0.6332573977646111), t45, t44),
-                ),
-            );
-            let t64 = k(166631.95167673402) * (t26 + t63);
-            let t65 = k(166631.95167673402) * t55;
-            let t66 = k(166631.95167673402) * t54;
-            let t67 = T::fused(t3, t28, k(100000.0) * t10);
-            let t68 = T::fused(t3, t50, k(100000.0) * t49);
-            let t69 = T::fused(t3, t52, k(100000.0) * t51);
-            let t70 = T::fused(-t3, t56, k(100000.0) * t54);
-            let t71 = t3 * t57;
-            let t72 = k(0.5) * x0;
-            let t73 = t72.cos();
-            let t74 = k(0.05) * t8;
-            let t75 = t74.sin();
-            let t76 = t75 * t73;
-            let t77 = t74.cos();
-            let t78 = t77 * t73;
-            let t79 = t78 * t76;
-            let t80 = t72.sin();
-            let t81 = t75 * t80;
-            let t82 = t77 * t80;
-            let t83 = t82 * t81;
-            let t84 = k(2.0) * (t83 + t79);
-            let t85 = k(1.2566370614359172) * t7;
-            let t86 = t85 * t24;
-            let t87 = t78 * t78;
-            let t88 = k(2.0) * (k(0.5) - T::fused(t82, t82, t87));
-            let t89 = t85 * t61;
-            let t90 = T::fused(-t86, t84, t89 * t88);
-            let t91 = k(2.0) * (t83 - t79);
-            let t92 = k(2.0) * (k(0.5) - T::fused(t81, t81, t87));
-            let t93 = T::fused(t24, t91, t61 * t92);
-            let t94 = k(2.0) * (k(0.5) - T::fused(t76, t76, t87));
-            let t95 = k(2.0) * T::fused(t78, t81, t76 * t82);
-            let t96 = t78 * t82;
-            let t97 = t76 * t81;
-            let t98 = k(2.0) * (t97 - t96);
-            let t99 = T::fused(-t24, t95, t61 * t98);
-            let t100 = k(2.0) * (t97 + t96);
-            let t101 = k(1.0) / T::fused(-t94, t93, t100 * t99);
-            let t102 = t94 * t101;
-            let t103 = t102 * t90;
-            let t104 = k(0.5) * x1;
-            let t105 = t104.sin();
-            let t106 = t104.cos();
-            let t107 = T::fused(t82, t105, t76 * t106);
-            let t108 = T::fused(-t81, t105, t78 * t106);
-            let t109 = t108 * t108;
-            let t110 = k(2.0) * (k(0.5) - T::fused(t107, t107, t109));
-            let t111 = T::fused(t78, t105, t81 * t106);
-            let t112 = t108 * t111;
-            let t113 = T::fused(-t76, t105, t82 * t106);
-            let t114 = t107 * t113;
-            let t115 = k(2.0) * (t114 + t112);
-            let t116 = t108 * t113;
-            let t117 = t107 * t111;
-            let t118 = k(2.0) * (t117 - t116);
-            let t119 = T::fused(t98, t118, T::fused(t94, t110, t95 * t115));
-            let t120 = t100 * t101;
-            let t121 = t120 * t90;
-            let t122 = T::fused(t92, t118, -T::fused(-t100, t110, t91 * t115));
-            let t123 = T::fused(t119, t103, t122 * t121);
-            let t124 = k(1e-6) * t123;
-            let t125 = k(0.5) * x2;
-            let t126 = t125.sin();
-            let t127 = t125.cos();
-            let t128 = T::fused(t108, t126, t107 * t127);
-            let t129 = T::fused(-t107, t126, t108 * t127);
-            let t130 = t129 * t129;
-            let t131 = k(2.0) * (k(0.5) - T::fused(t128, t128, t130));
-            let t132 = T::fused(-t113, t126, t111 * t127);
-            let t133 = t129 * t132;
-            let t134 = T::fused(t111, t126, t113 * t127);
-            let t135 = t128 * t134;
-            let t136 = k(2.0) * (t135 + t133);
-            let t137 = t129 * t134;
-            let t138 = t128 * t132;
-            let t139 = k(2.0) * (t138 - t137);
-            let t140 = T::fused(t118, t139, T::fused(t110, t131, t115 * t136));
-            let t141 = t114 - t112;
-            let t142 = k(2.0) * t141;
-            let t143 = k(0.5) - T::fused(t113, t113, t109);
-            let t144 = k(2.0) * t143;
-            let t145 = t108 * t107;
-            let t146 = t113 * t111;
-            let t147 = t146 + t145;
-            let t148 = k(2.0) * t147;
-            let t149 = T::fused(t98, t148, -T::fused(t94, t142, t95 * t144));
-            let t150 = T::fused(t92, t148, T::fused(-t100, t142, t91 * t144));
-            let t151 = T::fused(t149, t103, t150 * t121);
-            let t152 = T::fused(t148, t139, -T::fused(t142, t131, t144 * t136));
-            let t153 = t117 + t116;
-            let t154 = k(2.0) * t153;
-            let t155 = t146 - t145;
-            let t156 = k(2.0) * t155;
-            let t157 = k(0.5) - T::fused(t111, t111, t109);
-            let t158 = k(2.0) * t157;
-            let t159 = T::fused(t98, t158, -T::fused(-t94, t154, t95 * t156));
-            let t160 = T::fused(t92, t158, T::fused(t100, t154, t91 * t156));
-            let t161 = T::fused(t159, t103, t160 * t121);
-            let t162 = T::fused(t158, t139, -T::fused(-t154, t131, t156 * t136));
-            let t163 = k(1e-5) * T::fused(t140, t123, T::fused(t152, t151, t162 * t161));
-            let t164 = t163 + t124;
-            let t165 = k(2.0) * (t135 - t133);
-            let t166 = k(2.0) * (k(0.5) - T::fused(t134, t134, t130));
-            let t167 = t129 * t128;
-            let t168 = t134 * t132;
-            let t169 = k(2.0) * (t168 + t167);
-            let t170 = T::fused(t118, t169, -T::fused(t110, t165, t115 * t166));
-            let t171 = T::fused(t148, t169, T::fused(t142, t165, t144 * t166));
-            let t172 = T::fused(t158, t169, T::fused(-t154, t165, t156 * t166));
-            let t173 = k(5e-6) * T::fused(t170, t123, T::fused(t171, t151, t172 * t161));
-            let t174 = x2.cos();
-            let t175 = k(2.0) * (t138 + t137);
-            let t176 = k(2.0) * (t168 - t167);
-            let t177 = k(2.0) * (k(0.5) - T::fused(t132, t132, t130));
-            let t178 = T::fused(t118, t177, -T::fused(-t110, t175, t115 * t176));
-            let t179 = T::fused(t148, t177, T::fused(-t142, t175, t144 * t176));
-            let t180 = T::fused(t158, t177, T::fused(t154, t175, t156 * t176));
-            let t181 = k(5e-6) * T::fused(t178, t123, T::fused(t179, t151, t180 * t161));
-            let t182 = x2.sin();
-            let t183 = k(0.00025) * t153;
-            let t184 = k(0.00025) * t141;
-            let t185 = k(0.08) * T::fused(t183, t151, t184 * t161);
-            let t186 = k(0.00025) * t155;
-            let t187 = k(0.00025) * t143;
-            let t188 = k(0.08) * T::fused(-t186, t151, t187 * t161);
-            let t189 = k(0.00025) * t157;
-            let t190 = k(0.00025) * t147;
-            let t191 = k(0.08) * T::fused(-t189, t151, t190 * t161);
-            let t192 = T::fused(
-                -k(2e-6),
-                t151,
-                T::fused(-t183, t185, T::fused(t186, t188, t189 * t191)),
-            );
-            let t193 = T::fused(-t174, t173, T::fused(-t182, t181, t192));
-            let t194 = T::fused(-t3, t164, t0 * t193);
-            let t195 = k(2.0) * t80;
-            let t196 = t73 * t195;
-            let t197 = t85 * t196;
-            let t198 = k(15.791367041742975) * t8;
-            let t199 = T::fused(u0, t197, t198 * t2);
+            let t84 = T::fused(-t0, t76, t19 * t81);
+            let t85 = t61 + T::fused(-t19, t79, t30 * t68);
+            let t86 = T::fused(k(4.9937578027465666), t69, t80);
+            let t87 = k(0.5) * x0;
+            let t88 = t87.cos();
+            let t89 = k(0.05) * t7;
+            let t90 = t89.sin();
+            let t91 = t90 * t88;
+            let t92 = t89.cos();
+            let t93 = t92 * t88;
+            let t94 = t93 * t91;
+            let t95 = t87.sin();
+            let t96 = t90 * t95;
+            let t97 = t92 * t95;
+            let t98 = t97 * t96;
+            let t99 = k(2.0) * (t98 + t94);
+            let t100 = k(1.2566370614359172) * t13;
+            let t101 = t100 * t9;
+            let t102 = t93 * t93;
+            let t103 = k(2.0) * (k(0.5) - T::fused(t97, t97, t102));
+            let t104 = t100 * t54;
+            let t105 = T::fused(-t101, t99, t104 * t103);
+            let t106 = k(2.0) * (t98 - t94);
+            let t107 = k(2.0) * (k(0.5) - T::fused(t96, t96, t102));
+            let t108 = T::fused(t9, t106, t54 * t107);
+            let t109 = k(2.0) * (k(0.5) - T::fused(t91, t91, t102));
+            let t110 = k(2.0) * T::fused(t93, t96, t91 * t97);
+            let t111 = t93 * t97;
+            let t112 = t91 * t96;
+            let t113 = k(2.0) * (t112 - t111);
+            let t114 = T::fused(-t9, t110, t54 * t113);
+            let t115 = k(2.0) * (t112 + t111);
+            let t116 = k(1.0) / T::fused(-t109, t108, t115 * t114);
+            let t117 = t109 * t116;
+            let t118 = t117 * t105;
+            let t119 = k(0.5) * x1;
+            let t120 = t119.sin();
+            let t121 = t119.cos();
+            let t122 = T::fused(t97, t120, t91 * t121);
+            let t123 = T::fused(-t96, t120, t93 * t121);
+            let t124 = t123 * t123;
+            let t125 = k(2.0) * (k(0.5) - T::fused(t122, t122, t124));
+            let t126 = T::fused(t93, t120, t96 * t121);
+            let t127 = t123 * t126;
+            let t128 = T::fused(-t91, t120, t97 * t121);
+            let t129 = t122 * t128;
+            let t130 = k(2.0) * (t129 + t127);
+            let t131 = t123 * t128;
+            let t132 = t122 * t126;
+            let t133 = k(2.0) * (t132 - t131);
+            let t134 = T::fused(t113, t133, T::fused(t109, t125, t110 * t130));
+            let t135 = t115 * t116;
+            let t136 = t135 * t105;
+            let t137 = T::fused(t107, t133, -T::fused(-t115, t125, t106 * t130));
+            let t138 = T::fused(t134, t118, t137 * t136);
+            let t139 = k(1e-6) * t138;
+            let t140 = k(0.5) * x2;
+            let t141 = t140.sin();
+            let t142 = t140.cos();
+            let t143 = T::fused(t123, t141, t122 * t142);
+            let t144 = T::fused(-t122, t141, t123 * t142);
+            let t145 = t144 * t144;
+            let t146 = k(2.0) * (k(0.5) - T::fused(t143, t143, t145));
+            let t147 = T::fused(-t128, t141, t126 * t142);
+            let t148 = t144 * t147;
+            let t149 = T::fused(t126, t141, t128 * t142);
+            let t150 = t143 * t149;
+            let t151 = k(2.0) * (t150 + t148);
+            let t152 = t144 * t149;
+            let t153 = t143 * t147;
+            let t154 = k(2.0) * (t153 - t152);
+            let t155 = T::fused(t133, t154, T::fused(t125, t146, t130 * t151));
+            let t156 = t129 - t127;
+            let t157 = k(2.0) * t156;
+            let t158 = k(0.5) - T::fused(t128, t128, t124);
+            let t159 = k(2.0) * t158;
+            let t160 = t123 * t122;
+            let t161 = t128 * t126;
+            let t162 = t161 + t160;
+            let t163 = k(2.0) * t162;
+            let t164 = T::fused(t113, t163, -T::fused(t109, t157, t110 * t159));
+            let t165 = T::fused(t107, t163, T::fused(-t115, t157, t106 * t159));
+            let t166 = T::fused(t164, t118, t165 * t136);
+            let t167 = T::fused(t163, t154, -T::fused(t157, t146, t159 * t151));
+            let t168 = t132 + t131;
+            let t169 = k(2.0) * t168;
+            let t170 = t161 - t160;
+            let t171 = k(2.0) * t170;
+            let t172 = k(0.5) - T::fused(t126, t126, t124);
+            let t173 = k(2.0) * t172;
+            let t174 = T::fused(t113, t173, -T::fused(-t109, t169, t110 * t171));
+            let t175 = T::fused(t107, t173, T::fused(t115, t169, t106 * t171));
+            let t176 = T::fused(t174, t118, t175 * t136);
+            let t177 = T::fused(t173, t154, -T::fused(-t169, t146, t171 * t151));
+            let t178 = k(1e-5) * T::fused(t155, t138, T::fused(t167, t166, t177 * t176));
+            let t179 = t178 + t139;
+            let t180 = k(2.0) * (t150 - t148);
+            let t181 = k(2.0) * (k(0.5) - T::fused(t149, t149, t145));
+            let t182 = t144 * t143;
+            let t183 = t149 * t147;
+            let t184 = k(2.0) * (t183 + t182);
+            let t185 = T::fused(t133, t184, -T::fused(t125, t180, t130 * t181));
+            let t186 = T::fused(t163, t184, T::fused(t157, t180, t159 * t181));
+            let t187 = T::fused(t173, t184, T::fused(-t169, t180, t171 * t181));
+            let t188 = k(5e-6) * T::fused(t185, t138, T::fused(t186, t166, t187 * t176));
+            let t189 = x2.cos();
+            let t190 = k(2.0) * (t153 + t152);
+            let t191 = k(2.0) * (t183 - t182);
+            let t192 = k(2.0) * (k(0.5) - T::fused(t147, t147, t145));
+            let t193 = T::fused(t133, t192, -T::fused(-t125, t190, t130 * t191));
+            let t194 = T::fused(t163, t192, T::fused(-t157, t190, t159 * t191));
+            let t195 = T::fused(t173, t192, T::fused(t169, t190, t171 * t191));
+            let t196 = k(5e-6) * T::fused(t193, t138, T::fused(t194, t166, t195 * t176));
+            let t197 = x2.sin();
+            let t198 = k(0.00025) * t168;
+            let t199 = k(0.00025) * t156;
             (
                 t0,
-                t1,
-                t2,
-                t3,
-                t4,
                 t5,
                 t7,
-                t8,
                 t9,
-                t16,
+                t12,
+                t13,
+                t18,
                 t19,
+                t20,
                 t21,
-                t24,
-                t27,
+                t22,
                 t28,
                 t29,
-                t30,
-                t32,
-                t33,
-                t35,
-                t36,
-                t37,
+                t38,
+                t39,
                 t40,
-                t50,
+                t41,
+                t42,
+                t47,
+                t48,
+                t49,
                 t52,
-                t53,
-                t56,
-                t57,
+                t54,
+                t55,
                 t58,
                 t59,
                 t60,
-                t61,
-                t62,
-                t64,
-                t65,
+                t63,
                 t66,
                 t67,
-                t68,
-                t69,
-                t70,
-                t71,
                 t73,
+                t74,
                 t75,
-                t76,
                 t77,
-                t78,
-                t80,
-                t81,
                 t82,
+                t83,
                 t84,
                 t85,
                 t86,
                 t88,
-                t89,
                 t90,
                 t91,
                 t92,
                 t93,
-                t94,
                 t95,
-                t98,
+                t96,
+                t97,
                 t99,
                 t100,
                 t101,
-                t102,
                 t103,
+                t104,
                 t105,
                 t106,
                 t107,
                 t108,
+                t109,
                 t110,
-                t111,
                 t113,
+                t114,
                 t115,
+                t116,
+                t117,
                 t118,
-                t119,
                 t120,
                 t121,
                 t122,
                 t123,
-                t124,
+                t125,
                 t126,
-                t127,
                 t128,
-                t129,
-                t131,
-                t132,
+                t130,
+                t133,
                 t134,
+                t135,
                 t136,
+                t137,
+                t138,
                 t139,
-                t140,
+                t141,
                 t142,
+                t143,
                 t144,
-                t148,
+                t146,
+                t147,
                 t149,
-                t150,
                 t151,
-                t152,
                 t154,
-                t156,
+                t155,
+                t157,
                 t158,
                 t159,
-                t160,
-                t161,
                 t162,
                 t163,
                 t164,
                 t165,
                 t166,
+                t167,
                 t169,
                 t170,
                 t171,
@@ -5320,8 +5296,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
                 t179,
                 t180,
                 t181,
-                t182,
-                t183,
                 t184,
                 t185,
                 t186,
@@ -5330,6 +5304,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
                 t189,
                 t190,
                 t191,
+                t192,
                 t193,
                 t194,
                 t195,
@@ -5340,557 +5315,596 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             )
         };
         let (
-            t201,
-            t252,
-            t257,
+            t208,
+            t209,
+            t211,
+            t212,
+            t215,
+            t216,
+            t217,
+            t219,
+            t220,
+            t221,
+            t226,
+            t230,
+            t259,
+            t267,
+            t272,
+            t323,
             t328,
-            t342,
+            t339,
+            t341,
             t343,
-            t350,
-            t354,
-            t356,
-            t366,
-            t368,
-            t370,
-            t374,
+            t357,
+            t358,
+            t359,
+            t360,
+            t364,
+            t365,
+            t369,
+            t371,
+            t375,
+            t376,
+            t377,
+            t378,
+            t379,
             t381,
-            t382,
-            t387,
-            t388,
+            t383,
+            t384,
+            t385,
             t389,
-            t390,
-            t394,
             t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = u1 + t197;
-            let t201 = T::fused(-t80, t195, k(1.0));
-            let t202 = t85 * t201;
-            let t203 = k(2.0) * t105;
-            let t204 = t106 * t203;
-            let t205 = T::fused(-t105, t203, k(1.0));
-            let t206 = T::fused(-t204, t202, u0 * t205);
-            let t207 = T::fused(-u1, t206, T::fused(t0, t199, t37));
-            let t208 = k(1e-5) * (t40 - t207);
-            let t209 = k(2.0) * t126;
-            let t210 = t127 * t209;
-            let t211 = T::fused(-t126, t209, k(1.0));
-            let t212 = T::fused(-t210, t206, t211 * t200);
-            let t213 = T::fused(t205, t202, u0 * t204);
-            let t214 = u2 + t213;
-            let t215 = T::fused(u1, t213, T::fused(-t3, t199, t0 * t36));
-            let t216 = u0 * t202;
-            let t217 = T::fused(t198, t5, -t216);
-            let t218 = T::fused(
-                -t0,
-                T::fused(
-                    -k(0.0399875),
-                    u0 * T::fused(k(2.500781494216943), u2, t30),
-                    t61,
-                ),
-                t5 * T::fused(t24, t3, k(0.9476794145926002) * t8),
-            );
-            let t219 = T::fused(
-                -k(0.0001),
-                t218,
-                t21
-                    * T::fused(
-                        k(1.0049954898833748e-5),
-                        u0 * (k(1.2503907471084714) - t35),
-                        t3 * t33,
-                    ),
-            );
-            let t220 = T::fused(k(166631.95167673402), t219, t217);
-            let t221 = T::fused(
-                -t214,
-                t212,
-                T::fused(-u2, t212, T::fused(t174, t215, t182 * t220)),
-            );
-            let t222 = k(5e-6) * t221;
-            let t223 = T::fused(t211, t206, t210 * t200);
-            let t224 = T::fused(
-                t214,
-                t223,
-                T::fused(u2, t223, T::fused(-t182, t215, t174 * t220)),
-            );
-            let t225 = k(5e-6) * t224;
-            let t226 = T::fused(
-                -k(1e-6),
-                T::fused(t206, t200, t207),
-                T::fused(t225, t178, -T::fused(-t208, t140, t222 * t170)),
-            );
-            let t227 = k(0.000125) * t206;
-            let t228 = k(0.000125) * t200;
-            let t229 = T::fused(t206, t227, t200 * t228);
-            let t230 = t227 * t213;
-            let t231 = t228 * t213;
-            let t232 = T::fused(-t215, t183, t220 * t184)
-                - T::fused(t154, t231, T::fused(t110, t229, t142 * t230));
-            let t233 = k(0.08) * t232;
-            let t234 = T::fused(t215, t186, t220 * t187)
-                + T::fused(t156, t231, -T::fused(t115, t229, t144 * t230));
-            let t235 = T::fused(k(0.08), t234, k(0.8));
-            let t236 = T::fused(t215, t189, t220 * t190)
-                + T::fused(t158, t231, -T::fused(-t118, t229, t148 * t230));
-            let t237 = k(0.08) * t236;
-            let t238 = T::fused(t189, t237, T::fused(-t183, t233, t186 * t235))
-                - T::fused(t225, t179, -T::fused(-t208, t152, t222 * t171));
-            let t239 = T::fused(k(2e-6), t215, t238);
-            let t240 = T::fused(t190, t237, T::fused(t184, t233, t187 * t235))
-                + T::fused(t225, t180, -T::fused(-t208, t162, t222 * t172));
-            let t241 = T::fused(k(1e-6), T::fused(-t206, t213, t220), t240);
-            let t242 = T::fused(
+            let t200 = k(0.08) * T::fused(t198, t166, t199 * t176);
+            let t201 = k(0.00025) * t170;
+            let t202 = k(0.00025) * t158;
+            let t203 = k(0.08) * T::fused(-t201, t166, t202 * t176);
+            let t204 = k(0.00025) * t172;
+            let t205 = k(0.00025) * t162;
+            let t206 = k(0.08) * T::fused(-t204, t166, t205 * t176);
+            let t207 = T::fused(
                 -k(2e-6),
-                t199,
-                T::fused(t241, t159, -T::fused(-t226, t119, t239 * t149)),
-            );
-            let t243 = T::fused(
-                k(1e-6),
-                t216 + t217,
-                T::fused(t241, t160, -T::fused(-t226, t122, t239 * t150)),
-            );
-            let t244 = T::fused(t242, t102, t243 * t120);
-            let t245 = t86 * t244;
-            let t246 = t241 * t121;
-            let t247 = t239 * t121;
-            let t248 = t226 * t121;
-            let t249 = t243 * t90;
-            let t250 = t242 * t90;
-            let t251 = t101 * t101 * T::fused(t100, t249, t94 * t250);
-            let t252 = t94 * t251;
-            let t253 = T::fused(
-                t24,
-                t252,
-                -T::fused(t115, t248, T::fused(-t156, t246, t144 * t247)),
-            );
-            let t254 = k(2.0) * (t253 + t245);
-            let t255 = T::fused(
-                t110,
-                t248,
-                T::fused(t142, t247, T::fused(t101, t249, t154 * t246)),
-            );
-            let t256 = T::fused(t99, t251, -t255);
-            let t257 = t100 * t251;
-            let t258 = t241 * t103;
-            let t259 = t239 * t103;
-            let t260 = t226 * t103;
-            let t261 = T::fused(
-                t118,
-                t260,
-                -T::fused(t148, t259, -T::fused(-t61, t257, t158 * t258)),
-            );
-            let t262 = k(2.0) * (t261 - t256);
-            let t263 = T::fused(
-                t115,
-                t260,
-                T::fused(t144, t259, -T::fused(-t24, t257, t156 * t258)),
-            );
-            let t264 = k(2.0) * t263;
-            let t265 = T::fused(
-                t142,
-                t259,
-                T::fused(t154, t258, T::fused(t101, t250, t93 * t251)),
-            );
-            let t266 = T::fused(t110, t260, t265);
-            let t267 = t76 * (k(2.0) * t266);
-            let t268 = t267
-                + (t267 - T::fused(t82, t264, T::fused(-t78, t254, t81 * t262)));
-            let t269 = t225 * t161;
-            let t270 = t222 * t161;
-            let t271 = T::fused(
                 t166,
-                t270,
-                -T::fused(t176, t269, -T::fused(-t91, t246, t95 * t258)),
+                T::fused(-t198, t200, T::fused(t201, t203, t204 * t206)),
             );
-            let t272 = t208 * t161;
-            let t273 = T::fused(
-                k(2.0),
-                T::fused(t231, t188, -T::fused(t136, t272, t271)),
-                k(0.00025) * T::fused(-t235, t151, t215 * t188),
+            let t208 = T::fused(-t189, t188, T::fused(-t197, t196, t207));
+            let t209 = T::fused(-t19, t179, t0 * t208);
+            let t210 = k(2.0) * t95;
+            let t211 = t88 * t210;
+            let t212 = t100 * t211;
+            let t213 = k(15.791367041742975) * t7;
+            let t214 = T::fused(u0, t212, t213 * t21);
+            let t215 = u1 + t212;
+            let t216 = T::fused(-t95, t210, k(1.0));
+            let t217 = t100 * t216;
+            let t218 = k(2.0) * t120;
+            let t219 = t121 * t218;
+            let t220 = T::fused(-t120, t218, k(1.0));
+            let t221 = T::fused(-t219, t217, u0 * t220);
+            let t222 = t19 * t82;
+            let t223 = T::fused(-u1, t221, T::fused(t0, t214, t222));
+            let t224 = T::fused(
+                k(100000.0),
+                T::fused(
+                    k(0.00015791367041742975),
+                    t0 * t77,
+                    k(1.2566370614359173e-5) * (t22 * t67),
+                ),
+                t222,
             );
-            let t274 = t225 * t151;
-            let t275 = T::fused(
-                t177,
-                t274,
-                -T::fused(t230, t191, T::fused(t92, t247, t98 * t259)),
+            let t225 = k(1e-5) * (t224 - t223);
+            let t226 = k(2.0) * t141;
+            let t227 = t142 * t226;
+            let t228 = T::fused(-t141, t226, k(1.0));
+            let t229 = T::fused(-t227, t221, t228 * t215);
+            let t230 = T::fused(t220, t217, u0 * t219);
+            let t231 = u2 + t230;
+            let t232 = T::fused(u1, t230, T::fused(-t19, t214, t0 * t82));
+            let t233 = u0 * t217;
+            let t234 = T::fused(t213, t12, -t233);
+            let t235 = T::fused(
+                k(166631.95167673402),
+                T::fused(-k(0.0001), T::fused(-t0, t55, t12 * t42), t22 * t47),
+                t234,
             );
-            let t276 = t222 * t151;
-            let t277 = t208 * t151;
+            let t236 = T::fused(
+                -t231,
+                t229,
+                T::fused(-u2, t229, T::fused(t189, t232, t197 * t235)),
+            );
+            let t237 = k(5e-6) * t236;
+            let t238 = T::fused(t228, t221, t227 * t215);
+            let t239 = T::fused(
+                t231,
+                t238,
+                T::fused(u2, t238, T::fused(-t197, t232, t189 * t235)),
+            );
+            let t240 = k(5e-6) * t239;
+            let t241 = T::fused(
+                -k(1e-6),
+                T::fused(t221, t215, t223),
+                T::fused(t240, t193, -T::fused(-t225, t155, t237 * t185)),
+            );
+            let t242 = k(0.000125) * t221;
+            let t243 = k(0.000125) * t215;
+            let t244 = T::fused(t221, t242, t215 * t243);
+            let t245 = t242 * t230;
+            let t246 = t243 * t230;
+            let t247 = T::fused(-t232, t198, t235 * t199)
+                - T::fused(t169, t246, T::fused(t125, t244, t157 * t245));
+            let t248 = k(0.08) * t247;
+            let t249 = T::fused(t232, t201, t235 * t202)
+                + T::fused(t171, t246, -T::fused(t130, t244, t159 * t245));
+            let t250 = T::fused(k(0.08), t249, k(0.8));
+            let t251 = T::fused(t232, t204, t235 * t205)
+                + T::fused(t173, t246, -T::fused(-t133, t244, t163 * t245));
+            let t252 = k(0.08) * t251;
+            let t253 = T::fused(t204, t252, T::fused(-t198, t248, t201 * t250))
+                - T::fused(t240, t194, -T::fused(-t225, t167, t237 * t186));
+            let t254 = T::fused(k(2e-6), t232, t253);
+            let t255 = T::fused(t205, t252, T::fused(t199, t248, t202 * t250))
+                + T::fused(t240, t195, -T::fused(-t225, t177, t237 * t187));
+            let t256 = T::fused(k(1e-6), T::fused(-t221, t230, t235), t255);
+            let t257 = T::fused(
+                -k(2e-6),
+                t214,
+                T::fused(t256, t174, -T::fused(-t241, t134, t254 * t164)),
+            );
+            let t258 = T::fused(
+                k(1e-6),
+                t233 + t234,
+                T::fused(t256, t175, -T::fused(-t241, t137, t254 * t165)),
+            );
+            let t259 = T::fused(t257, t117, t258 * t135);
+            let t260 = t101 * t259;
+            let t261 = t256 * t136;
+            let t262 = t254 * t136;
+            let t263 = t241 * t136;
+            let t264 = t258 * t105;
+            let t265 = t257 * t105;
+            let t266 = t116 * t116 * T::fused(t115, t264, t109 * t265);
+            let t267 = t109 * t266;
+            let t268 = T::fused(
+                t9,
+                t267,
+                -T::fused(t130, t263, T::fused(-t171, t261, t159 * t262)),
+            );
+            let t269 = k(2.0) * (t268 + t260);
+            let t270 = T::fused(
+                t125,
+                t263,
+                T::fused(t157, t262, T::fused(t116, t264, t169 * t261)),
+            );
+            let t271 = T::fused(t114, t266, -t270);
+            let t272 = t115 * t266;
+            let t273 = t256 * t118;
+            let t274 = t254 * t118;
+            let t275 = t241 * t118;
+            let t276 = T::fused(
+                t133,
+                t275,
+                -T::fused(t163, t274, -T::fused(-t54, t272, t173 * t273)),
+            );
+            let t277 = k(2.0) * (t276 - t271);
             let t278 = T::fused(
-                k(0.00025),
-                T::fused(t237, t161, t220 * t191),
-                k(2.0) * T::fused(t139, t277, -T::fused(t169, t276, -t275)),
+                t130,
+                t275,
+                T::fused(t159, t274, -T::fused(-t9, t272, t171 * t273)),
             );
-            let t279 = t278 + t273;
+            let t279 = k(2.0) * t278;
             let t280 = T::fused(
-                t176,
+                t157,
                 t274,
-                -T::fused(t230, t188, -T::fused(-t91, t247, t95 * t259)),
+                T::fused(t169, t273, T::fused(t116, t265, t108 * t266)),
             );
-            let t281 = T::fused(
-                -k(0.00025),
-                T::fused(t235, t161, t220 * t188),
-                k(2.0) * T::fused(t136, t277, T::fused(t166, t276, -t280)),
-            );
-            let t282 = t113 * t281;
-            let t283 = T::fused(
-                t165,
-                t270,
-                T::fused(t175, t269, T::fused(t100, t246, t94 * t258)),
-            );
-            let t284 = T::fused(
-                k(2.0),
-                T::fused(t231, t185, -T::fused(t131, t272, t283)),
-                k(0.00025) * T::fused(-t233, t151, t215 * t185),
-            );
-            let t285 = t225 * t123;
+            let t281 = T::fused(t125, t275, t280);
+            let t282 = t91 * (k(2.0) * t281);
+            let t283 = t282
+                + (t282 - T::fused(t97, t279, T::fused(-t93, t269, t96 * t277)));
+            let t284 = t240 * t176;
+            let t285 = t237 * t176;
             let t286 = T::fused(
-                t177,
-                t285,
-                T::fused(t98, t260, T::fused(t92, t248, t229 * t191)),
-            );
-            let t287 = t222 * t123;
-            let t288 = t208 * t123;
-            let t289 = k(2.0) * T::fused(t139, t288, -T::fused(t169, t287, -t286));
-            let t290 = t289 + t284;
-            let t291 = T::fused(
-                t175,
-                t274,
-                T::fused(t230, t185, -T::fused(t100, t247, t94 * t259)),
-            );
-            let t292 = T::fused(
-                -k(0.00025),
-                T::fused(t233, t161, t220 * t185),
-                k(2.0) * T::fused(t131, t277, T::fused(t165, t276, t291)),
-            );
-            let t293 = T::fused(
-                t176,
-                t285,
-                -T::fused(t95, t260, -T::fused(t91, t248, t229 * t188)),
-            );
-            let t294 = k(2.0) * T::fused(t136, t288, T::fused(t166, t287, -t293));
-            let t295 = t294 - t292;
-            let t296 = T::fused(
-                t107,
-                t295,
-                -T::fused(t108, t290, -(t282 + T::fused(t111, t279, t282))),
-            );
-            let t297 = T::fused(t115, t285, -T::fused(t156, t269, t144 * t274));
-            let t298 = T::fused(t118, t287, T::fused(t158, t270, t148 * t276));
-            let t299 = k(2.0) * (t298 + t297);
-            let t300 = T::fused(t115, t287, -T::fused(t156, t270, t144 * t276));
-            let t301 = t134 * (k(2.0) * t300);
-            let t302 = T::fused(t110, t285, -T::fused(-t154, t269, t142 * t274));
-            let t303 = T::fused(t118, t288, T::fused(t158, t272, t148 * t277));
-            let t304 = k(2.0) * (t303 - t302);
-            let t305 = T::fused(t110, t287, -T::fused(-t154, t270, t142 * t276));
-            let t306 = T::fused(t115, t288, -T::fused(t156, t272, t144 * t277));
-            let t307 = k(2.0) * (t306 + t305);
-            let t308 = T::fused(
-                t128,
-                t307,
-                -T::fused(t129, t304, t301 + T::fused(t132, t299, t301)),
-            );
-            let t309 = T::fused(t118, t285, T::fused(t158, t269, t148 * t274));
-            let t310 = k(2.0) * (t303 + t302);
-            let t311 = T::fused(
-                t128,
-                t310,
-                -T::fused(k(2.0), t132 * (k(2.0) * t309), t134 * t299),
-            );
-            let t312 = k(2.0) * (t306 - t305);
-            let t313 = T::fused(t129, t312, t311);
-            let t314 = T::fused(t126, t313, -T::fused(t127, t308, t296));
-            let t315 = t278 - t273;
-            let t316 = t289 - t284;
-            let t317 = T::fused(
-                t175,
-                t285,
-                T::fused(t94, t260, -T::fused(-t100, t248, t229 * t185)),
-            );
-            let t318 = k(2.0) * T::fused(t131, t288, T::fused(t165, t287, t317));
-            let t319 = t107 * t318;
-            let t320 = t319
-                + (t319 - T::fused(t113, t295, T::fused(t108, t315, t111 * t316)));
-            let t321 = k(2.0) * (t298 - t297);
-            let t322 = T::fused(t110, t288, -T::fused(-t154, t272, t142 * t277));
-            let t323 = t129 * (k(2.0) * (t322 + (t300 + t309)));
-            let t324 = t323
-                + (t323 - T::fused(t132, t312, -T::fused(t128, t321, t134 * t304)));
-            let t325 = t128 * (k(2.0) * t322);
-            let t326 = t325
-                + (t325 - T::fused(t134, t307, T::fused(-t129, t321, t132 * t310)));
-            let t327 = T::fused(t127, t326, -T::fused(t126, t324, -t320));
-            let t328 = T::fused(t106, t327, -T::fused(t105, t314, -t268));
-            let t329 = k(2.0) * (t261 + t256);
-            let t330 = t89 * t244;
-            let t331 = T::fused(
-                t61,
-                t252,
-                T::fused(t118, t248, -T::fused(-t158, t246, t148 * t247)),
-            );
-            let t332 = t78 * (k(2.0) * (t266 + (t331 + t330)));
-            let t333 = t332
-                + (t332 - T::fused(t81, t264, -T::fused(t76, t254, t82 * t329)));
-            let t334 = T::fused(
-                t169,
-                t270,
-                -T::fused(t177, t269, T::fused(t92, t246, t98 * t258)),
-            );
-            let t335 = T::fused(
-                k(2.0),
-                T::fused(t231, t191, T::fused(t139, t272, -t334)),
-                k(0.00025) * T::fused(-t237, t151, t215 * t191),
-            );
-            let t336 = t294 + t292;
-            let t337 = T::fused(
-                t108,
-                t336,
-                T::fused(t107, t316, T::fused(-k(2.0), t111 * t335, t113 * t279)),
-            );
-            let t338 = T::fused(t127, t313, T::fused(t126, t308, t337));
-            let t339 = t108 * (t318 - (t281 - t335));
-            let t340 = t339
-                + (t339 - T::fused(t111, t336, -T::fused(-t107, t315, t113 * t290)));
-            let t341 = T::fused(t126, t326, T::fused(t127, t324, t340));
-            let t342 = T::fused(t106, t341, -T::fused(t105, t338, -t333));
-            let t343 = T::fused(t0, t164, T::fused(t3, t193, k(2e-6) * t103));
-            let t344 = T::fused(u2, t173, t214 * t173);
-            let t345 = T::fused(u2, t181, t214 * t181);
-            let t346 = T::fused(-t110, t185, T::fused(-t115, t188, t118 * t191));
-            let t347 = T::fused(-t154, t185, T::fused(t156, t188, t158 * t191));
-            let t348 = T::fused(
-                t210,
-                t345,
-                T::fused(k(0.000125), T::fused(t200, t346, t213 * t347), t228 * t346),
-            );
-            let t349 = T::fused(-t206, t124, T::fused(t211, t344, t348));
-            let t350 = T::fused(-u0, t343, t349);
-            let t351 = t85 * t350;
-            let t352 = k(2.0) * (t253 - t245);
-            let t353 = T::fused(
-                t78,
-                t329,
-                -T::fused(-k(2.0), t82 * (k(2.0) * t330), t81 * t352),
-            );
-            let t354 = T::fused(
-                t105,
-                t327,
-                T::fused(t106, t314, -T::fused(t76, t264, -t353)),
-            );
-            let t355 = T::fused(
-                t76,
-                t262,
-                T::fused(-k(2.0), t81 * (k(2.0) * t331), t82 * t352),
-            );
-            let t356 = T::fused(
-                t105,
-                t341,
-                T::fused(t106, t338, T::fused(t78, t264, t355)),
-            );
-            let t357 = T::fused(t142, t185, T::fused(t144, t188, t148 * t191));
-            let t358 = k(1e-6) * t161;
-            let t359 = T::fused(
-                k(0.000125),
-                T::fused(-t206, t346, t213 * t357),
-                T::fused(-t227, t346, t213 * t358),
-            );
-            let t360 = T::fused(
-                -u1,
-                t164,
-                T::fused(t200, t124, T::fused(t210, t344, T::fused(-t211, t345, t359))),
-            );
-            let t361 = t212 * t173;
-            let t362 = t223 * t181;
-            let t363 = t362 + t361;
-            let t364 = T::fused(
-                -u1,
-                t193,
-                T::fused(t227, t357, T::fused(-t228, t347, t206 * t358)) - t363,
-            );
-            let t365 = T::fused(
-                t174,
                 t181,
-                T::fused(t184, t185, T::fused(t187, t188, T::fused(t190, t191, t358))),
+                t285,
+                -T::fused(t191, t284, -T::fused(-t106, t261, t110 * t273)),
             );
-            let t366 = T::fused(-t182, t173, t365);
-            let t367 = k(1e-6) * t121;
-            let t368 = t367 + t366;
-            let t369 = t367 - t368;
-            let t370 = T::fused(t204, t360, T::fused(-t205, t364, u0 * t369));
-            let t371 = t85 * t370;
-            let t372 = T::fused(
+            let t287 = t225 * t176;
+            let t288 = T::fused(
                 k(2.0),
-                T::fused(-t73, t351, t80 * t371),
-                T::fused(t195, t371, -T::fused(-t77, t354, t75 * t356)),
+                T::fused(t246, t203, -T::fused(t151, t287, t286)),
+                k(0.00025) * T::fused(-t250, t166, t232 * t203),
             );
-            let t373 = T::fused(
-                t80,
-                T::fused(t195, t351, -T::fused(t75, t328, t77 * t342)),
-                t73 * t372,
+            let t289 = t240 * t166;
+            let t290 = T::fused(
+                t192,
+                t289,
+                -T::fused(t245, t206, T::fused(t107, t262, t113 * t274)),
             );
+            let t291 = t237 * t166;
+            let t292 = t225 * t166;
+            let t293 = T::fused(
+                k(0.00025),
+                T::fused(t252, t176, t235 * t206),
+                k(2.0) * T::fused(t154, t292, -T::fused(t184, t291, -t290)),
+            );
+            let t294 = t293 + t288;
+            let t295 = T::fused(
+                t191,
+                t289,
+                -T::fused(t245, t203, -T::fused(-t106, t262, t110 * t274)),
+            );
+            let t296 = T::fused(
+                -k(0.00025),
+                T::fused(t250, t176, t235 * t203),
+                k(2.0) * T::fused(t151, t292, T::fused(t181, t291, -t295)),
+            );
+            let t297 = t128 * t296;
+            let t298 = T::fused(
+                t180,
+                t285,
+                T::fused(t190, t284, T::fused(t115, t261, t109 * t273)),
+            );
+            let t299 = T::fused(
+                k(2.0),
+                T::fused(t246, t200, -T::fused(t146, t287, t298)),
+                k(0.00025) * T::fused(-t248, t166, t232 * t200),
+            );
+            let t300 = t240 * t138;
+            let t301 = T::fused(
+                t192,
+                t300,
+                T::fused(t113, t275, T::fused(t107, t263, t244 * t206)),
+            );
+            let t302 = t237 * t138;
+            let t303 = t225 * t138;
+            let t304 = k(2.0) * T::fused(t154, t303, -T::fused(t184, t302, -t301));
+            let t305 = t304 + t299;
+            let t306 = T::fused(
+                t190,
+                t289,
+                T::fused(t245, t200, -T::fused(t115, t262, t109 * t274)),
+            );
+            let t307 = T::fused(
+                -k(0.00025),
+                T::fused(t248, t176, t235 * t200),
+                k(2.0) * T::fused(t146, t292, T::fused(t180, t291, t306)),
+            );
+            let t308 = T::fused(
+                t191,
+                t300,
+                -T::fused(t110, t275, -T::fused(t106, t263, t244 * t203)),
+            );
+            let t309 = k(2.0) * T::fused(t151, t303, T::fused(t181, t302, -t308));
+            let t310 = t309 - t307;
+            let t311 = T::fused(
+                t122,
+                t310,
+                -T::fused(t123, t305, -(t297 + T::fused(t126, t294, t297))),
+            );
+            let t312 = T::fused(t130, t300, -T::fused(t171, t284, t159 * t289));
+            let t313 = T::fused(t133, t302, T::fused(t173, t285, t163 * t291));
+            let t314 = k(2.0) * (t313 + t312);
+            let t315 = T::fused(t130, t302, -T::fused(t171, t285, t159 * t291));
+            let t316 = t149 * (k(2.0) * t315);
+            let t317 = T::fused(t125, t300, -T::fused(-t169, t284, t157 * t289));
+            let t318 = T::fused(t133, t303, T::fused(t173, t287, t163 * t292));
+            let t319 = k(2.0) * (t318 - t317);
+            let t320 = T::fused(t125, t302, -T::fused(-t169, t285, t157 * t291));
+            let t321 = T::fused(t130, t303, -T::fused(t171, t287, t159 * t292));
+            let t322 = k(2.0) * (t321 + t320);
+            let t323 = T::fused(
+                t143,
+                t322,
+                -T::fused(t144, t319, t316 + T::fused(t147, t314, t316)),
+            );
+            let t324 = T::fused(t133, t300, T::fused(t173, t284, t163 * t289));
+            let t325 = k(2.0) * (t318 + t317);
+            let t326 = T::fused(
+                t143,
+                t325,
+                -T::fused(k(2.0), t147 * (k(2.0) * t324), t149 * t314),
+            );
+            let t327 = k(2.0) * (t321 - t320);
+            let t328 = T::fused(t144, t327, t326);
+            let t329 = T::fused(t141, t328, -T::fused(t142, t323, t311));
+            let t330 = t293 - t288;
+            let t331 = t304 - t299;
+            let t332 = T::fused(
+                t190,
+                t300,
+                T::fused(t109, t275, -T::fused(-t115, t263, t244 * t200)),
+            );
+            let t333 = k(2.0) * T::fused(t146, t303, T::fused(t180, t302, t332));
+            let t334 = t122 * t333;
+            let t335 = t334
+                + (t334 - T::fused(t128, t310, T::fused(t123, t330, t126 * t331)));
+            let t336 = k(2.0) * (t313 - t312);
+            let t337 = T::fused(t125, t303, -T::fused(-t169, t287, t157 * t292));
+            let t338 = t144 * (k(2.0) * (t337 + (t315 + t324)));
+            let t339 = t338
+                + (t338 - T::fused(t147, t327, -T::fused(t143, t336, t149 * t319)));
+            let t340 = t143 * (k(2.0) * t337);
+            let t341 = t340
+                + (t340 - T::fused(t149, t322, T::fused(-t144, t336, t147 * t325)));
+            let t342 = T::fused(t142, t341, -T::fused(t141, t339, -t335));
+            let t343 = T::fused(t121, t342, -T::fused(t120, t329, -t283));
+            let t344 = k(2.0) * (t276 + t271);
+            let t345 = t104 * t259;
+            let t346 = T::fused(
+                t54,
+                t267,
+                T::fused(t133, t263, -T::fused(-t173, t261, t163 * t262)),
+            );
+            let t347 = t93 * (k(2.0) * (t281 + (t346 + t345)));
+            let t348 = t347
+                + (t347 - T::fused(t96, t279, -T::fused(t91, t269, t97 * t344)));
+            let t349 = T::fused(
+                t184,
+                t285,
+                -T::fused(t192, t284, T::fused(t107, t261, t113 * t273)),
+            );
+            let t350 = T::fused(
+                k(2.0),
+                T::fused(t246, t206, T::fused(t154, t287, -t349)),
+                k(0.00025) * T::fused(-t252, t166, t232 * t206),
+            );
+            let t351 = t309 + t307;
+            let t352 = T::fused(
+                t123,
+                t351,
+                T::fused(t122, t331, T::fused(-k(2.0), t126 * t350, t128 * t294)),
+            );
+            let t353 = T::fused(t142, t328, T::fused(t141, t323, t352));
+            let t354 = t123 * (t333 - (t296 - t350));
+            let t355 = t354
+                + (t354 - T::fused(t126, t351, -T::fused(-t122, t330, t128 * t305)));
+            let t356 = T::fused(t141, t341, T::fused(t142, t339, t355));
+            let t357 = T::fused(t121, t356, -T::fused(t120, t353, -t348));
+            let t358 = T::fused(t0, t179, T::fused(t19, t208, k(2e-6) * t118));
+            let t359 = T::fused(u2, t188, t231 * t188);
+            let t360 = T::fused(u2, t196, t231 * t196);
+            let t361 = T::fused(-t125, t200, T::fused(-t130, t203, t133 * t206));
+            let t362 = T::fused(-t169, t200, T::fused(t171, t203, t173 * t206));
+            let t363 = T::fused(
+                t227,
+                t360,
+                T::fused(k(0.000125), T::fused(t215, t361, t230 * t362), t243 * t361),
+            );
+            let t364 = T::fused(-t221, t139, T::fused(t228, t359, t363));
+            let t365 = T::fused(-u0, t358, t364);
+            let t366 = t100 * t365;
+            let t367 = k(2.0) * (t268 - t260);
+            let t368 = T::fused(
+                t93,
+                t344,
+                -T::fused(-k(2.0), t97 * (k(2.0) * t345), t96 * t367),
+            );
+            let t369 = T::fused(
+                t120,
+                t342,
+                T::fused(t121, t329, -T::fused(t91, t279, -t368)),
+            );
+            let t370 = T::fused(
+                t91,
+                t277,
+                T::fused(-k(2.0), t96 * (k(2.0) * t346), t97 * t367),
+            );
+            let t371 = T::fused(
+                t120,
+                t356,
+                T::fused(t121, t353, T::fused(t93, t279, t370)),
+            );
+            let t372 = T::fused(t157, t200, T::fused(t159, t203, t163 * t206));
+            let t373 = k(1e-6) * t176;
             let t374 = T::fused(
-                -k(0.5),
-                t373,
-                T::fused(t5, t198 * t343, t2 * (t198 * t368)),
+                k(0.000125),
+                T::fused(-t221, t361, t230 * t372),
+                T::fused(-t242, t361, t230 * t373),
             );
             let t375 = T::fused(
-                t78,
-                t341,
-                T::fused(t76, t327, T::fused(-t81, t338, t82 * t314)),
+                -u1,
+                t179,
+                T::fused(t215, t139, T::fused(t227, t359, T::fused(-t228, t360, t374))),
             );
-            let t376 = T::fused(-t202, t360, u0 * t364);
-            let t377 = T::fused(
-                t81,
-                t341,
-                -T::fused(t82, t327, -T::fused(t78, t338, t76 * t314)),
-            );
-            let t378 = T::fused(u0, t360, t202 * t364);
+            let t376 = t229 * t188;
+            let t377 = t238 * t196;
+            let t378 = t377 + t376;
             let t379 = T::fused(
-                k(2.0),
-                T::fused(-t106, t376, t105 * t378),
-                T::fused(t203, t378, t377),
+                -u1,
+                t208,
+                T::fused(t242, t372, T::fused(-t243, t362, t221 * t373)) - t378,
             );
             let t380 = T::fused(
-                k(0.5),
-                T::fused(t105, T::fused(t203, t376, t375), t106 * t379),
-                t3 * T::fused(-t36, t193, t199 * t164),
+                t189,
+                t196,
+                T::fused(t199, t200, T::fused(t202, t203, T::fused(t205, t206, t373))),
             );
-            let t381 = T::fused(
-                -t50,
-                t194,
-                T::fused(t0, T::fused(t36, t164, t199 * t193), -t380),
-            );
-            let t382 = T::fused(
-                -t174,
-                T::fused(t215, t181, t220 * t173),
-                t182 * T::fused(-t220, t181, t215 * t173),
-            );
-            let t383 = T::fused(-t206, t344, t200 * t345);
-            let t384 = T::fused(
-                t108,
-                t324,
-                -T::fused(t111, t313, T::fused(t113, t308, t209 * t383)),
-            );
-            let t385 = T::fused(t200, t344, t206 * t345);
-            let t386 = T::fused(
-                -t111,
-                t308,
-                T::fused(k(2.0), T::fused(-t127, t383, t126 * t385), t209 * t385),
-            );
+            let t381 = T::fused(-t197, t188, t380);
+            let t382 = k(1e-6) * t136;
+            let t383 = t382 + t381;
+            let t384 = t382 - t383;
+            let t385 = T::fused(t219, t375, T::fused(-t220, t379, u0 * t384));
+            let t386 = t100 * t385;
             let t387 = T::fused(
-                -t126,
-                T::fused(t107, t326, t384),
-                t127
-                    * T::fused(
-                        t108,
-                        t326,
-                        -T::fused(t107, t324, -T::fused(t113, t313, t386)),
-                    ),
+                k(2.0),
+                T::fused(-t88, t366, t95 * t386),
+                T::fused(t210, t386, -T::fused(-t92, t369, t90 * t371)),
             );
             let t388 = T::fused(
-                -t197,
-                t343,
-                T::fused(-t205, t360, T::fused(-t204, t364, t202 * t369)),
+                t95,
+                T::fused(t210, t366, -T::fused(t90, t343, t92 * t357)),
+                t88 * t387,
             );
             let t389 = T::fused(
-                t70,
-                t163,
-                T::fused(-t56, t194, T::fused(t206, t164, T::fused(t213, t193, t349))),
+                -k(0.5),
+                t388,
+                T::fused(t12, t213 * t358, t21 * (t213 * t383)),
             );
             let t390 = T::fused(
-                t71,
-                t163,
-                T::fused(t66, t366, T::fused(t57, t194, t361 + (t362 + t363))),
-            );
-            let t391 = T::fused(
-                -t9,
-                T::fused(t5, t1, t2 * t4),
-                k(0.0019844017075391885) * t29,
-            );
-            let t392 = k(12.566370614359172) * t32;
-            let t393 = T::fused(
-                -t21,
-                T::fused(-k(6.314572895816972), t3, t61),
-                k(1.2566370614359172) * (u2 * (t8 * t5)),
-            );
-            let t394 = t27
-                * T::fused(
-                    -t3,
-                    t391,
-                    T::fused(-t19, t392, k(0.00012566370614359174) * (t0 * t393)),
-                );
-            let t395 = T::fused(
-                k(1.2629145791633942),
-                t16 * t60,
-                T::fused(t5, k(9.476794145926002) + t62, t24 * t0),
-            );
-            let t396 = k(166631.95167673402)
-                * T::fused(
-                    t392,
-                    T::fused(u2, t53, t58),
-                    k(0.00012566370614359174) * (t7 * t395),
-                );
-            let t397 = T::fused(-t3, t394, k(100000.0) * t391);
-            let t398 = t88 * t244;
-            let t399 = t84 * t244;
-            (
-                t201,
-                t252,
-                t257,
-                t328,
-                t342,
-                t343,
-                t350,
-                t354,
+                t93,
                 t356,
-                t366,
-                t368,
-                t370,
-                t374,
+                T::fused(t91, t342, T::fused(-t96, t353, t97 * t329)),
+            );
+            let t391 = T::fused(-t217, t375, u0 * t379);
+            let t392 = T::fused(
+                t96,
+                t356,
+                -T::fused(t97, t342, -T::fused(t93, t353, t91 * t329)),
+            );
+            let t393 = T::fused(u0, t375, t217 * t379);
+            let t394 = T::fused(
+                k(2.0),
+                T::fused(-t121, t391, t120 * t393),
+                T::fused(t218, t393, t392),
+            );
+            let t395 = T::fused(
+                k(0.5),
+                T::fused(t120, T::fused(t218, t391, t390), t121 * t394),
+                t19 * T::fused(-t82, t208, t214 * t179),
+            );
+            let t396 = T::fused(
+                -t38,
+                t209,
+                T::fused(t0, T::fused(t82, t179, t214 * t208), -t395),
+            );
+            let t397 = T::fused(
+                -t189,
+                T::fused(t232, t196, t235 * t188),
+                t197 * T::fused(-t235, t196, t232 * t188),
+            );
+            let t398 = T::fused(-t221, t359, t215 * t360);
+            let t399 = T::fused(
+                t123,
+                t339,
+                -T::fused(t126, t328, T::fused(t128, t323, t226 * t398)),
+            );
+            (
+                t208,
+                t209,
+                t211,
+                t212,
+                t215,
+                t216,
+                t217,
+                t219,
+                t220,
+                t221,
+                t226,
+                t230,
+                t259,
+                t267,
+                t272,
+                t323,
+                t328,
+                t339,
+                t341,
+                t343,
+                t357,
+                t358,
+                t359,
+                t360,
+                t364,
+                t365,
+                t369,
+                t371,
+                t375,
+                t376,
+                t377,
+                t378,
+                t379,
                 t381,
-                t382,
-                t387,
-                t388,
+                t383,
+                t384,
+                t385,
                 t389,
-                t390,
-                t394,
                 t396,
                 t397,
                 t398,
                 t399,
             )
         };
-        let (t404,) = {
-            let t400 = T::fused(
-                -t24,
-                T::fused(t92, t252, -T::fused(-t85, t398, t98 * t257)),
-                t61 * T::fused(t91, t252, T::fused(-t85, t399, t95 * t257)),
-            );
+        let (t402, t403, t404, t405, t407, t409, t411, t418) = {
+            let t400 = T::fused(t215, t359, t221 * t360);
             let t401 = T::fused(
-                t75,
-                T::fused(t80, t354, t73 * t342),
-                t77 * T::fused(-t73, t328, t80 * t356),
+                -t126,
+                t323,
+                T::fused(k(2.0), T::fused(-t142, t398, t141 * t400), t226 * t400),
             );
             let t402 = T::fused(
-                k(15.791367041742975),
-                T::fused(-t2, t343, t5 * t368),
-                T::fused(k(0.1), t400, k(0.05) * t401),
+                -t141,
+                T::fused(t122, t341, t399),
+                t142
+                    * T::fused(
+                        t123,
+                        t341,
+                        -T::fused(t122, t339, -T::fused(t128, t328, t401)),
+                    ),
             );
             let t403 = T::fused(
-                t196,
-                t350,
-                T::fused(t201, t370, -T::fused(-t61, t398, t24 * t399)),
+                -t212,
+                t358,
+                T::fused(-t220, t375, T::fused(-t219, t379, t217 * t384)),
             );
             let t404 = T::fused(
-                t394,
-                t194,
-                k(12.566370614359172)
-                    * T::fused(-t7, t402, t8 * (k(1.2566370614359172) * t403)),
+                -t85,
+                t178,
+                T::fused(-t40, t209, T::fused(t221, t179, T::fused(t230, t208, t364))),
             );
-            (t404,)
+            let t405 = T::fused(
+                t86,
+                t178,
+                T::fused(t60, t381, T::fused(t41, t209, t376 + (t377 + t378))),
+            );
+            let t406 = T::fused(
+                -t13,
+                T::fused(k(0.1), t54 * (t21 * t5), t21 * t20),
+                t7 * T::fused(t21, t18, t12 * t28),
+            );
+            let t407 = k(12.566370614359172) * t406;
+            let t408 = T::fused(
+                k(0.1),
+                T::fused(t9, k(16.6631951676734) * t0, t54 * (t19 * t52)),
+                k(15.791367041742975) * t12,
+            );
+            let t409 = k(12.566370614359172) * T::fused(t13, t408, t7 * (t21 * t48));
+            let t410 = T::fused(
+                -t7,
+                T::fused(t12, t63, t21 * t73),
+                t13 * T::fused(t21, t66, k(0.1) * (t54 * (t21 * t74))),
+            );
+            let t411 = k(12.566370614359172) * t410;
+            let t412 = t103 * t259;
+            let t413 = t99 * t259;
+            let t414 = T::fused(
+                -t9,
+                T::fused(t107, t267, -T::fused(-t100, t412, t113 * t272)),
+                t54 * T::fused(t106, t267, T::fused(-t100, t413, t110 * t272)),
+            );
+            let t415 = T::fused(
+                t90,
+                T::fused(t95, t369, t88 * t357),
+                t92 * T::fused(-t88, t343, t95 * t371),
+            );
+            let t416 = T::fused(
+                k(15.791367041742975),
+                T::fused(-t21, t358, t12 * t383),
+                T::fused(k(0.1), t414, k(0.05) * t415),
+            );
+            let t417 = T::fused(
+                t211,
+                t365,
+                T::fused(t216, t385, -T::fused(-t54, t412, t9 * t413)),
+            );
+            let t418 = T::fused(
+                t407,
+                t209,
+                k(12.566370614359172)
+                    * T::fused(-t13, t416, t7 * (k(1.2566370614359172) * t417)),
+            );
+            (t402, t403, t404, t405, t407, t409, t411, t418)
         };
         *dfdx = [
             k(0.0),
@@ -5914,43 +5928,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            t28,
-            -t50,
+            -t29,
+            -t38,
             k(0.0),
-            t52,
-            t56,
-            -t57,
+            -t39,
+            t40,
+            -t41,
             k(0.0),
-            t59,
-            t64,
+            t49,
+            -t58,
             k(0.0),
-            -t65,
+            -t59,
             k(0.0),
-            -t66,
+            -t60,
             k(0.0),
-            -t67,
-            t68,
+            -t75,
+            t83,
             k(0.0),
-            -t69,
-            t70,
-            t71,
+            t84,
+            -t85,
+            t86,
             k(0.0),
-            T::fused(t67, t163, T::fused(t59, t366, -T::fused(-t28, t194, t374))),
-            T::fused(-t68, t163, T::fused(t64, t366, t381)),
-            T::fused(k(0.5), t387, -t382),
-            T::fused(t69, t163, -T::fused(t65, t366, T::fused(-t52, t194, t388))),
-            -t389,
-            -t390,
+            T::fused(t75, t178, T::fused(t49, t381, -T::fused(t29, t209, t389))),
+            -T::fused(t83, t178, T::fused(t58, t381, -t396)),
+            T::fused(k(0.5), t402, -t397),
+            -T::fused(t84, t178, T::fused(t59, t381, T::fused(t39, t209, t403))),
+            -t404,
+            -t405,
             k(0.0),
         ];
         *dfdt = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t394,
-            t396,
-            t397,
-            T::fused(-t397, t163, T::fused(t396, t366, t404)),
+            t407,
+            t409,
+            t411,
+            T::fused(-t411, t178, T::fused(t409, t381, t418)),
         ];
     }
     fn joint_input_jacobian(

@@ -18,7 +18,7 @@
 //! * joint_accelerations: 19 operations by normal form; 29 operations by recursion
 //! * joint_accelerations_at: 39 operations by normal form; 49 operations by recursion; 1 more compared
 //! * corrected_accelerations: 80 operations by normal form in the bodies' frames; 80 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 54 operations by normal form of that; 59 operations by derivatives of the balance, from its leaves, normal form; 5 more compared
+//! * joint_jacobian: 55 operations by normal form of that; 56 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -48,7 +48,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 49 | 1 | 80 | 9 of 18 | 1010 | 81 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 | 571 | 96 |
 //! | corrected_solution | both | 45 | 75 | 1 | 121 | 18 of 33 | 6790 | 122 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 15 | 38 | 1 | 54 | 28 of 42 | 129 | 54 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 15 | 39 | 1 | 55 | 28 of 42 | 151 | 55 |
 //!
 //! # Proof
 //!
@@ -3364,7 +3364,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeFreeNutation<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 54 operations (15 ±, 38 ×, 1 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 55 operations (15 ±, 39 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3377,27 +3377,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeFreeNutation<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.cos();
-        let t1 = t0 * t0;
-        let t2 = u0 * T::fused(-k(2.0), t1, k(1.0));
-        let t3 = k(1.0) - t1;
-        let t4 = x1.sin();
-        let t5 = u2 * t4;
-        let t6 = k(5.0) * t5;
-        let t7 = k(3.0) * t1;
-        let t8 = k(1.0) / (k(1.0) + t7);
-        let t9 = t8 * T::fused(-u0, t3, t6);
-        let t10 = t0 * t8;
-        let t11 = u1 * t10;
-        let t12 = u0 * t4;
-        let t13 = T::fused(-k(5.0), u2, t12);
-        let t14 = k(5.0) * t11;
-        let t15 = t8 * t3;
-        let t16 = T::fused(
-            -t7,
-            T::fused(k(2.0), t13 * t15, T::fused(-k(3.3333333333333335), u2, t12)),
-            t13,
-        );
+        let t0 = x1.sin();
+        let t1 = u2 * t0;
+        let t2 = x1.cos();
+        let t3 = t2 * t2;
+        let t4 = k(3.0) * t3;
+        let t5 = k(1.0) / (k(1.0) + t4);
+        let t6 = t3 * t5;
+        let t7 = k(1.0) - t3;
+        let t8 = T::fused(-k(6.0), t6 * t7, k(1.0));
+        let t9 = T::fused(-k(2.0), t3, t8);
+        let t10 = u1 * t5
+            * T::fused(-k(30.0), (k(0.16666666666666666) - t6) * t1, u0 * t9);
+        let t11 = t2 * t5;
+        let t12 = u1 * t11;
+        let t13 = k(5.0) * u2;
+        let t14 = u0 * t0;
+        let t15 = k(5.0) * t12;
+        let t16 = k(1.6666666666666667) * u0;
+        let t17 = t5 * t13;
+        let t18 = u1 * T::fused(-t9, t17, t14 * T::fused(-t5, t4 - t8, k(1.0)));
+        let t19 = T::fused(t5, t7, k(1.0));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3418,23 +3418,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeFreeNutation<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            u1 * t8 * (T::fused(-k(6.0), t1 * t9, t6) - t2),
+            -t10,
             k(0.0),
-            t4 * t11,
-            t13 * t10,
-            -t14,
+            t0 * t12,
+            (t14 - t13) * t11,
+            -t15,
             k(0.0),
-            -(k(0.6666666666666666) * (u0 * T::fused(k(2.5), t5, t2))),
+            -(T::fused(k(0.8), u0 * (k(0.5) - t3), t1) * t16),
             k(0.0),
-            k(1.3333333333333333) * (t0 * T::fused(k(1.25), u2, t12)),
+            k(1.3333333333333333) * (t2 * T::fused(k(1.25), u2, t14)),
             k(0.0),
-            k(1.6666666666666667) * (u0 * t0),
+            t2 * t16,
             k(0.0),
-            u1 * T::fused(t8, t16, t12),
+            t18,
             k(0.0),
-            -(u1 * t0 * (k(1.0) + t15)),
-            -(t0 * (u0 - t9)),
-            t4 * t14,
+            -(u1 * t2 * t19),
+            -(t2 * T::fused(-t0, t17, u0 * t19)),
+            t0 * t15,
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

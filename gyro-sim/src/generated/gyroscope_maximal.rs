@@ -16,7 +16,7 @@
 //! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
 //! * joint_accelerations_at: 41 operations by normal form; 60 operations by recursion; 1 more compared
 //! * corrected_accelerations: 151 operations by normal form in the bodies' frames; 153 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 61 operations by derivatives of u̇, from its leaves; 61 operations by normal form of that; 5 more compared
+//! * joint_jacobian: 59 operations by derivatives of the balance, from its leaves, normal form; 59 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 12 of 24 | 2594 | 152 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 86 | 125 | 1 | 212 | 0 of 21 | 2605 | 213 |
 //! | corrected_solution | both | 117 | 184 | 2 | 303 | 12 of 45 | 60646 | 305 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 12 | 48 | 1 | 61 | 28 of 42 | 182 | 61 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 14 | 44 | 1 | 59 | 28 of 42 | 178 | 59 |
 //!
 //! # Proof
 //!
@@ -4658,7 +4658,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 61 operations (12 ±, 48 ×, 1 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 59 operations (14 ±, 44 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -4671,33 +4671,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.sin();
-        let t1 = k(1e-5) * t0;
-        let t2 = u1 * t1;
-        let t3 = u0 * t0;
-        let t4 = T::fused(-k(0.20025), t3, u2);
-        let t5 = x1.cos();
-        let t6 = u0 * t5;
-        let t7 = k(1e-5) * t5;
-        let t8 = u1 * t7;
-        let t9 = k(1.0) / T::fused(k(6.00125e-6), t5 * t5, k(2e-6));
-        let t10 = t4 * t8;
-        let t11 = T::fused(
-            -t9,
-            T::fused(t4, t2, t8 * (k(0.20025) * t6)),
-            t10 * (t9 * t9 * (k(1.20025e-5) * (t0 * t5))),
+        let t0 = x1.cos();
+        let t1 = t0 * t0;
+        let t2 = k(1.0) / T::fused(k(3.000625), t1, k(1.0));
+        let t3 = k(500000.0) * t2;
+        let t4 = k(4.9937578027465666) * u2;
+        let t5 = t1 * t2;
+        let t6 = k(0.166631951676734) - t5;
+        let t7 = x1.sin();
+        let t8 = T::fused(
+            -(t7 * t6),
+            t4,
+            u0 * T::fused(t1, t5 - k(0.333263903353468), t6),
         );
-        let t12 = t9 * (t8 * (k(0.20025) * t0));
-        let t13 = t9 * (t4 * t7);
-        let t14 = t9 * t8;
-        let t15 = T::fused(k(0.399875), t3, u2);
-        let t16 = T::fused(
+        let t9 = k(1.2017503125e-5) * (u1 * t8) * t3;
+        let t10 = k(2.0025e-6) * t0;
+        let t11 = u1 * t7 * t10 * t3;
+        let t12 = u0 * t7;
+        let t13 = t12 - t4;
+        let t14 = t13 * t10 * t3;
+        let t15 = k(1e-5) * u1;
+        let t16 = t0 * t15;
+        let t17 = t16 * t3;
+        let t18 = k(1.2503907471084714) * u2;
+        let t19 = T::fused(
+            -k(7.9975e-6),
+            u0 * T::fused(t7, t18, u0 * (k(0.5) - t1)),
+            k(0.0001) * t7,
+        );
+        let t20 = t0 * (k(1e-5) * u0);
+        let t21 = T::fused(
             t7,
-            u0 * (k(0.399875) * t6),
-            T::fused(-u0, t15, k(10.0)) * t1,
+            t9,
+            k(100000.0) * (t15 * T::fused(-k(1.00125), t5 * t13, t12)),
         );
-        let t17 = u0 * t7;
-        let t18 = T::fused(k(100000.0), u0 * t2, T::fused(t0, t11, t5 * (t9 * t10)));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -4718,23 +4725,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMaximal<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -t11,
+            -t9,
             k(0.0),
-            t12,
-            -t13,
-            -t14,
+            t11,
+            t14,
+            -t17,
             k(0.0),
-            k(166631.95167673402) * t16,
+            k(166631.95167673402) * t19,
             k(0.0),
-            k(166631.95167673402) * (t7 * T::fused(u0, k(0.399875) * t0, t15)),
+            k(1.3326390335346803) * (t0 * (t12 + t18)),
             k(0.0),
-            k(166631.95167673402) * t17,
+            k(166631.95167673402) * t20,
             k(0.0),
-            t18,
+            t21,
             k(0.0),
-            -T::fused(t0, t12, k(100000.0) * t8),
-            T::fused(-k(100000.0), t17, t0 * t13),
-            t0 * t14,
+            -T::fused(t7, t11, k(100000.0) * t16),
+            -T::fused(t7, t14, k(100000.0) * t20),
+            t7 * t17,
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

@@ -16,7 +16,7 @@
 //! * joint_accelerations: 32 operations by normal form; 54 operations by recursion
 //! * joint_accelerations_at: 52 operations by normal form; 74 operations by recursion; 1 more compared
 //! * corrected_accelerations: 162 operations by normal form in the bodies' frames; 164 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 79 operations by derivatives of u̇, from its leaves; 79 operations by normal form of that; 5 more compared
+//! * joint_jacobian: 79 operations by derivatives of u̇, from its leaves; 79 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -16,7 +16,7 @@
 //! * joint_accelerations: 61 operations by normal form; 91 operations by recursion
 //! * joint_accelerations_at: 99 operations by normal form; 129 operations by recursion; 1 more compared
 //! * corrected_accelerations: 179 operations by normal form in the bodies' frames; 193 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 226 operations by derivatives of the balance, from its leaves, normal form; 226 operations by derivatives of the balance, from its roots, normal form; 5 more compared
+//! * joint_jacobian: 242 operations by derivatives of u̇, from its leaves; 242 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 65 | 112 | 2 | 179 | 6 of 18 | 18438 | 180 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 853 | 134 |
 //! | corrected_solution | both | 89 | 153 | 2 | 244 | 6 of 33 | 214232 | 245 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 73 | 149 | 4 | 226 | 24 of 42 | 4259 | 227 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 70 | 170 | 2 | 242 | 24 of 42 | 2805 | 242 |
 //!
 //! # Proof
 //!
@@ -3774,7 +3774,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRadialImbalance<T
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 226 operations (73 ±, 149 ×, 4 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 242 operations (70 ±, 170 ×, 2 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3789,118 +3789,93 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRadialImbalance<T
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = k(1.00032e-5) * t0;
-        let t2 = x2.cos();
-        let t3 = k(3.2e-9) * t2;
-        let t4 = u0 * t0;
-        let t5 = T::fused(-t4, u0 * t3, k(0.00016));
-        let t6 = x2.sin();
-        let t7 = t2 * t2;
-        let t8 = k(6.4e-9) * u1;
-        let t9 = t6 * t3;
-        let t10 = T::fused(
+        let t1 = u0 * t0;
+        let t2 = x1.sin();
+        let t3 = u0 * t2;
+        let t4 = T::fused(k(0.4), t3, u2);
+        let t5 = x2.cos();
+        let t6 = u2 * t5;
+        let t7 = k(3.2e-9) * t5;
+        let t8 = u0 * t7;
+        let t9 = t3 * t8;
+        let t10 = T::fused(-t1, t8, k(0.00016));
+        let t11 = T::fused(k(6.4e-9), t3 * t6, T::fused(t2, t9, t0 * t10));
+        let t12 = T::fused(k(1e-5), T::fused(-t1, k(0.4) * t1, t3 * t4), t5 * t11);
+        let t13 = x2.sin();
+        let t14 = t13 * t7;
+        let t15 = t0 * t14;
+        let t16 = t5 * t7;
+        let t17 = k(1.0) / (k(6e-6) + t16);
+        let t18 = t17 * t15;
+        let t19 = t2 * t14;
+        let t20 = t17 * t19;
+        let t21 = T::fused(-t2, t10, k(6.4e-9) * (t1 * t6));
+        let t22 = k(6.4e-9) * u1;
+        let t23 = u2 * t22;
+        let t24 = T::fused(t13, t23, t21);
+        let t25 = T::fused(t5, t24, k(1e-5) * (t1 * t4));
+        let t26 = t5 * t5;
+        let t27 = k(1563.5) - t26;
+        let t28 = T::fused(t23, t27, T::fused(-k(2e-6), u1 * t3, t13 * t21));
+        let t29 = T::fused(t0, T::fused(t13, t11, k(2e-6) * (u1 * t1)), t2 * t28);
+        let t30 = t0 * t0;
+        let t31 = k(1876.0) - t26;
+        let t32 = k(1.0) / T::fused(t15, t18, -T::fused(k(3.2e-9), t31 * t30, k(2e-6)));
+        let t33 = T::fused(
+            k(3.2e-9),
+            t31 * (k(2.0) * (t2 * t0)),
+            -T::fused(t15, t20, t18 * t19),
+        );
+        let t34 = t32 * t32;
+        let t35 = T::fused(-t0, t28, t18 * t25);
+        let t36 = T::fused(-t32, t29 - T::fused(t18, t12, t25 * t20), t35 * (t34 * t33));
+        let t37 = k(3.2e-9) * t13;
+        let t38 = t1 * (u0 * t37);
+        let t39 = T::fused(k(6.4e-9), t1 * (u2 * t13), t2 * t38);
+        let t40 = T::fused(t5, T::fused(-t5, t23, t39), t13 * t24);
+        let t41 = T::fused(-t13, t37, t16);
+        let t42 = t0 * t41;
+        let t43 = t17 * t17 * T::fused(t5, t37, t14);
+        let t44 = T::fused(t17, t42, t15 * t43);
+        let t45 = k(2.0) * (t13 * t5);
+        let t46 = T::fused(
             t0,
-            T::fused(t6, t5, t8 * (u0 * (k(1562.5) + t7))),
-            u1 * u1 * t9,
+            T::fused(t23, t45, T::fused(-t13, t39, t5 * t21)),
+            -T::fused(-t18, t40, t25 * t44),
         );
-        let t11 = x1.sin();
-        let t12 = u0 * t11;
-        let t13 = T::fused(-t11, t5, k(6.4e-9) * (t4 * (u2 * t2)));
-        let t14 = u2 * t8;
-        let t15 = T::fused(t14, k(1563.5) - t7, T::fused(-k(2e-6), u1 * t12, t6 * t13));
-        let t16 = T::fused(
-            t2,
-            T::fused(t6, t14, t13),
-            k(1e-5) * (t4 * T::fused(k(0.4), t12, u2)),
+        let t47 = t34 * T::fused(k(3.2e-9), t30 * t45, -T::fused(t15, t44, t18 * t42));
+        let t48 = T::fused(-t32, t46, t35 * t47);
+        let t49 = T::fused(t1, t7, t0 * t8);
+        let t50 = T::fused(k(6.4e-9), t0 * t6, t2 * t49);
+        let t51 = T::fused(k(1e-5), T::fused(t1, k(0.4) * t2, t0 * t4), t5 * t50);
+        let t52 = T::fused(t18, t51, t0 * T::fused(-t13, t50, k(2e-6) * (u1 * t2)));
+        let t53 = t32 * t52;
+        let t54 = k(6.4e-9) * u2;
+        let t55 = t5 * (t13 * t54);
+        let t56 = t32 * T::fused(t18, t55, t0 * T::fused(-t27, t54, k(2e-6) * t3));
+        let t57 = k(6.4e-9) * (t5 * t1);
+        let t58 = T::fused(k(1e-5), t1, t5 * T::fused(t13, t22, t57));
+        let t59 = t32 * T::fused(-t18, t58, t0 * T::fused(t22, t27, t13 * t57));
+        let t60 = t32 * t35;
+        let t61 = T::fused(-t17, t40, t25 * t43) - T::fused(t18, t48, t60 * t44);
+        let t62 = k(1562.5) + t26;
+        let t63 = u0 * t62;
+        let t64 = T::fused(-t0, t13 * t9, t2 * T::fused(t13, t10, t22 * t63));
+        let t65 = T::fused(
+            u1 * u1,
+            t41,
+            t0 * T::fused(-t22, u0 * t45, T::fused(t13, t38, t5 * t10)),
         );
-        let t17 = t0 * t9;
-        let t18 = k(1.0) / T::fused(t2, t3, k(6e-6));
-        let t19 = t18 * t17;
-        let t20 = t0 * t0;
-        let t21 = T::fused(-t0, t15, t19 * t16)
-            / T::fused(t17, t19, -T::fused(k(3.2e-9), (k(1876.0) - t7) * t20, k(2e-6)));
-        let t22 = t0 * t21;
-        let t23 = u0 * (k(0.5) - t20);
-        let t24 = k(2.0) * u1;
-        let t25 = k(6.4e-9) * t2;
-        let t26 = t2 * t25;
-        let t27 = k(8e-6) + t26;
-        let t28 = u2 * t4;
-        let t29 = T::fused(-t18, t16, t19 * t21);
-        let t30 = t6 * t2;
-        let t31 = k(3.2e-9) * t30;
-        let t32 = T::fused(
-            -t27,
-            T::fused(t11, t22, t24 * t23),
-            t31 * T::fused(-t11, T::fused(k(4.0), t28, t29), u1 * (u1 * t0)),
-        );
-        let t33 = k(1.00064e-5) - t26;
-        let t34 = u2 * t33;
-        let t35 = u1 * t11;
-        let t36 = T::fused(
-            t35,
-            t34,
-            -T::fused(T::fused(-k(99968.01023672425), t10, t11 * t21), t1, t32),
-        );
-        let t37 = k(1e-5) + t26;
-        let t38 = u1 * t37;
-        let t39 = u0 * t4;
-        let t40 = T::fused(-t25, t39, k(0.00016));
-        let t41 = T::fused(t21, t1, t11 * T::fused(u0, t38, t6 * t40));
-        let t42 = u2 * t37;
-        let t43 = k(0.00016) * t2;
-        let t44 = u0 * t27;
-        let t45 = T::fused(
-            t23,
-            t44,
-            T::fused(t11, T::fused(-t21, t31, u0 * t42), t0 * t43),
-        );
-        let t46 = k(1.0) / T::fused(k(3.2e-9), t7, k(6e-6));
-        let t47 = t0 * t31;
-        let t48 = t47 * t46;
-        let t49 = T::fused(
-            -t47,
-            t48,
-            T::fused(
-                -t11,
-                k(1.00032e-5) * t11,
-                T::fused(-k(0.5), t20 * t27, k(1.20032e-5)),
-            ),
-        );
-        let t50 = k(1.0) / t49;
-        let t51 = t50 * T::fused(t48, t45, T::fused(t11, t41, -t36));
-        let t52 = T::fused(k(2.0), t28, t29);
-        let t53 = k(3.2e-9) - t26;
-        let t54 = T::fused(-u2, t24, t22);
-        let t55 = t6 * t25;
-        let t56 = T::fused(k(1.28e-8), t4 * t30, u1 * t53);
-        let t57 = T::fused(-t0, T::fused(t39, t53, t43), u1 * t56);
-        let t58 = T::fused(
-            t11,
-            t57,
-            -T::fused(t0, T::fused(t53, t52, t55 * t54), t35 * t56),
-        );
-        let t59 = T::fused(t53, t54, t6 * T::fused(-t25, t52, t11 * t40));
-        let t60 = t50 * T::fused(t48, t59, -t58);
-        let t61 = t11 * t44;
-        let t62 = t0 * (t42 + t61);
-        let t63 = t4 * t55;
-        let t64 = t0 * (t38 - t63);
-        let t65 = u2 * t55;
         let t66 = T::fused(
-            -t62,
-            t48,
-            T::fused(-t11, t64, t0 * T::fused(t0, t65, t35 * t27)),
+            t2,
+            t53,
+            k(99968.01023672425) * (t0 * T::fused(-t22, t62, t13 * t49)),
         );
-        let t67 = t66 * t50;
-        let t68 = T::fused(u1, t55, t4 * t37);
-        let t69 = T::fused(
-            -t65,
-            t48,
-            T::fused(-t11, t68, T::fused(t35, t55, t0 * (t34 + t61))),
+        let t67 = T::fused(
+            -t2,
+            t56,
+            k(99968.01023672425) * T::fused(t14, k(2.0) * u1, t0 * (k(6.4e-9) * t63)),
         );
-        let t70 = t69 * t50;
-        let t71 = T::fused(-t68, t48, t0 * T::fused(u1, t33, t63)) * t50;
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3921,23 +3896,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRadialImbalance<T
             k(0.0),
             k(1.0),
             k(0.0),
-            -t51,
-            t60,
+            t36,
+            -t48,
+            -t53,
+            -t56,
+            t59,
+            k(0.0),
+            T::fused(-t17, t12, T::fused(t18, t36, t60 * t20)),
+            t61,
+            T::fused(-t18, t53, t17 * t51),
+            T::fused(-t18, t56, t17 * t55),
+            T::fused(t18, t59, t17 * t58),
+            k(0.0),
+            T::fused(k(99968.01023672425), t64, T::fused(-t2, t36, t0 * t60)),
+            T::fused(-k(99968.01023672425), t65, t2 * t48),
+            t66,
             -t67,
-            -t70,
-            -t71,
-            k(0.0),
-            -T::fused(t46, t45, t48 * t51),
-            T::fused(t46, t59, t48 * t60),
-            T::fused(-t48, t67, t62 * t46),
-            T::fused(-t48, t70, t65 * t46),
-            T::fused(-t48, t71, t68 * t46),
-            k(0.0),
-            T::fused(k(99968.01023672425), t41, t11 * t51),
-            T::fused(-t11, t60, k(99968.01023672425) * t57),
-            T::fused(-k(99968.01023672425), t64, t11 * t67),
-            T::fused(-k(99968.01023672425), t68, t11 * t70),
-            t11 * t71,
+            -(t2 * t59),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

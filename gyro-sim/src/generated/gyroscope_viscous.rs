@@ -16,7 +16,7 @@
 //! * joint_accelerations: 28 operations by normal form; 50 operations by recursion
 //! * joint_accelerations_at: 48 operations by normal form; 70 operations by recursion; 1 more compared
 //! * corrected_accelerations: 158 operations by normal form in the bodies' frames; 160 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 79 operations by derivatives of the balance, from its leaves, normal form; 79 operations by derivatives of the balance, from its roots, normal form; 5 more compared
+//! * joint_jacobian: 81 operations by derivatives of u̇, from its leaves; 81 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 60 | 97 | 1 | 158 | 6 of 18 | 2843 | 159 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 81 | 0 | 141 | 0 of 15 | 743 | 141 |
 //! | corrected_solution | both | 98 | 148 | 1 | 247 | 6 of 33 | 24609 | 248 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 23 | 55 | 1 | 79 | 38 of 56 | 238 | 79 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 20 | 60 | 1 | 81 | 38 of 56 | 222 | 81 |
 //!
 //! # Proof
 //!
@@ -3750,7 +3750,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeViscous<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 79 operations (23 ±, 55 ×, 1 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 81 operations (20 ±, 60 ×, 1 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3763,34 +3763,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeViscous<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.cos();
+        let t0 = x1.sin();
         let t1 = k(1e-5) * t0;
         let t2 = u1 * t1;
-        let t3 = x1.sin();
-        let t4 = u2 * t3;
-        let t5 = u0 * t3;
-        let t6 = T::fused(-k(0.20025), t5, u2);
-        let t7 = t0 * t0;
-        let t8 = k(1.0) / T::fused(k(6.00125e-6), t7, k(2e-6));
-        let t9 = t8 * T::fused(k(1e-6), u0 - t4, t6 * t2);
-        let t10 = T::fused(
-            -t0,
-            T::fused(-k(100000.0), T::fused(u0, t2, k(1e-6) * u2), t3 * t9),
-            u1 * T::fused(-k(0.5995), u0 * (t7 + k(0.3340283569641368)), t4),
+        let t3 = u0 * t0;
+        let t4 = T::fused(-k(0.20025), t3, u2);
+        let t5 = x1.cos();
+        let t6 = u0 * t5;
+        let t7 = k(1e-5) * t5;
+        let t8 = u1 * t7;
+        let t9 = T::fused(k(1e-6), u2 * t5, T::fused(t4, t2, t8 * (k(0.20025) * t6)));
+        let t10 = k(1.0) / T::fused(k(6.00125e-6), t5 * t5, k(2e-6));
+        let t11 = T::fused(k(1e-6), T::fused(-u2, t0, u0), t4 * t8);
+        let t12 = T::fused(-t10, t9, t11 * (t10 * t10 * (k(1.20025e-5) * (t0 * t5))));
+        let t13 = t10 * T::fused(-t8, k(0.20025) * t0, k(1e-6));
+        let t14 = t10 * (t4 * t7);
+        let t15 = t10 * T::fused(k(1e-6), t0, -t8);
+        let t16 = T::fused(k(0.399875), t3, u2);
+        let t17 = T::fused(
+            t7,
+            u0 * (k(0.399875) * t6),
+            T::fused(-u0, t16, k(10.0)) * t1,
         );
-        let t11 = k(2.0025e-6) * (t3 * t0);
-        let t12 = t8 * T::fused(-k(1e-5), t10, t9 * t11);
-        let t13 = t8 * T::fused(-u1, t11, k(1e-6));
-        let t14 = t8 * (t6 * t1);
-        let t15 = t8 * T::fused(k(1e-6), t3, -t2);
-        let t16 = T::fused(
-            -k(1e-5),
-            u0 * T::fused(k(0.79975), u0 * (k(0.5) - t7), t4),
-            k(0.0001) * t3,
-        );
-        let t17 = u0 * t1;
-        let t18 = k(0.5) * x1;
-        let t19 = u0 * (t18.cos() * (k(2.0) * t18.sin()));
+        let t18 = u0 * t7;
+        let t19 = T::fused(k(100000.0), u0 * t2, T::fused(t0, t12, t5 * (t10 * t11)));
+        let t20 = k(0.5) * x1;
+        let t21 = u0 * (t20.cos() * (k(2.0) * t20.sin()));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3821,25 +3819,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeViscous<T> {
             t15,
             k(0.0),
             k(0.0),
-            k(166631.95167673402) * t16,
-            k(0.0),
-            k(166631.95167673402) * (t1 * T::fused(k(0.79975), t5, u2)),
-            k(-0.166631951676734),
             k(166631.95167673402) * t17,
             k(0.0),
+            k(166631.95167673402) * (t7 * T::fused(u0, k(0.399875) * t0, t16)),
+            k(-0.166631951676734),
+            k(166631.95167673402) * t18,
             k(0.0),
-            T::fused(t3, t12, T::fused(t0, t9, u1 * t5)),
             k(0.0),
-            T::fused(-k(100000.0), t2, t3 * t13),
-            T::fused(-k(100000.0), t17, t3 * t14),
-            -T::fused(t3, t15, k(0.1)),
+            t19,
+            k(0.0),
+            T::fused(-k(100000.0), t8, t0 * t13),
+            T::fused(-k(100000.0), t18, t0 * t14),
+            -T::fused(t0, t15, k(0.1)),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
             -(k(2e-6) * u0),
             -(k(2e-6) * u1),
-            k(2e-6) * (t19 - (u2 + t19)),
+            k(2e-6) * (t21 - (u2 + t21)),
             k(0.0),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];

@@ -17,7 +17,7 @@
 //! * joint_accelerations: 3 operations by normal form; 4 operations by recursion
 //! * joint_accelerations_at: 19 operations by normal form; 20 operations by recursion; 1 more compared
 //! * corrected_accelerations: 21 operations by normal form in the bodies' frames; 21 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 5 more compared
+//! * joint_jacobian: 1 operations by derivatives of u̇, from its leaves; 1 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

@@ -15,7 +15,7 @@
 //! * joint_accelerations: 492 operations by normal form; 633 operations by recursion
 //! * joint_accelerations_at: 878 operations by normal form; 980 operations by recursion on the bodies' spins; 1 more compared
 //! * corrected_accelerations: 1949 operations by elimination in maximal coordinates; 1060 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
-//! * joint_jacobian: 4815 operations by derivatives of u̇, from its leaves; 4815 operations by normal form of that; 5 more compared
+//! * joint_jacobian: 4815 operations by derivatives of u̇, from its leaves; 4815 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

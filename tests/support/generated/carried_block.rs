@@ -15,7 +15,7 @@
 //! * joint_accelerations: 217 operations by normal form; 1232 operations by recursion
 //! * joint_accelerations_at: 634 operations by normal form; 1649 operations by recursion; 1 more compared
 //! * corrected_accelerations: 914 operations by normal form in the bodies' frames; 1017 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 1582 operations by derivatives of the balance, from its leaves, normal form; 1582 operations by normal form of that; 5 more compared
+//! * joint_jacobian: 1657 operations by derivatives of u̇, from its leaves; 1657 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -43,7 +43,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 397 | 514 | 3 | 914 | 0 of 12 | 1.2e7 | 915 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 392 | 490 | 0 | 882 | 0 of 8 | 518437 | 882 |
 //! | corrected_solution | both | 610 | 765 | 3 | 1378 | 0 of 20 | 1.0e9 | 1379 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 711 | 867 | 4 | 1582 | 46 of 90 | 1.3e7 | 1583 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 732 | 922 | 3 | 1657 | 46 of 90 | 1.3e7 | 1657 |
 //!
 //! # Proof
 //!
@@ -10520,7 +10520,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1582 operations (711 ±, 867 ×, 4 ÷) and 8 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1657 operations (732 ±, 922 ×, 3 ÷) and 8 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -10538,32 +10538,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
         let u2 = x[6];
         let u3 = x[7];
         let (
-            t10,
+            t6,
             t17,
-            t23,
+            t34,
             t49,
-            t101,
-            t110,
-            t125,
-            t134,
-            t138,
-            t142,
-            t147,
-            t148,
-            t149,
-            t150,
+            t102,
+            t117,
+            t140,
+            t146,
             t151,
-            t152,
-            t153,
-            t154,
             t155,
-            t156,
-            t157,
-            t158,
-            t159,
             t160,
             t161,
-            t162,
             t163,
             t164,
             t165,
@@ -10572,9 +10558,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             t168,
             t169,
             t170,
+            t171,
             t172,
-            t173,
-            t174,
+            t175,
             t176,
             t177,
             t178,
@@ -10587,8 +10573,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             t185,
             t186,
             t187,
-            t188,
             t189,
+            t190,
             t191,
             t192,
             t193,
@@ -10599,187 +10585,135 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = x3.cos();
-            let t1 = x3.sin();
-            let t2 = T::fused(
+            let t0 = x0.sin();
+            let t1 = x0.cos();
+            let t2 = x3.sin();
+            let t3 = x3.cos();
+            let t4 = T::fused(
+                k(0.348),
+                t2 * T::fused(-k(0.8714346530438485), t0, t1),
+                k(0.3313333333333333) * (t3 * T::fused(k(0.1790744466800805), t0, t1)),
+            );
+            let t5 = T::fused(
                 -k(0.027555555555555555),
-                t0,
-                k(0.012444444444444444) * t1,
+                t3,
+                k(0.012444444444444444) * t2,
             );
-            let t3 = x1 * t2;
-            let t4 = k(0.010245185185185185) * t0;
-            let t5 = T::fused(k(0.012444444444444444), t0, k(0.027555555555555555) * t1);
-            let t6 = x2 * t5;
-            let t7 = k(0.002191111111111111) * t1;
-            let t8 = t7 + t6 + (t4 - t3);
-            let t9 = k(0.014687407407407408) - t8;
-            let t10 = k(68.08553560621344) * t2;
-            let t11 = T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) + t2;
-            let t12 = T::fused(-t10, t9, t11);
+            let t6 = k(68.08553560621344) * t5;
+            let t7 = k(1.4) * t1;
+            let t8 = k(1.5777777777777777) * t0;
+            let t9 = T::fused(t6, t4, t8 + t7);
+            let t10 = T::fused(
+                k(0.012444444444444444),
+                t3,
+                k(0.027555555555555555) * t2,
+            );
+            let t11 = k(2.25) * t10;
+            let t12 = t6 * t11;
             let t13 = k(2.25) * t5;
-            let t14 = t10 * t13;
-            let t15 = k(1.0) / T::fused(-t10, k(2.25) * t2, k(0.6));
-            let t16 = t15 * t14;
-            let t17 = k(68.08553560621344) * t5;
-            let t18 = T::fused(k(0.26666666666666666), x2, k(0.03911111111111111)) - t5;
-            let t19 = T::fused(-t16, t12, T::fused(t17, t9, t18));
-            let t20 = k(1.0) / T::fused(t14, t16, -T::fused(-t13, t17, k(0.6)));
-            let t21 = t20 * t19;
-            let t22 = t15 * t12;
-            let t23 = k(30.26023804720597) * t9;
-            let t24 = T::fused(-k(0.06755555555555555), t1, k(0.11693827160493828) * t0);
-            let t25 = k(0.0004938271604938272) * t0;
-            let t26 = k(0.03155555555555556) * t1;
-            let t27 = t26 - t25;
-            let t28 = T::fused(-k(0.01146962962962963), t1, k(0.03106238683127572) * t0)
-                + T::fused(x1, t24, x2 * t27);
-            let t29 = k(0.5925925925925926) * (x1 * (x1 + k(0.48233333333333334)));
-            let t30 = T::fused(-k(0.11851851851851852), x1, k(0.0066172839506172835));
-            let t31 = x2 * T::fused(k(0.1259259259259259), x2, t30);
-            let t32 = T::fused(-k(2.7249211547792336), t1, t0);
-            let t33 = T::fused(
-                -t9,
-                t23,
-                T::fused(
-                    k(0.002714074074074074),
-                    t1 * t32,
-                    t31 + (t29 + (k(0.3136290534979424) - t28)),
-                ),
+            let t14 = t6 * t13;
+            let t15 = k(1.0) / (k(0.6) - t14);
+            let t16 = t15 * t12;
+            let t17 = k(68.08553560621344) * t10;
+            let t18 = k(4.0) * t1;
+            let t19 = k(2.2222222222222223) * t0;
+            let t20 = T::fused(t16, t9, T::fused(t17, t4, t19 - t18));
+            let t21 = x1 * t5;
+            let t22 = x2 * t10;
+            let t23 = k(0.002191111111111111) * t2;
+            let t24 = k(0.010245185185185185) * t3;
+            let t25 = k(0.014687407407407408) - t24 - t23 - t22 + t21;
+            let t26 = t17 * t25;
+            let t27 = t6 * t25;
+            let t28 = t27
+                - (T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) + t5);
+            let t29 = T::fused(
+                t16,
+                t28,
+                t26
+                    + (T::fused(k(0.26666666666666666), x2, k(0.03911111111111111))
+                        - t10),
             );
-            let t34 = k(1.0) / T::fused(t19, t21, T::fused(-t12, t22, t33));
-            let t35 = x0.cos();
-            let t36 = t35 * t0;
-            let t37 = x0.sin();
-            let t38 = t37 * t1;
-            let t39 = t35 * t1;
-            let t40 = t37 * t0;
-            let t41 = T::fused(k(0.348), t39, k(0.059333333333333335) * t40)
-                - T::fused(-k(0.3313333333333333), t36, k(0.3032592592592593) * t38);
-            let t42 = T::fused(k(1.4), t35, k(1.5777777777777777) * t37);
-            let t43 = T::fused(t10, t41, t42);
-            let t44 = T::fused(-k(4.0), t35, k(2.2222222222222223) * t37);
-            let t45 = T::fused(t16, t43, T::fused(t17, t41, t44));
-            let t46 = T::fused(
-                k(1.4),
-                x2 * T::fused(-k(1.126984126984127), t35, t37),
-                -T::fused(k(0.5665925925925926), t35, k(2.518) * t37),
-            );
-            let t47 = T::fused(-k(0.3032592592592593), t36, k(0.3313333333333333) * t38)
-                - T::fused(k(0.059333333333333335), t39, k(0.348) * t40);
-            let t48 = T::fused(
-                t41,
-                t23,
-                t47
-                    + T::fused(
-                        k(4.0),
-                        x1 * T::fused(k(0.5555555555555556), t35, t37),
-                        -t46,
-                    ),
-            );
-            let t49 = T::fused(-t45, t21, T::fused(-t43, t22, t48)) * t34;
-            let t50 = t24
-                - (k(0.28582716049382717)
-                    - T::fused(-k(1.1851851851851851), x1, k(0.11851851851851852) * x2));
-            let t51 = T::fused(
-                k(0.9521072796934866),
-                T::fused(k(12.072434607645874), x1, t1),
-                -T::fused(k(4.022988505747127), x2 - k(1.7985714285714285), t0),
-            );
-            let t52 = T::fused(
+            let t30 = t11 * t17;
+            let t31 = k(1.0) / T::fused(t12, t16, -(k(0.6) - t30));
+            let t32 = t31 * t29;
+            let t33 = t15 * t28;
+            let t34 = k(30.26023804720597) * t25;
+            let t35 = T::fused(
                 k(5.202735710796287),
                 x2,
                 T::fused(
                     k(7.327796775769419),
                     x1,
-                    -T::fused(k(0.1956521739130435), t1 - k(9.549313358302122), t0),
+                    -T::fused(k(0.1956521739130435), t2 - k(9.549313358302122), t3),
                 ),
             );
-            let t53 = x2 * t2;
-            let t54 = k(0.002191111111111111) * t0;
-            let t55 = x1 * t5;
-            let t56 = k(0.010245185185185185) * t1;
-            let t57 = u3 * u3;
-            let t58 = k(2.4442567567567566)
+            let t36 = T::fused(
+                k(0.9521072796934866),
+                T::fused(k(12.072434607645874), x1, t2),
+                -T::fused(k(4.022988505747127), x2 - k(1.7985714285714285), t3),
+            );
+            let t37 = T::fused(
+                t34,
+                t4,
+                T::fused(k(0.3032592592592593), t1 * t35, k(0.348) * (t0 * t36)),
+            );
+            let t38 = k(0.03106238683127572)
+                - T::fused(-k(0.11693827160493828), x1, k(0.0004938271604938272) * x2);
+            let t39 = T::fused(-k(0.007395637860082305), t3, t38);
+            let t40 = k(0.01146962962962963)
+                - T::fused(-k(0.06755555555555555), x1, k(0.03155555555555556) * x2);
+            let t41 = T::fused(k(0.002714074074074074), t3, t40);
+            let t42 = x1 + k(0.48233333333333334);
+            let t43 = k(0.1259259259259259) * x2;
+            let t44 = T::fused(-k(0.11851851851851852), x1, k(0.0066172839506172835));
+            let t45 = t44 + t43;
+            let t46 = T::fused(
+                x2,
+                t45,
+                T::fused(
+                    k(0.5925925925925926),
+                    x1 * t42,
+                    T::fused(t2, t41, k(0.3062334156378601)),
+                ),
+            );
+            let t47 = T::fused(
+                t29,
+                t32,
+                -T::fused(t28, t33, T::fused(t25, t34, -T::fused(-t3, t39, t46))),
+            );
+            let t48 = k(1.0) / t47;
+            let t49 = t48 * T::fused(-t32, t20, T::fused(t33, t9, t37));
+            let t50 = T::fused(k(0.06755555555555555), t3, k(0.11693827160493828) * t2);
+            let t51 = k(2.0) * u0;
+            let t52 = t51 * (k(0.25) * (u0 * t50));
+            let t53 = k(0.5333333333333333) * u0;
+            let t54 = t53 * (k(0.1111111111111111) * u0);
+            let t55 = T::fused(t6, t52, t54);
+            let t56 = T::fused(
+                t16,
+                t55,
+                T::fused(t17, t52, T::fused(-t53, k(1.1111111111111112) * u0, k(25.0))),
+            );
+            let t57 = T::fused(-t5, t6, k(0.26666666666666666));
+            let t58 = T::fused(-t16, t57, t5 * t17);
+            let t59 = t31 * t58;
+            let t60 = k(2.25) * u3;
+            let t61 = t60 + t51;
+            let t62 = u3 * t61;
+            let t63 = t62 * t5;
+            let t64 = k(2.4442567567567566)
                 + T::fused(
                     k(0.5777027027027027),
-                    t1,
+                    t2,
                     -T::fused(
                         k(1.0135135135135136),
                         x2,
-                        T::fused(-k(10.135135135135135), x1, t0),
+                        T::fused(-k(10.135135135135135), x1, t3),
                     ),
                 );
-            let t59 = k(0.03106238683127572)
-                - T::fused(-k(0.11693827160493828), x1, k(0.0004938271604938272) * x2);
-            let t60 = k(0.01146962962962963)
-                - T::fused(-k(0.06755555555555555), x1, k(0.03155555555555556) * x2);
-            let t61 = k(0.002714074074074074)
-                - T::fused(t1, t59, t0 * T::fused(k(0.005428148148148148), t32, t60));
-            let t62 = k(0.2518518518518518) * x2;
-            let t63 = t62 + (t30 - t26 + t25);
-            let t64 = T::fused(
-                t57,
-                t56 + (t55 - t54) + t53,
-                u0
-                    * T::fused(
-                        k(0.11693827160493828),
-                        u1 * t58,
-                        T::fused(-u3, t61, u2 * t63),
-                    ),
-            );
-            let t65 = T::fused(-u2, t5, u1 * t2);
-            let t66 = k(2.0) * u0;
-            let t67 = T::fused(
-                k(0.348),
-                t1 * T::fused(k(0.8714346530438485), t35 + k(0.5937957987298486), t37),
-                T::fused(k(0.02), u3, k(0.6) * x3),
-            );
-            let t68 = T::fused(
-                t66,
-                T::fused(k(0.25), u0 * t61, t65),
-                T::fused(
-                    -k(0.3313333333333333),
-                    t0
-                        * T::fused(
-                            k(0.1790744466800805),
-                            t35,
-                            -(t37 - k(0.8893360160965795)),
-                        ),
-                    t67,
-                ),
-            );
-            let t69 = k(0.014687407407407408) - t4 - t7 - t6 + t3;
-            let t70 = k(30.26023804720597) * t69;
-            let t71 = T::fused(
-                t70,
-                t68,
-                -T::fused(
-                    k(0.348),
-                    t35 * t51,
-                    T::fused(-k(0.3032592592592593), t37 * t52, t64),
-                ),
-            );
-            let t72 = u3 * T::fused(k(2.25), u3, t66);
-            let t73 = t72 * t5;
-            let t74 = k(0.5333333333333333) * u0;
-            let t75 = T::fused(
-                t74,
-                T::fused(-k(0.9375), u0 * t63, u1),
-                T::fused(
-                    k(40.0),
-                    x2,
-                    T::fused(
-                        k(1.5777777777777777),
-                        t35,
-                        T::fused(-k(1.4), t37, k(1.0222222222222221)),
-                    ),
-                ),
-            );
-            let t76 = T::fused(t10, t68, -(t75 + t73));
-            let t77 = T::fused(t10, t69, -t11);
-            let t78 = t15 * t77;
-            let t79 = t72 * t2;
-            let t80 = T::fused(
+            let t65 = T::fused(k(0.10962962962962963), u0 * t64, u2);
+            let t66 = T::fused(
                 k(0.8),
                 u1,
                 T::fused(
@@ -10787,324 +10721,360 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                     x1,
                     T::fused(
                         k(2.2222222222222223),
-                        t35,
-                        T::fused(k(4.0), t37, k(0.37777777777777777)),
+                        t1,
+                        T::fused(k(4.0), t0, k(0.37777777777777777)),
                     ),
                 ),
             );
-            let t81 = T::fused(
-                t17,
-                t68,
-                -(T::fused(-t74, T::fused(k(0.10962962962962963), u0 * t58, u2), t80)
-                    - t79),
+            let t67 = T::fused(
+                k(0.005428148148148148),
+                T::fused(-k(2.7249211547792336), t2, t3),
+                t40,
             );
-            let t82 = T::fused(t16, t76, t81);
-            let t83 = T::fused(t16, t77, T::fused(t17, t69, t18));
-            let t84 = t20 * t83;
-            let t85 = T::fused(
-                -t0,
-                T::fused(-k(0.007395637860082305), t0, t59),
-                t31
-                    + (t29
-                        + T::fused(
-                            t1,
-                            T::fused(k(0.002714074074074074), t0, t60),
-                            k(0.3062334156378601),
-                        )),
+            let t68 = k(0.002714074074074074) - T::fused(t2, t38, t3 * t67);
+            let t69 = u0 * t68;
+            let t70 = T::fused(k(0.25), t69, T::fused(-u2, t10, u1 * t5));
+            let t71 = T::fused(k(0.1790744466800805), t1, -(t0 - k(0.8893360160965795)));
+            let t72 = T::fused(k(0.8714346530438485), t1 + k(0.5937957987298486), t0);
+            let t73 = T::fused(
+                -k(0.3313333333333333),
+                t3 * t71,
+                T::fused(k(0.348), t2 * t72, T::fused(k(0.02), u3, k(0.6) * x3)),
             );
-            let t86 = T::fused(t84, t82, -T::fused(t78, t76, t71))
-                / T::fused(t83, t84, -T::fused(t77, t78, T::fused(t69, t70, -t85)));
-            let t87 = T::fused(-t20, t82, t84 * t86);
-            let t88 = T::fused(t16, t87, -T::fused(-t15, t76, t78 * t86));
+            let t74 = T::fused(t51, t70, t73);
+            let t75 = t17 * t74;
+            let t76 = t62 * t10;
+            let t77 = k(0.0004938271604938272) * t3;
+            let t78 = k(0.03155555555555556) * t2;
+            let t79 = T::fused(k(0.2518518518518518), x2, t44 - t78 + t77);
+            let t80 = u0 * t79;
+            let t81 = T::fused(-k(0.9375), t80, u1);
+            let t82 = T::fused(
+                t53,
+                t81,
+                T::fused(
+                    k(40.0),
+                    x2,
+                    T::fused(
+                        k(1.5777777777777777),
+                        t1,
+                        T::fused(-k(1.4), t0, k(1.0222222222222221)),
+                    ),
+                ),
+            );
+            let t83 = t6 * t74;
+            let t84 = t83 - (t82 + t76);
+            let t85 = T::fused(t16, t84, t75 - (T::fused(-t53, t65, t66) - t63));
+            let t86 = t15 * t57;
+            let t87 = k(30.26023804720597) * t5;
+            let t88 = u3 * u3;
             let t89 = T::fused(
-                t10,
-                t88,
-                T::fused(t17, t87, -T::fused(-k(30.26023804720597), t68, t70 * t86)),
-            );
-            let t90 = T::fused(k(0.06755555555555555), t0, k(0.11693827160493828) * t1);
-            let t91 = T::fused(
                 u0,
                 T::fused(
-                    k(0.11851851851851852),
-                    u2,
-                    -T::fused(u3, t90, k(1.1851851851851851) * u1),
+                    k(1.1851851851851851),
+                    u1,
+                    T::fused(-k(0.11851851851851852), u2, u3 * t50),
                 ),
-                t44
-                    + T::fused(
-                        -t86,
-                        t50,
-                        T::fused(-k(0.26666666666666666), t88, t2 * t89),
-                    ),
+                t88 * t10,
             );
-            let t92 = u0 * u0;
-            let t93 = k(0.5) * t92;
-            let t94 = t90 * t93;
-            let t95 = T::fused(t2, t86, t94);
-            let t96 = k(0.26666666666666666) * t86;
-            let t97 = k(0.05925925925925926) * t92;
-            let t98 = T::fused(t10, t95, t97 - t96);
+            let t90 = t18 - (t19 - t89) - T::fused(-t34, t52, t74 * t87)
+                + T::fused(t33, t55, t84 * t86);
+            let t91 = T::fused(
+                k(0.11693827160493828),
+                t3,
+                -T::fused(
+                    -k(0.11851851851851852),
+                    x2,
+                    T::fused(
+                        k(0.5925925925925926),
+                        x1 + t42,
+                        k(0.06755555555555555) * t2,
+                    ),
+                ),
+            );
+            let t92 = t91 + T::fused(t25, t87, t5 * t34) - T::fused(t28, t86, t33 * t57);
+            let t93 = t48 * t48;
+            let t94 = x2 * t5;
+            let t95 = k(0.002191111111111111) * t3;
+            let t96 = x1 * t10;
+            let t97 = k(0.010245185185185185) * t2;
+            let t98 = t97 + (t96 - t95) + t94;
             let t99 = T::fused(
-                t16,
-                t98,
-                T::fused(t17, t95, T::fused(-k(0.5925925925925926), t92, k(25.0))),
+                k(0.11693827160493828),
+                u1 * t64,
+                T::fused(-u3, t68, u2 * t79),
             );
             let t100 = T::fused(
-                t21,
-                t99,
-                T::fused(t22, t98, -T::fused(t23, t95, T::fused(t57, t5, -t91))),
+                k(0.348),
+                t1 * t36,
+                T::fused(-k(0.3032592592592593), t0 * t35, T::fused(t88, t98, u0 * t99)),
             );
-            let t101 = t34 * t100;
-            let t102 = t30 + (t62 - t27);
+            let t101 = T::fused(
+                t32,
+                t85,
+                -T::fused(t33, t84, T::fused(t34, t74, -t100)),
+            );
+            let t102 = T::fused(
+                t48,
+                t90 + T::fused(-t32, t56, t85 * t59),
+                t101 * (t93 * (t92 - T::fused(t29, t59, t32 * t58))),
+            );
             let t103 = T::fused(
                 k(0.03155555555555556),
-                t0,
-                k(0.0004938271604938272) * t1,
+                t3,
+                k(0.0004938271604938272) * t2,
             );
-            let t104 = T::fused(
-                u0,
+            let t104 = u0 * t103;
+            let t105 = t51 * (k(0.25) * t104);
+            let t106 = T::fused(
+                -t6,
+                t105,
+                T::fused(-t53, k(0.2361111111111111) * u0, k(40.0)),
+            );
+            let t107 = T::fused(t16, t106, T::fused(-t17, t105, t54));
+            let t108 = t6 * t10;
+            let t109 = T::fused(-t16, t108, T::fused(-t10, t17, k(0.26666666666666666)));
+            let t110 = t31 * t109;
+            let t111 = t15 * t108;
+            let t112 = k(30.26023804720597) * t10;
+            let t113 = T::fused(
+                -u0,
                 T::fused(
-                    -k(0.2518518518518518),
-                    T::fused(-k(0.47058823529411764), u1, u2),
-                    u3 * t103,
+                    k(0.11851851851851852),
+                    u1,
+                    T::fused(-k(0.2518518518518518), u2, u3 * t103),
                 ),
-                t42
-                    - T::fused(
-                        -t86,
-                        t102,
-                        T::fused(-k(0.26666666666666666), t87, t5 * t89),
-                    ),
+                t88 * t5,
             );
-            let t105 = t103 * t93;
-            let t106 = T::fused(t5, t86, t105);
-            let t107 = T::fused(
-                -t10,
-                t106,
-                T::fused(-k(0.1259259259259259), t92, k(40.0)),
-            );
-            let t108 = T::fused(t16, t107, -T::fused(t17, t106, -(t97 + t96)));
-            let t109 = T::fused(
-                t21,
-                t108,
-                T::fused(t22, t107, T::fused(t23, t106, -T::fused(t57, t2, -t104))),
-            );
-            let t110 = t34 * t109;
-            let t111 = T::fused(
-                -k(0.005428148148148148),
-                t1 * t1,
-                k(0.002714074074074074),
-            );
-            let t112 = t1 * t0;
-            let t113 = T::fused(-k(0.01479127572016461), t112, x1 * t90)
-                - T::fused(-k(0.01146962962962963), t0, x2 * t103);
-            let t114 = t113 + T::fused(k(0.03106238683127572), t1, t111);
-            let t115 = t56 - t54 + (t55 + t53);
-            let t116 = T::fused(-t2, t87, t5 * t88);
+            let t114 = t7 + (t8 - t113) - T::fused(-t34, t105, t74 * t112)
+                - T::fused(t33, t106, t84 * t111);
+            let t115 = t77 - (t78 - (t43 + t45)) + T::fused(t25, t112, t10 * t34);
+            let t116 = t115 + T::fused(t28, t111, t33 * t108)
+                + T::fused(t29, t110, t32 * t109);
             let t117 = T::fused(
-                -k(5.449842309558467),
-                T::fused(k(0.0019920386094943445), t112, t111),
-                t28,
+                t48,
+                t114 - T::fused(-t32, t107, t85 * t110),
+                t101 * (t93 * t116),
             );
             let t118 = T::fused(
-                u0,
-                T::fused(u1, t90, -T::fused(-u3, t117, u2 * t103)),
-                t41 + (t116 - T::fused(t86, t114, t89 * t115)),
+                t3,
+                t38,
+                -T::fused(
+                    t3,
+                    k(0.005428148148148148) * T::fused(k(2.7249211547792336), t3, t2),
+                    t2 * t67,
+                ),
             );
             let t119 = T::fused(
-                k(2.25),
-                t116,
+                t51,
+                T::fused(-k(0.25), u0 * t118, T::fused(u1, t10, u2 * t5)),
                 T::fused(
-                    -t86,
-                    t115,
+                    k(0.3313333333333333),
+                    t2 * t71,
+                    T::fused(k(0.348), t3 * t72, k(0.6)),
+                ),
+            );
+            let t120 = T::fused(-t53, k(0.9375) * t104, t63) + T::fused(t6, t119, t75);
+            let t121 = t14 - t30;
+            let t122 = T::fused(t13, t17, t12);
+            let t123 = t15 * t15 * t122;
+            let t124 = T::fused(-t15, t121, t12 * t123);
+            let t125 = T::fused(k(0.5777027027027027), t3, t2);
+            let t126 = T::fused(t53, k(0.10962962962962963) * (u0 * t125), t76)
+                - T::fused(-t17, t119, t83);
+            let t127 = t126 + T::fused(t16, t120, t84 * t124);
+            let t128 = t96 + (t94 + (t97 - t95));
+            let t129 = t10 - T::fused(t6, t128, t26);
+            let t130 = t5 - T::fused(-t17, t128, t27) + T::fused(-t16, t129, t28 * t124);
+            let t131 = t31 * t31 * (t122 + T::fused(-t12, t124, t16 * t121));
+            let t132 = T::fused(t31, t130, t29 * t131);
+            let t133 = T::fused(-t15, t129, t28 * t123);
+            let t134 = k(30.26023804720597) * t128;
+            let t135 = T::fused(
+                u0,
+                T::fused(
+                    k(0.11693827160493828),
+                    u1 * t125,
+                    T::fused(-u2, t103, u3 * t118),
+                ),
+                t88 * (t22 + (t24 + (t23 - t21))),
+            );
+            let t136 = T::fused(
+                k(0.348),
+                t1 * T::fused(k(0.9521072796934866), t3, t2),
+                -T::fused(
+                    k(0.3032592592592593),
+                    t0 * T::fused(-k(0.1956521739130435), t3, t2),
+                    -t135,
+                ),
+            );
+            let t137 = t136 - T::fused(t34, t119, t74 * t134)
+                - T::fused(t33, t120, t84 * t133);
+            let t138 = T::fused(-t3, k(0.007395637860082305) * t2, t2 * t39)
+                + T::fused(-t2, k(0.002714074074074074) * t2, t3 * t41);
+            let t139 = t138 - T::fused(t25, t134, t34 * t128)
+                + T::fused(-t28, t133, t33 * t129);
+            let t140 = T::fused(
+                -t48,
+                t137 + T::fused(t32, t127, t85 * t132),
+                t101 * (t93 * (t139 + T::fused(t29, t132, t32 * t130))),
+            );
+            let t141 = T::fused(t51, k(0.25) * t68, k(2.0) * t70);
+            let t142 = k(2.0) * u3;
+            let t143 = T::fused(
+                -t6,
+                t141,
+                T::fused(
+                    t10,
+                    t142,
+                    T::fused(-t53, k(0.9375) * t79, k(0.5333333333333333) * t81),
+                ),
+            );
+            let t144 = T::fused(
+                t17,
+                t141,
+                T::fused(
+                    t5,
+                    t142,
                     T::fused(
-                        k(0.18007407407407408),
-                        t0,
-                        T::fused(k(0.2946666666666667), t1, k(0.6)),
+                        t53,
+                        k(0.10962962962962963) * t64,
+                        k(0.5333333333333333) * t65,
                     ),
                 ),
             );
-            let t120 = T::fused(
-                t66,
-                T::fused(-k(0.25), u0 * t117, T::fused(u1, t5, u2 * t2)),
-                -(t47 - t119),
-            );
-            let t121 = T::fused(k(2.25), t89, t86);
-            let t122 = T::fused(t10, t120, t79 - T::fused(-t5, t121, t105));
-            let t123 = T::fused(
-                t16,
-                t122,
-                T::fused(t17, t120, t73 + T::fused(-t2, t121, t94)),
-            );
-            let t124 = T::fused(
-                t21,
-                t123,
-                T::fused(t22, t122, -T::fused(t23, t120, -T::fused(t57, t8, t118))),
-            );
-            let t125 = t34 * t124;
-            let t126 = u0 * t114;
-            let t127 = T::fused(k(2.0), t65, -t126);
-            let t128 = k(2.0) * u3;
-            let t129 = u0 * t102;
-            let t130 = T::fused(
-                t10,
-                t127,
-                t129 - T::fused(k(0.5333333333333333), u1, t5 * t128),
-            );
-            let t131 = u0 * t50;
-            let t132 = T::fused(
-                -t16,
-                t130,
-                T::fused(
-                    -t17,
-                    t127,
-                    t131 - T::fused(k(0.5333333333333333), u2, t2 * t128),
-                ),
-            );
-            let t133 = T::fused(
-                t127,
-                t23,
-                T::fused(u1, t50, -T::fused(u3, t114, u2 * t102)),
-            );
-            let t134 = T::fused(t132, t21, T::fused(-t130, t22, t133)) * t34;
-            let t135 = t66 * t2;
-            let t136 = T::fused(-t10, t135, t74);
-            let t137 = T::fused(t16, t136, T::fused(-t17, t135, k(0.8)));
-            let t138 = T::fused(
-                t137,
-                t21,
-                T::fused(t136, t22, T::fused(t135, t23, t131)),
-            ) * t34;
-            let t139 = t66 * t5;
-            let t140 = t10 * t139;
-            let t141 = T::fused(-t16, t140, T::fused(-t17, t139, t74));
-            let t142 = T::fused(
-                t141,
-                t21,
-                T::fused(-t140, t22, T::fused(t139, t23, t129)),
-            ) * t34;
-            let t143 = T::fused(k(4.5), u3, t66);
-            let t144 = T::fused(-t5, t143, k(1.3617107121242686) * t2);
-            let t145 = T::fused(
-                t16,
-                t144,
-                T::fused(t2, t143, k(1.3617107121242686) * t5),
-            );
-            let t146 = T::fused(
-                t145,
-                t21,
-                T::fused(
-                    t144,
-                    t22,
-                    T::fused(-k(0.6052047609441195), t9, T::fused(t128, t115, t126)),
-                ),
-            );
-            let t147 = t146 * t34;
-            let t148 = T::fused(t21, t49, t20 * t45);
-            let t149 = T::fused(-t20, t99, t21 * t101);
-            let t150 = T::fused(-t20, t108, t21 * t110);
-            let t151 = T::fused(-t20, t123, t21 * t125);
-            let t152 = T::fused(-t21, t134, t20 * t132);
-            let t153 = T::fused(-t21, t138, t20 * t137);
-            let t154 = T::fused(-t21, t142, t20 * t141);
-            let t155 = T::fused(-t21, t147, t20 * t145);
-            let t156 = T::fused(-t16, t148, T::fused(-t22, t49, t15 * t43));
-            let t157 = T::fused(t16, t149, T::fused(t15, t98, t22 * t101));
-            let t158 = T::fused(t16, t150, T::fused(t15, t107, t22 * t110));
-            let t159 = T::fused(t16, t151, T::fused(t15, t122, t22 * t125));
-            let t160 = T::fused(t16, t152, T::fused(-t22, t134, t15 * t130));
-            let t161 = T::fused(-t16, t153, T::fused(t22, t138, t15 * t136));
-            let t162 = T::fused(t16, t154, T::fused(-t22, t142, t15 * t140));
-            let t163 = T::fused(-t16, t155, T::fused(t22, t147, t15 * t144));
-            let t164 = T::fused(
-                t10,
-                t156,
-                T::fused(-t17, t148, T::fused(t23, t49, k(30.26023804720597) * t41)),
-            );
-            let t165 = T::fused(
-                t10,
-                t157,
-                T::fused(t17, t149, -T::fused(-k(30.26023804720597), t95, t23 * t101)),
-            );
-            let t166 = T::fused(
-                t10,
-                t158,
-                T::fused(t17, t150, -T::fused(k(30.26023804720597), t106, t23 * t110)),
-            );
-            let t167 = T::fused(
-                t10,
-                t159,
-                T::fused(t17, t151, -T::fused(-k(30.26023804720597), t120, t23 * t125)),
-            );
-            let t168 = T::fused(
-                t10,
-                t160,
-                T::fused(t17, t152, T::fused(t23, t134, k(30.26023804720597) * t127)),
-            );
-            let t169 = T::fused(
-                -t10,
-                t161,
-                T::fused(t17, t153, T::fused(t23, t138, k(30.26023804720597) * t135)),
-            );
-            let t170 = T::fused(
-                t10,
-                t162,
-                T::fused(t17, t154, T::fused(t23, t142, k(30.26023804720597) * t139)),
-            );
-            let t171 = k(0.5) * x3;
-            let t172 = t171.sin();
-            let t173 = k(2.0) * t172;
-            let t174 = t171.cos();
-            let t175 = t174 * t173;
-            let t176 = k(0.6666666666666666) * t175;
-            let t177 = T::fused(-t172, t173, k(1.0));
-            let t178 = T::fused(-k(0.2222222222222222), t177, k(0.2222222222222222));
-            let t179 = t178 - t176;
-            let t180 = k(0.6666666666666666) * u0;
-            let t181 = t180 * t179;
-            let t182 = T::fused(k(0.5555555555555556), t177, k(0.4444444444444444));
-            let t183 = k(0.3333333333333333) * u0;
-            let t184 = k(0.3333333333333333) * t175;
-            let t185 = T::fused(-k(0.4444444444444444), t177, k(0.4444444444444444));
-            let t186 = t185 + t184;
-            let t187 = k(0.6666666666666666) * u3;
-            let t188 = t187 + T::fused(t180, t186, -T::fused(t183, t182, -t181));
-            let t189 = k(0.6666666666666666) * t172;
-            let t190 = k(0.5) * x0;
-            let t191 = t190.cos();
-            let t192 = t191 * t189;
-            let t193 = k(0.3333333333333333) * t172;
-            let t194 = t190.sin();
-            let t195 = k(0.6666666666666666) * t194;
-            let t196 = t195 * t193;
-            let t197 = t195 * t189;
-            let t198 = k(0.3333333333333333) * t194;
-            let t199 = T::fused(t198, t174, t197 - (t196 + t192));
-            (
-                t10,
-                t17,
-                t23,
-                t49,
-                t101,
-                t110,
-                t125,
-                t134,
-                t138,
-                t142,
-                t147,
-                t148,
+            let t145 = T::fused(-t16, t143, t144);
+            let t146 = t48
+                * T::fused(t32, t145, T::fused(t33, t143, T::fused(-t34, t141, t99)));
+            let t147 = t51 * t5;
+            let t148 = T::fused(-t6, t147, t53);
+            let t149 = T::fused(t16, t148, T::fused(-t17, t147, k(0.8)));
+            let t150 = T::fused(
+                -t32,
                 t149,
-                t150,
-                t151,
-                t152,
-                t153,
-                t154,
-                t155,
-                t156,
+                T::fused(
+                    t33,
+                    t148,
+                    T::fused(-t34, t147, u0 * (k(0.11693827160493828) * t64)),
+                ),
+            );
+            let t151 = t48 * t150;
+            let t152 = t51 * t10;
+            let t153 = t6 * t152;
+            let t154 = T::fused(-t16, t153, T::fused(-t17, t152, t53));
+            let t155 = t48
+                * T::fused(t32, t154, T::fused(t33, t153, T::fused(t34, t152, t80)));
+            let t156 = t60 + t61;
+            let t157 = T::fused(-k(1.3617107121242686), t5, t10 * t156);
+            let t158 = T::fused(
+                -t16,
                 t157,
+                T::fused(k(1.3617107121242686), t10, t5 * t156),
+            );
+            let t159 = T::fused(
+                -t32,
                 t158,
-                t159,
+                T::fused(
+                    -t33,
+                    t157,
+                    T::fused(k(0.6052047609441195), t25, T::fused(-t98, t142, t69)),
+                ),
+            );
+            let t160 = t48 * t159;
+            let t161 = T::fused(t32, t49, t31 * t20);
+            let t162 = t48 * t101;
+            let t163 = T::fused(t31, t56, T::fused(t32, t102, t162 * t59));
+            let t164 = T::fused(t31, t107, T::fused(-t32, t117, t162 * t110));
+            let t165 = T::fused(t31, t127, t85 * t131)
+                - T::fused(-t32, t140, t162 * t132);
+            let t166 = T::fused(-t32, t146, t31 * t145);
+            let t167 = T::fused(t32, t151, t31 * t149);
+            let t168 = T::fused(-t32, t155, t31 * t154);
+            let t169 = T::fused(t32, t160, t31 * t158);
+            let t170 = T::fused(-t16, t161, T::fused(t33, t49, t15 * t9));
+            let t171 = T::fused(
+                -t16,
+                t163,
+                T::fused(t15, t55, -T::fused(-t33, t102, t162 * t86)),
+            );
+            let t172 = T::fused(
+                -t16,
+                t164,
+                T::fused(t15, t106, -T::fused(t33, t117, t162 * t111)),
+            );
+            let t173 = T::fused(-t31, t85, t32 * t162);
+            let t174 = T::fused(t15, t120, t84 * t123)
+                - T::fused(-t33, t140, t162 * t133);
+            let t175 = t174 + T::fused(-t16, t165, t173 * t124);
+            let t176 = T::fused(t16, t166, T::fused(t33, t146, t15 * t143));
+            let t177 = T::fused(-t16, t167, T::fused(t33, t151, t15 * t148));
+            let t178 = T::fused(t16, t168, T::fused(t33, t155, t15 * t153));
+            let t179 = T::fused(t16, t169, T::fused(-t33, t160, t15 * t157));
+            let t180 = T::fused(
+                t6,
+                t170,
+                T::fused(-t17, t161, T::fused(t34, t49, k(30.26023804720597) * t4)),
+            );
+            let t181 = T::fused(
+                -t17,
+                t163,
+                T::fused(k(30.26023804720597), t52, T::fused(t34, t102, t162 * t87)),
+            );
+            let t182 = T::fused(
+                t17,
+                t164,
+                T::fused(k(30.26023804720597), t105, T::fused(t34, t117, t162 * t112)),
+            );
+            let t183 = T::fused(
+                t6,
+                t175,
+                t17 * T::fused(t16, t173, -T::fused(-t15, t84, t33 * t162)),
+            );
+            let t184 = T::fused(
+                k(30.26023804720597),
+                t119,
+                -T::fused(-t34, t140, t162 * t134),
+            ) - T::fused(t17, t165, t6 * t173);
+            let t185 = T::fused(
+                -t6,
+                t176,
+                T::fused(-t17, t166, T::fused(-t34, t146, k(30.26023804720597) * t141)),
+            );
+            let t186 = T::fused(
+                -t6,
+                t177,
+                T::fused(t17, t167, T::fused(-t34, t151, k(30.26023804720597) * t147)),
+            );
+            let t187 = T::fused(
+                t6,
+                t178,
+                T::fused(t17, t168, T::fused(t34, t155, k(30.26023804720597) * t152)),
+            );
+            let t188 = k(0.5) * x3;
+            let t189 = t188.sin();
+            let t190 = k(2.0) * t189;
+            let t191 = t188.cos();
+            let t192 = t191 * t190;
+            let t193 = k(0.6666666666666666) * t192;
+            let t194 = T::fused(-t189, t190, k(1.0));
+            let t195 = T::fused(-k(0.2222222222222222), t194, k(0.2222222222222222));
+            let t196 = t195 - t193;
+            let t197 = k(0.6666666666666666) * u0;
+            let t198 = t197 * t196;
+            let t199 = T::fused(k(0.5555555555555556), t194, k(0.4444444444444444));
+            (
+                t6,
+                t17,
+                t34,
+                t49,
+                t102,
+                t117,
+                t140,
+                t146,
+                t151,
+                t155,
                 t160,
                 t161,
-                t162,
                 t163,
                 t164,
                 t165,
@@ -11113,9 +11083,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                 t168,
                 t169,
                 t170,
+                t171,
                 t172,
-                t173,
-                t174,
+                t175,
                 t176,
                 t177,
                 t178,
@@ -11128,8 +11098,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                 t185,
                 t186,
                 t187,
-                t188,
                 t189,
+                t190,
                 t191,
                 t192,
                 t193,
@@ -11142,461 +11112,439 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             )
         };
         let (
+            t200,
+            t203,
+            t205,
+            t206,
             t208,
-            t209,
             t210,
             t211,
+            t212,
             t215,
-            t216,
-            t217,
-            t220,
+            t225,
+            t226,
             t227,
             t228,
+            t232,
+            t233,
             t234,
-            t235,
-            t240,
+            t237,
             t244,
-            t268,
-            t270,
-            t272,
-            t275,
-            t277,
-            t296,
-            t298,
-            t300,
-            t303,
-            t319,
+            t245,
+            t247,
+            t251,
+            t252,
+            t253,
+            t257,
+            t258,
+            t261,
+            t285,
+            t287,
+            t289,
+            t292,
+            t294,
+            t313,
+            t315,
+            t317,
             t320,
-            t321,
-            t323,
-            t324,
-            t325,
-            t328,
-            t330,
-            t331,
-            t332,
-            t335,
+            t336,
             t337,
+            t338,
+            t340,
+            t341,
             t342,
+            t345,
             t347,
             t348,
+            t349,
             t352,
             t354,
-            t356,
-            t358,
             t359,
             t364,
             t365,
-            t366,
+            t369,
             t371,
-            t374,
+            t373,
             t375,
             t376,
-            t377,
+            t378,
             t379,
+            t380,
             t381,
+            t382,
             t383,
+            t385,
             t386,
             t387,
             t388,
-            t390,
             t391,
+            t392,
             t393,
+            t394,
             t395,
             t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = t198 * t189;
-            let t201 = T::fused(t191, t174, -(t196 - t200 + t197));
-            let t202 = t201 * t199;
-            let t203 = t195 * t174;
-            let t204 = t203 + (t192 + T::fused(t198, t193, t197));
-            let t205 = t203 - (t200 + T::fused(-t191, t193, t197));
-            let t206 = t205 * t204;
-            let t207 = t206 + t202;
-            let t208 = k(2.0) * t207;
-            let t209 = T::fused(k(0.8888888888888888), t177, k(0.1111111111111111));
-            let t210 = t178 + t176;
-            let t211 = T::fused(
+            let t200 = k(0.3333333333333333) * u0;
+            let t201 = k(0.3333333333333333) * t192;
+            let t202 = T::fused(-k(0.4444444444444444), t194, k(0.4444444444444444));
+            let t203 = t202 + t201;
+            let t204 = k(0.6666666666666666) * u3;
+            let t205 = t204 + T::fused(t197, t203, -T::fused(t200, t199, -t198));
+            let t206 = k(0.6666666666666666) * t189;
+            let t207 = k(0.5) * x0;
+            let t208 = t207.cos();
+            let t209 = t208 * t206;
+            let t210 = k(0.3333333333333333) * t189;
+            let t211 = t207.sin();
+            let t212 = k(0.6666666666666666) * t211;
+            let t213 = t212 * t210;
+            let t214 = t212 * t206;
+            let t215 = k(0.3333333333333333) * t211;
+            let t216 = T::fused(t215, t191, t214 - (t213 + t209));
+            let t217 = t215 * t206;
+            let t218 = T::fused(t208, t191, -(t213 - t217 + t214));
+            let t219 = t218 * t216;
+            let t220 = t212 * t191;
+            let t221 = t220 + (t209 + T::fused(t215, t210, t214));
+            let t222 = t220 - (t217 + T::fused(-t208, t210, t214));
+            let t223 = t222 * t221;
+            let t224 = t223 + t219;
+            let t225 = k(2.0) * t224;
+            let t226 = T::fused(k(0.8888888888888888), t194, k(0.1111111111111111));
+            let t227 = t195 + t193;
+            let t228 = T::fused(
                 k(0.3333333333333333),
                 u3,
-                t181 - T::fused(-t180, t209, t183 * t210),
+                t198 - T::fused(-t197, t226, t200 * t227),
             );
-            let t212 = t201 * t205;
-            let t213 = t199 * t204;
-            let t214 = t213 - t212;
-            let t215 = k(2.0) * t214;
-            let t216 = t185 - t184;
-            let t217 = t187 + T::fused(t180, t182, -T::fused(-t180, t210, t183 * t216));
-            let t218 = t201 * t201;
-            let t219 = k(0.5) - T::fused(t204, t204, t218);
-            let t220 = k(2.0) * t219;
-            let t221 = T::fused(
+            let t229 = t218 * t222;
+            let t230 = t216 * t221;
+            let t231 = t230 - t229;
+            let t232 = k(2.0) * t231;
+            let t233 = t202 - t201;
+            let t234 = t204 + T::fused(t197, t199, -T::fused(-t197, t227, t200 * t233));
+            let t235 = t218 * t218;
+            let t236 = k(0.5) - T::fused(t221, t221, t235);
+            let t237 = k(2.0) * t236;
+            let t238 = T::fused(
                 -k(0.05),
-                T::fused(t208, t217, t220 * t211),
-                k(0.03) * T::fused(-t215, t217, t220 * t188),
+                T::fused(t225, t234, t237 * t228),
+                k(0.03) * T::fused(-t232, t234, t237 * t205),
             );
-            let t222 = T::fused(k(0.1), t188, k(0.05) * t217);
-            let t223 = T::fused(k(0.03), t217, k(0.1) * t211);
-            let t224 = T::fused(-k(0.05), t211, k(0.03) * t188);
-            let t225 = k(0.6666666666666666) * x2;
-            let t226 = k(0.6666666666666666) * x1;
-            let t227 = k(0.2) + t226 - t225;
-            let t228 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t225;
-            let t229 = t228 * t180;
-            let t230 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
-                - T::fused(t227, t183, t229);
-            let t231 = t195 * t195;
-            let t232 = t191 * t191;
-            let t233 = k(0.5) - (t232 + t231);
-            let t234 = k(2.0) * t233;
-            let t235 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t226);
-            let t236 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
-                + T::fused(-t235, t180, t227 * t180);
-            let t237 = t191 * t195;
-            let t238 = t195 * t198;
-            let t239 = t238 - t237;
-            let t240 = k(2.0) * t239;
-            let t241 = T::fused(
+            let t239 = T::fused(k(0.1), t205, k(0.05) * t234);
+            let t240 = T::fused(k(0.03), t234, k(0.1) * t228);
+            let t241 = T::fused(-k(0.05), t228, k(0.03) * t205);
+            let t242 = k(0.6666666666666666) * x2;
+            let t243 = k(0.6666666666666666) * x1;
+            let t244 = k(0.2) + t243 - t242;
+            let t245 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t242;
+            let t246 = t245 * t197;
+            let t247 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
+                - T::fused(t244, t200, t246);
+            let t248 = t212 * t212;
+            let t249 = t208 * t208;
+            let t250 = k(0.5) - (t249 + t248);
+            let t251 = k(2.0) * t250;
+            let t252 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t243);
+            let t253 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
+                + T::fused(-t252, t197, t244 * t197);
+            let t254 = t208 * t212;
+            let t255 = t212 * t215;
+            let t256 = t255 - t254;
+            let t257 = k(2.0) * t256;
+            let t258 = T::fused(
                 k(0.6666666666666666),
                 u1 - u2,
-                -T::fused(t235, t183, t229),
+                -T::fused(t252, t200, t246),
             );
-            let t242 = t191 * t198;
-            let t243 = t231 + t242;
-            let t244 = k(2.0) * t243;
-            let t245 = k(0.13333333333333333) * u0;
-            let t246 = k(0.06666666666666667) * u0;
-            let t247 = T::fused(-t240, t245, t244 * t246);
-            let t248 = t247 + T::fused(t234, t230, T::fused(-t240, t236, t244 * t241))
-                - T::fused(t220, t224, -T::fused(t208, t222, t215 * t223));
-            let t249 = t180 * t240;
-            let t250 = T::fused(-t183, t244, t249);
-            let t251 = t180 * t234;
-            let t252 = T::fused(t180, t244, t251);
-            let t253 = t183 * t234;
-            let t254 = t253 + t249;
-            let t255 = t247
-                - T::fused(-k(0.1), t250, T::fused(k(0.1), t252, k(0.2) * t254))
-                - (t248 + T::fused(-k(0.1), T::fused(t208, t188, t215 * t211), t221));
-            let t256 = k(1.3333333333333333) * t233;
-            let t257 = t256
-                - T::fused(-k(1.3333333333333333), t243, k(0.6666666666666666) * t239);
-            let t258 = k(0.2) * t239;
-            let t259 = k(0.4) * t243;
-            let t260 = k(0.2) + (t259 + t258);
-            let t261 = T::fused(k(0.2), t219, T::fused(-k(0.1), t214, k(0.06) * t207));
-            let t262 = t261
-                - (t260 + T::fused(-t235, t234, T::fused(-t228, t240, t227 * t244)));
-            let t263 = t261 - t262 - (t260 - T::fused(k(0.2), t233, -(t259 - t258)));
-            let t264 = T::fused(
+            let t259 = t208 * t215;
+            let t260 = t248 + t259;
+            let t261 = k(2.0) * t260;
+            let t262 = k(0.13333333333333333) * u0;
+            let t263 = k(0.06666666666666667) * u0;
+            let t264 = T::fused(-t257, t262, t261 * t263);
+            let t265 = t264 + T::fused(t251, t247, T::fused(-t257, t253, t261 * t258))
+                - T::fused(t237, t241, -T::fused(t225, t239, t232 * t240));
+            let t266 = t197 * t257;
+            let t267 = T::fused(-t200, t261, t266);
+            let t268 = t197 * t251;
+            let t269 = T::fused(t197, t261, t268);
+            let t270 = t200 * t251;
+            let t271 = t270 + t266;
+            let t272 = t264
+                - T::fused(-k(0.1), t267, T::fused(k(0.1), t269, k(0.2) * t271))
+                - (t265 + T::fused(-k(0.1), T::fused(t225, t205, t232 * t228), t238));
+            let t273 = k(1.3333333333333333) * t250;
+            let t274 = t273
+                - T::fused(-k(1.3333333333333333), t260, k(0.6666666666666666) * t256);
+            let t275 = k(0.2) * t256;
+            let t276 = k(0.4) * t260;
+            let t277 = k(0.2) + (t276 + t275);
+            let t278 = T::fused(k(0.2), t236, T::fused(-k(0.1), t231, k(0.06) * t224));
+            let t279 = t278
+                - (t277 + T::fused(-t252, t251, T::fused(-t245, t257, t244 * t261)));
+            let t280 = t278 - t279 - (t277 - T::fused(k(0.2), t250, -(t276 - t275)));
+            let t281 = T::fused(
                 k(0.6666666666666666),
-                t250,
-                T::fused(k(0.3333333333333333), t252, k(0.6666666666666666) * t254),
+                t267,
+                T::fused(k(0.3333333333333333), t269, k(0.6666666666666666) * t271),
             );
-            let t265 = t201 * t204;
-            let t266 = t205 * t199;
-            let t267 = t266 - t265;
-            let t268 = k(2.0) * t267;
-            let t269 = k(0.5) - T::fused(t199, t199, t218);
-            let t270 = k(2.0) * t269;
-            let t271 = t213 + t212;
-            let t272 = k(2.0) * t271;
-            let t273 = T::fused(
+            let t282 = t218 * t221;
+            let t283 = t222 * t216;
+            let t284 = t283 - t282;
+            let t285 = k(2.0) * t284;
+            let t286 = k(0.5) - T::fused(t216, t216, t235);
+            let t287 = k(2.0) * t286;
+            let t288 = t230 + t229;
+            let t289 = k(2.0) * t288;
+            let t290 = T::fused(
                 -k(0.05),
-                T::fused(-t268, t217, t272 * t211),
-                k(0.03) * T::fused(-t270, t217, t272 * t188),
+                T::fused(-t285, t234, t289 * t228),
+                k(0.03) * T::fused(-t287, t234, t289 * t205),
             );
-            let t274 = t238 + t237;
-            let t275 = k(2.0) * t274;
-            let t276 = k(0.5) - T::fused(t198, t198, t232);
-            let t277 = k(2.0) * t276;
-            let t278 = T::fused(t277, t245, t240 * t246);
-            let t279 = t278 + T::fused(-t275, t230, T::fused(t277, t236, t240 * t241))
-                + T::fused(t272, t224, -T::fused(-t268, t222, t270 * t223));
-            let t280 = t180 * t277;
-            let t281 = T::fused(t183, t240, t280);
-            let t282 = t180 * t275;
-            let t283 = t282 - t249;
-            let t284 = T::fused(t183, t275, t280);
-            let t285 = t278
-                + T::fused(-k(0.1), t281, T::fused(k(0.1), t283, k(0.2) * t284))
-                - (t279 - T::fused(-k(0.1), T::fused(-t268, t188, t270 * t211), t273));
-            let t286 = T::fused(
+            let t291 = t255 + t254;
+            let t292 = k(2.0) * t291;
+            let t293 = k(0.5) - T::fused(t215, t215, t249);
+            let t294 = k(2.0) * t293;
+            let t295 = T::fused(t294, t262, t257 * t263);
+            let t296 = t295 + T::fused(-t292, t247, T::fused(t294, t253, t257 * t258))
+                + T::fused(t289, t241, -T::fused(-t285, t239, t287 * t240));
+            let t297 = t197 * t294;
+            let t298 = T::fused(t200, t257, t297);
+            let t299 = t197 * t292;
+            let t300 = t299 - t266;
+            let t301 = T::fused(t200, t292, t297);
+            let t302 = t295
+                + T::fused(-k(0.1), t298, T::fused(k(0.1), t300, k(0.2) * t301))
+                - (t296 - T::fused(-k(0.1), T::fused(-t285, t205, t287 * t228), t290));
+            let t303 = T::fused(
                 -k(1.3333333333333333),
-                t274,
-                T::fused(k(1.3333333333333333), t239, k(0.6666666666666666) * t276),
+                t291,
+                T::fused(k(1.3333333333333333), t256, k(0.6666666666666666) * t293),
             );
-            let t287 = k(0.2) * t276;
-            let t288 = k(0.4) * t239;
-            let t289 = k(0.2) * t274;
-            let t290 = t288 - t287;
-            let t291 = T::fused(-k(0.2), t271, T::fused(k(0.1), t269, k(0.06) * t267));
-            let t292 = t291
-                - (t290 + T::fused(t235, t275, T::fused(t228, t277, t227 * t240)));
-            let t293 = t291 - t292 - (t290 + (t289 + (t288 + t287)));
-            let t294 = T::fused(
+            let t304 = k(0.2) * t293;
+            let t305 = k(0.4) * t256;
+            let t306 = k(0.2) * t291;
+            let t307 = t305 - t304;
+            let t308 = T::fused(-k(0.2), t288, T::fused(k(0.1), t286, k(0.06) * t284));
+            let t309 = t308
+                - (t307 + T::fused(t252, t292, T::fused(t245, t294, t244 * t257)));
+            let t310 = t308 - t309 - (t307 + (t306 + (t305 + t304)));
+            let t311 = T::fused(
                 k(0.6666666666666666),
-                t281,
-                T::fused(k(0.3333333333333333), t283, k(0.6666666666666666) * t284),
+                t298,
+                T::fused(k(0.3333333333333333), t300, k(0.6666666666666666) * t301),
             );
-            let t295 = k(0.5) - T::fused(t205, t205, t218);
-            let t296 = k(2.0) * t295;
-            let t297 = t266 + t265;
-            let t298 = k(2.0) * t297;
-            let t299 = t206 - t202;
-            let t300 = k(2.0) * t299;
-            let t301 = T::fused(
+            let t312 = k(0.5) - T::fused(t222, t222, t235);
+            let t313 = k(2.0) * t312;
+            let t314 = t283 + t282;
+            let t315 = k(2.0) * t314;
+            let t316 = t223 - t219;
+            let t317 = k(2.0) * t316;
+            let t318 = T::fused(
                 -k(0.05),
-                T::fused(t296, t217, t300 * t211),
-                k(0.03) * T::fused(t298, t217, t300 * t188),
+                T::fused(t313, t234, t317 * t228),
+                k(0.03) * T::fused(t315, t234, t317 * t205),
             );
-            let t302 = t231 - t242;
-            let t303 = k(2.0) * t302;
-            let t304 = T::fused(t275, t245, t234 * t246);
-            let t305 = t304 + T::fused(t303, t230, T::fused(t275, t236, t234 * t241))
-                - T::fused(t300, t224, T::fused(-t296, t222, t298 * t223));
-            let t306 = t282 + t253;
-            let t307 = T::fused(t180, t303, t251);
-            let t308 = T::fused(t183, t303, -t282);
-            let t309 = t304
-                - T::fused(k(0.1), t306, T::fused(k(0.1), t307, k(0.2) * t308))
-                - (t305 + T::fused(k(0.1), T::fused(-t296, t188, t298 * t211), t301));
-            let t310 = T::fused(
+            let t319 = t248 - t259;
+            let t320 = k(2.0) * t319;
+            let t321 = T::fused(t292, t262, t251 * t263);
+            let t322 = t321 + T::fused(t320, t247, T::fused(t292, t253, t251 * t258))
+                - T::fused(t317, t241, T::fused(-t313, t239, t315 * t240));
+            let t323 = t299 + t270;
+            let t324 = T::fused(t197, t320, t268);
+            let t325 = T::fused(t200, t320, -t299);
+            let t326 = t321
+                - T::fused(k(0.1), t323, T::fused(k(0.1), t324, k(0.2) * t325))
+                - (t322 + T::fused(k(0.1), T::fused(-t313, t205, t315 * t228), t318));
+            let t327 = T::fused(
                 k(1.3333333333333333),
-                t302,
-                T::fused(k(0.6666666666666666), t274, t256),
+                t319,
+                T::fused(k(0.6666666666666666), t291, t273),
             );
-            let t311 = k(0.4) * t233;
-            let t312 = k(0.1) - (t311 - t289);
-            let t313 = T::fused(k(0.2), t299, T::fused(k(0.1), t297, k(0.06) * t295));
-            let t314 = t313
-                + (t312 - T::fused(-t235, t303, T::fused(t228, t275, t227 * t234)));
-            let t315 = t313 - t314 + (t312 + T::fused(k(0.2), t302, -(t311 + t289)));
-            let t316 = T::fused(
+            let t328 = k(0.4) * t250;
+            let t329 = k(0.1) - (t328 - t306);
+            let t330 = T::fused(k(0.2), t316, T::fused(k(0.1), t314, k(0.06) * t312));
+            let t331 = t330
+                + (t329 - T::fused(-t252, t320, T::fused(t245, t292, t244 * t251)));
+            let t332 = t330 - t331 + (t329 + T::fused(k(0.2), t319, -(t328 + t306)));
+            let t333 = T::fused(
                 -k(0.6666666666666666),
-                t306,
-                T::fused(k(0.3333333333333333), t307, k(0.6666666666666666) * t308),
+                t323,
+                T::fused(k(0.3333333333333333), t324, k(0.6666666666666666) * t325),
             );
-            let t317 = T::fused(t310, t309, t316 * t315)
-                - T::fused(-t286, t285, t294 * t293);
-            let t318 = k(1.6) * (t317 + T::fused(t257, t255, t264 * t263));
-            let t319 = t257 * t318;
-            let t320 = k(0.1) * t319;
-            let t321 = k(0.05) * t319;
-            let t322 = T::fused(-t188, t320, T::fused(-t217, t321, t222 * t319));
-            let t323 = t310 * t318;
-            let t324 = k(0.05) * t323;
-            let t325 = k(0.03) * t323;
-            let t326 = T::fused(t211, t324, T::fused(-t188, t325, t224 * t323));
-            let t327 = k(2.0) * (t326 + t322);
-            let t328 = k(0.03) * t319;
-            let t329 = T::fused(-t211, t320, T::fused(-t217, t328, t223 * t319));
-            let t330 = t286 * t318;
-            let t331 = k(0.05) * t330;
-            let t332 = k(0.03) * t330;
-            let t333 = T::fused(t211, t331, T::fused(-t188, t332, t224 * t330));
-            let t334 = k(2.0) * (t333 + t329);
-            let t335 = k(0.1) * t330;
-            let t336 = T::fused(-t188, t335, T::fused(-t217, t331, t222 * t330));
-            let t337 = k(0.1) * t323;
-            let t338 = T::fused(-t211, t337, T::fused(-t217, t325, t223 * t323));
-            let t339 = k(2.0) * (t338 - t336);
-            let t340 = T::fused(-t211, t335, T::fused(-t217, t332, t223 * t330));
-            let t341 = T::fused(
-                t204,
-                t334,
-                T::fused(-t205, t339, k(2.0) * (t199 * (k(2.0) * t340))),
+            let t334 = T::fused(t327, t326, t333 * t332)
+                - T::fused(-t303, t302, t311 * t310);
+            let t335 = k(1.6) * (t334 + T::fused(t274, t272, t281 * t280));
+            let t336 = t274 * t335;
+            let t337 = k(0.1) * t336;
+            let t338 = k(0.05) * t336;
+            let t339 = T::fused(-t205, t337, T::fused(-t234, t338, t239 * t336));
+            let t340 = t327 * t335;
+            let t341 = k(0.05) * t340;
+            let t342 = k(0.03) * t340;
+            let t343 = T::fused(t228, t341, T::fused(-t205, t342, t241 * t340));
+            let t344 = k(2.0) * (t343 + t339);
+            let t345 = k(0.03) * t336;
+            let t346 = T::fused(-t228, t337, T::fused(-t234, t345, t240 * t336));
+            let t347 = t303 * t335;
+            let t348 = k(0.05) * t347;
+            let t349 = k(0.03) * t347;
+            let t350 = T::fused(t228, t348, T::fused(-t205, t349, t241 * t347));
+            let t351 = k(2.0) * (t350 + t346);
+            let t352 = k(0.1) * t347;
+            let t353 = T::fused(-t205, t352, T::fused(-t234, t348, t239 * t347));
+            let t354 = k(0.1) * t340;
+            let t355 = T::fused(-t228, t354, T::fused(-t234, t342, t240 * t340));
+            let t356 = k(2.0) * (t355 - t353);
+            let t357 = T::fused(-t228, t352, T::fused(-t234, t349, t240 * t347));
+            let t358 = T::fused(
+                t221,
+                t351,
+                T::fused(-t222, t356, k(2.0) * (t216 * (k(2.0) * t357))),
             );
-            let t342 = T::fused(t201, t327, t341);
-            let t343 = k(2.0) * (t326 - t322);
-            let t344 = T::fused(t211, t321, T::fused(-t188, t328, t224 * t319));
-            let t345 = t204 * (k(2.0) * t344);
-            let t346 = k(2.0) * (t338 + t336);
-            let t347 = T::fused(
-                -t205,
-                t343,
-                T::fused(t199, t334, t345 - T::fused(t201, t346, -t345)),
+            let t359 = T::fused(t218, t344, t358);
+            let t360 = k(2.0) * (t343 - t339);
+            let t361 = T::fused(t228, t338, T::fused(-t205, t345, t241 * t336));
+            let t362 = t221 * (k(2.0) * t361);
+            let t363 = k(2.0) * (t355 + t353);
+            let t364 = T::fused(
+                -t222,
+                t360,
+                T::fused(t216, t351, t362 - T::fused(t218, t363, -t362)),
             );
-            let t348 = t347 - t342;
-            let t349 = k(2.0) * (t333 - t329);
-            let t350 = T::fused(-t188, t337, T::fused(-t217, t324, t222 * t323));
-            let t351 = t201 * (k(2.0) * (t350 - t340 - t344));
-            let t352 = T::fused(
-                -t199,
-                t327,
-                T::fused(-t205, t349, t351 + T::fused(t204, t346, t351)),
+            let t365 = t364 - t359;
+            let t366 = k(2.0) * (t350 - t346);
+            let t367 = T::fused(-t205, t354, T::fused(-t234, t341, t239 * t340));
+            let t368 = t218 * (k(2.0) * (t367 - t357 - t361));
+            let t369 = T::fused(
+                -t216,
+                t344,
+                T::fused(-t222, t366, t368 + T::fused(t221, t363, t368)),
             );
-            let t353 = T::fused(
-                -t201,
-                t349,
-                T::fused(t199, t339, k(2.0) * (t205 * (k(2.0) * t350))),
+            let t370 = T::fused(
+                -t218,
+                t366,
+                T::fused(t216, t356, k(2.0) * (t222 * (k(2.0) * t367))),
             );
-            let t354 = T::fused(t204, t343, t353);
-            let t355 = t263 * t318;
-            let t356 = T::fused(k(0.3333333333333333), t355, -t320);
-            let t357 = t315 * t318;
-            let t358 = T::fused(k(0.3333333333333333), t357, -t337);
-            let t359 = t358 + t356;
-            let t360 = k(0.6666666666666666) * t355;
-            let t361 = T::fused(-k(0.2), t319, t360);
-            let t362 = k(0.6666666666666666) * t357;
-            let t363 = t362 + t337;
-            let t364 = t363 - t361;
-            let t365 = t264 * t318;
-            let t366 = t316 * t318;
-            let t367 = T::fused(
-                -t183,
-                t364,
-                T::fused(-t235, t365, T::fused(-t241, t323, t227 * t366)),
+            let t371 = T::fused(t221, t360, t370);
+            let t372 = t280 * t335;
+            let t373 = T::fused(k(0.3333333333333333), t372, -t337);
+            let t374 = t332 * t335;
+            let t375 = T::fused(k(0.3333333333333333), t374, -t354);
+            let t376 = t375 + t373;
+            let t377 = k(0.6666666666666666) * t372;
+            let t378 = T::fused(-k(0.2), t336, t377);
+            let t379 = k(0.6666666666666666) * t374;
+            let t380 = t379 + t354;
+            let t381 = t380 - t378;
+            let t382 = t281 * t335;
+            let t383 = t333 * t335;
+            let t384 = T::fused(
+                -t200,
+                t381,
+                T::fused(-t252, t382, T::fused(-t258, t340, t244 * t383)),
             );
-            let t368 = t255 * t318;
-            let t369 = t309 * t318;
-            let t370 = k(0.2) * t365;
-            let t371 = T::fused(
+            let t385 = t272 * t335;
+            let t386 = t326 * t335;
+            let t387 = k(0.2) * t382;
+            let t388 = T::fused(
                 -k(2.0),
-                T::fused(-t230, t319, T::fused(t180, t359, t367)),
+                T::fused(-t247, t336, T::fused(t197, t376, t384)),
                 T::fused(
                     -k(1.3333333333333333),
-                    t369 + t368,
-                    T::fused(k(0.4), t366, -t370),
+                    t386 + t385,
+                    T::fused(k(0.4), t383, -t387),
                 ),
             );
-            let t372 = t293 * t318;
-            let t373 = k(0.6666666666666666) * t372;
-            let t374 = t373 + t335;
-            let t375 = T::fused(-k(0.2), t330, t373);
-            let t376 = t375 + t374;
-            let t377 = t294 * t318;
-            let t378 = t285 * t318;
-            let t379 = T::fused(
+            let t389 = t310 * t335;
+            let t390 = k(0.6666666666666666) * t389;
+            let t391 = t390 + t352;
+            let t392 = T::fused(-k(0.2), t347, t390);
+            let t393 = t392 + t391;
+            let t394 = t311 * t335;
+            let t395 = t302 * t335;
+            let t396 = T::fused(
                 -k(2.0),
-                T::fused(t236, t330, T::fused(t180, t376, t228 * t377)),
-                T::fused(k(0.6666666666666666), t378, k(0.2) * t377),
+                T::fused(t253, t347, T::fused(t197, t393, t245 * t394)),
+                T::fused(k(0.6666666666666666), t395, k(0.2) * t394),
             );
-            let t380 = t191 * (t379 - t371);
-            let t381 = t360 + t320;
-            let t382 = T::fused(k(0.3333333333333333), t372, -t335);
-            let t383 = t382 + t361 + t381;
-            let t384 = T::fused(
-                t228,
-                t365,
-                T::fused(t241, t330, T::fused(t183, t374, t227 * t377)),
-            );
-            let t385 = k(1.3333333333333333) * t378;
-            let t386 = T::fused(
-                -k(2.0),
-                T::fused(-t236, t319, T::fused(-t180, t383, t384)),
-                T::fused(
-                    -k(0.6666666666666666),
-                    t368,
-                    T::fused(k(0.4), t377, t385) + t370,
-                ),
-            );
-            let t387 = T::fused(-k(0.2), t323, t362);
-            let t388 = t387 + t363 + t382;
-            let t389 = T::fused(
-                -t183,
-                t375,
-                T::fused(-t235, t377, T::fused(-t236, t323, t228 * t366)),
-            );
-            let t390 = T::fused(
-                k(2.0),
-                T::fused(t230, t330, T::fused(-t180, t388, t389)),
-                T::fused(-k(0.2), t366 - t377, k(0.6666666666666666) * t369) - t385,
-            );
-            let t391 = t390 - t386;
-            let t392 = T::fused(
-                -t241,
-                t319,
-                T::fused(-t183, t381, T::fused(t180, t356, t227 * t365)),
-            );
-            let t393 = T::fused(
-                -k(2.0),
-                t392,
-                T::fused(-k(1.3333333333333333), t368, k(0.4) * t365),
-            );
-            let t394 = T::fused(
-                t230,
-                t323,
-                T::fused(-t180, t358, T::fused(-t183, t387, t235 * t366)),
-            );
-            let t395 = T::fused(
-                -k(2.0),
-                t394,
-                T::fused(k(1.3333333333333333), t369, k(0.2) * t366),
-            );
-            let t396 = t395 + t393;
-            let t397 = T::fused(
-                -t193,
-                t354,
-                t380 + (T::fused(-t195, t391, t198 * t396) + t380),
-            );
-            let t398 = t352 - t342;
-            let t399 = t342 + (t354 + t347 + t352);
+            let t397 = t208 * (t396 - t388);
+            let t398 = t377 + t337;
+            let t399 = T::fused(k(0.3333333333333333), t389, -t352);
             (
+                t200,
+                t203,
+                t205,
+                t206,
                 t208,
-                t209,
                 t210,
                 t211,
+                t212,
                 t215,
-                t216,
-                t217,
-                t220,
+                t225,
+                t226,
                 t227,
                 t228,
+                t232,
+                t233,
                 t234,
-                t235,
-                t240,
+                t237,
                 t244,
-                t268,
-                t270,
-                t272,
-                t275,
-                t277,
-                t296,
-                t298,
-                t300,
-                t303,
-                t319,
+                t245,
+                t247,
+                t251,
+                t252,
+                t253,
+                t257,
+                t258,
+                t261,
+                t285,
+                t287,
+                t289,
+                t292,
+                t294,
+                t313,
+                t315,
+                t317,
                 t320,
-                t321,
-                t323,
-                t324,
-                t325,
-                t328,
-                t330,
-                t331,
-                t332,
-                t335,
+                t336,
                 t337,
+                t338,
+                t340,
+                t341,
                 t342,
+                t345,
                 t347,
                 t348,
+                t349,
                 t352,
                 t354,
-                t356,
-                t358,
                 t359,
                 t364,
                 t365,
-                t366,
+                t369,
                 t371,
-                t374,
+                t373,
                 t375,
                 t376,
-                t377,
+                t378,
                 t379,
+                t380,
                 t381,
+                t382,
                 t383,
+                t385,
                 t386,
                 t387,
                 t388,
-                t390,
                 t391,
+                t392,
                 t393,
+                t394,
                 t395,
                 t396,
                 t397,
@@ -11605,210 +11553,267 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             )
         };
         let (
-            t407,
-            t408,
-            t409,
-            t411,
-            t412,
-            t414,
-            t416,
-            t422,
+            t424,
+            t425,
             t426,
-            t427,
-            t430,
+            t428,
+            t429,
+            t431,
+            t433,
             t439,
-            t440,
             t443,
-            t446,
+            t444,
+            t447,
+            t456,
+            t457,
+            t460,
+            t463,
         ) = {
-            let t400 = t354 - t347;
-            let t401 = t195 * (t395 - t393 + t371);
-            let t402 = t390 + t386;
+            let t400 = t399 + t378 + t398;
+            let t401 = T::fused(
+                t245,
+                t382,
+                T::fused(t258, t347, T::fused(t200, t391, t244 * t394)),
+            );
+            let t402 = k(1.3333333333333333) * t395;
             let t403 = T::fused(
-                t174,
-                t400,
-                t401 + (T::fused(t191, t391, t198 * t402) + t401),
+                -k(2.0),
+                T::fused(-t253, t336, T::fused(-t197, t400, t401)),
+                T::fused(
+                    -k(0.6666666666666666),
+                    t385,
+                    T::fused(k(0.4), t394, t402) + t387,
+                ),
             );
-            let t404 = t354 - t352;
-            let t405 = T::fused(
-                t193,
-                t347,
-                T::fused(-t195, t402, T::fused(t191, t396, k(2.0) * (t198 * t379))),
-            );
+            let t404 = T::fused(-k(0.2), t340, t379);
+            let t405 = t404 + t380 + t399;
             let t406 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t193, t398, T::fused(-t189, t399, t403)),
-                k(0.3333333333333333) * T::fused(t174, t342, T::fused(t189, t404, t405)),
+                -t200,
+                t392,
+                T::fused(-t252, t394, T::fused(-t253, t340, t245 * t383)),
             );
             let t407 = T::fused(
-                -t194,
-                T::fused(t189, t348, T::fused(-t174, t352, t397)),
-                t191 * t406,
+                k(2.0),
+                T::fused(t247, t347, T::fused(-t197, t405, t406)),
+                T::fused(-k(0.2), t383 - t394, k(0.6666666666666666) * t386) - t402,
             );
-            let t408 = T::fused(t234, t319, T::fused(-t275, t330, t303 * t323));
-            let t409 = T::fused(-t240, t319, T::fused(t277, t330, t275 * t323));
-            let t410 = t180 * t409;
+            let t408 = t407 - t403;
+            let t409 = T::fused(
+                -t258,
+                t336,
+                T::fused(-t200, t398, T::fused(t197, t373, t244 * t382)),
+            );
+            let t410 = T::fused(
+                -k(2.0),
+                t409,
+                T::fused(-k(1.3333333333333333), t385, k(0.4) * t382),
+            );
             let t411 = T::fused(
-                t183,
-                t408,
-                T::fused(t244, t365, T::fused(-t240, t377, t234 * t366)) - t410,
+                t247,
+                t340,
+                T::fused(-t197, t375, T::fused(-t200, t404, t252 * t383)),
             );
-            let t412 = T::fused(t244, t319, T::fused(t240, t330, t234 * t323));
-            let t413 = T::fused(
-                -t183,
-                t412,
-                T::fused(t234, t365, T::fused(t275, t377, t303 * t366)),
+            let t412 = T::fused(
+                -k(2.0),
+                t411,
+                T::fused(k(1.3333333333333333), t386, k(0.2) * t383),
             );
-            let t414 = t413 - t410;
-            let t415 = t412 + t408;
-            let t416 = T::fused(
-                t180,
-                t415,
-                T::fused(-t240, t365, T::fused(-t277, t377, t275 * t366)),
+            let t413 = t412 + t410;
+            let t414 = T::fused(
+                -t210,
+                t371,
+                t397 + (T::fused(-t212, t408, t215 * t413) + t397),
             );
-            let t417 = T::fused(t208, t319, T::fused(t268, t330, t296 * t323));
-            let t418 = T::fused(t220, t319, T::fused(-t272, t330, t300 * t323));
-            let t419 = T::fused(
+            let t415 = t369 - t359;
+            let t416 = t359 + (t371 + t364 + t369);
+            let t417 = t371 - t364;
+            let t418 = t212 * (t412 - t410 + t388);
+            let t419 = t407 + t403;
+            let t420 = T::fused(
+                t191,
+                t417,
+                t418 + (T::fused(t208, t408, t215 * t419) + t418),
+            );
+            let t421 = t371 - t369;
+            let t422 = T::fused(
+                t210,
+                t364,
+                T::fused(-t212, t419, T::fused(t208, t413, k(2.0) * (t215 * t396))),
+            );
+            let t423 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(-t210, t415, T::fused(-t206, t416, t420)),
+                k(0.3333333333333333) * T::fused(t191, t359, T::fused(t206, t421, t422)),
+            );
+            let t424 = T::fused(
+                -t211,
+                T::fused(t206, t365, T::fused(-t191, t369, t414)),
+                t208 * t423,
+            );
+            let t425 = T::fused(t251, t336, T::fused(-t292, t347, t320 * t340));
+            let t426 = T::fused(-t257, t336, T::fused(t294, t347, t292 * t340));
+            let t427 = t197 * t426;
+            let t428 = T::fused(
+                t200,
+                t425,
+                T::fused(t261, t382, T::fused(-t257, t394, t251 * t383)) - t427,
+            );
+            let t429 = T::fused(t261, t336, T::fused(t257, t347, t251 * t340));
+            let t430 = T::fused(
+                -t200,
+                t429,
+                T::fused(t251, t382, T::fused(t292, t394, t320 * t383)),
+            );
+            let t431 = t430 - t427;
+            let t432 = t429 + t425;
+            let t433 = T::fused(
+                t197,
+                t432,
+                T::fused(-t257, t382, T::fused(-t294, t394, t292 * t383)),
+            );
+            let t434 = T::fused(t225, t336, T::fused(t285, t347, t313 * t340));
+            let t435 = T::fused(t237, t336, T::fused(-t289, t347, t317 * t340));
+            let t436 = T::fused(
                 -k(0.4444444444444444),
                 u0,
                 T::fused(
                     k(0.6666666666666666),
-                    t217,
-                    T::fused(k(0.3333333333333333), t211, k(0.6666666666666666) * t188),
+                    t234,
+                    T::fused(k(0.3333333333333333), t228, k(0.6666666666666666) * t205),
                 ),
             );
-            let t420 = k(0.02666666666666667) * t419;
-            let t421 = T::fused(
-                t268,
-                t335,
-                T::fused(t272, t332, T::fused(t296, t337, T::fused(-t300, t325, t420))),
-            );
-            let t422 = T::fused(
-                t208,
-                t320,
-                T::fused(
-                    -t220,
-                    t328,
-                    T::fused(-k(0.1), t417, T::fused(k(0.03), t418, t421)),
-                ),
-            );
-            let t423 = T::fused(-t215, t319, T::fused(t270, t330, t298 * t323));
-            let t424 = T::fused(
-                -t272,
-                t331,
-                T::fused(
-                    -t298,
-                    t337,
-                    T::fused(t300, t324, k(0.013333333333333334) * t419),
-                ),
-            );
-            let t425 = T::fused(
-                t220,
-                t321,
-                T::fused(
-                    k(0.1),
-                    t423,
-                    T::fused(-k(0.05), t418, T::fused(-t270, t335, t424)),
-                ),
-            );
-            let t426 = T::fused(t215, t320, t425);
-            let t427 = t426 + t422;
-            let t428 = t180 * t427;
-            let t429 = T::fused(
-                t268,
-                t331,
-                T::fused(-t270, t332, T::fused(t296, t324, T::fused(-t298, t325, t420))),
-            );
-            let t430 = T::fused(
-                t208,
-                t321,
-                T::fused(
-                    t215,
-                    t328,
-                    T::fused(-k(0.05), t417, T::fused(k(0.03), t423, t429)),
-                ),
-            );
-            let t431 = t180 * t430;
-            let t432 = T::fused(-t183, t426, t431);
-            let t433 = t180 * t422;
-            let t434 = t183 * t430;
-            let t435 = T::fused(
-                k(0.6666666666666666),
-                t432 - t428,
-                k(0.3333333333333333) * (t434 + t433),
-            );
-            let t436 = T::fused(
-                k(0.5555555555555556),
-                T::fused(-t183, t422, t431),
-                T::fused(
-                    k(0.4444444444444444),
-                    t434 - t433,
-                    k(0.8888888888888888) * (t180 * t426),
-                ),
-            );
-            let t437 = T::fused(-k(0.2222222222222222), t432 + t428, t436);
+            let t437 = k(0.02666666666666667) * t436;
             let t438 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t191, t348, T::fused(t195, t399, t198 * t404)),
-                k(0.3333333333333333)
-                    * T::fused(-t195, t398, T::fused(-t198, t347, t191 * t354)),
+                t285,
+                t352,
+                T::fused(t289, t349, T::fused(t313, t354, T::fused(-t317, t342, t437))),
             );
             let t439 = T::fused(
-                -k(2.0),
-                T::fused(-t174, t435, t172 * t437),
-                T::fused(-t173, t437, t438),
+                t225,
+                t337,
+                T::fused(
+                    -t237,
+                    t345,
+                    T::fused(-k(0.1), t434, T::fused(k(0.03), t435, t438)),
+                ),
             );
-            let t440 = T::fused(
-                t173,
-                t435,
-                T::fused(-t198, t342, T::fused(t191, t352, t195 * t400)),
-            );
+            let t440 = T::fused(-t232, t336, T::fused(t287, t347, t315 * t340));
             let t441 = T::fused(
-                t234,
-                t359,
-                T::fused(-t277, t376, T::fused(-t275, t388, t303 * t358)),
+                -t289,
+                t348,
+                T::fused(
+                    -t315,
+                    t354,
+                    T::fused(t317, t341, k(0.013333333333333334) * t436),
+                ),
             );
             let t442 = T::fused(
-                t235,
-                t409,
-                T::fused(-t227, t409, T::fused(t240, t383, T::fused(t244, t356, t441))),
+                t237,
+                t338,
+                T::fused(
+                    k(0.1),
+                    t440,
+                    T::fused(-k(0.05), t435, T::fused(-t287, t352, t441)),
+                ),
             );
-            let t443 = T::fused(
-                t209,
-                t426,
-                T::fused(t210, t430, T::fused(t182, t430, T::fused(t228, t415, t442))),
-            );
-            let t444 = T::fused(
-                -t234,
-                t364,
-                T::fused(-t240, t374, T::fused(-t275, t375, t303 * t387)),
-            );
-            let t445 = T::fused(
-                -t216,
-                t430,
-                T::fused(t227, t408, T::fused(t235, t412, T::fused(-t244, t381, t444))),
-            );
+            let t443 = T::fused(t232, t337, t442);
+            let t444 = t443 + t439;
+            let t445 = t197 * t444;
             let t446 = T::fused(
+                t285,
+                t348,
+                T::fused(-t287, t349, T::fused(t313, t341, T::fused(-t315, t342, t437))),
+            );
+            let t447 = T::fused(
+                t225,
+                t338,
+                T::fused(
+                    t232,
+                    t345,
+                    T::fused(-k(0.05), t434, T::fused(k(0.03), t440, t446)),
+                ),
+            );
+            let t448 = t197 * t447;
+            let t449 = T::fused(-t200, t443, t448);
+            let t450 = t197 * t439;
+            let t451 = t200 * t447;
+            let t452 = T::fused(
+                k(0.6666666666666666),
+                t449 - t445,
+                k(0.3333333333333333) * (t451 + t450),
+            );
+            let t453 = T::fused(
+                k(0.5555555555555556),
+                T::fused(-t200, t439, t448),
+                T::fused(
+                    k(0.4444444444444444),
+                    t451 - t450,
+                    k(0.8888888888888888) * (t197 * t443),
+                ),
+            );
+            let t454 = T::fused(-k(0.2222222222222222), t449 + t445, t453);
+            let t455 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(t208, t365, T::fused(t212, t416, t215 * t421)),
+                k(0.3333333333333333)
+                    * T::fused(-t212, t415, T::fused(-t215, t364, t208 * t371)),
+            );
+            let t456 = T::fused(
+                -k(2.0),
+                T::fused(-t191, t452, t189 * t454),
+                T::fused(-t190, t454, t455),
+            );
+            let t457 = T::fused(
+                t190,
+                t452,
+                T::fused(-t215, t359, T::fused(t208, t369, t212 * t417)),
+            );
+            let t458 = T::fused(
+                t251,
+                t376,
+                T::fused(-t294, t393, T::fused(-t292, t405, t320 * t375)),
+            );
+            let t459 = T::fused(
+                t252,
+                t426,
+                T::fused(-t244, t426, T::fused(t257, t400, T::fused(t261, t373, t458))),
+            );
+            let t460 = T::fused(
+                t226,
+                t443,
+                T::fused(t227, t447, T::fused(t199, t447, T::fused(t245, t432, t459))),
+            );
+            let t461 = T::fused(
+                -t251,
+                t381,
+                T::fused(-t257, t391, T::fused(-t292, t392, t320 * t404)),
+            );
+            let t462 = T::fused(
+                -t233,
+                t447,
+                T::fused(t244, t425, T::fused(t252, t429, T::fused(-t261, t398, t461))),
+            );
+            let t463 = T::fused(
                 -k(0.3333333333333333),
-                T::fused(-t182, t422, T::fused(-t210, t426, t445)),
-                k(0.017777777777777778) * t419,
+                T::fused(-t199, t439, T::fused(-t227, t443, t462)),
+                k(0.017777777777777778) * t436,
             );
             (
-                t407,
-                t408,
-                t409,
-                t411,
-                t412,
-                t414,
-                t416,
-                t422,
+                t424,
+                t425,
                 t426,
-                t427,
-                t430,
+                t428,
+                t429,
+                t431,
+                t433,
                 t439,
-                t440,
                 t443,
-                t446,
+                t444,
+                t447,
+                t456,
+                t457,
+                t460,
+                t463,
             )
         };
         *dfdx = [
@@ -11849,61 +11854,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             k(1.0),
             k(0.0),
             t49,
-            t101,
-            t110,
-            -t125,
-            t134,
-            t138,
-            -t142,
-            -t147,
-            k(0.0),
-            -t148,
-            -t149,
-            -t150,
-            t151,
-            t152,
-            t153,
-            -t154,
+            -t102,
+            t117,
+            t140,
+            -t146,
+            -t151,
             -t155,
-            k(0.0),
-            t156,
-            -t157,
-            -t158,
-            t159,
             t160,
-            -t161,
-            -t162,
-            t163,
             k(0.0),
-            -t164,
-            t165,
-            t166,
-            -t167,
+            -t161,
+            t163,
+            t164,
+            -t165,
+            -t166,
+            t167,
             -t168,
             -t169,
+            k(0.0),
             t170,
-            -T::fused(
-                t10,
-                t163,
-                T::fused(-t17, t155, T::fused(-t23, t147, k(0.6052047609441195))),
+            -t171,
+            -t172,
+            t175,
+            -t176,
+            -t177,
+            -t178,
+            -t179,
+            k(0.0),
+            -t180,
+            T::fused(t6, t171, t181),
+            T::fused(t6, t172, -t182),
+            -(t184 + t183),
+            -t185,
+            -t186,
+            t187,
+            T::fused(
+                t6,
+                t179,
+                -T::fused(-t17, t169, T::fused(t34, t160, k(0.6052047609441195))),
             ),
             k(0.0),
-            k(0.5) * t407,
-            -T::fused(k(0.6666666666666666), t414 + t411, k(0.3333333333333333) * t416),
-            -T::fused(k(0.6666666666666666), t416 - t411, k(0.3333333333333333) * t414),
-            k(0.5) * T::fused(-t174, t439, t172 * t440),
+            k(0.5) * t424,
+            -T::fused(k(0.6666666666666666), t431 + t428, k(0.3333333333333333) * t433),
+            -T::fused(k(0.6666666666666666), t433 - t428, k(0.3333333333333333) * t431),
+            k(0.5) * T::fused(-t191, t456, t189 * t457),
             T::fused(
                 -k(0.6666666666666666),
-                T::fused(t179, t427, T::fused(t186, t422, t443)),
-                t446,
+                T::fused(t196, t444, T::fused(t203, t439, t460)),
+                t463,
             ),
             T::fused(
                 k(0.6666666666666666),
-                t408,
-                T::fused(k(0.3333333333333333), t409, k(0.6666666666666666) * t412),
+                t425,
+                T::fused(k(0.3333333333333333), t426, k(0.6666666666666666) * t429),
             ),
-            T::fused(-k(0.6666666666666666), t412 - t409, k(0.3333333333333333) * t408),
-            -T::fused(k(0.6666666666666666), t430 + t422, k(0.3333333333333333) * t426),
+            T::fused(-k(0.6666666666666666), t429 - t426, k(0.3333333333333333) * t425),
+            -T::fused(k(0.6666666666666666), t447 + t439, k(0.3333333333333333) * t443),
             k(0.0),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];

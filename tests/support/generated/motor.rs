@@ -17,8 +17,8 @@
 //! * joint_accelerations: 3 operations by recursion; 3 operations by normal form
 //! * joint_accelerations_at: 3 operations by recursion; 3 operations by normal form; 1 more compared
 //! * corrected_accelerations: 5 operations by recursion in the bodies' frames; 5 operations by recursion in the global frame; 5 more compared
-//! * joint_jacobian: 2 operations by normal form of that; 3 operations by derivatives of u̇, from its leaves; 5 more compared
-//! * joint_input_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 5 more compared
+//! * joint_jacobian: 2 operations by normal form of that; 3 operations by derivatives of u̇, from its leaves; 7 more compared
+//! * joint_input_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

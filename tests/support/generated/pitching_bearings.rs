@@ -15,7 +15,7 @@
 //! * joint_accelerations: 115 operations by recursion; 124 operations by normal form
 //! * joint_accelerations_at: 145 operations by recursion on the bodies' spins; 160 operations by recursion; 1 more compared
 //! * corrected_accelerations: 554 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
-//! * joint_jacobian: 1755 operations by derivatives of u̇, from its leaves; 1755 operations by normal form of that; 5 more compared
+//! * joint_jacobian: 1755 operations by derivatives of u̇, from its leaves; 1755 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

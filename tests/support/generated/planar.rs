@@ -16,7 +16,7 @@
 //! * joint_accelerations: 40 operations by normal form; 77 operations by recursion
 //! * joint_accelerations_at: 44 operations by normal form; 81 operations by recursion; 1 more compared
 //! * corrected_accelerations: 130 operations by normal form in the bodies' frames; 154 operations by elimination in maximal coordinates; 5 more compared
-//! * joint_jacobian: 79 operations by derivatives of the balance, from its leaves, normal form; 79 operations by derivatives of the balance, from its roots, normal form; 5 more compared
+//! * joint_jacobian: 94 operations by derivatives of u̇, from its leaves; 94 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -44,7 +44,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 49 | 79 | 2 | 130 | 0 of 6 | 6358 | 131 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 32 | 44 | 0 | 76 | 0 of 3 | 198 | 76 |
 //! | corrected_solution | both | 66 | 106 | 2 | 174 | 0 of 9 | 31989 | 175 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 28 | 49 | 2 | 79 | 33 of 42 | 5962 | 79 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 35 | 57 | 2 | 94 | 33 of 42 | 3092 | 94 |
 //!
 //! # Proof
 //!
@@ -1294,7 +1294,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Planar<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 79 operations (28 ±, 49 ×, 2 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 94 operations (35 ±, 57 ×, 2 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -1307,34 +1307,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Planar<T> {
         let u2 = x[5];
         let t0 = x2.sin();
         let t1 = x2.cos();
-        let t2 = T::fused(k(0.56), t0, k(0.52) * t1);
+        let t2 = T::fused(-k(0.52), t0, k(0.56) * t1);
         let t3 = T::fused(k(0.08), t0, k(0.16) * t1);
-        let t4 = u2 * u2;
-        let t5 = t4 * t3;
+        let t4 = k(15.384615384615385) * t3;
+        let t5 = T::fused(k(0.56), t0, k(0.52) * t1);
         let t6 = T::fused(-k(0.08), t1, k(0.16) * t0);
         let t7 = k(15.384615384615385) * t6;
-        let t8 = t4 * t6;
-        let t9 = k(15.384615384615385) * t3;
-        let t10 = T::fused(t9, t2, -(k(3.2) + t8));
-        let t11 = t6 * t9;
-        let t12 = k(1.0) / T::fused(-t3, t9, k(0.8));
-        let t13 = t12 * t11;
-        let t14 = k(1.0) / T::fused(t11, t13, -T::fused(-t6, t7, k(0.8)));
-        let t15 = t14 * T::fused(t13, t10, T::fused(t7, t2, -(k(1.2) - t5)));
-        let t16 = T::fused(-t12, t10, t13 * t15);
-        let t17 = T::fused(t9, t16, T::fused(-k(15.384615384615385), t2, t7 * t15));
-        let t18 = T::fused(
-            -t3,
-            t15,
-            T::fused(t6, t16, T::fused(-k(0.52), t0, k(0.56) * t1)),
+        let t8 = t7 * t5;
+        let t9 = u2 * u2;
+        let t10 = t9 * t3;
+        let t11 = t10 + T::fused(-t4, t2, t8);
+        let t12 = t6 * t4;
+        let t13 = t3 * t4;
+        let t14 = k(1.0) / (k(0.8) - t13);
+        let t15 = t14 * t12;
+        let t16 = t6 * t7;
+        let t17 = t13 - t16;
+        let t18 = T::fused(t3, t7, t12);
+        let t19 = t14 * t14 * t18;
+        let t20 = T::fused(-t14, t17, t12 * t19);
+        let t21 = t9 * t6;
+        let t22 = t4 * t5;
+        let t23 = t22 - (k(3.2) + t21);
+        let t24 = t21 - T::fused(t7, t2, t22) + T::fused(t15, t11, t23 * t20);
+        let t25 = k(1.0) / T::fused(t12, t15, -(k(0.8) - t16));
+        let t26 = T::fused(t15, t23, t8 - (k(1.2) - t10));
+        let t27 = T::fused(
+            t25,
+            t24,
+            t26 * (t25 * t25 * (t18 + T::fused(-t12, t20, t15 * t17))),
         );
-        let t19 = T::fused(t9, t18, -T::fused(-t6, t17, t5));
-        let t20 = t14 * T::fused(t13, t19, T::fused(t7, t18, -T::fused(t3, t17, t8)));
-        let t21 = k(2.0) * u2;
-        let t22 = t6 * t21;
-        let t23 = t14 * T::fused(-t13, t22, t3 * t21);
-        let t24 = T::fused(-t12, t19, t13 * t20);
-        let t25 = T::fused(t13, t23, t12 * t22);
+        let t28 = k(2.0) * u2;
+        let t29 = t6 * t28;
+        let t30 = t25 * T::fused(-t15, t29, t3 * t28);
+        let t31 = t25 * t26;
+        let t32 = T::fused(t14, t11, t23 * t19) - T::fused(t15, t27, t31 * t20);
+        let t33 = T::fused(t15, t30, t14 * t29);
+        let t34 = T::fused(k(15.384615384615385), t2, -T::fused(-t7, t27, t4 * t31))
+            + T::fused(-t4, t32, t7 * T::fused(-t14, t23, t15 * t31));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -1356,22 +1366,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Planar<T> {
             k(1.0),
             k(0.0),
             k(0.0),
-            t20,
+            -t27,
             k(0.0),
             k(0.0),
-            t23,
+            t30,
             k(0.0),
             k(0.0),
-            -t24,
+            -t32,
             k(0.0),
             k(0.0),
-            -t25,
+            -t33,
             k(0.0),
             k(0.0),
-            -T::fused(t9, t24, T::fused(-k(15.384615384615385), t18, t7 * t20)),
+            t34,
             k(0.0),
             k(0.0),
-            -T::fused(t9, t25, t7 * t23),
+            -T::fused(t4, t33, t7 * t30),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

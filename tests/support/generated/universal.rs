@@ -15,7 +15,7 @@
 //! * joint_accelerations: 48 operations by normal form; 136 operations by recursion
 //! * joint_accelerations_at: 81 operations by normal form; 169 operations by recursion; 1 more compared
 //! * corrected_accelerations: 163 operations by normal form in the bodies' frames; 196 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 121 operations by derivatives of the balance, from its leaves, normal form; 121 operations by derivatives of the balance, from its roots, normal form; 5 more compared
+//! * joint_jacobian: 130 operations by derivatives of u̇, from its leaves; 130 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -43,7 +43,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7444 | 164 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 | 197 | 110 |
 //! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28934 | 238 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 44 | 75 | 2 | 121 | 19 of 30 | 858 | 122 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 44 | 85 | 1 | 130 | 19 of 30 | 681 | 130 |
 //!
 //! # Proof
 //!
@@ -1687,7 +1687,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 121 operations (44 ±, 75 ×, 2 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 130 operations (44 ±, 85 ×, 1 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -1700,66 +1700,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = x1.cos();
-        let t1 = x1.sin();
-        let t2 = T::fused(-k(0.0032), t0, k(0.013) * t1);
-        let t3 = k(2.6191723415400734) * t2;
-        let t4 = t2 * t3;
-        let t5 = k(1.0)
-            / (t4 - T::fused(k(0.04), t0 * T::fused(k(8.455), t0, t1), k(0.0326)));
-        let t6 = x0.sin();
-        let t7 = t6 * T::fused(-k(7.848), t1, k(0.5886) * t0);
+        let t0 = x1.sin();
+        let t1 = x1.cos();
+        let t2 = T::fused(-k(13.333333333333334), t0, t1);
+        let t3 = x0.sin();
+        let t4 = t3 * t2;
+        let t5 = T::fused(-k(0.0032), t1, k(0.013) * t0);
+        let t6 = k(2.6191723415400734) * t5;
+        let t7 = T::fused(k(0.075), t0, t1);
         let t8 = x0.cos();
-        let t9 = t8 * T::fused(k(7.848), t0, k(0.5886) * t1);
-        let t10 = T::fused(t3, t7, T::fused(k(0.3924), t6, k(1.5)) + t9) * t5;
-        let t11 = t1 * t0;
-        let t12 = T::fused(-k(0.08), t0 * t0, k(0.04));
-        let t13 = T::fused(k(0.6764), t11, t12);
-        let t14 = u0 * T::fused(-t0, T::fused(-k(8.455), t1, t0), k(0.5));
+        let t9 = T::fused(
+            t6,
+            k(0.5886) * t4,
+            T::fused(k(7.848), t8 * t7, T::fused(k(0.3924), t3, k(1.5))),
+        );
+        let t10 = T::fused(k(0.11827321111768184), t0, t1);
+        let t11 = k(1.0) / T::fused(t5, t6, -T::fused(k(0.3382), t1 * t10, k(0.0326)));
+        let t12 = t11 * t9;
+        let t13 = T::fused(-k(8.455), t0, t1);
+        let t14 = u0 * T::fused(t1, T::fused(k(8.455), t1, t0), t0 * t13);
         let t15 = T::fused(
+            k(0.5886),
+            t8 * T::fused(k(13.333333333333334), t1, t0),
+            k(0.04) * (u0 * t14),
+        );
+        let t16 = T::fused(k(0.013), t1, k(0.0032) * t0);
+        let t17 = k(2.6191723415400734) * t16;
+        let t18 = T::fused(-t1, t13, k(0.5));
+        let t19 = u0 * t18;
+        let t20 = T::fused(
+            k(0.04),
+            u0 * t19,
+            T::fused(-k(0.5886), t8 * t2, k(0.05) * u1),
+        );
+        let t21 = T::fused(
+            -k(7.848),
+            t3 * T::fused(-k(0.075), t1, t0),
+            k(0.013)
+                * (u1
+                    * T::fused(
+                        -k(6.153846153846154),
+                        t14,
+                        u1 * T::fused(-k(0.24615384615384617), t1, t0),
+                    )),
+        );
+        let t22 = T::fused(
+            k(0.3382),
+            T::fused(t1, T::fused(-k(0.11827321111768184), t1, t0), t0 * t10),
+            T::fused(t5, t17, t6 * t16),
+        );
+        let t23 = u1 * T::fused(k(0.24615384615384617), t0, t1);
+        let t24 = T::fused(k(6.153846153846154), t19, t23);
+        let t25 = T::fused(
             k(7.848),
-            t6 * T::fused(k(0.075), t1, t0),
+            t3 * t7,
             T::fused(k(1.5), x0, -T::fused(k(0.3924), t8, k(0.3))),
         );
-        let t16 = T::fused(
-            -k(0.013),
-            u1
-                * T::fused(
-                    u1,
-                    T::fused(k(0.24615384615384617), t1, t0),
-                    k(6.153846153846154) * t14,
-                ),
-            t15,
+        let t26 = T::fused(t6, t20, T::fused(-k(0.013), u1 * t24, t25));
+        let t27 = T::fused(
+            -t11,
+            t21 + T::fused(t6, t15, t20 * t17),
+            t26 * (t11 * t11 * t22),
         );
-        let t17 = T::fused(
-            k(0.04),
-            u0 * t14,
-            T::fused(
-                -k(0.5886),
-                t8 * T::fused(-k(13.333333333333334), t1, t0),
-                k(0.05) * u1,
-            ),
-        );
-        let t18 = T::fused(t3, t17, t16)
-            / (t4
-                - T::fused(
-                    k(0.3382),
-                    t0 * T::fused(k(0.11827321111768184), t1, t0),
-                    k(0.0326),
-                ));
-        let t19 = T::fused(k(0.013), t0, k(0.0032) * t1);
-        let t20 = u0 * T::fused(-k(105.6875), t12, t11);
-        let t21 = T::fused(
-            u1,
-            T::fused(-k(0.16), t20, u1 * t2),
-            -T::fused(t18, t13, T::fused(-k(2.6191723415400734), t17, t3 * t18) * t19),
-        );
-        let t22 = t9 + T::fused(-t18, t19, k(0.08) * (u0 * t20));
-        let t23 = t5 * T::fused(t3, t22, t7 + t21);
-        let t24 = u0 * t13;
-        let t25 = T::fused(-t3, t24, u1 * t13) * t5;
-        let t26 = T::fused(k(0.13095861707700368), t2, -T::fused(k(2.0), u1 * t19, t24))
-            * t5;
+        let t28 = t11
+            * T::fused(
+                -t6,
+                k(0.08) * t19,
+                k(0.013) * (u1 * (k(6.153846153846154) * t18)),
+            );
+        let t29 = t11 * T::fused(-k(0.13095861707700368), t5, k(0.013) * (t23 + t24));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -1771,15 +1780,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            t10,
-            t23,
-            -t25,
-            t26,
+            t12,
+            -t27,
+            -t28,
+            -t29,
             k(0.0),
-            T::fused(-k(2.6191723415400734), t7, t3 * t10),
-            T::fused(-k(2.6191723415400734), t22, t3 * t23),
-            -T::fused(t3, t25, k(2.6191723415400734) * t24),
-            T::fused(t3, t26, -k(0.13095861707700368)),
+            T::fused(-k(1.5416448402304872), t4, t6 * t12),
+            T::fused(-k(2.6191723415400734), t15, T::fused(-t6, t27, t11 * t26 * t17)),
+            -T::fused(t6, t28, k(0.20953378732320588) * t19),
+            -T::fused(t6, t29, k(0.13095861707700368)),
             k(0.0),
             k(0.0),
             k(0.0),

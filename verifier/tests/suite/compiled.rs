@@ -1,6 +1,6 @@
 //! The interpreter over `f64` computes what the compiler makes of the same text, bit by bit.
 
-use gyro_sim::{JointSpace, Partition, Ports, Projection};
+use gyro_sim::{JointJacobian, Partition, Ports, Projection};
 use gyro_verifier::atoms::Elementary;
 use gyro_verifier::interpreter::{Given, constants, run};
 use gyro_verifier::module::{Module, source_of_accelerations};
@@ -72,7 +72,7 @@ fn read(page: &str, code: &str) -> (crate::support::Page, Module) {
 /// The functions of joint coordinates.
 fn check_joints<M>(page: &str, code: &str, mechanism: &M)
 where
-    M: JointSpace<Scalar = f64> + Partition,
+    M: JointJacobian<Scalar = f64> + Partition,
 {
     let (page, module) = read(page, code);
     let numbers: Vec<f64> = constants((), &module);
@@ -97,6 +97,9 @@ where
         let mut dx = x.clone();
         mechanism.joint_derivative(t, &x, &mut dx);
         same("joint_derivative", dx.as_ref());
+        let (mut by_state, mut by_time) = (mechanism.joint_jacobian_buffer(), x.clone());
+        mechanism.joint_jacobian(t, &x, &mut by_state, &mut by_time);
+        same("joint_jacobian", &[by_state.as_ref(), by_time.as_ref()].concat());
         let mut joints = x.clone();
         mechanism.to_joints(t, &y, &mut joints);
         same("to_joints", joints.as_ref());

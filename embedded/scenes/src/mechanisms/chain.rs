@@ -15,7 +15,7 @@
 //! * project: 2254 operations by rotations of the bodies; 2286 operations by relative Euler parameters
 //! * joint_accelerations_at: 1207 operations by recursion; 1244 operations by recursion on the bodies' spins
 //! * corrected_accelerations: 1625 operations by recursion on the bodies' spins in the bodies' frames; 1699 operations by recursion in the bodies' frames; 3 more compared
-//! * joint_jacobian: 6410 operations by derivatives of the balance, from its roots, recursion; 6533 operations by derivatives of the balance, from its leaves, recursion; 2 more compared
+//! * joint_jacobian: 5652 operations by derivatives of the balance, from its roots, by M⁻¹; 5776 operations by derivatives of the balance, from its leaves, by M⁻¹; 4 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -45,7 +45,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 731 | 889 | 5 | 1625 | 0 of 36 | 4.9e12 | 1626 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 204 | 295 | 0 | 499 | 0 of 30 | 10703 | 499 |
 //! | corrected_solution | both | 853 | 1041 | 5 | 1899 | 0 of 66 | 8.5e14 | 1900 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2837 | 3568 | 5 | 6410 | 78 of 156 | 1.8e17 | 6410 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2486 | 3161 | 5 | 5652 | 78 of 156 | 6.1e13 | 5652 |
 //!
 //! # Proof
 //!
@@ -14037,7 +14037,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 6410 operations (2837 ±, 3568 ×, 5 ÷) and 12 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 5652 operations (2486 ±, 3161 ×, 5 ÷) and 12 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -14060,106 +14060,472 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
         let u5 = x[11];
         let (
             t0,
-            t1,
-            t2,
             t3,
             t4,
-            t5,
             t6,
-            t7,
-            t8,
-            t9,
             t10,
-            t11,
             t12,
-            t13,
             t14,
             t15,
-            t16,
             t17,
             t18,
-            t19,
             t20,
             t21,
             t23,
+            t24,
             t25,
             t26,
-            t27,
             t29,
-            t31,
             t33,
-            t34,
             t35,
             t36,
-            t37,
             t38,
             t39,
             t40,
             t41,
-            t49,
-            t51,
-            t54,
+            t48,
+            t52,
             t55,
-            t56,
             t57,
             t58,
-            t59,
-            t60,
             t61,
             t62,
-            t63,
             t64,
-            t65,
-            t66,
-            t67,
-            t68,
-            t69,
+            t70,
             t71,
-            t86,
+            t73,
+            t77,
+            t78,
+            t80,
+            t81,
+            t82,
+            t84,
+            t89,
+            t91,
+            t92,
+            t93,
             t99,
-            t103,
+            t101,
+            t102,
+            t104,
             t105,
+            t107,
             t108,
-            t109,
+            t110,
             t111,
-            t113,
             t114,
             t115,
-            t116,
-            t117,
-            t119,
-            t120,
-            t121,
-            t122,
-            t123,
-            t124,
             t125,
-            t126,
-            t127,
-            t128,
             t129,
-            t130,
             t131,
-            t132,
             t133,
+            t134,
             t135,
-            t162,
+            t139,
+            t145,
+            t146,
+            t148,
+            t149,
+            t151,
+            t153,
+            t154,
+            t156,
+            t157,
+            t158,
+            t160,
+            t163,
             t164,
             t165,
+            t167,
+            t168,
+            t170,
             t171,
-            t186,
+            t172,
+            t173,
+            t174,
+            t175,
+            t177,
+            t178,
+            t179,
+            t183,
+            t184,
+            t185,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t196,
+            t197,
             t198,
-            t202,
-            t204,
-            t206,
-            t207,
+            t199,
+        ) = {
+            let t0 = x5.cos();
+            let t1 = k(0.746268656716418) * t0;
+            let t2 = t1 + (k(1.0) + t1);
+            let t3 = x4.cos();
+            let t4 = t1 + T::fused(t3, t2, t1);
+            let t5 = k(0.373134328358209) * t0;
+            let t6 = t0 * t5;
+            let t7 = k(0.01) * t6;
+            let t8 = k(0.1) * t6;
+            let t9 = k(0.05) - t8;
+            let t10 = T::fused(-k(0.2), t9, t7)
+                - (k(0.01) + (k(0.0017) + (k(0.005) - t7)));
+            let t11 = t3 * t10;
+            let t12 = x5.sin();
+            let t13 = k(0.0066) * t0;
+            let t14 = k(0.0002) * t12;
+            let t15 = t0 * t14;
+            let t16 = k(0.005) * t12;
+            let t17 = t16 + (t16 - T::fused(-t12, t13, t15));
+            let t18 = k(0.05) * t0;
+            let t19 = k(0.05) + t18;
+            let t20 = k(0.01) * t0;
+            let t21 = t12 * t14;
+            let t22 = T::fused(
+                k(0.2),
+                t19,
+                k(0.01) + (k(0.0016) + (k(0.005) + T::fused(t0, t13, t21) + t20)),
+            );
+            let t23 = k(1.0) / t22;
+            let t24 = t23 * t17;
+            let t25 = T::fused(
+                t17,
+                t24,
+                -(k(0.0002) + T::fused(t12, k(0.0066) * t12, t0 * (k(0.0002) * t0))),
+            );
+            let t26 = x4.sin();
+            let t27 = t26 * t25;
+            let t28 = k(0.1) - t8;
+            let t29 = t28 + t9;
+            let t30 = t3 * t29;
+            let t31 = T::fused(-k(0.2), t30, t7)
+                - (k(0.01) - T::fused(t3, t11, t26 * t27));
+            let t32 = t28 + t30;
+            let t33 = k(1.0)
+                / (T::fused(k(0.2), t32, -t7) + (k(0.015) + (k(0.0017) - t31)));
+            let t34 = t33 * t4;
+            let t35 = t12 * t5;
+            let t36 = k(0.2) * t35;
+            let t37 = t26 * t36;
+            let t38 = k(0.05) * t12;
+            let t39 = k(0.1) + t19;
+            let t40 = t23 * t39;
+            let t41 = T::fused(t17, t40, -t38);
+            let t42 = t3 * t41;
+            let t43 = T::fused(-t3, t37, t26 * t42);
+            let t44 = t26 * t35;
+            let t45 = k(0.01) * t44;
+            let t46 = k(0.1) * t44;
+            let t47 = t46 - t43;
+            let t48 = t45 + T::fused(k(0.1), t47, t45) + T::fused(-k(0.1), t43, t45);
+            let t49 = k(7.462686567164179) * t12;
+            let t50 = t26 * t49;
+            let t51 = T::fused(t48, t34, k(0.2) * t50);
+            let t52 = x3.cos();
+            let t53 = t26 * t29;
+            let t54 = k(0.1) * t53;
+            let t55 = t54 + (t54 + T::fused(-t26, t11, t3 * t27));
+            let t56 = T::fused(-t26, t2, t55 * t34);
+            let t57 = x3.sin();
+            let t58 = t46 + t47;
+            let t59 = T::fused(t58, t34, t50);
+            let t60 = k(0.1) * t59;
+            let t61 = t60 + (t60 + T::fused(t52, t51, t57 * t56));
+            let t62 = t39 * t40;
+            let t63 = t3 * t62;
+            let t64 = t12 * (k(0.373134328358209) * t12);
+            let t65 = t26 * t64;
+            let t66 = T::fused(t3, t63, t26 * t65);
+            let t67 = k(0.01) * t66;
+            let t68 = k(0.1) * t66;
+            let t69 = k(0.1) - t68;
+            let t70 = t33 * t48;
+            let t71 = T::fused(
+                t48,
+                t70,
+                -(T::fused(k(0.2), t69, -t67)
+                    + (k(0.015) + (k(0.0016) + (k(0.01) - t67)))),
+            );
+            let t72 = T::fused(t26, t37, t3 * t42);
+            let t73 = T::fused(-k(0.2), t72, t55 * t70);
+            let t74 = t57 * t73;
+            let t75 = T::fused(t52, t71, t74);
+            let t76 = t52 * t73;
+            let t77 = t33 * t55;
+            let t78 = T::fused(
+                t55,
+                t77,
+                -(k(0.0002) - T::fused(t26, t26 * t10, t3 * (t3 * t25))),
+            );
+            let t79 = T::fused(t57, t78, t76);
+            let t80 = t33 * t58;
+            let t81 = T::fused(t80, t48, -(k(0.15) - t68 + t69));
+            let t82 = T::fused(t80, t55, -t72);
+            let t83 = T::fused(t52, t81, t57 * t82);
+            let t84 = T::fused(t58, t80, t66);
+            let t85 = k(0.01) * t84;
+            let t86 = T::fused(k(0.2), t83, t85)
+                - (k(0.015) - T::fused(t52, t75, t57 * t79));
+            let t87 = k(0.1) * t84;
+            let t88 = k(0.15) - t87 - t83;
+            let t89 = k(1.0)
+                / (T::fused(k(0.2), t88, -t85) + (k(0.02) + (k(0.0016) - t86)));
+            let t90 = t89 * t61;
+            let t91 = t88 + (k(0.2) - t87);
+            let t92 = x2.cos();
+            let t93 = t32 + (k(0.15) - t8);
+            let t94 = T::fused(-t93, t34, k(7.462686567164179) * t0);
+            let t95 = t3 * t36;
+            let t96 = t26 * t41;
+            let t97 = t3 * t35;
+            let t98 = k(0.1) * t97;
+            let t99 = t98 + (t98 + T::fused(t3, t95, t26 * t96));
+            let t100 = T::fused(t99, t34, t3 * t49);
+            let t101 = t33 * t93;
+            let t102 = T::fused(-k(0.2), t44, t48 * t101);
+            let t103 = T::fused(-t26, t63, t3 * t65);
+            let t104 = t33 * t99;
+            let t105 = T::fused(k(0.2), t103, t48 * t104);
+            let t106 = T::fused(-t57, t102, t52 * t105);
+            let t107 = T::fused(-t55, t101, t53);
+            let t108 = T::fused(t55, t104, T::fused(-t26, t95, t3 * t96));
+            let t109 = T::fused(t57, t107, t52 * t108);
+            let t110 = T::fused(-t80, t93, t44);
+            let t111 = T::fused(t80, t99, t103);
+            let t112 = T::fused(t57, t110, t52 * t111);
+            let t113 = k(0.1) * t112;
+            let t114 = t113 + (t113 + T::fused(t52, t106, t57 * t109));
+            let t115 = x2.sin();
+            let t116 = T::fused(
+                t92,
+                T::fused(-t91, t90, t59),
+                t115 * T::fused(t114, t90, T::fused(t57, t94, t52 * t100)),
+            );
+            let t117 = T::fused(-t52, t94, t57 * t100);
+            let t118 = T::fused(t52, t102, t57 * t105);
+            let t119 = T::fused(-t52, t107, t57 * t108);
+            let t120 = T::fused(t52, t118, t57 * t119);
+            let t121 = T::fused(-t52, t110, t57 * t111);
+            let t122 = k(0.01) * t121;
+            let t123 = k(0.1) * t121;
+            let t124 = t123 + t120;
+            let t125 = t122 + T::fused(k(0.1), t124, t122)
+                + T::fused(k(0.1), t120, t122);
+            let t126 = T::fused(k(0.2), t117, t125 * t90);
+            let t127 = T::fused(-t57, t81, t52 * t82);
+            let t128 = k(0.1) * t127;
+            let t129 = t128 + (t128 + T::fused(-t57, t75, t52 * t79));
+            let t130 = T::fused(t129, t90, T::fused(-t57, t51, t52 * t56));
+            let t131 = t123 + t124;
+            let t132 = k(0.1) * T::fused(t131, t90, t117);
+            let t133 = t132 + (t132 - T::fused(-t92, t126, t115 * t130));
+            let t134 = T::fused(t93, t101, t6);
+            let t135 = T::fused(-t99, t101, t97);
+            let t136 = t57 * t135;
+            let t137 = T::fused(-t52, t134, t136);
+            let t138 = t52 * t135;
+            let t139 = T::fused(t99, t104, T::fused(t26, t26 * t62, t3 * (t3 * t64)));
+            let t140 = T::fused(t57, t139, -t138);
+            let t141 = T::fused(-t52, t137, t57 * t140);
+            let t142 = k(0.01) * t141;
+            let t143 = k(0.1) * t141;
+            let t144 = k(0.15) - t143;
+            let t145 = t89 * t125;
+            let t146 = T::fused(
+                t125,
+                t145,
+                -(T::fused(k(0.2), t144, -t142)
+                    + (k(0.02) + (k(0.0017) + (k(0.015) - t142)))),
+            );
+            let t147 = T::fused(-t57, t118, t52 * t119);
+            let t148 = T::fused(k(0.2), t147, t129 * t145);
+            let t149 = t115 * t148;
+            let t150 = T::fused(-t92, t146, t149);
+            let t151 = t92 * t148;
+            let t152 = T::fused(
+                t57,
+                T::fused(-t57, t71, t76),
+                t52 * T::fused(-t52, t78, t74),
+            );
+            let t153 = t89 * t129;
+            let t154 = T::fused(t129, t153, -(k(0.0002) + t152));
+            let t155 = T::fused(t115, t154, -t151);
+            let t156 = t89 * t131;
+            let t157 = T::fused(t156, t125, -(k(0.2) - t143 + t144));
+            let t158 = T::fused(t156, t129, t147);
+            let t159 = T::fused(-t92, t157, t115 * t158);
+            let t160 = T::fused(t131, t156, t141);
+            let t161 = k(0.01) * t160;
+            let t162 = T::fused(-k(0.2), t159, t161)
+                - (k(0.02) - T::fused(-t92, t150, t115 * t155));
+            let t163 = k(0.1) * t160;
+            let t164 = k(0.2) - t163 + t159;
+            let t165 = k(1.0)
+                / (T::fused(k(0.2), t164, -t161) + (k(0.025) + (k(0.0017) - t162)));
+            let t166 = t165 * t133;
+            let t167 = t89 * t91;
+            let t168 = T::fused(-k(0.2), t121, t125 * t167);
+            let t169 = T::fused(t57, t137, t52 * t140);
+            let t170 = t89 * t114;
+            let t171 = T::fused(k(0.2), t169, t125 * t170);
+            let t172 = T::fused(-t92, t168, t115 * t171);
+            let t173 = T::fused(-t129, t167, t127);
+            let t174 = T::fused(t129, t170, T::fused(-t57, t106, t52 * t109));
+            let t175 = T::fused(t92, t173, t115 * t174);
+            let t176 = T::fused(-t92, t172, t115 * t175);
+            let t177 = T::fused(-t131, t167, t121);
+            let t178 = T::fused(t156, t114, t169);
+            let t179 = T::fused(t92, t177, t115 * t178);
+            let t180 = k(0.01) * t179;
+            let t181 = k(0.1) * t179;
+            let t182 = t181 - t176;
+            let t183 = t180 + T::fused(k(0.1), t182, t180)
+                + T::fused(-k(0.1), t176, t180);
+            let t184 = x1.cos();
+            let t185 = T::fused(t115, t157, t92 * t158);
+            let t186 = k(0.1) * t185;
+            let t187 = t186 + (t186 - T::fused(t115, t150, t92 * t155));
+            let t188 = x1.sin();
+            let t189 = T::fused(
+                t184,
+                T::fused(k(0.2), t116, t183 * t166),
+                t188 * T::fused(t187, t166, T::fused(t115, t126, t92 * t130)),
+            );
+            let t190 = t181 + t182;
+            let t191 = k(0.1) * T::fused(t190, t166, t116);
+            let t192 = T::fused(t91, t167, t84);
+            let t193 = T::fused(-t114, t167, t112);
+            let t194 = T::fused(t92, t192, t115 * t193);
+            let t195 = T::fused(
+                t57,
+                T::fused(t57, t134, t138),
+                t52 * T::fused(t52, t139, t136),
+            );
+            let t196 = T::fused(t114, t170, t195);
+            let t197 = T::fused(t92, t193, t115 * t196);
+            let t198 = T::fused(t92, t194, t115 * t197);
+            let t199 = k(0.01) * t198;
+            (
+                t0,
+                t3,
+                t4,
+                t6,
+                t10,
+                t12,
+                t14,
+                t15,
+                t17,
+                t18,
+                t20,
+                t21,
+                t23,
+                t24,
+                t25,
+                t26,
+                t29,
+                t33,
+                t35,
+                t36,
+                t38,
+                t39,
+                t40,
+                t41,
+                t48,
+                t52,
+                t55,
+                t57,
+                t58,
+                t61,
+                t62,
+                t64,
+                t70,
+                t71,
+                t73,
+                t77,
+                t78,
+                t80,
+                t81,
+                t82,
+                t84,
+                t89,
+                t91,
+                t92,
+                t93,
+                t99,
+                t101,
+                t102,
+                t104,
+                t105,
+                t107,
+                t108,
+                t110,
+                t111,
+                t114,
+                t115,
+                t125,
+                t129,
+                t131,
+                t133,
+                t134,
+                t135,
+                t139,
+                t145,
+                t146,
+                t148,
+                t149,
+                t151,
+                t153,
+                t154,
+                t156,
+                t157,
+                t158,
+                t160,
+                t163,
+                t164,
+                t165,
+                t167,
+                t168,
+                t170,
+                t171,
+                t172,
+                t173,
+                t174,
+                t175,
+                t177,
+                t178,
+                t179,
+                t183,
+                t184,
+                t185,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t203,
+            t205,
+            t208,
             t210,
-            t213,
+            t211,
+            t212,
             t214,
-            t215,
             t216,
             t217,
-            t218,
             t219,
             t220,
             t221,
@@ -14170,47 +14536,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t226,
             t227,
             t228,
-            t231,
-            t232,
+            t229,
+            t230,
             t233,
-            t234,
-            t235,
-            t236,
-            t237,
-            t238,
             t239,
-            t240,
-            t241,
-            t242,
-            t243,
-            t244,
-            t275,
+            t248,
+            t252,
+            t253,
+            t254,
+            t255,
+            t256,
+            t257,
+            t258,
+            t259,
+            t260,
+            t261,
+            t262,
+            t264,
+            t272,
+            t276,
             t278,
+            t279,
+            t280,
             t281,
+            t282,
             t283,
             t284,
+            t285,
+            t286,
             t287,
             t288,
             t289,
+            t290,
+            t291,
+            t292,
             t293,
             t294,
-            t296,
             t298,
-            t300,
-            t301,
             t302,
             t303,
             t304,
-            t305,
+            t306,
             t308,
+            t309,
+            t310,
             t311,
             t312,
-            t313,
             t314,
+            t315,
             t316,
             t317,
             t318,
             t319,
+            t320,
+            t321,
             t322,
             t323,
             t324,
@@ -14219,47 +14598,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t327,
             t328,
             t329,
-            t330,
             t331,
             t332,
             t333,
-            t334,
-            t335,
             t336,
-            t337,
-            t338,
             t339,
             t340,
             t341,
             t342,
             t343,
             t344,
+            t345,
+            t346,
+            t347,
             t348,
+            t349,
+            t350,
             t351,
+            t352,
+            t353,
+            t354,
             t357,
+            t358,
             t359,
+            t360,
             t361,
+            t362,
             t363,
             t364,
             t365,
+            t366,
             t367,
+            t368,
             t369,
             t370,
+            t371,
             t372,
             t373,
             t374,
             t375,
             t376,
             t377,
-            t378,
             t379,
             t380,
-            t381,
             t382,
             t383,
             t384,
             t385,
-            t386,
             t387,
             t388,
             t389,
@@ -14268,786 +14653,265 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t392,
             t393,
             t394,
+            t395,
             t396,
             t397,
+            t398,
             t399,
-            t400,
-            t401,
-            t405,
-            t407,
-            t408,
-            t409,
-            t410,
-            t411,
-            t412,
-            t414,
-            t415,
-            t416,
-            t417,
-            t418,
-            t419,
-            t421,
-            t424,
-            t425,
-            t426,
-            t430,
-            t431,
-            t435,
-            t439,
-            t441,
-            t443,
-            t444,
-            t445,
-            t446,
-            t447,
-            t448,
-            t449,
-            t450,
-            t453,
-            t459,
-            t461,
-            t462,
-            t463,
-            t464,
-            t465,
-            t467,
-            t468,
-            t470,
-            t471,
-            t479,
-            t480,
-            t481,
-            t485,
-            t486,
-            t488,
-            t493,
-            t494,
-            t495,
-            t496,
-            t497,
-            t498,
-            t499,
-        ) = gyro_sim::apart(move || {
-            let t0 = x5.cos();
-            let t1 = T::fused(k(0.05), k(1.0) + t0, k(0.05));
-            let t2 = k(0.05) + t1;
-            let t3 = x4.cos();
-            let t4 = t3 * t2;
-            let t5 = x2.cos();
-            let t6 = x4.sin();
-            let t7 = t6 * t2;
-            let t8 = x3.cos();
-            let t9 = t8 * t7;
-            let t10 = x2.sin();
-            let t11 = T::fused(-t5, t4, t10 * t9);
-            let t12 = x0.cos();
-            let t13 = T::fused(t10, t4, t5 * t9);
-            let t14 = x1.cos();
-            let t15 = x3.sin();
-            let t16 = t15 * t7;
-            let t17 = x1.sin();
-            let t18 = T::fused(-t14, t13, t17 * t16);
-            let t19 = x0.sin();
-            let t20 = T::fused(-t12, k(9.81) * t11, t19 * (k(9.81) * t18));
-            let t21 = k(0.05) * t0;
-            let t22 = k(0.05) + t21;
-            let t23 = k(0.01) * t0;
-            let t24 = k(0.0066) * t0;
-            let t25 = x5.sin();
-            let t26 = k(0.0002) * t25;
-            let t27 = t25 * t26;
-            let t28 = T::fused(
-                k(0.2),
-                t22,
-                k(0.01) + (k(0.0016) + (k(0.005) + T::fused(t0, t24, t27) + t23)),
-            );
-            let t29 = k(1.0) / t28;
-            let t30 = t29 * t20;
-            let t31 = k(0.1) + t22;
-            let t32 = t31 * t30;
-            let t33 = k(0.05) * t25;
-            let t34 = t3 * t33;
-            let t35 = T::fused(-t8, t21, t15 * t34);
-            let t36 = T::fused(t15, t21, t8 * t34);
-            let t37 = t6 * t33;
-            let t38 = T::fused(-t5, t36, t10 * t37);
-            let t39 = T::fused(t17, t35, t14 * t38);
-            let t40 = T::fused(t10, t36, t5 * t37);
-            let t41 = T::fused(-t19, k(9.81) * t39, t12 * (k(9.81) * t40));
-            let t42 = k(7.462686567164179) * t41;
-            let t43 = t25 * t42;
-            let t44 = T::fused(t3, t32, t6 * t43);
-            let t45 = k(0.1) * t44;
-            let t46 = t0 * t42;
-            let t47 = k(0.1) * t46;
-            let t48 = t47 + (t41 + t47);
-            let t49 = t0 * t26;
-            let t50 = k(0.005) * t25;
-            let t51 = t50 + (t50 - T::fused(-t25, t24, t49));
-            let t52 = t51 * t30;
-            let t53 = T::fused(k(0.1), k(1.0) + t3, k(0.1));
-            let t54 = T::fused(k(0.1), t3, t53);
-            let t55 = T::fused(k(0.05), t3, k(0.5) * (t0 * t54));
-            let t56 = k(0.5) * (t25 * t54);
-            let t57 = T::fused(t0, t55, t25 * t56);
-            let t58 = T::fused(k(0.5), t53, t57);
-            let t59 = k(0.05) + t58;
-            let t60 = T::fused(-t25, t55, t0 * t56);
-            let t61 = t6 * t25;
-            let t62 = k(0.05) * t61;
-            let t63 = T::fused(-t3, t60, t6 * t62);
-            let t64 = T::fused(-t8, t59, t15 * t63);
-            let t65 = T::fused(t15, t59, t8 * t63);
-            let t66 = T::fused(t6, t60, t3 * t62);
-            let t67 = T::fused(t5, t65, t10 * t66);
-            let t68 = T::fused(-t17, t64, t14 * t67);
-            let t69 = T::fused(-t10, t65, t5 * t66);
-            let t70 = T::fused(-t19, k(9.81) * t68, t12 * (k(9.81) * t69));
-            let t71 = t70 + (t47 + (t47 - T::fused(-t3, t48, t6 * t52)));
-            let t72 = k(0.373134328358209) * t0;
-            let t73 = t0 * t72;
-            let t74 = k(0.01) * t73;
-            let t75 = k(0.1) * t73;
-            let t76 = k(0.05) - t75;
-            let t77 = T::fused(-k(0.2), t76, t74)
-                - (k(0.01) + (k(0.0017) + (k(0.005) - t74)));
-            let t78 = t3 * t77;
-            let t79 = T::fused(
-                t51,
-                t29 * t51,
-                -(k(0.0002) + T::fused(t25, k(0.0066) * t25, t0 * (k(0.0002) * t0))),
-            );
-            let t80 = t6 * t79;
-            let t81 = k(0.1) - t75;
-            let t82 = t81 + t76;
-            let t83 = t3 * t82;
-            let t84 = T::fused(-k(0.2), t83, t74)
-                - (k(0.01) - T::fused(t3, t78, t6 * t80));
-            let t85 = t81 + t83;
-            let t86 = k(1.0)
-                / (T::fused(k(0.2), t85, -t74) + (k(0.015) + (k(0.0017) - t84)));
-            let t87 = t86 * t71;
-            let t88 = t25 * t72;
-            let t89 = k(0.2) * t88;
-            let t90 = t6 * t89;
-            let t91 = t29 * t31;
-            let t92 = T::fused(t51, t91, -t33);
-            let t93 = t3 * t92;
-            let t94 = T::fused(-t3, t90, t6 * t93);
-            let t95 = t6 * t88;
-            let t96 = k(0.01) * t95;
-            let t97 = k(0.1) * t95;
-            let t98 = t97 - t94;
-            let t99 = t96 + T::fused(k(0.1), t98, t96) + T::fused(-k(0.1), t94, t96);
-            let t100 = T::fused(t99, t87, t45 + (t20 + t45));
-            let t101 = t6 * t82;
-            let t102 = k(0.1) * t101;
-            let t103 = t102 + (t102 + T::fused(-t6, t78, t3 * t80));
-            let t104 = T::fused(t103, t87, -T::fused(t6, t48, t3 * t52));
-            let t105 = t97 + t98;
-            let t106 = T::fused(t105, t87, t44);
-            let t107 = k(0.1) * t106;
-            let t108 = t15 * t3;
-            let t109 = T::fused(-t25, t108, t8 * t0);
-            let t110 = T::fused(k(0.1), k(1.0) + t8, k(0.1));
-            let t111 = T::fused(k(0.1), t8, t110);
-            let t112 = T::fused(k(0.05), t8, k(0.5) * (t3 * t111));
-            let t113 = T::fused(k(0.05), t8 + t109, t112);
-            let t114 = t112 + t113;
-            let t115 = t6 * t111;
-            let t116 = t15 * t6;
-            let t117 = k(0.2) * t116;
-            let t118 = k(0.05) * t116;
-            let t119 = T::fused(k(0.5), T::fused(-t25, t115, t0 * t117), t118);
-            let t120 = k(0.5) * T::fused(t0, t115, t25 * t117);
-            let t121 = T::fused(-t25, t119, t0 * t120);
-            let t122 = T::fused(k(0.5), t115, t121);
-            let t123 = T::fused(t3, t114, t6 * t122);
-            let t124 = T::fused(k(0.5), t110, t123);
-            let t125 = k(0.05) + t124;
-            let t126 = T::fused(-t6, t114, t3 * t122);
-            let t127 = T::fused(t0, t119, t25 * t120);
-            let t128 = t118 + t127;
-            let t129 = T::fused(-t8, t126, t15 * t128);
-            let t130 = T::fused(-t5, t125, t10 * t129);
-            let t131 = T::fused(t10, t125, t5 * t129);
-            let t132 = T::fused(t15, t126, t8 * t128);
-            let t133 = T::fused(t14, t131, t17 * t132);
-            let t134 = T::fused(t12, k(9.81) * t130, t19 * (k(9.81) * t133));
-            let t135 = t134 + (t107 + (t107 + T::fused(t8, t100, t15 * t104)));
-            let t136 = t31 * t91;
-            let t137 = t3 * t136;
-            let t138 = t25 * (k(0.373134328358209) * t25);
-            let t139 = t6 * t138;
-            let t140 = T::fused(t3, t137, t6 * t139);
-            let t141 = k(0.01) * t140;
-            let t142 = k(0.1) * t140;
-            let t143 = k(0.1) - t142;
-            let t144 = t86 * t99;
-            let t145 = T::fused(
-                t99,
-                t144,
-                -(T::fused(k(0.2), t143, -t141)
-                    + (k(0.015) + (k(0.0016) + (k(0.01) - t141)))),
-            );
-            let t146 = T::fused(t6, t90, t3 * t93);
-            let t147 = T::fused(-k(0.2), t146, t103 * t144);
-            let t148 = t15 * t147;
-            let t149 = T::fused(t8, t145, t148);
-            let t150 = t8 * t147;
-            let t151 = T::fused(
-                t103,
-                t86 * t103,
-                -(k(0.0002) - T::fused(t6, t6 * t77, t3 * (t3 * t79))),
-            );
-            let t152 = T::fused(t15, t151, t150);
-            let t153 = t86 * t105;
-            let t154 = T::fused(t153, t99, -(k(0.15) - t142 + t143));
-            let t155 = T::fused(t153, t103, -t146);
-            let t156 = T::fused(t8, t154, t15 * t155);
-            let t157 = T::fused(t105, t153, t140);
-            let t158 = k(0.01) * t157;
-            let t159 = T::fused(k(0.2), t156, t158)
-                - (k(0.015) - T::fused(t8, t149, t15 * t152));
-            let t160 = k(0.1) * t157;
-            let t161 = k(0.15) - t160 - t156;
-            let t162 = k(1.0)
-                / (T::fused(k(0.2), t161, -t158) + (k(0.02) + (k(0.0016) - t159)));
-            let t163 = t162 * t135;
-            let t164 = t161 + (k(0.2) - t160);
-            let t165 = t85 + (k(0.15) - t75);
-            let t166 = T::fused(-t165, t87, t46);
-            let t167 = t3 * t89;
-            let t168 = t6 * t92;
-            let t169 = t3 * t88;
-            let t170 = k(0.1) * t169;
-            let t171 = t170 + (t170 + T::fused(t3, t167, t6 * t168));
-            let t172 = T::fused(t171, t87, T::fused(-t6, t32, t3 * t43));
-            let t173 = t86 * t165;
-            let t174 = T::fused(-k(0.2), t95, t99 * t173);
-            let t175 = T::fused(-t6, t137, t3 * t139);
-            let t176 = t86 * t171;
-            let t177 = T::fused(k(0.2), t175, t99 * t176);
-            let t178 = T::fused(-t15, t174, t8 * t177);
-            let t179 = T::fused(-t103, t173, t101);
-            let t180 = T::fused(t103, t176, T::fused(-t6, t167, t3 * t168));
-            let t181 = T::fused(t15, t179, t8 * t180);
-            let t182 = T::fused(-t153, t165, t95);
-            let t183 = T::fused(t153, t171, t175);
-            let t184 = T::fused(t15, t182, t8 * t183);
-            let t185 = k(0.1) * t184;
-            let t186 = t185 + (t185 + T::fused(t8, t178, t15 * t181));
-            let t187 = T::fused(
-                t5,
-                T::fused(-t164, t163, t106),
-                t10 * T::fused(t186, t163, T::fused(t15, t166, t8 * t172)),
-            );
-            let t188 = k(0.1) * t187;
-            let t189 = T::fused(-t8, t166, t15 * t172);
-            let t190 = k(0.1) * t189;
-            let t191 = T::fused(t8, t174, t15 * t177);
-            let t192 = T::fused(-t8, t179, t15 * t180);
-            let t193 = T::fused(t8, t191, t15 * t192);
-            let t194 = T::fused(-t8, t182, t15 * t183);
-            let t195 = k(0.01) * t194;
-            let t196 = k(0.1) * t194;
-            let t197 = t196 + t193;
-            let t198 = t195 + T::fused(k(0.1), t197, t195)
-                + T::fused(k(0.1), t193, t195);
-            let t199 = T::fused(t198, t163, t190 + (t70 + t190));
-            let t200 = T::fused(-t15, t154, t8 * t155);
-            let t201 = k(0.1) * t200;
-            let t202 = t201 + (t201 + T::fused(-t15, t149, t8 * t152));
-            let t203 = T::fused(t202, t163, T::fused(-t15, t100, t8 * t104));
-            let t204 = t196 + t197;
-            let t205 = k(0.1) * T::fused(t204, t163, t189);
-            let t206 = t10 * t8;
-            let t207 = T::fused(-t6, t206, t5 * t3);
-            let t208 = T::fused(k(0.1), k(1.0) + t5, k(0.1));
-            let t209 = k(0.1) * t5;
-            let t210 = t209 + t208;
-            let t211 = T::fused(t8, t210, t209);
-            let t212 = T::fused(k(0.1), t5 + t207, t211);
-            let t213 = T::fused(k(0.1), t207, t212);
-            let t214 = t15 * t210;
-            let t215 = t10 * t15;
-            let t216 = k(0.2) * t215;
-            let t217 = T::fused(t3, t214, t6 * t216);
-            let t218 = T::fused(
-                -k(0.05),
-                t207,
-                k(0.5) * T::fused(-t0, t213, t25 * t217),
-            );
-            let t219 = k(0.5) * T::fused(t25, t213, t0 * t217);
-            let t220 = T::fused(-t0, t218, t25 * t219);
-            let t221 = T::fused(k(0.5), t212, t220);
-            let t222 = T::fused(k(0.5), t211, t221);
-            let t223 = t25 * t218;
-            let t224 = t0 * t219;
-            let t225 = T::fused(k(0.5), t217, t224) + t223;
-            let t226 = t3 * t225;
-            let t227 = T::fused(t3, t206, t5 * t6);
-            let t228 = T::fused(t25, t227, t0 * t215);
-            let t229 = k(0.05) * t215;
-            let t230 = T::fused(k(0.5), T::fused(-t6, t214, t3 * t216), t229);
-            let t231 = T::fused(k(0.05), t215 + t228, t230);
-            let t232 = t230 + t231;
-            let t233 = t6 * t232;
-            let t234 = T::fused(k(0.5), t214, -t233) + t226;
-            let t235 = T::fused(t8, t222, t15 * t234);
-            let t236 = T::fused(k(0.5), t208, t235);
-            let t237 = k(0.05) + t236;
-            let t238 = T::fused(-t15, t222, t8 * t234);
-            let t239 = T::fused(t6, t225, t3 * t232);
-            let t240 = t229 + t239;
-            let t241 = T::fused(-t5, t238, t10 * t240);
-            let t242 = T::fused(t17, t237, t14 * t241);
-            let t243 = T::fused(t10, t238, t5 * t240);
-            let t244 = T::fused(-t19, k(9.81) * t242, t12 * (k(9.81) * t243))
-                - (t205 + (t205 - T::fused(-t5, t199, t10 * t203)));
-            let t245 = T::fused(t165, t173, t73);
-            let t246 = T::fused(-t171, t173, t169);
-            let t247 = t15 * t246;
-            let t248 = T::fused(-t8, t245, t247);
-            let t249 = t8 * t246;
-            let t250 = T::fused(t171, t176, T::fused(t6, t6 * t136, t3 * (t3 * t138)));
-            let t251 = T::fused(t15, t250, -t249);
-            let t252 = T::fused(-t8, t248, t15 * t251);
-            let t253 = k(0.01) * t252;
-            let t254 = k(0.1) * t252;
-            let t255 = k(0.15) - t254;
-            let t256 = t162 * t198;
-            let t257 = T::fused(
-                t198,
-                t256,
-                -(T::fused(k(0.2), t255, -t253)
-                    + (k(0.02) + (k(0.0017) + (k(0.015) - t253)))),
-            );
-            let t258 = T::fused(-t15, t191, t8 * t192);
-            let t259 = T::fused(k(0.2), t258, t202 * t256);
-            let t260 = t10 * t259;
-            let t261 = T::fused(-t5, t257, t260);
-            let t262 = t5 * t259;
-            let t263 = T::fused(
-                t15,
-                T::fused(-t15, t145, t150),
-                t8 * T::fused(-t8, t151, t148),
-            );
-            let t264 = T::fused(t202, t162 * t202, -(k(0.0002) + t263));
-            let t265 = T::fused(t10, t264, -t262);
-            let t266 = t162 * t204;
-            let t267 = T::fused(t266, t198, -(k(0.2) - t254 + t255));
-            let t268 = T::fused(t266, t202, t258);
-            let t269 = T::fused(-t5, t267, t10 * t268);
-            let t270 = T::fused(t204, t266, t252);
-            let t271 = k(0.01) * t270;
-            let t272 = T::fused(-k(0.2), t269, t271)
-                - (k(0.02) - T::fused(-t5, t261, t10 * t265));
-            let t273 = k(0.1) * t270;
-            let t274 = k(0.2) - t273 + t269;
-            let t275 = k(1.0)
-                / (T::fused(k(0.2), t274, -t271) + (k(0.025) + (k(0.0017) - t272)));
-            let t276 = t275 * t244;
-            let t277 = t162 * t164;
-            let t278 = T::fused(-k(0.2), t194, t198 * t277);
-            let t279 = T::fused(t15, t248, t8 * t251);
-            let t280 = t162 * t186;
-            let t281 = T::fused(k(0.2), t279, t198 * t280);
-            let t282 = T::fused(-t5, t278, t10 * t281);
-            let t283 = T::fused(-t202, t277, t200);
-            let t284 = T::fused(t202, t280, T::fused(-t15, t178, t8 * t181));
-            let t285 = T::fused(t5, t283, t10 * t284);
-            let t286 = T::fused(-t5, t282, t10 * t285);
-            let t287 = T::fused(-t204, t277, t194);
-            let t288 = T::fused(t266, t186, t279);
-            let t289 = T::fused(t5, t287, t10 * t288);
-            let t290 = k(0.01) * t289;
-            let t291 = k(0.1) * t289;
-            let t292 = t291 - t286;
-            let t293 = t290 + T::fused(k(0.1), t292, t290)
-                + T::fused(-k(0.1), t286, t290);
-            let t294 = T::fused(t10, t267, t5 * t268);
-            let t295 = k(0.1) * t294;
-            let t296 = t295 + (t295 - T::fused(t10, t261, t5 * t265));
-            let t297 = T::fused(
-                t14,
-                T::fused(t293, t276, -(t188 - (t134 - t188))),
-                t17 * T::fused(t296, t276, -T::fused(t10, t199, t5 * t203)),
-            );
-            let t298 = t291 + t292;
-            let t299 = k(0.1) * T::fused(t298, t276, -t187);
-            let t300 = t17 * t5;
-            let t301 = T::fused(t8, t300, t14 * t15);
-            let t302 = t17 * t10;
-            let t303 = T::fused(-t3, t301, t6 * t302);
-            let t304 = T::fused(-t15, t300, t14 * t8);
-            let t305 = T::fused(t25, t303, t0 * t304);
-            let t306 = T::fused(k(0.1), k(1.0) + t14, k(0.1));
-            let t307 = k(0.1) * t14;
-            let t308 = t307 + t306;
-            let t309 = T::fused(t5, t308, t307);
-            let t310 = T::fused(k(0.1), t14 + t304, t309);
-            let t311 = T::fused(k(0.1), t304, t310);
-            let t312 = t10 * t308;
-            let t313 = k(0.2) * t302;
-            let t314 = T::fused(t8, t312, t15 * t313);
-            let t315 = T::fused(-k(0.05), t304, k(0.5) * T::fused(-t3, t311, t6 * t314));
-            let t316 = T::fused(-k(0.05), t304 + t305, t315);
-            let t317 = t315 + t316;
-            let t318 = T::fused(t6, t311, t3 * t314);
-            let t319 = T::fused(t6, t301, t3 * t302);
-            let t320 = T::fused(-t15, t312, T::fused(t8, t313, k(0.1) * t302));
-            let t321 = T::fused(k(0.1), t302 + t319, t320);
-            let t322 = T::fused(k(0.1), t319, t321);
-            let t323 = T::fused(k(0.5), T::fused(-t25, t318, t0 * t322), k(0.05) * t319);
-            let t324 = k(0.5) * T::fused(t0, t318, t25 * t322);
-            let t325 = T::fused(-t25, t323, t0 * t324);
-            let t326 = T::fused(k(0.5), t318, t325);
-            let t327 = T::fused(-t3, t317, t6 * t326);
-            let t328 = T::fused(k(0.5), t310, t327);
-            let t329 = T::fused(k(0.5), t309, t328);
-            let t330 = t6 * t317;
-            let t331 = t3 * t326;
-            let t332 = T::fused(k(0.5), t314, t331) + t330;
-            let t333 = t8 * t332;
-            let t334 = T::fused(t0, t323, t25 * t324);
-            let t335 = T::fused(k(0.5), t321, t334);
-            let t336 = T::fused(k(0.5), t320, t335);
-            let t337 = t15 * t336;
-            let t338 = T::fused(k(0.5), t312, -t337) + t333;
-            let t339 = T::fused(t5, t329, t10 * t338);
-            let t340 = T::fused(k(0.5), t306, t339);
-            let t341 = T::fused(-t10, t329, t5 * t338);
-            let t342 = T::fused(t15, t332, t8 * t336);
-            let t343 = T::fused(k(0.05), t302, t342);
-            let t344 = T::fused(-t14, t341, t17 * t343);
-            let t345 = T::fused(-t12, k(9.81) * (k(0.05) + t340), t19 * (k(9.81) * t344))
-                - (t299 + (t299 + t297));
-            let t346 = T::fused(t164, t277, t157);
-            let t347 = T::fused(-t186, t277, t184);
-            let t348 = T::fused(t5, t346, t10 * t347);
-            let t349 = T::fused(
-                t15,
-                T::fused(t15, t245, t249),
-                t8 * T::fused(t8, t250, t247),
-            );
-            let t350 = T::fused(t186, t280, t349);
-            let t351 = T::fused(t5, t347, t10 * t350);
-            let t352 = T::fused(t5, t348, t10 * t351);
-            let t353 = k(0.01) * t352;
-            let t354 = k(0.1) * t352;
-            let t355 = k(0.2) - t354;
-            let t356 = t275 * t293;
-            let t357 = T::fused(
-                t293,
-                t356,
-                -(T::fused(k(0.2), t355, -t353)
-                    + (k(0.025) + (k(0.0016) + (k(0.02) - t353)))),
-            );
-            let t358 = T::fused(t10, t282, t5 * t285);
-            let t359 = T::fused(k(0.2), t358, t296 * t356);
-            let t360 = T::fused(
-                t10,
-                T::fused(t10, t257, t262),
-                t5 * T::fused(t5, t264, t260),
-            );
-            let t361 = T::fused(t296, t275 * t296, -(k(0.0002) - t360));
-            let t362 = T::fused(
-                t14,
-                T::fused(t14, t357, t17 * t359),
-                t17 * T::fused(t14, t359, t17 * t361),
-            );
-            let t363 = t275 * t298;
-            let t364 = T::fused(t363, t293, -(k(0.25) - t354 + t355));
-            let t365 = T::fused(t363, t296, t358);
-            let t366 = T::fused(t14, t364, t17 * t365);
-            let t367 = T::fused(t298, t363, t352);
-            let t368 = k(0.01) * t367;
-            let t369 = k(0.1) * t367;
-            let t370 = k(0.25) - t369 - t366;
-            let t371 = T::fused(k(0.2), t370, -t368)
-                + (k(0.03)
-                    + (k(0.0016) - (T::fused(k(0.2), t366, t368) - (k(0.025) - t362))));
-            let t372 = k(1.0) / t371;
-            let t373 = t372 * t345;
-            let t374 = u0 * t17;
-            let t375 = u1 * t374;
-            let t376 = k(0.0015) * t375;
-            let t377 = T::fused(-u1, t10, t5 * t374);
-            let t378 = T::fused(u1, t5, t10 * t374);
-            let t379 = k(0.0015) * (t378 * t377);
-            let t380 = u3 + t378;
-            let t381 = u0 * t14;
-            let t382 = u2 + t381;
-            let t383 = T::fused(t15, t382, t8 * t377);
-            let t384 = k(0.0015) * (t383 * t380);
-            let t385 = T::fused(t3, t380, t6 * t383);
-            let t386 = T::fused(-t6, t380, t3 * t383);
-            let t387 = k(0.0015) * (t386 * t385);
-            let t388 = T::fused(-t8, t382, t15 * t377);
-            let t389 = u4 - t388;
-            let t390 = T::fused(t25, t389, t0 * t386);
-            let t391 = u5 + t385;
-            let t392 = k(0.0015) * (t391 * t390);
-            let t393 = k(0.1) * t391;
-            let t394 = k(0.1) * t385;
-            let t395 = t386 * t394;
-            let t396 = T::fused(t393, t390, t395);
-            let t397 = u5 * t390;
-            let t398 = T::fused(k(0.05), t396, k(0.0066) * t397) + t392;
-            let t399 = T::fused(-t0, t389, t25 * t386);
-            let t400 = k(0.0001) * (t399 * t391);
-            let t401 = u5 * t399;
-            let t402 = T::fused(k(0.0002), t401, t400);
-            let t403 = T::fused(k(0.5), t396, k(0.05) * t397);
-            let t404 = k(0.1) * t403;
-            let t405 = t404 + (t404 + T::fused(t0, t398, t25 * t402) + t387);
-            let t406 = t29 * t405;
-            let t407 = k(0.1) * t380;
-            let t408 = t383 * t407;
-            let t409 = k(0.1) * t388;
-            let t410 = T::fused(t380, t407, t388 * t409);
-            let t411 = T::fused(-t3, t408, t6 * t410) - t395;
-            let t412 = u4 * t385;
-            let t413 = T::fused(t92, t412, -T::fused(-t136, t411, t411))
-                + T::fused(-t31, t406, t403);
-            let t414 = t399 * t390;
-            let t415 = k(0.1) * t399;
-            let t416 = k(0.1) * t389;
-            let t417 = t386 * t416;
-            let t418 = T::fused(t385, t394, t389 * t416);
-            let t419 = T::fused(-t415, t390, T::fused(t0, t417, t25 * t418));
-            let t420 = T::fused(
-                k(0.010447761194029851),
-                t414,
-                k(0.12686567164179105) * t419,
-            );
-            let t421 = T::fused(-t25, t417, t0 * t418)
-                + T::fused(t391, t393, t399 * t415);
-            let t422 = k(0.5) * t421;
-            let t423 = t383 * t409;
-            let t424 = t423 - t417;
-            let t425 = T::fused(t6, t408, t3 * t410) + t418;
-            let t426 = u4 * t386;
-            let t427 = T::fused(t89, t426, -(t425 - T::fused(-t88, t424, t138 * t425)))
-                - T::fused(t25, t420, t0 * t422);
-            let t428 = T::fused(-t3, t413, t6 * t427);
-            let t429 = k(0.1) * t428;
-            let t430 = k(0.0014) * (t388 * t383);
-            let t431 = k(0.0014) * (t386 * t389);
-            let t432 = T::fused(-t0, t420, t25 * t422);
-            let t433 = k(0.1) * t432;
-            let t434 = T::fused(t77, t426, T::fused(t82, t424, t89 * t425))
-                + (t433 + (t433 - t431));
-            let t435 = k(0.0001) * (t389 * t385);
-            let t436 = T::fused(t92, t411, t79 * t412)
-                - T::fused(t51, t406, T::fused(-t25, t398, t0 * t402) - t435);
-            let t437 = T::fused(t82, t426, -(t424 + T::fused(-t73, t424, t88 * t425)))
-                - t432;
-            let t438 = k(0.1) * t437;
-            let t439 = t438 + (t438 - T::fused(t3, t434, t6 * t436) - t430);
-            let t440 = t86 * t439;
-            let t441 = k(0.1) * t378;
-            let t442 = t377 * t441;
-            let t443 = t442 + t408;
-            let t444 = k(0.1) * t382;
-            let t445 = t377 * t444;
-            let t446 = T::fused(t378, t441, t382 * t444);
-            let t447 = T::fused(t8, t445, t15 * t446) - t423;
-            let t448 = T::fused(-t15, t445, t8 * t446) + t410;
-            let t449 = u3 * t383;
-            let t450 = u3 * t388;
-            let t451 = T::fused(t145, t449, t147 * t450)
-                + T::fused(t177, t448, -T::fused(-t154, t443, t174 * t447));
-            let t452 = t451 - T::fused(t99, t440, -(t429 + (t429 - t384)));
-            let t453 = k(0.0001) * (t388 * t380);
-            let t454 = T::fused(t147, t449, t151 * t450)
-                + T::fused(t180, t448, T::fused(t155, t443, t179 * t447));
-            let t455 = t454
-                - T::fused(t103, t440, -(T::fused(-t6, t434, t3 * t436) - t453));
-            let t456 = T::fused(
-                -k(1.5),
-                t443,
-                T::fused(t183, t448, T::fused(t157, t443, t182 * t447)),
-            );
-            let t457 = T::fused(t154, t449, t155 * t450) + t456
-                - T::fused(t105, t440, -t428);
-            let t458 = k(0.1) * t457;
-            let t459 = t458 + (t458 + T::fused(t8, t452, t15 * t455) - t379);
-            let t460 = t162 * t459;
-            let t461 = k(0.1) * u1;
-            let t462 = t461 * t374;
-            let t463 = k(0.1) * t381;
-            let t464 = T::fused(t381, t463, u1 * t461);
-            let t465 = T::fused(-t5, t462, t10 * t464) - t442;
-            let t466 = t374 * t463;
-            let t467 = t466 + t445;
-            let t468 = T::fused(t10, t462, t5 * t464) + t446;
-            let t469 = T::fused(
-                k(2.0),
-                t465,
-                T::fused(t347, t468, -T::fused(t346, t465, t287 * t467)),
-            );
-            let t470 = u2 * t377;
-            let t471 = u2 * t378;
-            let t472 = T::fused(t278, t470, t283 * t471) + t469
-                + T::fused(-t164, t460, t457);
-            let t473 = T::fused(
-                -k(1.5),
-                t447,
-                T::fused(t246, t448, T::fused(t182, t443, t245 * t447)),
-            );
-            let t474 = T::fused(-t174, t449, t179 * t450) + t473
-                - T::fused(-t165, t440, t437);
-            let t475 = T::fused(
-                -k(1.5),
-                t448,
-                T::fused(t250, t448, T::fused(t183, t443, t246 * t447)),
-            );
-            let t476 = T::fused(t177, t449, t180 * t450) + t475
-                - T::fused(t171, t440, -T::fused(t6, t413, t3 * t427));
-            let t477 = T::fused(
-                -k(2.0),
-                t468,
-                T::fused(t350, t468, -T::fused(t347, t465, t288 * t467)),
-            );
-            let t478 = T::fused(-t281, t470, t284 * t471) + t477
-                + T::fused(t186, t460, T::fused(t15, t474, t8 * t476));
-            let t479 = T::fused(t5, t472, t10 * t478);
-            let t480 = k(0.1) * t479;
-            let t481 = k(0.0014) * (t377 * t382);
-            let t482 = T::fused(-t8, t474, t15 * t476);
-            let t483 = k(0.1) * t482;
-            let t484 = T::fused(-t257, t470, t259 * t471)
-                + T::fused(t281, t468, -T::fused(-t278, t465, t267 * t467));
-            let t485 = t484 + T::fused(t198, t460, t483 + (t483 + t481));
-            let t486 = k(0.0001) * (t378 * t382);
-            let t487 = T::fused(-t259, t470, t264 * t471)
-                + T::fused(t284, t468, -T::fused(t283, t465, t268 * t467));
-            let t488 = t487
-                + T::fused(t202, t460, T::fused(-t15, t452, t8 * t455) + t486);
-            let t489 = T::fused(
-                k(2.0),
-                t467,
-                T::fused(t288, t468, -T::fused(t287, t465, t270 * t467)),
-            );
-            let t490 = T::fused(-t267, t470, t268 * t471) + t489
-                + T::fused(t204, t460, t482);
-            let t491 = k(0.1) * t490;
-            let t492 = T::fused(
-                k(0.0014),
-                t381 * t374,
-                t491 - T::fused(-t5, t485, t10 * t488),
-            );
-            let t493 = t491 + t492;
-            let t494 = t275 * t493;
-            let t495 = k(0.1) * u0;
-            let t496 = u0 * t495;
-            let t497 = T::fused(t17, t496, t466);
-            let t498 = t274 + (k(0.25) - t273);
-            let t499 = t275 * t498;
-            (
-                t0,
-                t1,
-                t2,
-                t3,
-                t4,
-                t5,
-                t6,
-                t7,
-                t8,
-                t9,
-                t10,
-                t11,
-                t12,
-                t13,
-                t14,
-                t15,
-                t16,
-                t17,
-                t18,
-                t19,
-                t20,
-                t21,
-                t23,
-                t25,
-                t26,
-                t27,
-                t29,
-                t31,
-                t33,
-                t34,
-                t35,
-                t36,
-                t37,
-                t38,
-                t39,
-                t40,
-                t41,
-                t49,
-                t51,
-                t54,
-                t55,
-                t56,
-                t57,
-                t58,
-                t59,
-                t60,
-                t61,
-                t62,
-                t63,
-                t64,
-                t65,
-                t66,
-                t67,
-                t68,
-                t69,
-                t71,
-                t86,
-                t99,
-                t103,
-                t105,
-                t108,
-                t109,
-                t111,
-                t113,
-                t114,
-                t115,
-                t116,
-                t117,
-                t119,
-                t120,
-                t121,
-                t122,
-                t123,
-                t124,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
-                t130,
-                t131,
-                t132,
-                t133,
-                t135,
-                t162,
-                t164,
-                t165,
-                t171,
-                t186,
-                t198,
+        ) = {
+            let t200 = k(0.1) * t198;
+            let t201 = k(0.2) - t200;
+            let t202 = t165 * t183;
+            let t203 = T::fused(
+                t183,
                 t202,
-                t204,
-                t206,
-                t207,
+                -(T::fused(k(0.2), t201, -t199)
+                    + (k(0.025) + (k(0.0016) + (k(0.02) - t199)))),
+            );
+            let t204 = T::fused(t115, t172, t92 * t175);
+            let t205 = T::fused(k(0.2), t204, t187 * t202);
+            let t206 = T::fused(
+                t115,
+                T::fused(t115, t146, t151),
+                t92 * T::fused(t92, t154, t149),
+            );
+            let t207 = t165 * t187;
+            let t208 = T::fused(t187, t207, -(k(0.0002) - t206));
+            let t209 = T::fused(
+                t184,
+                T::fused(t184, t203, t188 * t205),
+                t188 * T::fused(t184, t205, t188 * t208),
+            );
+            let t210 = t165 * t190;
+            let t211 = T::fused(t210, t183, -(k(0.25) - t200 + t201));
+            let t212 = T::fused(t210, t187, t204);
+            let t213 = T::fused(t184, t211, t188 * t212);
+            let t214 = T::fused(t190, t210, t198);
+            let t215 = k(0.01) * t214;
+            let t216 = k(0.1) * t214;
+            let t217 = k(0.25) - t216 - t213;
+            let t218 = T::fused(k(0.2), t217, -t215)
+                + (k(0.03)
+                    + (k(0.0016) - (T::fused(k(0.2), t213, t215) - (k(0.025) - t209))));
+            let t219 = k(1.0) / t218;
+            let t220 = t219 * (t191 + (t191 + t189));
+            let t221 = t3 * t38;
+            let t222 = T::fused(-t52, t18, t57 * t221);
+            let t223 = T::fused(t57, t18, t52 * t221);
+            let t224 = t26 * t38;
+            let t225 = T::fused(-t92, t223, t115 * t224);
+            let t226 = T::fused(t188, t222, t184 * t225);
+            let t227 = x0.sin();
+            let t228 = T::fused(t115, t223, t92 * t224);
+            let t229 = x0.cos();
+            let t230 = T::fused(-t227, k(9.81) * t226, t229 * (k(9.81) * t228));
+            let t231 = t3 * t40;
+            let t232 = k(0.1) * t231;
+            let t233 = t26 * t24;
+            let t234 = t33 * t233;
+            let t235 = T::fused(t48, t234, -(t232 + (k(1.0) + t232)));
+            let t236 = T::fused(t55, t234, t3 * t24);
+            let t237 = T::fused(t58, t234, -t231);
+            let t238 = k(0.1) * t237;
+            let t239 = t238 + (t238 + T::fused(t52, t235, t57 * t236));
+            let t240 = t89 * t239;
+            let t241 = T::fused(t26, t40, t99 * t234);
+            let t242 = t93 * t234;
+            let t243 = T::fused(
+                -t92,
+                T::fused(-t91, t240, t237),
+                t115 * T::fused(-t114, t240, T::fused(-t52, t241, t57 * t242)),
+            );
+            let t244 = T::fused(t57, t241, t52 * t242);
+            let t245 = T::fused(t125, t240, k(0.2) * t244);
+            let t246 = T::fused(t129, t240, T::fused(-t57, t235, t52 * t236));
+            let t247 = k(0.1) * T::fused(t131, t240, t244);
+            let t248 = t247 + (t247 - T::fused(-t92, t245, t115 * t246));
+            let t249 = t165 * t248;
+            let t250 = T::fused(
+                t184,
+                T::fused(-k(0.2), t243, t183 * t249),
+                t188 * T::fused(t187, t249, T::fused(t115, t245, t92 * t246)),
+            );
+            let t251 = k(0.1) * T::fused(t190, t249, -t243);
+            let t252 = t219 * (t251 + (t251 + t250));
+            let t253 = T::fused(k(0.05), k(1.0) + t0, k(0.05));
+            let t254 = k(0.05) + t253;
+            let t255 = t3 * t254;
+            let t256 = t26 * t254;
+            let t257 = t52 * t256;
+            let t258 = T::fused(-t92, t255, t115 * t257);
+            let t259 = T::fused(t115, t255, t92 * t257);
+            let t260 = t57 * t256;
+            let t261 = T::fused(-t184, t259, t188 * t260);
+            let t262 = T::fused(-t229, k(9.81) * t258, t227 * (k(9.81) * t261));
+            let t263 = k(0.1) * t80;
+            let t264 = t263 + (T::fused(t52, t70, t57 * t77) + t263);
+            let t265 = t89 * t264;
+            let t266 = T::fused(
+                t92,
+                T::fused(-t91, t265, t80),
+                t115 * T::fused(t114, t265, T::fused(-t57, t101, t52 * t104)),
+            );
+            let t267 = T::fused(t52, t101, t57 * t104);
+            let t268 = k(0.1) * t267;
+            let t269 = T::fused(t125, t265, t268 + (k(1.0) + t268));
+            let t270 = T::fused(t129, t265, T::fused(-t57, t70, t52 * t77));
+            let t271 = k(0.1) * T::fused(t131, t265, t267);
+            let t272 = t271 + (t271 - T::fused(-t92, t269, t115 * t270));
+            let t273 = t165 * t272;
+            let t274 = T::fused(
+                t184,
+                T::fused(k(0.2), t266, t183 * t273),
+                t188 * T::fused(t187, t273, T::fused(t115, t269, t92 * t270)),
+            );
+            let t275 = k(0.1) * T::fused(t190, t273, t266);
+            let t276 = t219 * (t275 + (t275 + t274));
+            let t277 = T::fused(k(0.1), k(1.0) + t3, k(0.1));
+            let t278 = T::fused(k(0.1), t3, t277);
+            let t279 = T::fused(k(0.05), t3, k(0.5) * (t0 * t278));
+            let t280 = k(0.5) * (t12 * t278);
+            let t281 = T::fused(t0, t279, t12 * t280);
+            let t282 = T::fused(k(0.5), t277, t281);
+            let t283 = k(0.05) + t282;
+            let t284 = T::fused(-t12, t279, t0 * t280);
+            let t285 = t26 * t12;
+            let t286 = k(0.05) * t285;
+            let t287 = T::fused(-t3, t284, t26 * t286);
+            let t288 = T::fused(-t52, t283, t57 * t287);
+            let t289 = T::fused(t57, t283, t52 * t287);
+            let t290 = T::fused(t26, t284, t3 * t286);
+            let t291 = T::fused(t92, t289, t115 * t290);
+            let t292 = T::fused(-t188, t288, t184 * t291);
+            let t293 = T::fused(-t115, t289, t92 * t290);
+            let t294 = T::fused(-t227, k(9.81) * t292, t229 * (k(9.81) * t293));
+            let t295 = T::fused(-t92, t167, t115 * t170);
+            let t296 = k(0.1) * t295;
+            let t297 = k(0.1) * t156;
+            let t298 = t297 - (T::fused(-t92, t145, t115 * t153) - t297);
+            let t299 = t165 * t298;
+            let t300 = T::fused(
+                t184,
+                T::fused(t183, t299, t296 - (k(1.0) - t296)),
+                t188 * T::fused(t187, t299, T::fused(t115, t145, t92 * t153)),
+            );
+            let t301 = k(0.1) * T::fused(t190, t299, t295);
+            let t302 = t219 * (t301 + (t301 + t300));
+            let t303 = t57 * t3;
+            let t304 = T::fused(-t12, t303, t52 * t0);
+            let t305 = T::fused(k(0.1), k(1.0) + t52, k(0.1));
+            let t306 = T::fused(k(0.1), t52, t305);
+            let t307 = T::fused(k(0.05), t52, k(0.5) * (t3 * t306));
+            let t308 = T::fused(k(0.05), t52 + t304, t307);
+            let t309 = t307 + t308;
+            let t310 = t26 * t306;
+            let t311 = t57 * t26;
+            let t312 = k(0.2) * t311;
+            let t313 = k(0.05) * t311;
+            let t314 = T::fused(k(0.5), T::fused(-t12, t310, t0 * t312), t313);
+            let t315 = k(0.5) * T::fused(t0, t310, t12 * t312);
+            let t316 = T::fused(-t12, t314, t0 * t315);
+            let t317 = T::fused(k(0.5), t310, t316);
+            let t318 = T::fused(t3, t309, t26 * t317);
+            let t319 = T::fused(k(0.5), t305, t318);
+            let t320 = k(0.05) + t319;
+            let t321 = T::fused(-t26, t309, t3 * t317);
+            let t322 = T::fused(t0, t314, t12 * t315);
+            let t323 = t313 + t322;
+            let t324 = T::fused(-t52, t321, t57 * t323);
+            let t325 = T::fused(-t92, t320, t115 * t324);
+            let t326 = T::fused(t115, t320, t92 * t324);
+            let t327 = T::fused(t57, t321, t52 * t323);
+            let t328 = T::fused(t184, t326, t188 * t327);
+            let t329 = T::fused(t229, k(9.81) * t325, t227 * (k(9.81) * t328));
+            let t330 = k(0.1) * t210;
+            let t331 = t219 * (t330 + (T::fused(t184, t202, t188 * t207) + t330));
+            let t332 = t115 * t52;
+            let t333 = T::fused(-t26, t332, t92 * t3);
+            let t334 = T::fused(k(0.1), k(1.0) + t92, k(0.1));
+            let t335 = k(0.1) * t92;
+            let t336 = t335 + t334;
+            let t337 = T::fused(t52, t336, t335);
+            let t338 = T::fused(k(0.1), t92 + t333, t337);
+            let t339 = T::fused(k(0.1), t333, t338);
+            let t340 = t57 * t336;
+            let t341 = t115 * t57;
+            let t342 = k(0.2) * t341;
+            let t343 = T::fused(t3, t340, t26 * t342);
+            let t344 = T::fused(
+                -k(0.05),
+                t333,
+                k(0.5) * T::fused(-t0, t339, t12 * t343),
+            );
+            let t345 = k(0.5) * T::fused(t12, t339, t0 * t343);
+            let t346 = T::fused(-t0, t344, t12 * t345);
+            let t347 = T::fused(k(0.5), t338, t346);
+            let t348 = T::fused(k(0.5), t337, t347);
+            let t349 = t12 * t344;
+            let t350 = t0 * t345;
+            let t351 = T::fused(k(0.5), t343, t350) + t349;
+            let t352 = t3 * t351;
+            let t353 = T::fused(t3, t332, t92 * t26);
+            let t354 = T::fused(t12, t353, t0 * t341);
+            let t355 = k(0.05) * t341;
+            let t356 = T::fused(k(0.5), T::fused(-t26, t340, t3 * t342), t355);
+            let t357 = T::fused(k(0.05), t341 + t354, t356);
+            let t358 = t356 + t357;
+            let t359 = t26 * t358;
+            let t360 = T::fused(k(0.5), t340, -t359) + t352;
+            let t361 = T::fused(t52, t348, t57 * t360);
+            let t362 = T::fused(k(0.5), t334, t361);
+            let t363 = k(0.05) + t362;
+            let t364 = T::fused(-t57, t348, t52 * t360);
+            let t365 = T::fused(t26, t351, t3 * t358);
+            let t366 = t355 + t365;
+            let t367 = T::fused(-t92, t364, t115 * t366);
+            let t368 = T::fused(t188, t363, t184 * t367);
+            let t369 = T::fused(t115, t364, t92 * t366);
+            let t370 = T::fused(-t227, k(9.81) * t368, t229 * (k(9.81) * t369));
+            let t371 = t188 * t92;
+            let t372 = T::fused(t52, t371, t184 * t57);
+            let t373 = t188 * t115;
+            let t374 = T::fused(-t3, t372, t26 * t373);
+            let t375 = T::fused(-t57, t371, t184 * t52);
+            let t376 = T::fused(t12, t374, t0 * t375);
+            let t377 = T::fused(k(0.1), k(1.0) + t184, k(0.1));
+            let t378 = k(0.1) * t184;
+            let t379 = t378 + t377;
+            let t380 = T::fused(t92, t379, t378);
+            let t381 = T::fused(k(0.1), t184 + t375, t380);
+            let t382 = T::fused(k(0.1), t375, t381);
+            let t383 = t115 * t379;
+            let t384 = k(0.2) * t373;
+            let t385 = T::fused(t52, t383, t57 * t384);
+            let t386 = T::fused(
+                -k(0.05),
+                t375,
+                k(0.5) * T::fused(-t3, t382, t26 * t385),
+            );
+            let t387 = T::fused(-k(0.05), t375 + t376, t386);
+            let t388 = t386 + t387;
+            let t389 = T::fused(t26, t382, t3 * t385);
+            let t390 = T::fused(t26, t372, t3 * t373);
+            let t391 = T::fused(-t57, t383, T::fused(t52, t384, k(0.1) * t373));
+            let t392 = T::fused(k(0.1), t373 + t390, t391);
+            let t393 = T::fused(k(0.1), t390, t392);
+            let t394 = T::fused(k(0.5), T::fused(-t12, t389, t0 * t393), k(0.05) * t390);
+            let t395 = k(0.5) * T::fused(t0, t389, t12 * t393);
+            let t396 = T::fused(-t12, t394, t0 * t395);
+            let t397 = T::fused(k(0.5), t389, t396);
+            let t398 = T::fused(-t3, t388, t26 * t397);
+            let t399 = T::fused(k(0.5), t381, t398);
+            (
+                t203,
+                t205,
+                t208,
                 t210,
-                t213,
+                t211,
+                t212,
                 t214,
-                t215,
                 t216,
                 t217,
-                t218,
                 t219,
                 t220,
                 t221,
@@ -15058,47 +14922,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t226,
                 t227,
                 t228,
-                t231,
-                t232,
+                t229,
+                t230,
                 t233,
-                t234,
-                t235,
-                t236,
-                t237,
-                t238,
                 t239,
-                t240,
-                t241,
-                t242,
-                t243,
-                t244,
-                t275,
+                t248,
+                t252,
+                t253,
+                t254,
+                t255,
+                t256,
+                t257,
+                t258,
+                t259,
+                t260,
+                t261,
+                t262,
+                t264,
+                t272,
+                t276,
                 t278,
+                t279,
+                t280,
                 t281,
+                t282,
                 t283,
                 t284,
+                t285,
+                t286,
                 t287,
                 t288,
                 t289,
+                t290,
+                t291,
+                t292,
                 t293,
                 t294,
-                t296,
                 t298,
-                t300,
-                t301,
                 t302,
                 t303,
                 t304,
-                t305,
+                t306,
                 t308,
+                t309,
+                t310,
                 t311,
                 t312,
-                t313,
                 t314,
+                t315,
                 t316,
                 t317,
                 t318,
                 t319,
+                t320,
+                t321,
                 t322,
                 t323,
                 t324,
@@ -15107,47 +14984,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t327,
                 t328,
                 t329,
-                t330,
                 t331,
                 t332,
                 t333,
-                t334,
-                t335,
                 t336,
-                t337,
-                t338,
                 t339,
                 t340,
                 t341,
                 t342,
                 t343,
                 t344,
+                t345,
+                t346,
+                t347,
                 t348,
+                t349,
+                t350,
                 t351,
+                t352,
+                t353,
+                t354,
                 t357,
+                t358,
                 t359,
+                t360,
                 t361,
+                t362,
                 t363,
                 t364,
                 t365,
+                t366,
                 t367,
+                t368,
                 t369,
                 t370,
+                t371,
                 t372,
                 t373,
                 t374,
                 t375,
                 t376,
                 t377,
-                t378,
                 t379,
                 t380,
-                t381,
                 t382,
                 t383,
                 t384,
                 t385,
-                t386,
                 t387,
                 t388,
                 t389,
@@ -15156,3353 +15039,3470 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t392,
                 t393,
                 t394,
+                t395,
                 t396,
                 t397,
+                t398,
                 t399,
+            )
+        };
+        let (
+            t400,
+            t401,
+            t402,
+            t403,
+            t404,
+            t405,
+            t406,
+            t407,
+            t408,
+            t409,
+            t410,
+            t411,
+            t412,
+            t413,
+            t414,
+            t415,
+            t416,
+            t417,
+            t418,
+            t419,
+            t420,
+            t421,
+            t422,
+            t423,
+            t424,
+            t425,
+            t426,
+            t427,
+            t428,
+            t429,
+            t430,
+            t431,
+            t432,
+            t433,
+            t434,
+            t435,
+            t436,
+            t437,
+            t438,
+            t439,
+            t440,
+            t441,
+            t442,
+            t444,
+            t445,
+            t447,
+            t448,
+            t449,
+            t453,
+            t455,
+            t456,
+            t457,
+            t458,
+            t459,
+            t460,
+            t462,
+            t463,
+            t464,
+            t465,
+            t466,
+            t467,
+            t469,
+            t472,
+            t473,
+            t474,
+            t478,
+            t479,
+            t483,
+            t487,
+            t489,
+            t491,
+            t492,
+            t493,
+            t494,
+            t495,
+            t496,
+            t497,
+            t498,
+            t501,
+            t507,
+            t509,
+            t510,
+            t511,
+            t512,
+            t513,
+            t515,
+            t516,
+            t518,
+            t519,
+            t529,
+            t534,
+            t541,
+            t543,
+            t544,
+            t545,
+            t546,
+            t549,
+            t554,
+            t557,
+            t559,
+            t570,
+            t571,
+            t575,
+            t576,
+            t577,
+            t578,
+            t579,
+            t580,
+            t584,
+            t585,
+            t587,
+            t588,
+            t589,
+            t590,
+            t592,
+            t593,
+            t594,
+            t596,
+            t597,
+            t599,
+        ) = {
+            let t400 = T::fused(k(0.5), t380, t399);
+            let t401 = t26 * t388;
+            let t402 = t3 * t397;
+            let t403 = T::fused(k(0.5), t385, t402) + t401;
+            let t404 = t52 * t403;
+            let t405 = T::fused(t0, t394, t12 * t395);
+            let t406 = T::fused(k(0.5), t392, t405);
+            let t407 = T::fused(k(0.5), t391, t406);
+            let t408 = t57 * t407;
+            let t409 = T::fused(k(0.5), t383, -t408) + t404;
+            let t410 = T::fused(t92, t400, t115 * t409);
+            let t411 = T::fused(k(0.5), t377, t410);
+            let t412 = T::fused(-t115, t400, t92 * t409);
+            let t413 = T::fused(t57, t403, t52 * t407);
+            let t414 = T::fused(k(0.05), t373, t413);
+            let t415 = T::fused(-t184, t412, t188 * t414);
+            let t416 = T::fused(
+                -t229,
+                k(9.81) * (k(0.05) + t411),
+                t227 * (k(9.81) * t415),
+            );
+            let t417 = T::fused(
+                t294,
+                t276,
+                T::fused(t329, t302, T::fused(-t370, t331, t219 * t416)),
+            );
+            let t418 = k(0.0067) + t20;
+            let t419 = t26 * t418;
+            let t420 = k(0.2) * t224;
+            let t421 = T::fused(
+                k(0.2),
+                t228,
+                T::fused(-t57, t419, T::fused(t52, t420, t420)),
+            );
+            let t422 = u0 * t188;
+            let t423 = u1 * t422;
+            let t424 = k(0.0015) * t423;
+            let t425 = T::fused(-u1, t115, t92 * t422);
+            let t426 = T::fused(u1, t92, t115 * t422);
+            let t427 = k(0.0015) * (t426 * t425);
+            let t428 = u3 + t426;
+            let t429 = u0 * t184;
+            let t430 = u2 + t429;
+            let t431 = T::fused(t57, t430, t52 * t425);
+            let t432 = k(0.0015) * (t431 * t428);
+            let t433 = T::fused(t3, t428, t26 * t431);
+            let t434 = T::fused(-t26, t428, t3 * t431);
+            let t435 = k(0.0015) * (t434 * t433);
+            let t436 = T::fused(-t52, t430, t57 * t425);
+            let t437 = u4 - t436;
+            let t438 = T::fused(t12, t437, t0 * t434);
+            let t439 = u5 + t433;
+            let t440 = k(0.0015) * (t439 * t438);
+            let t441 = k(0.1) * t439;
+            let t442 = k(0.1) * t433;
+            let t443 = t434 * t442;
+            let t444 = T::fused(t441, t438, t443);
+            let t445 = u5 * t438;
+            let t446 = T::fused(k(0.05), t444, k(0.0066) * t445) + t440;
+            let t447 = T::fused(-t0, t437, t12 * t434);
+            let t448 = k(0.0001) * (t447 * t439);
+            let t449 = u5 * t447;
+            let t450 = T::fused(k(0.0002), t449, t448);
+            let t451 = T::fused(k(0.5), t444, k(0.05) * t445);
+            let t452 = k(0.1) * t451;
+            let t453 = t452 + (t452 + T::fused(t0, t446, t12 * t450) + t435);
+            let t454 = t23 * t453;
+            let t455 = k(0.1) * t428;
+            let t456 = t431 * t455;
+            let t457 = k(0.1) * t436;
+            let t458 = T::fused(t428, t455, t436 * t457);
+            let t459 = T::fused(-t3, t456, t26 * t458) - t443;
+            let t460 = u4 * t433;
+            let t461 = T::fused(t41, t460, -T::fused(-t62, t459, t459))
+                + T::fused(-t39, t454, t451);
+            let t462 = t447 * t438;
+            let t463 = k(0.1) * t447;
+            let t464 = k(0.1) * t437;
+            let t465 = t434 * t464;
+            let t466 = T::fused(t433, t442, t437 * t464);
+            let t467 = T::fused(-t463, t438, T::fused(t0, t465, t12 * t466));
+            let t468 = T::fused(
+                k(0.010447761194029851),
+                t462,
+                k(0.12686567164179105) * t467,
+            );
+            let t469 = T::fused(-t12, t465, t0 * t466)
+                + T::fused(t439, t441, t447 * t463);
+            let t470 = k(0.5) * t469;
+            let t471 = t431 * t457;
+            let t472 = t471 - t465;
+            let t473 = T::fused(t26, t456, t3 * t458) + t466;
+            let t474 = u4 * t434;
+            let t475 = T::fused(t36, t474, -(t473 - T::fused(-t35, t472, t64 * t473)))
+                - T::fused(t12, t468, t0 * t470);
+            let t476 = T::fused(-t3, t461, t26 * t475);
+            let t477 = k(0.1) * t476;
+            let t478 = k(0.0014) * (t436 * t431);
+            let t479 = k(0.0014) * (t434 * t437);
+            let t480 = T::fused(-t0, t468, t12 * t470);
+            let t481 = k(0.1) * t480;
+            let t482 = T::fused(t10, t474, T::fused(t29, t472, t36 * t473))
+                + (t481 + (t481 - t479));
+            let t483 = k(0.0001) * (t437 * t433);
+            let t484 = T::fused(t41, t459, t25 * t460)
+                - T::fused(t17, t454, T::fused(-t12, t446, t0 * t450) - t483);
+            let t485 = T::fused(t29, t474, -(t472 + T::fused(-t6, t472, t35 * t473)))
+                - t480;
+            let t486 = k(0.1) * t485;
+            let t487 = t486 + (t486 - T::fused(t3, t482, t26 * t484) - t478);
+            let t488 = t33 * t487;
+            let t489 = k(0.1) * t426;
+            let t490 = t425 * t489;
+            let t491 = t490 + t456;
+            let t492 = k(0.1) * t430;
+            let t493 = t425 * t492;
+            let t494 = T::fused(t426, t489, t430 * t492);
+            let t495 = T::fused(t52, t493, t57 * t494) - t471;
+            let t496 = T::fused(-t57, t493, t52 * t494) + t458;
+            let t497 = u3 * t431;
+            let t498 = u3 * t436;
+            let t499 = T::fused(t71, t497, t73 * t498)
+                + T::fused(t105, t496, -T::fused(-t81, t491, t102 * t495));
+            let t500 = t499 - T::fused(t48, t488, -(t477 + (t477 - t432)));
+            let t501 = k(0.0001) * (t436 * t428);
+            let t502 = T::fused(t73, t497, t78 * t498)
+                + T::fused(t108, t496, T::fused(t82, t491, t107 * t495));
+            let t503 = t502
+                - T::fused(t55, t488, -(T::fused(-t26, t482, t3 * t484) - t501));
+            let t504 = T::fused(
+                -k(1.5),
+                t491,
+                T::fused(t111, t496, T::fused(t84, t491, t110 * t495)),
+            );
+            let t505 = T::fused(t81, t497, t82 * t498) + t504
+                - T::fused(t58, t488, -t476);
+            let t506 = k(0.1) * t505;
+            let t507 = t506 + (t506 + T::fused(t52, t500, t57 * t503) - t427);
+            let t508 = t89 * t507;
+            let t509 = k(0.1) * u1;
+            let t510 = t509 * t422;
+            let t511 = k(0.1) * t429;
+            let t512 = T::fused(t429, t511, u1 * t509);
+            let t513 = T::fused(-t92, t510, t115 * t512) - t490;
+            let t514 = t422 * t511;
+            let t515 = t514 + t493;
+            let t516 = T::fused(t115, t510, t92 * t512) + t494;
+            let t517 = T::fused(
+                k(2.0),
+                t513,
+                T::fused(t193, t516, -T::fused(t192, t513, t177 * t515)),
+            );
+            let t518 = u2 * t425;
+            let t519 = u2 * t426;
+            let t520 = T::fused(t168, t518, t173 * t519) + t517
+                + T::fused(-t91, t508, t505);
+            let t521 = T::fused(
+                -k(1.5),
+                t495,
+                T::fused(t135, t496, T::fused(t110, t491, t134 * t495)),
+            );
+            let t522 = T::fused(-t102, t497, t107 * t498) + t521
+                - T::fused(-t93, t488, t485);
+            let t523 = T::fused(
+                -k(1.5),
+                t496,
+                T::fused(t139, t496, T::fused(t111, t491, t135 * t495)),
+            );
+            let t524 = T::fused(t105, t497, t108 * t498) + t523
+                - T::fused(t99, t488, -T::fused(t26, t461, t3 * t475));
+            let t525 = T::fused(
+                -k(2.0),
+                t516,
+                T::fused(t196, t516, -T::fused(t193, t513, t178 * t515)),
+            );
+            let t526 = T::fused(-t171, t518, t174 * t519) + t525
+                + T::fused(t114, t508, T::fused(t57, t522, t52 * t524));
+            let t527 = T::fused(t92, t520, t115 * t526);
+            let t528 = k(0.1) * t527;
+            let t529 = k(0.0014) * (t425 * t430);
+            let t530 = T::fused(-t52, t522, t57 * t524);
+            let t531 = k(0.1) * t530;
+            let t532 = T::fused(-t146, t518, t148 * t519)
+                + T::fused(t171, t516, -T::fused(-t168, t513, t157 * t515));
+            let t533 = t532 + T::fused(t125, t508, t531 + (t531 + t529));
+            let t534 = k(0.0001) * (t426 * t430);
+            let t535 = T::fused(-t148, t518, t154 * t519)
+                + T::fused(t174, t516, -T::fused(t173, t513, t158 * t515));
+            let t536 = t535
+                + T::fused(t129, t508, T::fused(-t57, t500, t52 * t503) + t534);
+            let t537 = T::fused(
+                k(2.0),
+                t515,
+                T::fused(t178, t516, -T::fused(t177, t513, t160 * t515)),
+            );
+            let t538 = T::fused(-t157, t518, t158 * t519) + t537
+                + T::fused(t131, t508, t530);
+            let t539 = k(0.1) * t538;
+            let t540 = T::fused(
+                k(0.0014),
+                t429 * t422,
+                t539 - T::fused(-t92, t533, t115 * t536),
+            );
+            let t541 = t539 + t540;
+            let t542 = t165 * t541;
+            let t543 = k(0.1) * u0;
+            let t544 = u0 * t543;
+            let t545 = T::fused(t188, t544, t514);
+            let t546 = t164 + (k(0.25) - t163);
+            let t547 = t165 * t546;
+            let t548 = T::fused(-k(0.2), t179, t547 * t183);
+            let t549 = T::fused(t184, t544, t512);
+            let t550 = T::fused(-t115, t194, t92 * t197);
+            let t551 = T::fused(t115, t168, t92 * t171);
+            let t552 = T::fused(-t115, t173, t92 * t174);
+            let t553 = k(0.1) * T::fused(-t115, t177, t92 * t178);
+            let t554 = t553 + (t553 - T::fused(-t92, t551, t115 * t552));
+            let t555 = t165 * t554;
+            let t556 = T::fused(k(0.2), t550, t555 * t183);
+            let t557 = u1 * t429;
+            let t558 = T::fused(-t423, t203, t557 * t205)
+                - T::fused(t556, t549, T::fused(t211, t510, t548 * t545));
+            let t559 = k(0.0001) * t557;
+            let t560 = T::fused(-t187, t547, t185);
+            let t561 = T::fused(t555, t187, T::fused(t115, t551, t92 * t552));
+            let t562 = T::fused(-t423, t205, t557 * t208)
+                - T::fused(t561, t549, -T::fused(-t212, t510, t560 * t545));
+            let t563 = t562
+                - T::fused(t187, t542, T::fused(t115, t533, t92 * t536) + t559);
+            let t564 = T::fused(
+                t184,
+                t558 - T::fused(t183, t542, t528 + (t528 - t424)),
+                t188 * t563,
+            );
+            let t565 = T::fused(-t210, t546, t179);
+            let t566 = T::fused(t210, t554, t550);
+            let t567 = T::fused(
+                -k(2.5),
+                t510,
+                T::fused(t566, t549, -T::fused(-t214, t510, t565 * t545)),
+            );
+            let t568 = T::fused(-t211, t423, t212 * t557) - t567
+                - T::fused(t190, t542, t527);
+            let t569 = k(0.1) * t568;
+            let t570 = k(9.81) * t227;
+            let t571 = T::fused(k(9.81), t229, t544);
+            let t572 = T::fused(
+                t184,
+                T::fused(t188, t548, t184 * t556),
+                t188 * T::fused(-t188, t560, t184 * t561),
+            );
+            let t573 = k(0.1) * T::fused(-t188, t565, t184 * t566);
+            let t574 = T::fused(
+                k(0.3) - t216 + t217,
+                t570,
+                (t573 + (t573 + t572)) * t571,
+            );
+            let t575 = (t574 - (t569 + (t569 + t564))) * t219;
+            let t576 = T::fused(k(0.2), t222, -T::fused(t3, t418, t20));
+            let t577 = T::fused(t52, t419, t57 * t420);
+            let t578 = T::fused(-t115, t576, t92 * t577);
+            let t579 = k(0.0064) * t447;
+            let t580 = k(0.0064) * t438;
+            let t581 = k(0.1) * t0;
+            let t582 = k(0.1) * t12;
+            let t583 = T::fused(
+                t0,
+                t580,
+                T::fused(k(0.1), T::fused(t434, t581, t437 * t582), t464 * t582),
+            );
+            let t584 = T::fused(-t12, t579, t583);
+            let t585 = k(2.0) * t221;
+            let t586 = T::fused(k(0.1), T::fused(-t431, t581, t436 * t585), t457 * t585)
+                - t584;
+            let t587 = T::fused(-u3, t419, t586);
+            let t588 = T::fused(
+                u4,
+                t418,
+                T::fused(-t0, t579, T::fused(-t12, t580, t464 * t581)),
+            );
+            let t589 = k(2.0) * t224;
+            let t590 = T::fused(k(0.1), t433 * t582, t442 * t582);
+            let t591 = T::fused(
+                -t457,
+                t581,
+                T::fused(t455, t589, T::fused(u3, t420, t26 * t590)),
+            );
+            let t592 = T::fused(t3, t588, t591);
+            let t593 = k(2.0) * t222;
+            let t594 = k(2.0) * t223;
+            let t595 = T::fused(
+                t57,
+                t592,
+                T::fused(k(0.1), T::fused(-t425, t593, t430 * t594), t492 * t594),
+            );
+            let t596 = T::fused(-t52, t587, t595);
+            let t597 = k(2.0) * t225;
+            let t598 = T::fused(k(0.1), T::fused(t422, t593, t429 * t597), t511 * t597)
+                - t596;
+            let t599 = T::fused(-u1, t578, t598);
+            (
                 t400,
                 t401,
+                t402,
+                t403,
+                t404,
                 t405,
+                t406,
                 t407,
                 t408,
                 t409,
                 t410,
                 t411,
                 t412,
+                t413,
                 t414,
                 t415,
                 t416,
                 t417,
                 t418,
                 t419,
+                t420,
                 t421,
+                t422,
+                t423,
                 t424,
                 t425,
                 t426,
+                t427,
+                t428,
+                t429,
                 t430,
                 t431,
+                t432,
+                t433,
+                t434,
                 t435,
+                t436,
+                t437,
+                t438,
                 t439,
+                t440,
                 t441,
-                t443,
+                t442,
                 t444,
                 t445,
-                t446,
                 t447,
                 t448,
                 t449,
-                t450,
                 t453,
+                t455,
+                t456,
+                t457,
+                t458,
                 t459,
-                t461,
+                t460,
                 t462,
                 t463,
                 t464,
                 t465,
+                t466,
                 t467,
-                t468,
-                t470,
-                t471,
+                t469,
+                t472,
+                t473,
+                t474,
+                t478,
                 t479,
-                t480,
-                t481,
-                t485,
-                t486,
-                t488,
+                t483,
+                t487,
+                t489,
+                t491,
+                t492,
                 t493,
                 t494,
                 t495,
                 t496,
                 t497,
                 t498,
-                t499,
+                t501,
+                t507,
+                t509,
+                t510,
+                t511,
+                t512,
+                t513,
+                t515,
+                t516,
+                t518,
+                t519,
+                t529,
+                t534,
+                t541,
+                t543,
+                t544,
+                t545,
+                t546,
+                t549,
+                t554,
+                t557,
+                t559,
+                t570,
+                t571,
+                t575,
+                t576,
+                t577,
+                t578,
+                t579,
+                t580,
+                t584,
+                t585,
+                t587,
+                t588,
+                t589,
+                t590,
+                t592,
+                t593,
+                t594,
+                t596,
+                t597,
+                t599,
             )
-        });
+        };
         let (
-            t533,
-            t534,
-            t537,
-            t539,
-            t542,
-            t544,
-            t547,
-            t549,
-            t554,
-            t556,
-            t562,
-            t563,
-            t569,
-            t570,
-            t577,
-            t581,
-            t582,
-            t589,
-            t590,
-            t591,
-            t599,
+            t602,
             t604,
-            t605,
             t606,
-            t608,
-            t614,
+            t607,
+            t609,
+            t611,
+            t612,
+            t615,
             t616,
             t617,
+            t618,
+            t619,
+            t620,
             t621,
             t624,
+            t625,
+            t626,
             t627,
-            t630,
-            t631,
-            t634,
+            t628,
+            t632,
             t635,
             t636,
-            t640,
+            t637,
+            t638,
+            t641,
+            t642,
             t644,
+            t647,
             t648,
-            t653,
-            t657,
+            t650,
+            t652,
+            t655,
+            t656,
+            t658,
+            t659,
             t660,
             t662,
-            t664,
+            t663,
+            t665,
+            t666,
             t667,
-            t669,
-            t673,
-            t675,
+            t671,
+            t674,
             t677,
-            t681,
+            t680,
+            t682,
             t684,
-            t691,
+            t686,
+            t689,
             t693,
             t694,
             t696,
-            t700,
+            t699,
             t701,
             t703,
             t704,
-            t705,
+            t706,
+            t708,
             t710,
-            t711,
+            t713,
             t716,
             t717,
-            t718,
+            t720,
+            t721,
+            t722,
             t723,
+            t724,
             t726,
-            t729,
             t731,
-            t734,
-            t736,
+            t735,
             t738,
+            t740,
             t742,
-            t746,
-            t748,
-            t750,
+            t745,
+            t747,
+            t751,
             t754,
             t756,
-            t758,
             t759,
-            t761,
-            t764,
-            t767,
+            t760,
+            t762,
+            t765,
+            t766,
+            t768,
             t770,
-            t771,
+            t772,
+            t773,
             t774,
-            t775,
             t776,
             t777,
             t778,
+            t779,
             t780,
-            t785,
+            t783,
+            t784,
+            t786,
+            t787,
             t789,
+            t790,
+            t791,
             t792,
+            t793,
             t794,
             t796,
+            t797,
             t799,
-            t801,
-            t805,
-            t808,
-            t810,
-            t813,
-            t814,
-            t816,
-            t819,
-            t820,
-            t822,
-            t827,
-            t828,
-            t830,
-            t831,
-            t832,
-            t834,
-            t835,
-            t837,
-            t838,
-            t839,
-            t843,
-            t846,
-            t849,
-            t852,
-            t854,
-            t856,
-            t858,
-            t861,
-            t865,
-            t866,
-            t868,
-            t871,
-            t873,
-            t875,
-            t876,
-            t878,
-            t881,
-            t884,
-            t885,
-            t886,
-            t887,
-            t888,
-            t889,
-            t890,
-            t893,
-            t894,
-            t895,
-            t896,
-            t897,
-            t901,
-            t904,
-            t905,
-            t906,
-            t907,
-            t910,
-            t911,
-            t913,
-            t916,
-            t917,
-            t919,
-            t921,
-            t924,
-            t925,
-            t926,
-            t927,
-            t928,
-            t929,
-            t930,
-            t931,
-            t932,
-            t936,
-            t939,
-            t940,
-            t942,
-            t944,
-            t948,
-            t949,
-            t951,
-            t954,
-            t956,
-            t958,
-            t959,
-            t961,
-            t963,
-            t968,
-            t978,
-            t987,
-            t993,
-            t998,
-            t999,
-        ) = gyro_sim::apart(move || {
-            let t500 = T::fused(-k(0.2), t289, t499 * t293);
-            let t501 = T::fused(t14, t496, t464);
-            let t502 = T::fused(-t10, t348, t5 * t351);
-            let t503 = T::fused(t10, t278, t5 * t281);
-            let t504 = T::fused(-t10, t283, t5 * t284);
-            let t505 = k(0.1) * T::fused(-t10, t287, t5 * t288);
-            let t506 = t505 + (t505 - T::fused(-t5, t503, t10 * t504));
-            let t507 = t275 * t506;
-            let t508 = T::fused(k(0.2), t502, t507 * t293);
-            let t509 = u1 * t381;
-            let t510 = T::fused(-t375, t357, t509 * t359)
-                - T::fused(t508, t501, T::fused(t364, t462, t500 * t497));
-            let t511 = k(0.0001) * t509;
-            let t512 = T::fused(-t296, t499, t294);
-            let t513 = T::fused(t507, t296, T::fused(t10, t503, t5 * t504));
-            let t514 = T::fused(-t375, t359, t509 * t361)
-                - T::fused(t513, t501, -T::fused(-t365, t462, t512 * t497));
-            let t515 = t514
-                - T::fused(t296, t494, T::fused(t10, t485, t5 * t488) + t511);
-            let t516 = T::fused(
-                t14,
-                t510 - T::fused(t293, t494, t480 + (t480 - t376)),
-                t17 * t515,
+        ) = {
+            let t600 = T::fused(
+                u0,
+                t599,
+                T::fused(-t575, t421, T::fused(t571, t225, t544 * t225)),
             );
-            let t517 = T::fused(-t363, t498, t289);
-            let t518 = T::fused(t363, t506, t502);
-            let t519 = T::fused(
-                -k(2.5),
-                t462,
-                T::fused(t518, t501, -T::fused(-t367, t462, t517 * t497)),
+            let t601 = T::fused(
+                t57,
+                t587,
+                T::fused(t52, t592, T::fused(-t492, t593, t489 * t589)),
             );
-            let t520 = T::fused(-t364, t375, t365 * t509) - t519
-                - T::fused(t298, t494, t479);
-            let t521 = k(0.1) * t520;
-            let t522 = k(9.81) * t19;
-            let t523 = T::fused(k(9.81), t12, t496);
-            let t524 = T::fused(
-                t14,
-                T::fused(t17, t500, t14 * t508),
-                t17 * T::fused(-t17, t512, t14 * t513),
-            );
-            let t525 = k(0.1) * T::fused(-t17, t517, t14 * t518);
-            let t526 = T::fused(
-                k(0.3) - t369 + t370,
-                t522,
-                (t525 + (t525 + t524)) * t523,
-            );
-            let t527 = (t526 - (t521 + (t521 + t516))) * t372;
-            let t528 = T::fused(t14, t527, t375);
-            let t529 = k(0.1) * t528;
-            let t530 = k(0.1) * t527;
-            let t531 = t462 + (t530 - (t522 - t530));
-            let t532 = t531 + t529;
-            let t533 = t529 + t532;
-            let t534 = T::fused(t14, t523, t501);
-            let t535 = t465 + T::fused(-t5, t533, t10 * t534);
-            let t536 = T::fused(t17, t523, t497);
-            let t537 = T::fused(-t17, t527, t509);
-            let t538 = T::fused(-t293, t528, t296 * t537)
-                - T::fused(t506, t534, T::fused(t298, t531, t498 * t536));
-            let t539 = t275 * (t493 - t538);
-            let t540 = k(0.1) * t539;
-            let t541 = t467 - (t540 - (t536 - t540));
-            let t542 = t468 + T::fused(t10, t533, t5 * t534);
-            let t543 = t470 + T::fused(-t5, t539, t10 * t537);
-            let t544 = t471 - T::fused(t10, t539, t5 * t537);
-            let t545 = T::fused(-t198, t543, t202 * t544)
-                + T::fused(t186, t542, -T::fused(-t164, t535, t204 * t541));
-            let t546 = t162 * (t459 + t545);
-            let t547 = t528 - (t528 - t546);
-            let t548 = t8 * t544;
-            let t549 = t450 + T::fused(t15, t547, t548);
-            let t550 = k(0.1) * t546;
-            let t551 = t443 + (t550 - (t535 - t550));
-            let t552 = k(0.1) * t543;
-            let t553 = t541 + t552;
-            let t554 = t552 + t553;
-            let t555 = t447 + T::fused(t8, t554, t15 * t542);
-            let t556 = t448 + T::fused(-t15, t554, t8 * t542);
-            let t557 = t15 * t544;
-            let t558 = t449 - T::fused(-t8, t546, t557);
-            let t559 = t450 + T::fused(t15, t546, t548);
-            let t560 = T::fused(t99, t558, t103 * t559)
-                + T::fused(t171, t556, -T::fused(-t105, t551, t165 * t555));
-            let t561 = t86 * (t439 - t560);
-            let t562 = t543 - (t543 + t561);
-            let t563 = t412 + T::fused(t3, t549, t6 * t562);
-            let t564 = t449 - T::fused(-t8, t547, t557);
-            let t565 = k(0.1) * t558;
-            let t566 = t565 + (t551 + t565);
-            let t567 = t6 * t556;
-            let t568 = T::fused(
-                t31,
-                t411 + T::fused(-t3, t566, t567),
-                t51 * (t412 + T::fused(-t6, t561, t3 * t559)),
-            );
-            let t569 = T::fused(t29, t405 - t568, t558) - t564;
-            let t570 = T::fused(k(0.0002), t401 - T::fused(-t0, t563, t25 * t569), t400);
-            let t571 = t397 - T::fused(t25, t563, t0 * t569);
-            let t572 = k(0.1) * t569;
-            let t573 = k(0.1) * t564;
-            let t574 = k(0.1) * t547;
-            let t575 = t535 - t574;
-            let t576 = t443 + (t574 - t575) + t573;
-            let t577 = t573 + t576;
-            let t578 = t411 + T::fused(-t3, t577, t567) + t572;
-            let t579 = T::fused(k(0.1), t571, t396 - (t572 + t578));
-            let t580 = k(0.05) * t579;
-            let t581 = T::fused(k(0.0016), t571, t392) + t580;
-            let t582 = T::fused(-k(0.0002), t563, t435)
-                + T::fused(-t0, t570, t25 * t581);
-            let t583 = t426 + T::fused(-t6, t549, t3 * t562);
-            let t584 = k(0.1) * t583;
-            let t585 = k(0.1) * t562;
-            let t586 = t555 + t585;
-            let t587 = t424 - (t585 + t586) - t584;
-            let t588 = t3 * t556;
-            let t589 = t425 + T::fused(t6, t577, t588);
-            let t590 = t584 - t587;
-            let t591 = k(0.5) * (t421 - T::fused(-t0, t589, t25 * t590));
-            let t592 = k(0.0014) * t414;
-            let t593 = k(0.1) * t561;
-            let t594 = t426 - T::fused(t3, t561, t6 * t559);
-            let t595 = k(0.1) * t594;
-            let t596 = T::fused(
-                t0,
-                t595 + (t595 - (t424 + (t593 - (t555 - t593)))),
-                t25 * (t425 + T::fused(t6, t566, t588)),
-            );
-            let t597 = T::fused(
-                k(149.2537313432836),
-                T::fused(k(0.05), t419 + t596, -t592),
-                t594,
-            ) - t583;
-            let t598 = T::fused(-k(0.1), t597, t419 + T::fused(t25, t589, t0 * t590));
-            let t599 = k(0.5) * t598;
-            let t600 = T::fused(-t25, t591, t0 * t599);
-            let t601 = T::fused(-k(0.5), t587, t600);
-            let t602 = k(0.1) * t601;
-            let t603 = T::fused(k(0.0017), t583, t431)
-                - T::fused(
-                    -k(0.1),
-                    t600,
-                    T::fused(-k(0.05), t598, T::fused(k(0.0017), t597, t592)),
-                );
-            let t604 = t603 + t602;
-            let t605 = T::fused(k(0.0002), t549, t453) - T::fused(t3, t582, t6 * t604);
-            let t606 = T::fused(k(0.5), t589, T::fused(t0, t591, t25 * t599));
-            let t607 = t578 - t579;
-            let t608 = k(0.5) * t607;
-            let t609 = T::fused(-t6, t606, t3 * t608);
-            let t610 = T::fused(-k(0.5), t576, t609);
-            let t611 = k(0.1) * t610;
-            let t612 = T::fused(-k(0.0016), t569, t387)
-                + (t580 + T::fused(t25, t570, t0 * t581));
-            let t613 = T::fused(k(0.0016), t564, t384)
-                + T::fused(-k(0.1), t609, T::fused(-k(0.05), t607, t612));
-            let t614 = t613 - t611;
-            let t615 = T::fused(-k(0.0002), t544, t486)
-                + T::fused(-t8, t605, t15 * t614);
-            let t616 = T::fused(k(0.5), t556, T::fused(t3, t606, t6 * t608));
-            let t617 = T::fused(k(0.5), t586, t601);
-            let t618 = T::fused(-t15, t616, t8 * t617);
-            let t619 = T::fused(-k(0.0017), t562, t430)
-                - (t602 + T::fused(-t6, t582, t3 * t604));
-            let t620 = T::fused(k(0.0017), t543, t481)
-                - T::fused(-k(0.1), t618, T::fused(-k(0.1), t617, t619));
-            let t621 = T::fused(k(0.1), T::fused(k(0.5), t553, t618), t620);
-            let t622 = T::fused(
-                t496,
-                t343,
-                T::fused(k(0.0002), t537, t511) + T::fused(t5, t615, t10 * t621),
-            );
-            let t623 = k(0.0016) * t304;
-            let t624 = T::fused(-k(0.0016), t305, k(0.1) * t316);
-            let t625 = t316 + t317;
-            let t626 = T::fused(-t0, t303, t25 * t304);
-            let t627 = k(0.0002) * t626;
-            let t628 = t327 + t328;
-            let t629 = T::fused(
+            let t602 = T::fused(-u2, t576, t601);
+            let t603 = T::fused(
                 k(0.1),
-                t628,
-                T::fused(-t0, t624, T::fused(-k(0.1), t625, t25 * t627)) + t623,
+                T::fused(t431, t589, t428 * t585),
+                T::fused(t455, t585, t3 * t590),
             );
-            let t630 = t623 + t629;
-            let t631 = T::fused(-t25, t624, T::fused(-t0, t627, k(0.0002) * t303));
-            let t632 = t334 + t335;
-            let t633 = k(0.0017) * t319;
-            let t634 = T::fused(k(0.1), t632, t633 + T::fused(k(0.1), t323, t633));
-            let t635 = T::fused(-t3, t631, T::fused(t6, t634, k(0.0002) * t301));
-            let t636 = T::fused(-t15, t630, T::fused(t8, t635, k(0.0002) * t300));
-            let t637 = t335 + t336;
-            let t638 = k(0.0017) * t302;
-            let t639 = t342 + t343;
-            let t640 = T::fused(k(0.1), t639, t638)
-                + T::fused(t6, t631, T::fused(k(0.1), t637, T::fused(t3, t634, t638)));
-            let t641 = T::fused(t5, t636, T::fused(t10, t640, k(0.0002) * t17));
-            let t642 = k(0.0016) * t14;
-            let t643 = t328 + t329;
-            let t644 = t339 + t340;
-            let t645 = T::fused(
-                k(0.1),
-                t644,
-                T::fused(t8, t630, T::fused(t15, t635, k(0.1) * t643)) + t642,
+            let t604 = T::fused(-t26, t588, t603);
+            let t605 = T::fused(k(0.1), T::fused(t426, t594, t425 * t589), t489 * t594)
+                + t604;
+            let t606 = T::fused(-u2, t577, t605);
+            let t607 = k(2.0) * t228;
+            let t608 = T::fused(
+                u1,
+                t421,
+                T::fused(t115, t606, T::fused(-t511, t593, t509 * t607)),
             );
-            let t646 = t642 + t645;
-            let t647 = k(0.0015) * t14;
-            let t648 = t647 + t646;
-            let t649 = k(0.0015) * t304;
-            let t650 = k(0.0015) * t305;
-            let t651 = k(0.0001) * t626;
-            let t652 = T::fused(
-                k(0.1),
-                T::fused(-t390, t316, t391 * t324),
-                T::fused(t399, t651, t393 * t324),
+            let t609 = T::fused(t92, t602, t608);
+            let t610 = T::fused(
+                t575,
+                t578,
+                T::fused(-u0, t609, T::fused(t571, t222, t544 * t222)),
             );
-            let t653 = T::fused(t390, t650, t652);
-            let t654 = t325 + t326;
-            let t655 = k(0.0001) * t303;
-            let t656 = T::fused(
-                k(0.1),
-                T::fused(-t386, t625, t385 * t654),
-                T::fused(t394, t654, t389 * t655),
-            );
-            let t657 = T::fused(t386, t649, T::fused(-u4, t631, t656 + t653));
-            let t658 = k(0.0014) * t319;
-            let t659 = T::fused(
-                t391,
-                t650,
-                T::fused(-t393, t316, T::fused(t415, t323, t399 * t658)),
-            );
-            let t660 = T::fused(-u5, t624, t659);
-            let t661 = T::fused(
-                k(0.1),
-                T::fused(t390, t323, t399 * t324),
-                T::fused(t415, t324, t390 * t658),
-            );
-            let t662 = T::fused(u5, t627, T::fused(t391, t651, t661));
-            let t663 = T::fused(
-                -t25,
-                t662,
-                T::fused(t416, t632, T::fused(u4, t634, t389 * t658)),
-            );
-            let t664 = T::fused(
-                -t385,
-                t649,
-                T::fused(-t0, t660, T::fused(t394, t625, t663)),
-            );
-            let t665 = k(0.0014) * t302;
-            let t666 = T::fused(
-                -t3,
-                t664,
-                T::fused(t407, t628, T::fused(t409, t637, t388 * t665)),
-            );
-            let t667 = T::fused(
-                u3,
-                t630,
-                T::fused(t380, t649, T::fused(t6, t657, t666)),
-            );
-            let t668 = T::fused(
-                -k(0.1),
-                T::fused(-t389, t654, t386 * t632),
-                T::fused(t416, t654, T::fused(-t386, t658, t385 * t655)),
-            );
-            let t669 = T::fused(t25, t660, T::fused(-t0, t662, t668));
-            let t670 = t331 + t330 + t332;
-            let t671 = k(0.0001) * t301;
-            let t672 = T::fused(
-                k(0.1),
-                T::fused(t388, t670, t383 * t637),
-                T::fused(t409, t670, T::fused(t380, t671, t383 * t665)),
-            );
-            let t673 = T::fused(u3, t635, t672 - t669);
-            let t674 = T::fused(
-                -t15,
-                t673,
-                T::fused(-t441, t643, T::fused(t444, t639, t382 * t665)),
-            );
-            let t675 = T::fused(
-                -t378,
-                t647,
-                T::fused(-t8, t667, T::fused(u2, t640, t674)),
-            );
-            let t676 = T::fused(
-                k(0.1),
-                T::fused(t383, t628, t380 * t670),
-                T::fused(t407, t670, t388 * t671),
-            );
-            let t677 = T::fused(
-                t383,
-                t649,
-                T::fused(t3, t657, T::fused(t6, t664, t676)),
-            );
-            let t678 = t337 - t333 - t338;
-            let t679 = k(0.0001) * t300;
-            let t680 = T::fused(
-                k(0.1),
-                T::fused(-t377, t643, t378 * t678),
-                T::fused(t441, t678, t382 * t679),
-            );
-            let t681 = T::fused(-t377, t647, T::fused(-u2, t636, t680 - t677));
-            let t682 = k(2.0) * t343;
-            let t683 = T::fused(
-                t5,
-                t675,
-                T::fused(t10, t681, T::fused(-t461, t644, t463 * t682)),
-            );
-            let t684 = T::fused(-u1, t648, t683);
-            let t685 = T::fused(k(0.5), t542, T::fused(t8, t616, t15 * t617));
-            let t686 = T::fused(k(0.5), t575, t610);
-            let t687 = T::fused(-t10, t685, t5 * t686);
-            let t688 = T::fused(k(0.0016), t547, t379)
-                - (t611 - T::fused(t15, t605, t8 * t614));
-            let t689 = T::fused(k(0.0016), t528, t376)
-                + T::fused(-k(0.1), t687, T::fused(-k(0.1), t686, t688));
-            let t690 = T::fused(
-                t523,
-                t341,
-                T::fused(
-                    t496,
-                    t341,
-                    T::fused(-k(0.1), T::fused(-k(0.5), t532, t687), t689),
-                ),
-            );
-            let t691 = T::fused(k(0.0001), t17, t641);
-            let t692 = T::fused(
-                k(0.1),
-                T::fused(t377, t639, t382 * t678),
-                T::fused(t444, t678, T::fused(t377, t665, t378 * t679)),
-            );
-            let t693 = T::fused(-t15, t667, T::fused(t8, t673, t692));
-            let t694 = k(2.0) * t341;
-            let t695 = T::fused(-k(0.1), T::fused(-t381, t694, t374 * t682), t463 * t694)
-                - t693;
-            let t696 = T::fused(-u1, t691, t695);
-            let t697 = T::fused(
-                t14,
-                T::fused(u0, t684, -T::fused(t527, t641, -T::fused(t523, t343, t622))),
-                t17 * T::fused(t527, t646, T::fused(u0, t696, t690)),
-            );
-            let t698 = k(0.0017) * t207;
-            let t699 = t220 + t221;
-            let t700 = t698 + T::fused(k(0.1), t699, -T::fused(k(0.1), t218, -t698));
-            let t701 = T::fused(k(0.0016), t228, k(0.1) * t231);
-            let t702 = T::fused(-t0, t227, t25 * t215);
-            let t703 = k(0.0002) * t702;
-            let t704 = T::fused(-k(0.0002), t227, T::fused(-t25, t701, t0 * t703));
-            let t705 = T::fused(-t6, t700, T::fused(-t3, t704, k(0.0002) * t206));
-            let t706 = t239 + t240;
-            let t707 = t231 + t232;
-            let t708 = k(0.0016) * t215;
-            let t709 = t708
-                + T::fused(t0, t701, T::fused(k(0.1), t707, T::fused(t25, t703, t708)));
-            let t710 = T::fused(k(0.1), t706, t709);
-            let t711 = T::fused(
+            let t611 = T::fused(-t188, t600, t184 * t610);
+            let t612 = T::fused(k(0.0016), t0, k(0.1) * t253);
+            let t613 = t253 + t254;
+            let t614 = k(0.2) * t255;
+            let t615 = t614
+                + (k(0.0016) + T::fused(t0, t612, T::fused(k(0.1), t613, t21)));
+            let t616 = T::fused(-t12, t612, t15);
+            let t617 = t3 * t616;
+            let t618 = T::fused(-t57, t615, t52 * t617);
+            let t619 = T::fused(t26, t616, k(0.2) * t260);
+            let t620 = T::fused(-t92, t618, t115 * t619);
+            let t621 = T::fused(
                 k(0.2),
-                t243,
-                T::fused(-t15, t705, T::fused(k(0.2), t240, t8 * t710)),
+                t258,
+                -T::fused(t52, t615, T::fused(t57, t617, t614)),
             );
-            let t712 = k(0.0017) * t5;
-            let t713 = t221 + t222;
-            let t714 = t235 + t236;
+            let t622 = k(0.0015) * t0;
+            let t623 = k(0.0001) * t12;
+            let t624 = T::fused(t438, t622, T::fused(k(0.1), t438 * t253, t447 * t623));
+            let t625 = T::fused(
+                k(0.0015),
+                t434,
+                T::fused(u4, t616, T::fused(k(0.1), t434 * t613, t624)),
+            );
+            let t626 = T::fused(u5, t612, T::fused(t439, t622, t441 * t253));
+            let t627 = T::fused(u5, t14, t439 * t623);
+            let t628 = T::fused(
+                k(0.0015),
+                t433,
+                T::fused(t0, t626, T::fused(t442, t613, t12 * t627)),
+            );
+            let t629 = k(2.0) * t255;
+            let t630 = k(2.0) * t256;
+            let t631 = T::fused(
+                t26,
+                t628,
+                T::fused(k(0.1), T::fused(-t431, t629, t428 * t630), t455 * t630),
+            );
+            let t632 = T::fused(-t3, t625, t631);
+            let t633 = k(2.0) * t257;
+            let t634 = T::fused(k(0.1), T::fused(-t425, t629, t426 * t633), t489 * t633)
+                + t632;
+            let t635 = T::fused(-u2, t618, t634);
+            let t636 = T::fused(
+                u3,
+                t615,
+                T::fused(t26, t625, T::fused(t3, t628, t455 * t629)),
+            );
+            let t637 = T::fused(-t12, t626, t0 * t627);
+            let t638 = T::fused(
+                -u3,
+                t617,
+                T::fused(k(0.1), t436 * t630, t457 * t630) - t637,
+            );
+            let t639 = k(2.0) * t260;
+            let t640 = T::fused(
+                u2,
+                t619,
+                T::fused(-t57, t638, T::fused(t489, t629, t492 * t639)),
+            );
+            let t641 = T::fused(t52, t636, t640);
+            let t642 = k(2.0) * t258;
+            let t643 = T::fused(
+                -t115,
+                t635,
+                T::fused(t92, t641, T::fused(-t509, t642, t511 * t639)),
+            );
+            let t644 = T::fused(-u1, t621, t643);
+            let t645 = T::fused(
+                u0,
+                t644,
+                T::fused(-t575, t620, T::fused(t571, t260, t544 * t260)),
+            );
+            let t646 = T::fused(
+                -t52,
+                t638,
+                T::fused(k(0.1), T::fused(-t425, t639, t430 * t633), t492 * t633),
+            );
+            let t647 = T::fused(-t57, t636, t646);
+            let t648 = k(2.0) * t259;
+            let t649 = T::fused(-k(0.1), T::fused(-t429, t648, t422 * t639), t511 * t648)
+                + t647;
+            let t650 = T::fused(-u1, t620, t649);
+            let t651 = T::fused(
+                t575,
+                t621,
+                T::fused(u0, t650, T::fused(t571, t259, t544 * t259)),
+            );
+            let t652 = T::fused(t184, t645, t188 * t651);
+            let t653 = k(0.0017) * t3;
+            let t654 = t281 + t282;
+            let t655 = t653 + T::fused(k(0.1), t654, T::fused(k(0.1), t279, t653));
+            let t656 = k(0.0066) * t285;
+            let t657 = t26 * t0;
+            let t658 = k(0.0002) * t657;
+            let t659 = T::fused(k(0.0002), t26, T::fused(t12, t656, t0 * t658));
+            let t660 = T::fused(-t26, t655, t3 * t659);
+            let t661 = k(0.2) * t290;
+            let t662 = T::fused(-t0, t656, T::fused(-k(0.01), t285, t12 * t658)) - t661;
+            let t663 = T::fused(
+                k(0.2),
+                t293,
+                T::fused(-t57, t660, T::fused(-t52, t662, t661)),
+            );
+            let t664 = t282 + t283;
+            let t665 = T::fused(
+                k(0.2),
+                t288,
+                -(k(0.0017) + T::fused(t3, t655, T::fused(k(0.1), t664, t26 * t659))),
+            );
+            let t666 = T::fused(-t52, t660, t57 * t662);
+            let t667 = T::fused(-t115, t665, t92 * t666);
+            let t668 = k(0.0014) * t3;
+            let t669 = k(0.0015) * t285;
+            let t670 = T::fused(
+                t463,
+                t279,
+                T::fused(u5, t656, T::fused(t439, t669, t441 * t286)),
+            );
+            let t671 = T::fused(t447, t668, t670);
+            let t672 = k(0.0001) * t657;
+            let t673 = T::fused(
+                -k(0.1),
+                T::fused(t438, t279, t447 * t280),
+                T::fused(-t463, t280, T::fused(u5, t658, t439 * t672)),
+            );
+            let t674 = T::fused(-t438, t668, t673);
+            let t675 = k(0.1) * t285;
+            let t676 = T::fused(
+                t0,
+                t671,
+                T::fused(-t12, t674, T::fused(-t464, t654, t442 * t675)),
+            );
+            let t677 = T::fused(-u4, t655, T::fused(-t437, t668, t676));
+            let t678 = k(2.0) * t290;
+            let t679 = k(2.0) * t284;
+            let t680 = T::fused(
+                -k(0.1),
+                T::fused(t439, t280, t438 * t286),
+                T::fused(-t441, t280, T::fused(-t438, t669, t447 * t672)),
+            );
+            let t681 = k(0.0001) * t26;
+            let t682 = T::fused(
+                k(0.1),
+                T::fused(t433, t679, t434 * t675),
+                T::fused(t442, t679, T::fused(-u4, t659, t437 * t681) - t680),
+            );
+            let t683 = T::fused(
+                t457,
+                t664,
+                T::fused(t455, t678, T::fused(-u3, t662, t26 * t682)),
+            );
+            let t684 = T::fused(k(0.0014), t436, T::fused(t3, t677, t683));
+            let t685 = T::fused(
+                k(0.1),
+                T::fused(-t434, t654, t437 * t679),
+                T::fused(t464, t679, t433 * t681),
+            );
+            let t686 = T::fused(
+                -t434,
+                t668,
+                T::fused(t12, t671, T::fused(t0, t674, t685)),
+            );
+            let t687 = k(2.0) * t287;
+            let t688 = T::fused(k(0.1), T::fused(-t431, t664, t436 * t687), t457 * t687)
+                + t686;
+            let t689 = T::fused(-k(0.0014), t431, T::fused(u3, t660, t688));
+            let t690 = k(2.0) * t288;
+            let t691 = k(2.0) * t289;
+            let t692 = T::fused(
+                -t52,
+                t689,
+                T::fused(k(0.1), T::fused(-t425, t690, t430 * t691), t492 * t691),
+            );
+            let t693 = T::fused(-t57, t684, t692);
+            let t694 = k(2.0) * t291;
+            let t695 = T::fused(k(0.1), T::fused(-t422, t690, t429 * t694), t511 * t694)
+                + t693;
+            let t696 = T::fused(u1, t667, t695);
+            let t697 = T::fused(
+                u0,
+                t696,
+                T::fused(-t575, t663, T::fused(t571, t291, t544 * t291)),
+            );
+            let t698 = T::fused(
+                t52,
+                t684,
+                T::fused(-t57, t689, T::fused(t492, t690, t489 * t678)),
+            );
+            let t699 = T::fused(u2, t665, t698);
+            let t700 = T::fused(
+                -k(0.1),
+                T::fused(-t431, t678, t428 * t687),
+                T::fused(-t455, t687, t3 * t682),
+            );
+            let t701 = T::fused(-t26, t677, t700);
+            let t702 = T::fused(-k(0.1), T::fused(-t426, t691, t425 * t678), t489 * t691)
+                - t701;
+            let t703 = T::fused(-u2, t666, t702);
+            let t704 = k(2.0) * t293;
+            let t705 = T::fused(
+                u1,
+                t663,
+                T::fused(-t115, t703, T::fused(t511, t690, t509 * t704)),
+            );
+            let t706 = T::fused(t92, t699, t705);
+            let t707 = T::fused(
+                t575,
+                t667,
+                T::fused(u0, t706, T::fused(t571, t288, t544 * t288)),
+            );
+            let t708 = T::fused(t188, t697, t184 * t707);
+            let t709 = k(0.0016) * t52;
+            let t710 = T::fused(k(0.0016), t304, k(0.1) * t308);
+            let t711 = t308 + t309;
+            let t712 = T::fused(t0, t303, t52 * t12);
+            let t713 = k(0.0002) * t712;
+            let t714 = t318 + t319;
             let t715 = T::fused(
                 k(0.1),
                 t714,
-                -(T::fused(-t3, t700, T::fused(-k(0.1), t713, t6 * t704)) - t712),
+                T::fused(t0, t710, T::fused(k(0.1), t711, t12 * t713)) + t709,
             );
-            let t716 = t712 + t715;
-            let t717 = T::fused(t8, t705, T::fused(t15, t710, k(0.0002) * t10));
-            let t718 = T::fused(-t10, t716, t5 * t717);
-            let t719 = k(0.0014) * t5;
-            let t720 = k(0.0014) * t207;
-            let t721 = k(0.0015) * t228;
-            let t722 = T::fused(
-                -t415,
-                t218,
-                T::fused(u5, t701, T::fused(t391, t721, t393 * t231)),
+            let t716 = t709 + t715;
+            let t717 = T::fused(-t12, t710, T::fused(t0, t713, k(0.0002) * t303));
+            let t718 = t322 + t323;
+            let t719 = k(0.0017) * t311;
+            let t720 = T::fused(k(0.1), t718, t719 + T::fused(k(0.1), t314, t719));
+            let t721 = T::fused(t3, t717, T::fused(t26, t720, k(0.0002) * t57));
+            let t722 = T::fused(-t57, t716, t52 * t721);
+            let t723 = T::fused(
+                k(0.2),
+                t327,
+                T::fused(-t26, t717, T::fused(k(0.2), t323, t3 * t720)),
             );
-            let t723 = T::fused(t399, t720, t722);
-            let t724 = k(0.0001) * t702;
-            let t725 = T::fused(
+            let t724 = T::fused(t92, t722, t115 * t723);
+            let t725 = t319 + t320;
+            let t726 = T::fused(
+                k(0.2),
+                t325,
+                -(k(0.0016) + T::fused(t52, t716, T::fused(t57, t721, k(0.1) * t725))),
+            );
+            let t727 = k(0.0015) * t52;
+            let t728 = k(0.0015) * t304;
+            let t729 = k(0.0001) * t712;
+            let t730 = T::fused(
                 k(0.1),
-                T::fused(-t390, t218, t399 * t219),
-                T::fused(t415, t219, T::fused(u5, t703, t391 * t724)),
+                T::fused(t438, t308, t439 * t315),
+                T::fused(t447, t729, t441 * t315),
             );
-            let t726 = T::fused(t390, t720, t725);
-            let t727 = k(0.0015) * t215;
-            let t728 = T::fused(
-                t25,
-                t726,
-                T::fused(-t416, t699, T::fused(t394, t707, t385 * t727)),
+            let t731 = T::fused(t438, t728, t730);
+            let t732 = t316 + t317;
+            let t733 = k(0.0001) * t303;
+            let t734 = T::fused(
+                -k(0.1),
+                T::fused(t434, t711, t433 * t732),
+                T::fused(-t442, t732, t437 * t733),
             );
-            let t729 = T::fused(
-                -u4,
-                t700,
-                T::fused(-t389, t720, T::fused(t0, t723, t728)),
-            );
-            let t730 = t224 + t223 + t225;
-            let t731 = T::fused(
-                k(0.1),
-                T::fused(t391, t219, t390 * t231),
-                T::fused(t393, t219, T::fused(t390, t721, t399 * t724)),
-            );
-            let t732 = k(0.0001) * t227;
-            let t733 = T::fused(
-                t394,
-                t730,
-                T::fused(u4, t704, T::fused(t389, t732, t386 * t727)) + t731,
-            );
-            let t734 = T::fused(k(0.1), T::fused(t385, t730, t386 * t707), t733);
-            let t735 = T::fused(
-                t407,
-                t706,
-                T::fused(u3, t710, T::fused(t6, t734, t380 * t727)),
-            );
-            let t736 = T::fused(
-                t388,
-                t719,
-                T::fused(t3, t729, T::fused(t409, t713, t735)),
-            );
+            let t735 = T::fused(-t434, t727, T::fused(-u4, t717, t734 - t731));
+            let t736 = k(0.0014) * t311;
             let t737 = T::fused(
+                t439,
+                t728,
+                T::fused(t441, t308, T::fused(t463, t314, t447 * t736)),
+            );
+            let t738 = T::fused(u5, t710, t737);
+            let t739 = T::fused(
                 k(0.1),
-                T::fused(-t386, t699, t389 * t730),
-                T::fused(t416, t730, t385 * t732),
+                T::fused(t438, t314, t447 * t315),
+                T::fused(t463, t315, t438 * t736),
             );
-            let t738 = T::fused(
-                -t386,
-                t720,
-                T::fused(t25, t723, T::fused(-t0, t726, t737)),
-            );
-            let t739 = t233 - t226 - t234;
-            let t740 = k(0.0001) * t206;
+            let t740 = T::fused(u5, t713, T::fused(t439, t729, t739));
             let t741 = T::fused(
-                k(0.1),
-                T::fused(-t383, t713, t388 * t739),
-                T::fused(t409, t739, t380 * t740),
+                -t12,
+                t740,
+                T::fused(t464, t718, T::fused(u4, t720, t437 * t736)),
             );
-            let t742 = T::fused(-t383, t719, T::fused(u3, t705, t741 + t738));
-            let t743 = k(2.0) * t238;
-            let t744 = k(0.0001) * t10;
-            let t745 = T::fused(
-                k(0.1),
-                T::fused(-t377, t714, t382 * t743),
-                T::fused(t444, t743, t378 * t744),
+            let t742 = T::fused(
+                -t433,
+                t727,
+                T::fused(-t0, t738, T::fused(-t442, t711, t741)),
             );
+            let t743 = k(2.0) * t323;
+            let t744 = T::fused(
+                -t26,
+                t735,
+                T::fused(-t3, t742, T::fused(t455, t714, t457 * t743)),
+            );
+            let t745 = T::fused(u3, t716, T::fused(t428, t727, t744));
             let t746 = T::fused(
-                -t377,
-                t719,
-                T::fused(t15, t736, T::fused(t8, t742, t745)),
+                k(0.1),
+                T::fused(-t437, t732, t434 * t718),
+                T::fused(-t464, t732, T::fused(t434, t736, t433 * t733)),
             );
-            let t747 = t236 + t237;
-            let t748 = k(2.0) * t241;
-            let t749 = T::fused(k(0.1), T::fused(t374, t747, t381 * t748), t463 * t748)
-                - t746;
-            let t750 = T::fused(k(0.0014), t374, T::fused(-u1, t718, t749));
-            let t751 = T::fused(
-                u0,
-                t750,
-                T::fused(-t527, t711, T::fused(t523, t241, t496 * t241)),
+            let t747 = T::fused(-t12, t738, T::fused(t0, t740, t746));
+            let t748 = k(2.0) * t321;
+            let t749 = k(0.0001) * t57;
+            let t750 = T::fused(
+                k(0.1),
+                T::fused(t436, t748, t431 * t743),
+                T::fused(t457, t748, t428 * t749),
             );
-            let t752 = k(2.0) * t240;
+            let t751 = T::fused(u3, t721, t750 + t747);
+            let t752 = k(2.0) * t327;
             let t753 = T::fused(
-                t8,
-                t736,
-                T::fused(-t15, t742, T::fused(-t444, t714, t441 * t752)),
+                u2,
+                t723,
+                T::fused(-t57, t751, T::fused(-t489, t725, t492 * t752)),
             );
-            let t754 = T::fused(-u2, t716, T::fused(-t382, t719, t753));
+            let t754 = T::fused(-k(0.0015), t426, T::fused(-t52, t745, t753));
             let t755 = T::fused(
-                t407,
-                t739,
-                T::fused(-t3, t734, T::fused(-t383, t727, t388 * t740)),
+                k(0.1),
+                T::fused(t431, t714, t428 * t748),
+                T::fused(t455, t748, t436 * t749),
             );
             let t756 = T::fused(
-                t6,
-                t729,
-                T::fused(k(0.1), T::fused(-t383, t706, t380 * t739), t755),
+                t431,
+                t727,
+                T::fused(-t3, t735, T::fused(t26, t742, t755)),
             );
-            let t757 = T::fused(
-                k(0.1),
-                T::fused(t378, t743, t377 * t752),
-                T::fused(t441, t743, t382 * t744),
+            let t757 = k(2.0) * t324;
+            let t758 = T::fused(k(0.1), T::fused(-t425, t725, t426 * t757), t489 * t757)
+                - t756;
+            let t759 = T::fused(-k(0.0015), t425, T::fused(-u2, t722, t758));
+            let t760 = k(2.0) * t325;
+            let t761 = T::fused(
+                t92,
+                t754,
+                T::fused(t115, t759, T::fused(t509, t760, t511 * t752)),
             );
-            let t758 = T::fused(-u2, t717, t757 - t756);
-            let t759 = k(2.0) * t243;
-            let t760 = T::fused(
-                u1,
-                t711,
-                T::fused(t10, t758, T::fused(-t463, t747, t461 * t759)),
-            );
-            let t761 = T::fused(-k(0.0014), t381, T::fused(t5, t754, t760));
-            let t762 = T::fused(
+            let t762 = T::fused(u1, t726, t761);
+            let t763 = T::fused(
                 u0,
-                t761,
-                -T::fused(t527, t718, T::fused(t523, t237, t496 * t237)),
+                t762,
+                T::fused(-t575, t724, T::fused(t571, t327, t544 * t327)),
             );
-            let t763 = k(0.0016) * t8;
-            let t764 = T::fused(k(0.0016), t109, k(0.1) * t113);
-            let t765 = t113 + t114;
-            let t766 = T::fused(t0, t108, t8 * t25);
-            let t767 = k(0.0002) * t766;
-            let t768 = t123 + t124;
+            let t764 = T::fused(
+                t52,
+                t751,
+                T::fused(k(0.1), T::fused(t425, t752, t430 * t757), t492 * t757),
+            );
+            let t765 = T::fused(-t57, t745, t764);
+            let t766 = k(2.0) * t326;
+            let t767 = T::fused(k(0.1), T::fused(t429, t766, t422 * t752), t511 * t766)
+                + t765;
+            let t768 = T::fused(u1, t724, t767);
             let t769 = T::fused(
-                k(0.1),
-                t768,
-                T::fused(t0, t764, T::fused(k(0.1), t765, t25 * t767)) + t763,
+                t575,
+                t726,
+                T::fused(u0, t768, T::fused(t571, t326, t544 * t326)),
             );
-            let t770 = t763 + t769;
-            let t771 = T::fused(-t25, t764, T::fused(t0, t767, k(0.0002) * t108));
-            let t772 = t127 + t128;
-            let t773 = k(0.0017) * t116;
-            let t774 = T::fused(k(0.1), t772, t773 + T::fused(k(0.1), t119, t773));
-            let t775 = T::fused(t3, t771, T::fused(t6, t774, k(0.0002) * t15));
-            let t776 = T::fused(-t15, t770, t8 * t775);
-            let t777 = T::fused(
-                k(0.2),
-                t132,
-                T::fused(-t6, t771, T::fused(k(0.2), t128, t3 * t774)),
-            );
-            let t778 = T::fused(t5, t776, t10 * t777);
-            let t779 = t124 + t125;
-            let t780 = T::fused(
-                k(0.2),
-                t130,
-                -(k(0.0016) + T::fused(t8, t770, T::fused(t15, t775, k(0.1) * t779))),
-            );
-            let t781 = k(0.0015) * t8;
-            let t782 = k(0.0015) * t109;
-            let t783 = k(0.0001) * t766;
+            let t770 = T::fused(-t184, t763, t188 * t769);
+            let t771 = k(0.0017) * t333;
+            let t772 = t346 + t347;
+            let t773 = t771 + T::fused(k(0.1), t772, -T::fused(k(0.1), t344, -t771));
+            let t774 = T::fused(k(0.0016), t354, k(0.1) * t357);
+            let t775 = T::fused(-t0, t353, t12 * t341);
+            let t776 = k(0.0002) * t775;
+            let t777 = T::fused(-k(0.0002), t353, T::fused(-t12, t774, t0 * t776));
+            let t778 = T::fused(-t26, t773, T::fused(-t3, t777, k(0.0002) * t332));
+            let t779 = t365 + t366;
+            let t780 = t357 + t358;
+            let t781 = k(0.0016) * t341;
+            let t782 = t781
+                + T::fused(t0, t774, T::fused(k(0.1), t780, T::fused(t12, t776, t781)));
+            let t783 = T::fused(k(0.1), t779, t782);
             let t784 = T::fused(
-                k(0.1),
-                T::fused(t390, t113, t391 * t120),
-                T::fused(t399, t783, t393 * t120),
+                k(0.2),
+                t369,
+                T::fused(-t57, t778, T::fused(k(0.2), t366, t52 * t783)),
             );
-            let t785 = T::fused(t390, t782, t784);
-            let t786 = t121 + t122;
-            let t787 = k(0.0001) * t108;
+            let t785 = k(0.0017) * t92;
+            let t786 = t347 + t348;
+            let t787 = t361 + t362;
             let t788 = T::fused(
-                -k(0.1),
-                T::fused(t386, t765, t385 * t786),
-                T::fused(-t394, t786, t389 * t787),
-            );
-            let t789 = T::fused(-t386, t781, T::fused(-u4, t771, t788 - t785));
-            let t790 = k(0.0014) * t116;
-            let t791 = T::fused(
-                t391,
-                t782,
-                T::fused(t393, t113, T::fused(t415, t119, t399 * t790)),
-            );
-            let t792 = T::fused(u5, t764, t791);
-            let t793 = T::fused(
                 k(0.1),
-                T::fused(t390, t119, t399 * t120),
-                T::fused(t415, t120, t390 * t790),
+                t787,
+                -(T::fused(-t3, t773, T::fused(-k(0.1), t786, t26 * t777)) - t785),
             );
-            let t794 = T::fused(u5, t767, T::fused(t391, t783, t793));
+            let t789 = t785 + t788;
+            let t790 = T::fused(t52, t778, T::fused(t57, t783, k(0.0002) * t115));
+            let t791 = T::fused(-t115, t789, t92 * t790);
+            let t792 = k(0.0014) * t92;
+            let t793 = k(0.0014) * t333;
+            let t794 = k(0.0015) * t354;
             let t795 = T::fused(
-                -t25,
-                t794,
-                T::fused(t416, t772, T::fused(u4, t774, t389 * t790)),
+                -t463,
+                t344,
+                T::fused(u5, t774, T::fused(t439, t794, t441 * t357)),
             );
-            let t796 = T::fused(
-                -t385,
-                t781,
-                T::fused(-t0, t792, T::fused(-t394, t765, t795)),
-            );
-            let t797 = k(2.0) * t128;
+            let t796 = T::fused(t447, t793, t795);
+            let t797 = k(0.0001) * t775;
             let t798 = T::fused(
-                -t6,
-                t789,
-                T::fused(-t3, t796, T::fused(t407, t768, t409 * t797)),
-            );
-            let t799 = T::fused(u3, t770, T::fused(t380, t781, t798));
-            let t800 = T::fused(
                 k(0.1),
-                T::fused(-t389, t786, t386 * t772),
-                T::fused(-t416, t786, T::fused(t386, t790, t385 * t787)),
+                T::fused(-t438, t344, t447 * t345),
+                T::fused(t463, t345, T::fused(u5, t776, t439 * t797)),
             );
-            let t801 = T::fused(-t25, t792, T::fused(t0, t794, t800));
-            let t802 = k(2.0) * t126;
-            let t803 = k(0.0001) * t15;
-            let t804 = T::fused(
-                k(0.1),
-                T::fused(t388, t802, t383 * t797),
-                T::fused(t409, t802, t380 * t803),
-            );
-            let t805 = T::fused(u3, t775, t804 + t801);
-            let t806 = k(2.0) * t132;
-            let t807 = T::fused(
-                u2,
-                t777,
-                T::fused(-t15, t805, T::fused(-t441, t779, t444 * t806)),
-            );
-            let t808 = T::fused(-k(0.0015), t378, T::fused(-t8, t799, t807));
-            let t809 = T::fused(
-                k(0.1),
-                T::fused(t383, t768, t380 * t802),
-                T::fused(t407, t802, t388 * t803),
-            );
-            let t810 = T::fused(
-                t383,
-                t781,
-                T::fused(-t3, t789, T::fused(t6, t796, t809)),
-            );
-            let t811 = k(2.0) * t129;
-            let t812 = T::fused(k(0.1), T::fused(-t377, t779, t378 * t811), t441 * t811)
-                - t810;
-            let t813 = T::fused(-k(0.0015), t377, T::fused(-u2, t776, t812));
-            let t814 = k(2.0) * t130;
-            let t815 = T::fused(
-                t5,
-                t808,
-                T::fused(t10, t813, T::fused(t461, t814, t463 * t806)),
-            );
-            let t816 = T::fused(u1, t780, t815);
-            let t817 = T::fused(
-                u0,
-                t816,
-                T::fused(-t527, t778, T::fused(t523, t132, t496 * t132)),
-            );
-            let t818 = T::fused(
-                t8,
-                t805,
-                T::fused(k(0.1), T::fused(t377, t806, t382 * t811), t444 * t811),
-            );
-            let t819 = T::fused(-t15, t799, t818);
-            let t820 = k(2.0) * t131;
-            let t821 = T::fused(k(0.1), T::fused(t381, t820, t374 * t806), t463 * t820)
-                + t819;
-            let t822 = T::fused(u1, t778, t821);
-            let t823 = T::fused(
-                t527,
-                t780,
-                T::fused(u0, t822, T::fused(t523, t131, t496 * t131)),
-            );
-            let t824 = T::fused(-t14, t817, t17 * t823);
-            let t825 = k(0.0017) * t3;
-            let t826 = t57 + t58;
-            let t827 = t825 + T::fused(k(0.1), t826, T::fused(k(0.1), t55, t825));
-            let t828 = k(0.0066) * t61;
-            let t829 = t6 * t0;
-            let t830 = k(0.0002) * t829;
-            let t831 = T::fused(k(0.0002), t6, T::fused(t25, t828, t0 * t830));
-            let t832 = T::fused(-t6, t827, t3 * t831);
-            let t833 = k(0.2) * t66;
-            let t834 = T::fused(-t0, t828, T::fused(-k(0.01), t61, t25 * t830)) - t833;
-            let t835 = T::fused(
-                k(0.2),
-                t69,
-                T::fused(-t15, t832, T::fused(-t8, t834, t833)),
-            );
-            let t836 = t58 + t59;
-            let t837 = T::fused(
-                k(0.2),
-                t64,
-                -(k(0.0017) + T::fused(t3, t827, T::fused(k(0.1), t836, t6 * t831))),
-            );
-            let t838 = T::fused(-t8, t832, t15 * t834);
-            let t839 = T::fused(-t10, t837, t5 * t838);
-            let t840 = k(0.0014) * t3;
-            let t841 = k(0.0015) * t61;
-            let t842 = T::fused(
-                t415,
-                t55,
-                T::fused(u5, t828, T::fused(t391, t841, t393 * t62)),
-            );
-            let t843 = T::fused(t399, t840, t842);
-            let t844 = k(0.0001) * t829;
-            let t845 = T::fused(
-                -k(0.1),
-                T::fused(t390, t55, t399 * t56),
-                T::fused(-t415, t56, T::fused(u5, t830, t391 * t844)),
-            );
-            let t846 = T::fused(-t390, t840, t845);
-            let t847 = k(0.1) * t61;
-            let t848 = T::fused(
-                t0,
-                t843,
-                T::fused(-t25, t846, T::fused(-t416, t826, t394 * t847)),
-            );
-            let t849 = T::fused(-u4, t827, T::fused(-t389, t840, t848));
-            let t850 = k(2.0) * t66;
-            let t851 = k(2.0) * t60;
-            let t852 = T::fused(
-                -k(0.1),
-                T::fused(t391, t56, t390 * t62),
-                T::fused(-t393, t56, T::fused(-t390, t841, t399 * t844)),
-            );
-            let t853 = k(0.0001) * t6;
-            let t854 = T::fused(
-                k(0.1),
-                T::fused(t385, t851, t386 * t847),
-                T::fused(t394, t851, T::fused(-u4, t831, t389 * t853) - t852),
-            );
-            let t855 = T::fused(
-                t409,
-                t836,
-                T::fused(t407, t850, T::fused(-u3, t834, t6 * t854)),
-            );
-            let t856 = T::fused(k(0.0014), t388, T::fused(t3, t849, t855));
-            let t857 = T::fused(
-                k(0.1),
-                T::fused(-t386, t826, t389 * t851),
-                T::fused(t416, t851, t385 * t853),
-            );
-            let t858 = T::fused(
-                -t386,
-                t840,
-                T::fused(t25, t843, T::fused(t0, t846, t857)),
-            );
-            let t859 = k(2.0) * t63;
-            let t860 = T::fused(k(0.1), T::fused(-t383, t836, t388 * t859), t409 * t859)
-                + t858;
-            let t861 = T::fused(-k(0.0014), t383, T::fused(u3, t832, t860));
-            let t862 = k(2.0) * t64;
-            let t863 = k(2.0) * t65;
-            let t864 = T::fused(
-                -t8,
-                t861,
-                T::fused(k(0.1), T::fused(-t377, t862, t382 * t863), t444 * t863),
-            );
-            let t865 = T::fused(-t15, t856, t864);
-            let t866 = k(2.0) * t67;
-            let t867 = T::fused(k(0.1), T::fused(-t374, t862, t381 * t866), t463 * t866)
-                + t865;
-            let t868 = T::fused(u1, t839, t867);
-            let t869 = T::fused(
-                u0,
-                t868,
-                T::fused(-t527, t835, T::fused(t523, t67, t496 * t67)),
-            );
-            let t870 = T::fused(
-                t8,
-                t856,
-                T::fused(-t15, t861, T::fused(t444, t862, t441 * t850)),
-            );
-            let t871 = T::fused(u2, t837, t870);
-            let t872 = T::fused(
-                -k(0.1),
-                T::fused(-t383, t850, t380 * t859),
-                T::fused(-t407, t859, t3 * t854),
-            );
-            let t873 = T::fused(-t6, t849, t872);
-            let t874 = T::fused(-k(0.1), T::fused(-t378, t863, t377 * t850), t441 * t863)
-                - t873;
-            let t875 = T::fused(-u2, t838, t874);
-            let t876 = k(2.0) * t69;
-            let t877 = T::fused(
-                u1,
-                t835,
-                T::fused(-t10, t875, T::fused(t463, t862, t461 * t876)),
-            );
-            let t878 = T::fused(t5, t871, t877);
-            let t879 = T::fused(
-                t527,
-                t839,
-                T::fused(u0, t878, T::fused(t523, t64, t496 * t64)),
-            );
-            let t880 = T::fused(t17, t869, t14 * t879);
-            let t881 = T::fused(k(0.0016), t0, k(0.1) * t1);
-            let t882 = t1 + t2;
-            let t883 = k(0.2) * t4;
-            let t884 = t883
-                + (k(0.0016) + T::fused(t0, t881, T::fused(k(0.1), t882, t27)));
-            let t885 = T::fused(-t25, t881, t49);
-            let t886 = t3 * t885;
-            let t887 = T::fused(-t15, t884, t8 * t886);
-            let t888 = T::fused(t6, t885, k(0.2) * t16);
-            let t889 = T::fused(-t5, t887, t10 * t888);
-            let t890 = T::fused(
-                k(0.2),
-                t11,
-                -T::fused(t8, t884, T::fused(t15, t886, t883)),
-            );
-            let t891 = k(0.0015) * t0;
-            let t892 = k(0.0001) * t25;
-            let t893 = T::fused(t390, t891, T::fused(k(0.1), t390 * t1, t399 * t892));
-            let t894 = T::fused(
-                k(0.0015),
-                t386,
-                T::fused(u4, t885, T::fused(k(0.1), t386 * t882, t893)),
-            );
-            let t895 = T::fused(u5, t881, T::fused(t391, t891, t393 * t1));
-            let t896 = T::fused(u5, t26, t391 * t892);
-            let t897 = T::fused(
-                k(0.0015),
-                t385,
-                T::fused(t0, t895, T::fused(t394, t882, t25 * t896)),
-            );
-            let t898 = k(2.0) * t4;
-            let t899 = k(2.0) * t7;
-            let t900 = T::fused(
-                t6,
-                t897,
-                T::fused(k(0.1), T::fused(-t383, t898, t380 * t899), t407 * t899),
-            );
-            let t901 = T::fused(-t3, t894, t900);
-            let t902 = k(2.0) * t9;
-            let t903 = T::fused(k(0.1), T::fused(-t377, t898, t378 * t902), t441 * t902)
-                + t901;
-            let t904 = T::fused(-u2, t887, t903);
-            let t905 = T::fused(
-                u3,
-                t884,
-                T::fused(t6, t894, T::fused(t3, t897, t407 * t898)),
-            );
-            let t906 = T::fused(-t25, t895, t0 * t896);
-            let t907 = T::fused(
-                -u3,
-                t886,
-                T::fused(k(0.1), t388 * t899, t409 * t899) - t906,
-            );
-            let t908 = k(2.0) * t16;
-            let t909 = T::fused(
-                u2,
-                t888,
-                T::fused(-t15, t907, T::fused(t441, t898, t444 * t908)),
-            );
-            let t910 = T::fused(t8, t905, t909);
-            let t911 = k(2.0) * t11;
-            let t912 = T::fused(
-                -t10,
-                t904,
-                T::fused(t5, t910, T::fused(-t461, t911, t463 * t908)),
-            );
-            let t913 = T::fused(-u1, t890, t912);
-            let t914 = T::fused(
-                u0,
-                t913,
-                T::fused(-t527, t889, T::fused(t523, t16, t496 * t16)),
-            );
-            let t915 = T::fused(
-                -t8,
-                t907,
-                T::fused(k(0.1), T::fused(-t377, t908, t382 * t902), t444 * t902),
-            );
-            let t916 = T::fused(-t15, t905, t915);
-            let t917 = k(2.0) * t13;
-            let t918 = T::fused(-k(0.1), T::fused(-t381, t917, t374 * t908), t463 * t917)
-                + t916;
-            let t919 = T::fused(-u1, t889, t918);
-            let t920 = T::fused(
-                t527,
-                t890,
-                T::fused(u0, t919, T::fused(t523, t13, t496 * t13)),
-            );
-            let t921 = T::fused(t14, t914, t17 * t920);
-            let t922 = t29 * t921;
-            let t923 = t51 * t922;
-            let t924 = k(0.0067) + t23;
-            let t925 = t6 * t924;
-            let t926 = k(0.2) * t37;
-            let t927 = T::fused(
-                k(0.2),
-                t40,
-                T::fused(-t15, t925, T::fused(t8, t926, t926)),
-            );
-            let t928 = T::fused(k(0.2), t35, -T::fused(t3, t924, t23));
-            let t929 = T::fused(t8, t925, t15 * t926);
-            let t930 = T::fused(-t10, t928, t5 * t929);
-            let t931 = k(0.0064) * t399;
-            let t932 = k(0.0064) * t390;
-            let t933 = k(0.1) * t0;
-            let t934 = k(0.1) * t25;
-            let t935 = T::fused(
-                t0,
-                t932,
-                T::fused(k(0.1), T::fused(t386, t933, t389 * t934), t416 * t934),
-            );
-            let t936 = T::fused(-t25, t931, t935);
-            let t937 = k(2.0) * t34;
-            let t938 = T::fused(k(0.1), T::fused(-t383, t933, t388 * t937), t409 * t937)
-                - t936;
-            let t939 = T::fused(-u3, t925, t938);
-            let t940 = T::fused(
-                u4,
-                t924,
-                T::fused(-t0, t931, T::fused(-t25, t932, t416 * t933)),
-            );
-            let t941 = k(2.0) * t37;
-            let t942 = T::fused(k(0.1), t385 * t934, t394 * t934);
-            let t943 = T::fused(
-                -t409,
-                t933,
-                T::fused(t407, t941, T::fused(u3, t926, t6 * t942)),
-            );
-            let t944 = T::fused(t3, t940, t943);
-            let t945 = k(2.0) * t35;
-            let t946 = k(2.0) * t36;
-            let t947 = T::fused(
-                t15,
-                t944,
-                T::fused(k(0.1), T::fused(-t377, t945, t382 * t946), t444 * t946),
-            );
-            let t948 = T::fused(-t8, t939, t947);
-            let t949 = k(2.0) * t38;
-            let t950 = T::fused(k(0.1), T::fused(t374, t945, t381 * t949), t463 * t949)
-                - t948;
-            let t951 = T::fused(-u1, t930, t950);
-            let t952 = T::fused(
-                u0,
-                t951,
-                T::fused(-t527, t927, T::fused(t523, t38, t496 * t38)),
-            );
-            let t953 = T::fused(
-                t15,
-                t939,
-                T::fused(t8, t944, T::fused(-t444, t945, t441 * t941)),
-            );
-            let t954 = T::fused(-u2, t928, t953);
-            let t955 = T::fused(
-                k(0.1),
-                T::fused(t383, t941, t380 * t937),
-                T::fused(t407, t937, t3 * t942),
-            );
-            let t956 = T::fused(-t6, t940, t955);
-            let t957 = T::fused(k(0.1), T::fused(t378, t946, t377 * t941), t441 * t946)
-                + t956;
-            let t958 = T::fused(-u2, t929, t957);
-            let t959 = k(2.0) * t40;
-            let t960 = T::fused(
-                u1,
-                t927,
-                T::fused(t10, t958, T::fused(-t463, t945, t461 * t959)),
-            );
-            let t961 = T::fused(t5, t954, t960);
-            let t962 = T::fused(
-                t527,
-                t930,
-                T::fused(-u0, t961, T::fused(t523, t35, t496 * t35)),
-            );
-            let t963 = T::fused(-t17, t952, t14 * t962);
-            let t964 = k(7.462686567164179) * t963;
-            let t965 = t0 * t964;
-            let t966 = k(0.1) * t965;
-            let t967 = t966 + (t963 + t966);
-            let t968 = t966 + (t966 + T::fused(t6, t923, t3 * t967)) - t880;
-            let t969 = t86 * t968;
-            let t970 = t25 * t964;
-            let t971 = t31 * t922;
-            let t972 = T::fused(-t6, t970, t3 * t971);
-            let t973 = T::fused(-t105, t969, t972);
-            let t974 = k(0.1) * t973;
-            let t975 = T::fused(-t103, t969, T::fused(-t3, t923, t6 * t967));
-            let t976 = k(0.1) * t972;
-            let t977 = T::fused(-t99, t969, t976 + (t921 + t976));
-            let t978 = t974 + (T::fused(t15, t975, t8 * t977) + t974) - t824;
-            let t979 = t162 * t978;
-            let t980 = T::fused(t171, t969, T::fused(t3, t970, t6 * t971));
-            let t981 = T::fused(-t165, t969, t965);
-            let t982 = T::fused(-t15, t980, t8 * t981);
-            let t983 = k(0.1) * T::fused(t204, t979, t982);
-            let t984 = T::fused(-t202, t979, T::fused(-t8, t975, t15 * t977));
-            let t985 = k(0.1) * t982;
-            let t986 = T::fused(t198, t979, t985 + (t880 + t985));
-            let t987 = t983 + (T::fused(t10, t984, t5 * t986) + t983)
-                - T::fused(t17, t751, t14 * t762);
-            let t988 = t275 * t987;
-            let t989 = T::fused(
-                -t10,
-                T::fused(-t186, t979, T::fused(t8, t980, t15 * t981)),
-                t5 * T::fused(-t164, t979, t973),
-            );
-            let t990 = k(0.1) * T::fused(t298, t988, t989);
-            let t991 = k(0.1) * t989;
-            let t992 = T::fused(
-                t17,
-                T::fused(t296, t988, T::fused(-t5, t984, t10 * t986)),
-                t14 * T::fused(t293, t988, t991 + (t824 + t991)),
-            );
-            let t993 = t372 * (t990 + (t992 + t990) + t697);
-            let t994 = T::fused(
-                t534,
-                t338,
-                T::fused(t464, t338, -T::fused(t17, t615, t308 * t686)),
-            );
-            let t995 = T::fused(
-                t537,
-                t636,
-                -T::fused(t539, t640, T::fused(t533, t329, T::fused(t462, t329, t994))),
-            );
-            let t996 = T::fused(
-                t533,
-                t338,
-                T::fused(t462, t338, T::fused(-t17, t621, t308 * t685)),
-            );
-            let t997 = T::fused(
-                t539,
-                t636,
-                T::fused(t537, t640, T::fused(t534, t329, T::fused(t464, t329, -t996))),
-            );
-            let t998 = T::fused(
-                t10,
-                T::fused(t374, t675, T::fused(u1, t681, t995)),
-                t5 * T::fused(u1, t675, -T::fused(t374, t681, t997)),
-            );
-            let t999 = T::fused(
-                t533,
-                t238,
-                T::fused(t462, t238, -T::fused(t534, t240, T::fused(t464, t240, -t615))),
-            );
+            let t799 = T::fused(t438, t793, t798);
             (
-                t533,
-                t534,
-                t537,
-                t539,
-                t542,
-                t544,
-                t547,
-                t549,
-                t554,
-                t556,
-                t562,
-                t563,
-                t569,
-                t570,
-                t577,
-                t581,
-                t582,
-                t589,
-                t590,
-                t591,
-                t599,
+                t602,
                 t604,
-                t605,
                 t606,
-                t608,
-                t614,
+                t607,
+                t609,
+                t611,
+                t612,
+                t615,
                 t616,
                 t617,
+                t618,
+                t619,
+                t620,
                 t621,
                 t624,
+                t625,
+                t626,
                 t627,
-                t630,
-                t631,
-                t634,
+                t628,
+                t632,
                 t635,
                 t636,
-                t640,
+                t637,
+                t638,
+                t641,
+                t642,
                 t644,
+                t647,
                 t648,
-                t653,
-                t657,
+                t650,
+                t652,
+                t655,
+                t656,
+                t658,
+                t659,
                 t660,
                 t662,
-                t664,
+                t663,
+                t665,
+                t666,
                 t667,
-                t669,
-                t673,
-                t675,
+                t671,
+                t674,
                 t677,
-                t681,
+                t680,
+                t682,
                 t684,
-                t691,
+                t686,
+                t689,
                 t693,
                 t694,
                 t696,
-                t700,
+                t699,
                 t701,
                 t703,
                 t704,
-                t705,
+                t706,
+                t708,
                 t710,
-                t711,
+                t713,
                 t716,
                 t717,
-                t718,
+                t720,
+                t721,
+                t722,
                 t723,
+                t724,
                 t726,
-                t729,
                 t731,
-                t734,
-                t736,
+                t735,
                 t738,
+                t740,
                 t742,
-                t746,
-                t748,
-                t750,
+                t745,
+                t747,
+                t751,
                 t754,
                 t756,
-                t758,
                 t759,
-                t761,
-                t764,
-                t767,
+                t760,
+                t762,
+                t765,
+                t766,
+                t768,
                 t770,
-                t771,
+                t772,
+                t773,
                 t774,
-                t775,
                 t776,
                 t777,
                 t778,
+                t779,
                 t780,
-                t785,
+                t783,
+                t784,
+                t786,
+                t787,
                 t789,
+                t790,
+                t791,
                 t792,
+                t793,
                 t794,
                 t796,
+                t797,
                 t799,
-                t801,
-                t805,
-                t808,
-                t810,
-                t813,
-                t814,
-                t816,
+            )
+        };
+        let (
+            t802,
+            t804,
+            t807,
+            t809,
+            t811,
+            t815,
+            t819,
+            t821,
+            t823,
+            t827,
+            t829,
+            t831,
+            t832,
+            t834,
+            t836,
+            t842,
+            t843,
+            t846,
+            t848,
+            t851,
+            t853,
+            t856,
+            t858,
+            t863,
+            t865,
+            t871,
+            t872,
+            t878,
+            t879,
+            t886,
+            t890,
+            t891,
+            t898,
+            t899,
+            t900,
+            t908,
+            t913,
+            t914,
+            t915,
+            t917,
+            t923,
+            t924,
+            t925,
+            t926,
+            t930,
+            t931,
+            t933,
+            t936,
+            t939,
+            t940,
+            t943,
+            t944,
+            t945,
+            t948,
+            t949,
+            t950,
+            t953,
+            t955,
+            t957,
+            t962,
+            t966,
+            t969,
+            t971,
+            t973,
+            t974,
+            t976,
+            t978,
+            t982,
+            t984,
+            t986,
+            t987,
+            t988,
+            t990,
+            t991,
+            t993,
+            t994,
+            t995,
+            t999,
+        ) = {
+            let t800 = k(0.0015) * t341;
+            let t801 = T::fused(
+                t12,
+                t799,
+                T::fused(-t464, t772, T::fused(t442, t780, t433 * t800)),
+            );
+            let t802 = T::fused(
+                -u4,
+                t773,
+                T::fused(-t437, t793, T::fused(t0, t796, t801)),
+            );
+            let t803 = t350 + t349 + t351;
+            let t804 = T::fused(
+                k(0.1),
+                T::fused(t439, t345, t438 * t357),
+                T::fused(t441, t345, T::fused(t438, t794, t447 * t797)),
+            );
+            let t805 = k(0.0001) * t353;
+            let t806 = T::fused(
+                t442,
+                t803,
+                T::fused(u4, t777, T::fused(t437, t805, t434 * t800)) + t804,
+            );
+            let t807 = T::fused(k(0.1), T::fused(t433, t803, t434 * t780), t806);
+            let t808 = T::fused(
+                t455,
+                t779,
+                T::fused(u3, t783, T::fused(t26, t807, t428 * t800)),
+            );
+            let t809 = T::fused(
+                t436,
+                t792,
+                T::fused(t3, t802, T::fused(t457, t786, t808)),
+            );
+            let t810 = T::fused(
+                k(0.1),
+                T::fused(-t434, t772, t437 * t803),
+                T::fused(t464, t803, t433 * t805),
+            );
+            let t811 = T::fused(
+                -t434,
+                t793,
+                T::fused(t12, t796, T::fused(-t0, t799, t810)),
+            );
+            let t812 = t359 - t352 - t360;
+            let t813 = k(0.0001) * t332;
+            let t814 = T::fused(
+                k(0.1),
+                T::fused(-t431, t786, t436 * t812),
+                T::fused(t457, t812, t428 * t813),
+            );
+            let t815 = T::fused(-t431, t792, T::fused(u3, t778, t814 + t811));
+            let t816 = k(2.0) * t364;
+            let t817 = k(0.0001) * t115;
+            let t818 = T::fused(
+                k(0.1),
+                T::fused(-t425, t787, t430 * t816),
+                T::fused(t492, t816, t426 * t817),
+            );
+            let t819 = T::fused(
+                -t425,
+                t792,
+                T::fused(t57, t809, T::fused(t52, t815, t818)),
+            );
+            let t820 = t362 + t363;
+            let t821 = k(2.0) * t367;
+            let t822 = T::fused(k(0.1), T::fused(t422, t820, t429 * t821), t511 * t821)
+                - t819;
+            let t823 = T::fused(k(0.0014), t422, T::fused(-u1, t791, t822));
+            let t824 = T::fused(
+                u0,
+                t823,
+                T::fused(-t575, t784, T::fused(t571, t367, t544 * t367)),
+            );
+            let t825 = k(2.0) * t366;
+            let t826 = T::fused(
+                t52,
+                t809,
+                T::fused(-t57, t815, T::fused(-t492, t787, t489 * t825)),
+            );
+            let t827 = T::fused(-u2, t789, T::fused(-t430, t792, t826));
+            let t828 = T::fused(
+                t455,
+                t812,
+                T::fused(-t3, t807, T::fused(-t431, t800, t436 * t813)),
+            );
+            let t829 = T::fused(
+                t26,
+                t802,
+                T::fused(k(0.1), T::fused(-t431, t779, t428 * t812), t828),
+            );
+            let t830 = T::fused(
+                k(0.1),
+                T::fused(t426, t816, t425 * t825),
+                T::fused(t489, t816, t430 * t817),
+            );
+            let t831 = T::fused(-u2, t790, t830 - t829);
+            let t832 = k(2.0) * t369;
+            let t833 = T::fused(
+                u1,
+                t784,
+                T::fused(t115, t831, T::fused(-t511, t820, t509 * t832)),
+            );
+            let t834 = T::fused(-k(0.0014), t429, T::fused(t92, t827, t833));
+            let t835 = T::fused(
+                u0,
+                t834,
+                -T::fused(t575, t791, T::fused(t571, t363, t544 * t363)),
+            );
+            let t836 = T::fused(t188, t824, t184 * t835);
+            let t837 = T::fused(t184, t575, t423);
+            let t838 = k(0.1) * t837;
+            let t839 = k(0.1) * t575;
+            let t840 = t510 + (t839 - (t570 - t839));
+            let t841 = t840 + t838;
+            let t842 = t838 + t841;
+            let t843 = T::fused(t184, t571, t549);
+            let t844 = t513 + T::fused(-t92, t842, t115 * t843);
+            let t845 = T::fused(t188, t571, t545);
+            let t846 = T::fused(-t188, t575, t557);
+            let t847 = T::fused(-t183, t837, t187 * t846)
+                - T::fused(t554, t843, T::fused(t190, t840, t546 * t845));
+            let t848 = t165 * (t541 - t847);
+            let t849 = k(0.1) * t848;
+            let t850 = t515 - (t849 - (t845 - t849));
+            let t851 = t516 + T::fused(t115, t842, t92 * t843);
+            let t852 = t518 + T::fused(-t92, t848, t115 * t846);
+            let t853 = t519 - T::fused(t115, t848, t92 * t846);
+            let t854 = T::fused(-t125, t852, t129 * t853)
+                + T::fused(t114, t851, -T::fused(-t91, t844, t131 * t850));
+            let t855 = t89 * (t507 + t854);
+            let t856 = t837 - (t837 - t855);
+            let t857 = t52 * t853;
+            let t858 = t498 + T::fused(t57, t856, t857);
+            let t859 = k(0.1) * t855;
+            let t860 = t491 + (t859 - (t844 - t859));
+            let t861 = k(0.1) * t852;
+            let t862 = t850 + t861;
+            let t863 = t861 + t862;
+            let t864 = t495 + T::fused(t52, t863, t57 * t851);
+            let t865 = t496 + T::fused(-t57, t863, t52 * t851);
+            let t866 = t57 * t853;
+            let t867 = t497 - T::fused(-t52, t855, t866);
+            let t868 = t498 + T::fused(t57, t855, t857);
+            let t869 = T::fused(t48, t867, t55 * t868)
+                + T::fused(t99, t865, -T::fused(-t58, t860, t93 * t864));
+            let t870 = t33 * (t487 - t869);
+            let t871 = t852 - (t852 + t870);
+            let t872 = t460 + T::fused(t3, t858, t26 * t871);
+            let t873 = t497 - T::fused(-t52, t856, t866);
+            let t874 = k(0.1) * t867;
+            let t875 = t874 + (t860 + t874);
+            let t876 = t26 * t865;
+            let t877 = T::fused(
+                t39,
+                t459 + T::fused(-t3, t875, t876),
+                t17 * (t460 + T::fused(-t26, t870, t3 * t868)),
+            );
+            let t878 = T::fused(t23, t453 - t877, t867) - t873;
+            let t879 = T::fused(k(0.0002), t449 - T::fused(-t0, t872, t12 * t878), t448);
+            let t880 = t445 - T::fused(t12, t872, t0 * t878);
+            let t881 = k(0.1) * t878;
+            let t882 = k(0.1) * t873;
+            let t883 = k(0.1) * t856;
+            let t884 = t844 - t883;
+            let t885 = t491 + (t883 - t884) + t882;
+            let t886 = t882 + t885;
+            let t887 = t459 + T::fused(-t3, t886, t876) + t881;
+            let t888 = T::fused(k(0.1), t880, t444 - (t881 + t887));
+            let t889 = k(0.05) * t888;
+            let t890 = T::fused(k(0.0016), t880, t440) + t889;
+            let t891 = T::fused(-k(0.0002), t872, t483)
+                + T::fused(-t0, t879, t12 * t890);
+            let t892 = t474 + T::fused(-t26, t858, t3 * t871);
+            let t893 = k(0.1) * t892;
+            let t894 = k(0.1) * t871;
+            let t895 = t864 + t894;
+            let t896 = t472 - (t894 + t895) - t893;
+            let t897 = t3 * t865;
+            let t898 = t473 + T::fused(t26, t886, t897);
+            let t899 = t893 - t896;
+            let t900 = k(0.5) * (t469 - T::fused(-t0, t898, t12 * t899));
+            let t901 = k(0.0014) * t462;
+            let t902 = k(0.1) * t870;
+            let t903 = t474 - T::fused(t3, t870, t26 * t868);
+            let t904 = k(0.1) * t903;
+            let t905 = T::fused(
+                t0,
+                t904 + (t904 - (t472 + (t902 - (t864 - t902)))),
+                t12 * (t473 + T::fused(t26, t875, t897)),
+            );
+            let t906 = T::fused(
+                k(149.2537313432836),
+                T::fused(k(0.05), t467 + t905, -t901),
+                t903,
+            ) - t892;
+            let t907 = T::fused(-k(0.1), t906, t467 + T::fused(t12, t898, t0 * t899));
+            let t908 = k(0.5) * t907;
+            let t909 = T::fused(-t12, t900, t0 * t908);
+            let t910 = T::fused(-k(0.5), t896, t909);
+            let t911 = k(0.1) * t910;
+            let t912 = T::fused(k(0.0017), t892, t479)
+                - T::fused(
+                    -k(0.1),
+                    t909,
+                    T::fused(-k(0.05), t907, T::fused(k(0.0017), t906, t901)),
+                );
+            let t913 = t912 + t911;
+            let t914 = T::fused(k(0.0002), t858, t501) - T::fused(t3, t891, t26 * t913);
+            let t915 = T::fused(k(0.5), t898, T::fused(t0, t900, t12 * t908));
+            let t916 = t887 - t888;
+            let t917 = k(0.5) * t916;
+            let t918 = T::fused(-t26, t915, t3 * t917);
+            let t919 = T::fused(-k(0.5), t885, t918);
+            let t920 = k(0.1) * t919;
+            let t921 = T::fused(-k(0.0016), t878, t435)
+                + (t889 + T::fused(t12, t879, t0 * t890));
+            let t922 = T::fused(k(0.0016), t873, t432)
+                + T::fused(-k(0.1), t918, T::fused(-k(0.05), t916, t921));
+            let t923 = t922 - t920;
+            let t924 = T::fused(-k(0.0002), t853, t534)
+                + T::fused(-t52, t914, t57 * t923);
+            let t925 = T::fused(k(0.5), t865, T::fused(t3, t915, t26 * t917));
+            let t926 = T::fused(k(0.5), t895, t910);
+            let t927 = T::fused(-t57, t925, t52 * t926);
+            let t928 = T::fused(-k(0.0017), t871, t478)
+                - (t911 + T::fused(-t26, t891, t3 * t913));
+            let t929 = T::fused(k(0.0017), t852, t529)
+                - T::fused(-k(0.1), t927, T::fused(-k(0.1), t926, t928));
+            let t930 = T::fused(k(0.1), T::fused(k(0.5), t862, t927), t929);
+            let t931 = T::fused(
+                t544,
+                t414,
+                T::fused(k(0.0002), t846, t559) + T::fused(t92, t924, t115 * t930),
+            );
+            let t932 = k(0.0016) * t375;
+            let t933 = T::fused(-k(0.0016), t376, k(0.1) * t387);
+            let t934 = t387 + t388;
+            let t935 = T::fused(-t0, t374, t12 * t375);
+            let t936 = k(0.0002) * t935;
+            let t937 = t398 + t399;
+            let t938 = T::fused(
+                k(0.1),
+                t937,
+                T::fused(-t0, t933, T::fused(-k(0.1), t934, t12 * t936)) + t932,
+            );
+            let t939 = t932 + t938;
+            let t940 = T::fused(-t12, t933, T::fused(-t0, t936, k(0.0002) * t374));
+            let t941 = t405 + t406;
+            let t942 = k(0.0017) * t390;
+            let t943 = T::fused(k(0.1), t941, t942 + T::fused(k(0.1), t394, t942));
+            let t944 = T::fused(-t3, t940, T::fused(t26, t943, k(0.0002) * t372));
+            let t945 = T::fused(-t57, t939, T::fused(t52, t944, k(0.0002) * t371));
+            let t946 = t406 + t407;
+            let t947 = k(0.0017) * t373;
+            let t948 = t413 + t414;
+            let t949 = T::fused(k(0.1), t948, t947)
+                + T::fused(t26, t940, T::fused(k(0.1), t946, T::fused(t3, t943, t947)));
+            let t950 = T::fused(t92, t945, T::fused(t115, t949, k(0.0002) * t188));
+            let t951 = k(0.0016) * t184;
+            let t952 = t399 + t400;
+            let t953 = t410 + t411;
+            let t954 = T::fused(
+                k(0.1),
+                t953,
+                T::fused(t52, t939, T::fused(t57, t944, k(0.1) * t952)) + t951,
+            );
+            let t955 = t951 + t954;
+            let t956 = k(0.0015) * t184;
+            let t957 = t956 + t955;
+            let t958 = k(0.0015) * t375;
+            let t959 = k(0.0015) * t376;
+            let t960 = k(0.0001) * t935;
+            let t961 = T::fused(
+                k(0.1),
+                T::fused(-t438, t387, t439 * t395),
+                T::fused(t447, t960, t441 * t395),
+            );
+            let t962 = T::fused(t438, t959, t961);
+            let t963 = t396 + t397;
+            let t964 = k(0.0001) * t374;
+            let t965 = T::fused(
+                k(0.1),
+                T::fused(-t434, t934, t433 * t963),
+                T::fused(t442, t963, t437 * t964),
+            );
+            let t966 = T::fused(t434, t958, T::fused(-u4, t940, t965 + t962));
+            let t967 = k(0.0014) * t390;
+            let t968 = T::fused(
+                t439,
+                t959,
+                T::fused(-t441, t387, T::fused(t463, t394, t447 * t967)),
+            );
+            let t969 = T::fused(-u5, t933, t968);
+            let t970 = T::fused(
+                k(0.1),
+                T::fused(t438, t394, t447 * t395),
+                T::fused(t463, t395, t438 * t967),
+            );
+            let t971 = T::fused(u5, t936, T::fused(t439, t960, t970));
+            let t972 = T::fused(
+                -t12,
+                t971,
+                T::fused(t464, t941, T::fused(u4, t943, t437 * t967)),
+            );
+            let t973 = T::fused(
+                -t433,
+                t958,
+                T::fused(-t0, t969, T::fused(t442, t934, t972)),
+            );
+            let t974 = k(0.0014) * t373;
+            let t975 = T::fused(
+                -t3,
+                t973,
+                T::fused(t455, t937, T::fused(t457, t946, t436 * t974)),
+            );
+            let t976 = T::fused(
+                u3,
+                t939,
+                T::fused(t428, t958, T::fused(t26, t966, t975)),
+            );
+            let t977 = T::fused(
+                -k(0.1),
+                T::fused(-t437, t963, t434 * t941),
+                T::fused(t464, t963, T::fused(-t434, t967, t433 * t964)),
+            );
+            let t978 = T::fused(t12, t969, T::fused(-t0, t971, t977));
+            let t979 = t402 + t401 + t403;
+            let t980 = k(0.0001) * t372;
+            let t981 = T::fused(
+                k(0.1),
+                T::fused(t436, t979, t431 * t946),
+                T::fused(t457, t979, T::fused(t428, t980, t431 * t974)),
+            );
+            let t982 = T::fused(u3, t944, t981 - t978);
+            let t983 = T::fused(
+                -t57,
+                t982,
+                T::fused(-t489, t952, T::fused(t492, t948, t430 * t974)),
+            );
+            let t984 = T::fused(
+                -t426,
+                t956,
+                T::fused(-t52, t976, T::fused(u2, t949, t983)),
+            );
+            let t985 = T::fused(
+                k(0.1),
+                T::fused(t431, t937, t428 * t979),
+                T::fused(t455, t979, t436 * t980),
+            );
+            let t986 = T::fused(
+                t431,
+                t958,
+                T::fused(t3, t966, T::fused(t26, t973, t985)),
+            );
+            let t987 = t408 - t404 - t409;
+            let t988 = k(0.0001) * t371;
+            let t989 = T::fused(
+                k(0.1),
+                T::fused(-t425, t952, t426 * t987),
+                T::fused(t489, t987, t430 * t988),
+            );
+            let t990 = T::fused(-t425, t956, T::fused(-u2, t945, t989 - t986));
+            let t991 = k(2.0) * t414;
+            let t992 = T::fused(
+                t92,
+                t984,
+                T::fused(t115, t990, T::fused(-t509, t953, t511 * t991)),
+            );
+            let t993 = T::fused(-u1, t957, t992);
+            let t994 = T::fused(k(0.5), t851, T::fused(t52, t925, t57 * t926));
+            let t995 = T::fused(k(0.5), t884, t919);
+            let t996 = T::fused(-t115, t994, t92 * t995);
+            let t997 = T::fused(k(0.0016), t856, t427)
+                - (t920 - T::fused(t57, t914, t52 * t923));
+            let t998 = T::fused(k(0.0016), t837, t424)
+                + T::fused(-k(0.1), t996, T::fused(-k(0.1), t995, t997));
+            let t999 = T::fused(
+                t571,
+                t412,
+                T::fused(
+                    t544,
+                    t412,
+                    T::fused(-k(0.1), T::fused(-k(0.5), t841, t996), t998),
+                ),
+            );
+            (
+                t802,
+                t804,
+                t807,
+                t809,
+                t811,
+                t815,
                 t819,
-                t820,
-                t822,
+                t821,
+                t823,
                 t827,
-                t828,
-                t830,
+                t829,
                 t831,
                 t832,
                 t834,
-                t835,
-                t837,
-                t838,
-                t839,
+                t836,
+                t842,
                 t843,
                 t846,
-                t849,
-                t852,
-                t854,
+                t848,
+                t851,
+                t853,
                 t856,
                 t858,
-                t861,
+                t863,
                 t865,
-                t866,
-                t868,
                 t871,
-                t873,
-                t875,
-                t876,
+                t872,
                 t878,
-                t881,
-                t884,
-                t885,
+                t879,
                 t886,
-                t887,
-                t888,
-                t889,
                 t890,
-                t893,
-                t894,
-                t895,
-                t896,
-                t897,
-                t901,
-                t904,
-                t905,
-                t906,
-                t907,
-                t910,
-                t911,
+                t891,
+                t898,
+                t899,
+                t900,
+                t908,
                 t913,
-                t916,
+                t914,
+                t915,
                 t917,
-                t919,
-                t921,
+                t923,
                 t924,
                 t925,
                 t926,
-                t927,
-                t928,
-                t929,
                 t930,
                 t931,
-                t932,
+                t933,
                 t936,
                 t939,
                 t940,
-                t942,
+                t943,
                 t944,
+                t945,
                 t948,
                 t949,
-                t951,
-                t954,
-                t956,
-                t958,
-                t959,
-                t961,
-                t963,
-                t968,
+                t950,
+                t953,
+                t955,
+                t957,
+                t962,
+                t966,
+                t969,
+                t971,
+                t973,
+                t974,
+                t976,
                 t978,
+                t982,
+                t984,
+                t986,
                 t987,
+                t988,
+                t990,
+                t991,
                 t993,
-                t998,
+                t994,
+                t995,
                 t999,
             )
-        });
+        };
         let (
+            t1006,
+            t1007,
+            t1012,
             t1017,
-            t1024,
-            t1029,
-            t1039,
-            t1054,
-            t1078,
+            t1022,
+            t1027,
+            t1032,
+            t1037,
+            t1038,
+            t1043,
+            t1046,
+            t1051,
+            t1056,
+            t1061,
+            t1068,
+            t1069,
+            t1072,
+            t1075,
+            t1080,
             t1085,
-            t1090,
+            t1092,
+            t1099,
             t1100,
-            t1115,
-            t1140,
-            t1145,
+            t1101,
+            t1104,
+            t1109,
+            t1116,
+            t1123,
+            t1130,
+            t1131,
+            t1133,
+            t1135,
+            t1137,
+            t1139,
+            t1141,
+            t1143,
+            t1144,
+            t1146,
+            t1148,
             t1150,
+            t1152,
+            t1154,
+            t1156,
+            t1157,
+            t1158,
+            t1159,
             t1160,
+            t1161,
+            t1162,
+            t1163,
+            t1164,
+            t1165,
+            t1166,
+            t1167,
+            t1168,
+            t1169,
+            t1170,
+            t1171,
+            t1172,
+            t1173,
+            t1174,
             t1175,
-            t1202,
-            t1205,
-            t1210,
-            t1220,
-            t1235,
-            t1237,
-            t1241,
-            t1252,
-            t1260,
-            t1279,
-            t1281,
-            t1285,
-            t1296,
-            t1304,
-            t1322,
-            t1323,
-            t1326,
-            t1336,
-            t1343,
-            t1354,
-            t1359,
-            t1360,
-            t1363,
-            t1373,
-            t1380,
-            t1391,
-            t1396,
-            t1397,
-            t1400,
-            t1410,
-            t1417,
-            t1428,
-            t1433,
-            t1434,
-            t1441,
-            t1448,
-            t1459,
-            t1464,
-            t1465,
-            t1466,
-            t1467,
-            t1468,
-            t1469,
-            t1470,
-            t1471,
-            t1472,
-            t1473,
-            t1474,
-            t1475,
-            t1476,
-            t1477,
-            t1478,
-            t1479,
-            t1480,
-            t1481,
-            t1482,
-            t1483,
-            t1484,
-            t1485,
-            t1486,
-            t1487,
-            t1488,
-            t1489,
-            t1490,
-            t1491,
-            t1492,
-            t1493,
-            t1494,
-            t1495,
-            t1496,
-            t1497,
-            t1498,
-            t1499,
-        ) = gyro_sim::apart(move || {
-            let t1000 = T::fused(
-                t537,
-                t716,
-                T::fused(u1, t754, -T::fused(t539, t717, T::fused(t374, t758, t999))),
-            );
+            t1176,
+            t1177,
+            t1178,
+            t1179,
+            t1180,
+            t1181,
+            t1182,
+            t1183,
+            t1184,
+            t1185,
+            t1186,
+            t1187,
+            t1188,
+            t1189,
+            t1190,
+            t1191,
+            t1192,
+            t1193,
+            t1194,
+            t1195,
+            t1196,
+            t1197,
+            t1198,
+            t1199,
+        ) = {
+            let t1000 = T::fused(k(0.0001), t188, t950);
             let t1001 = T::fused(
-                t534,
-                t238,
-                T::fused(t464, t238, T::fused(t533, t240, T::fused(t462, t240, -t621))),
+                k(0.1),
+                T::fused(t425, t948, t430 * t987),
+                T::fused(t492, t987, T::fused(t425, t974, t426 * t988)),
             );
-            let t1002 = T::fused(
-                t539,
-                t716,
-                T::fused(t374, t754, T::fused(t537, t717, T::fused(u1, t758, t1001))),
-            );
-            let t1003 = T::fused(
-                -t533,
-                t125,
-                T::fused(-t462, t125, T::fused(t534, t129, t464 * t129)),
-            );
+            let t1002 = T::fused(-t57, t976, T::fused(t52, t982, t1001));
+            let t1003 = k(2.0) * t412;
             let t1004 = T::fused(
-                t374,
-                t808,
-                T::fused(u1, t813, T::fused(t537, t776, -T::fused(t539, t777, -t1003))),
-            );
-            let t1005 = T::fused(
-                t534,
-                t125,
-                T::fused(t464, t125, T::fused(t533, t129, t462 * t129)),
-            );
+                -k(0.1),
+                T::fused(-t429, t1003, t422 * t991),
+                t511 * t1003,
+            ) - t1002;
+            let t1005 = T::fused(-u1, t1000, t1004);
             let t1006 = T::fused(
-                u1,
-                t808,
-                -T::fused(t374, t813, T::fused(t539, t776, T::fused(t537, t777, t1005))),
+                t184,
+                T::fused(u0, t993, -T::fused(t575, t950, -T::fused(t571, t414, t931))),
+                t188 * T::fused(t575, t955, T::fused(u0, t1005, t999)),
             );
-            let t1007 = T::fused(t10, t1004, t5 * t1006);
+            let t1007 = T::fused(
+                t276,
+                t708,
+                T::fused(-t302, t770, T::fused(-t331, t836, t219 * t1006)),
+            );
             let t1008 = T::fused(
-                t533,
-                t65,
-                T::fused(t462, t65, T::fused(t534, t66, t464 * t66)),
+                -t842,
+                t223,
+                T::fused(-t510, t223, T::fused(t843, t224, t512 * t224)),
             );
             let t1009 = T::fused(
-                t537,
-                t837,
-                -T::fused(u1, t871, T::fused(t539, t838, T::fused(t374, t875, t1008))),
+                t846,
+                t576,
+                T::fused(u1, t602, -T::fused(t848, t577, T::fused(t422, t606, -t1008))),
             );
             let t1010 = T::fused(
-                t534,
-                t65,
-                T::fused(t464, t65, -T::fused(t533, t66, t462 * t66)),
+                t843,
+                t223,
+                T::fused(t512, t223, T::fused(t842, t224, t510 * t224)),
             );
             let t1011 = T::fused(
-                t539,
-                t837,
-                -T::fused(t374, t871, -T::fused(t537, t838, T::fused(u1, t875, t1010))),
+                t848,
+                t576,
+                T::fused(t422, t602, T::fused(t846, t577, T::fused(u1, t606, t1010))),
             );
-            let t1012 = T::fused(t5, t1009, t10 * t1011);
+            let t1012 = T::fused(t92, t1009, t115 * t1011);
             let t1013 = T::fused(
-                -t533,
-                t4,
-                T::fused(-t462, t4, T::fused(t534, t9, t464 * t9)),
+                -t842,
+                t255,
+                T::fused(-t510, t255, T::fused(t843, t257, t512 * t257)),
             );
             let t1014 = T::fused(
-                t537,
-                t887,
-                T::fused(u1, t904, -T::fused(t374, t910, -T::fused(t539, t888, t1013))),
+                t846,
+                t618,
+                T::fused(u1, t635, -T::fused(t422, t641, -T::fused(t848, t619, t1013))),
             );
             let t1015 = T::fused(
-                t534,
-                t4,
-                T::fused(t464, t4, T::fused(t533, t9, t462 * t9)),
+                t843,
+                t255,
+                T::fused(t512, t255, T::fused(t842, t257, t510 * t257)),
             );
             let t1016 = T::fused(
-                t539,
-                t887,
-                T::fused(t374, t904, T::fused(u1, t910, -T::fused(t537, t888, -t1015))),
+                t848,
+                t618,
+                T::fused(t422, t635, T::fused(u1, t641, -T::fused(t846, t619, -t1015))),
             );
-            let t1017 = T::fused(-t10, t1014, t5 * t1016);
-            let t1018 = t29 * t1017;
-            let t1019 = t51 * t1018;
+            let t1017 = T::fused(-t115, t1014, t92 * t1016);
+            let t1018 = T::fused(
+                t842,
+                t289,
+                T::fused(t510, t289, T::fused(t843, t290, t512 * t290)),
+            );
+            let t1019 = T::fused(
+                t846,
+                t665,
+                -T::fused(u1, t699, T::fused(t848, t666, T::fused(t422, t703, t1018))),
+            );
             let t1020 = T::fused(
-                -t533,
-                t36,
-                T::fused(-t462, t36, T::fused(t534, t37, t464 * t37)),
+                t843,
+                t289,
+                T::fused(t512, t289, -T::fused(t842, t290, t510 * t290)),
             );
             let t1021 = T::fused(
-                t537,
-                t928,
-                T::fused(u1, t954, -T::fused(t539, t929, T::fused(t374, t958, -t1020))),
+                t848,
+                t665,
+                -T::fused(t422, t699, -T::fused(t846, t666, T::fused(u1, t703, t1020))),
             );
-            let t1022 = T::fused(
-                t534,
-                t36,
-                T::fused(t464, t36, T::fused(t533, t37, t462 * t37)),
-            );
+            let t1022 = T::fused(t92, t1019, t115 * t1021);
             let t1023 = T::fused(
-                t539,
-                t928,
-                T::fused(t374, t954, T::fused(t537, t929, T::fused(u1, t958, t1022))),
+                -t842,
+                t320,
+                T::fused(-t510, t320, T::fused(t843, t324, t512 * t324)),
             );
-            let t1024 = T::fused(t5, t1021, t10 * t1023);
-            let t1025 = k(7.462686567164179) * t1024;
-            let t1026 = t0 * t1025;
-            let t1027 = k(0.1) * t1026;
-            let t1028 = t1027 + (t1024 + t1027);
-            let t1029 = t1027 + (t1027 + T::fused(-t6, t1019, t3 * t1028)) - t1012;
-            let t1030 = t86 * t1029;
-            let t1031 = t25 * t1025;
-            let t1032 = t31 * t1018;
-            let t1033 = T::fused(t6, t1031, t3 * t1032);
-            let t1034 = T::fused(t105, t1030, t1033);
-            let t1035 = k(0.1) * t1034;
-            let t1036 = T::fused(-t103, t1030, T::fused(t3, t1019, t6 * t1028));
-            let t1037 = k(0.1) * t1033;
-            let t1038 = T::fused(t99, t1030, t1037 + (t1017 + t1037));
-            let t1039 = t1035 + (T::fused(-t15, t1036, t8 * t1038) + t1035) + t1007;
-            let t1040 = t162 * t1039;
-            let t1041 = T::fused(-t171, t1030, T::fused(-t3, t1031, t6 * t1032));
-            let t1042 = T::fused(-t165, t1030, t1026);
-            let t1043 = T::fused(t15, t1041, t8 * t1042);
-            let t1044 = k(0.1) * T::fused(-t204, t1040, t1043);
-            let t1045 = T::fused(-t202, t1040, T::fused(t8, t1036, t15 * t1038));
-            let t1046 = k(0.1) * t1043;
-            let t1047 = T::fused(-t198, t1040, t1046 + (t1012 + t1046));
-            let t1048 = t1044 + (T::fused(-t10, t1045, t5 * t1047) + t1044)
-                + T::fused(t5, t1000, t10 * t1002);
-            let t1049 = t275 * t1048;
+            let t1024 = T::fused(
+                t422,
+                t754,
+                T::fused(u1, t759, T::fused(t846, t722, -T::fused(t848, t723, -t1023))),
+            );
+            let t1025 = T::fused(
+                t843,
+                t320,
+                T::fused(t512, t320, T::fused(t842, t324, t510 * t324)),
+            );
+            let t1026 = T::fused(
+                u1,
+                t754,
+                -T::fused(t422, t759, T::fused(t848, t722, T::fused(t846, t723, t1025))),
+            );
+            let t1027 = T::fused(t115, t1024, t92 * t1026);
+            let t1028 = T::fused(
+                t842,
+                t364,
+                T::fused(t510, t364, -T::fused(t843, t366, T::fused(t512, t366, -t924))),
+            );
+            let t1029 = T::fused(
+                t846,
+                t789,
+                T::fused(u1, t827, -T::fused(t848, t790, T::fused(t422, t831, t1028))),
+            );
+            let t1030 = T::fused(
+                t843,
+                t364,
+                T::fused(t512, t364, T::fused(t842, t366, T::fused(t510, t366, -t930))),
+            );
+            let t1031 = T::fused(
+                t848,
+                t789,
+                T::fused(t422, t827, T::fused(t846, t790, T::fused(u1, t831, t1030))),
+            );
+            let t1032 = T::fused(t92, t1029, t115 * t1031);
+            let t1033 = T::fused(
+                t843,
+                t409,
+                T::fused(t512, t409, -T::fused(t188, t924, t379 * t995)),
+            );
+            let t1034 = T::fused(
+                t846,
+                t945,
+                -T::fused(t848, t949, T::fused(t842, t400, T::fused(t510, t400, t1033))),
+            );
+            let t1035 = T::fused(
+                t842,
+                t409,
+                T::fused(t510, t409, T::fused(-t188, t930, t379 * t994)),
+            );
+            let t1036 = T::fused(
+                t848,
+                t945,
+                T::fused(t846, t949, T::fused(t843, t400, T::fused(t512, t400, -t1035))),
+            );
+            let t1037 = T::fused(
+                t115,
+                T::fused(t422, t984, T::fused(u1, t990, t1034)),
+                t92 * T::fused(u1, t984, -T::fused(t422, t990, t1036)),
+            );
+            let t1038 = T::fused(
+                -t276,
+                t1022,
+                T::fused(t302, t1027, T::fused(-t331, t1032, t219 * t1037)),
+            );
+            let t1039 = T::fused(
+                t18,
+                t493,
+                T::fused(t420, t856, T::fused(t851, t221, t494 * t221)),
+            );
+            let t1040 = T::fused(
+                t853,
+                t419,
+                T::fused(t430, t587, -T::fused(t425, t592, T::fused(t18, t863, t1039))),
+            );
+            let t1041 = T::fused(
+                t18,
+                t494,
+                -T::fused(t853, t420, T::fused(t863, t221, t493 * t221)),
+            );
+            let t1042 = T::fused(
+                t419,
+                t856,
+                -T::fused(t425, t587, T::fused(t430, t592, T::fused(t18, t851, t1041))),
+            );
+            let t1043 = T::fused(-t57, t1040, t52 * t1042);
+            let t1044 = T::fused(
+                t617,
+                t856,
+                -T::fused(t425, t638, -T::fused(t863, t256, t493 * t256)),
+            );
+            let t1045 = T::fused(
+                t853,
+                t617,
+                T::fused(t430, t638, -T::fused(t851, t256, t494 * t256)),
+            );
+            let t1046 = T::fused(
+                t52,
+                T::fused(t853, t615, -T::fused(t430, t636, t1044)),
+                t57 * T::fused(t615, t856, T::fused(t425, t636, t1045)),
+            );
+            let t1047 = T::fused(
+                t493,
+                t283,
+                T::fused(t662, t856, T::fused(t851, t287, t494 * t287)),
+            );
+            let t1048 = T::fused(
+                t425,
+                t684,
+                T::fused(t430, t689, -T::fused(t853, t660, T::fused(t863, t283, t1047))),
+            );
+            let t1049 = T::fused(
+                t494,
+                t283,
+                -T::fused(t853, t662, T::fused(t863, t287, t493 * t287)),
+            );
             let t1050 = T::fused(
-                t10,
-                T::fused(t186, t1040, T::fused(-t8, t1041, t15 * t1042)),
-                t5 * T::fused(-t164, t1040, t1034),
+                t430,
+                t684,
+                -T::fused(t425, t689, T::fused(t660, t856, T::fused(t851, t283, t1049))),
             );
-            let t1051 = k(0.1) * T::fused(-t298, t1049, t1050);
-            let t1052 = k(0.1) * t1050;
+            let t1051 = T::fused(-t57, t1048, t52 * t1050);
+            let t1052 = T::fused(
+                t863,
+                t321,
+                T::fused(t493, t321, T::fused(t851, t323, T::fused(t494, t323, -t914))),
+            );
             let t1053 = T::fused(
-                -t17,
-                T::fused(t296, t1049, T::fused(t5, t1045, t10 * t1047)),
-                t14 * T::fused(-t293, t1049, t1052 - (t1007 - t1052)),
+                t853,
+                t716,
+                -T::fused(t430, t745, T::fused(t721, t856, T::fused(t425, t751, -t1052))),
             );
-            let t1054 = t372 * (t1051 + (t1053 + t1051) + t998);
+            let t1054 = T::fused(
+                t851,
+                t321,
+                T::fused(t494, t321, -T::fused(t863, t323, T::fused(t493, t323, -t923))),
+            );
             let t1055 = T::fused(
-                t14,
-                t605,
-                T::fused(t312, t617, T::fused(-t300, t614, t313 * t616)),
+                t716,
+                t856,
+                T::fused(t425, t745, T::fused(t853, t721, -T::fused(t430, t751, -t1054))),
             );
-            let t1056 = T::fused(
-                t554,
-                t332,
-                T::fused(t445, t332, T::fused(t542, t336, T::fused(t446, t336, -t1055))),
-            );
+            let t1056 = T::fused(t52, t1053, t57 * t1055);
             let t1057 = T::fused(
-                t544,
-                t630,
-                -T::fused(t382, t667, T::fused(t635, t547, T::fused(t377, t673, -t1056))),
+                t851,
+                t360,
+                T::fused(t494, t360, -T::fused(t115, t914, t336 * t926)),
             );
             let t1058 = T::fused(
-                t14,
-                t614,
-                T::fused(t312, t616, -T::fused(-t300, t605, t313 * t617)),
+                t853,
+                t778,
+                T::fused(t863, t348, T::fused(t493, t348, -T::fused(t783, t856, t1057))),
             );
             let t1059 = T::fused(
-                t542,
-                t332,
-                T::fused(t446, t332, -T::fused(t554, t336, T::fused(t445, t336, -t1058))),
+                t863,
+                t360,
+                T::fused(t493, t360, -T::fused(t115, t923, t336 * t925)),
             );
             let t1060 = T::fused(
-                t630,
-                t547,
-                T::fused(t377, t667, T::fused(t544, t635, -T::fused(t382, t673, -t1059))),
+                t778,
+                t856,
+                T::fused(t851, t348, T::fused(t494, t348, T::fused(t853, t783, t1059))),
             );
             let t1061 = T::fused(
-                t542,
-                t234,
-                T::fused(t446, t234, -T::fused(t10, t605, t210 * t617)),
+                -t57,
+                T::fused(t425, t809, T::fused(t430, t815, -t1058)),
+                t52 * T::fused(t430, t809, -T::fused(t425, t815, t1060)),
             );
             let t1062 = T::fused(
-                t544,
-                t705,
-                T::fused(t554, t222, T::fused(t445, t222, -T::fused(t710, t547, t1061))),
+                t184,
+                t914,
+                T::fused(t383, t926, T::fused(-t371, t923, t384 * t925)),
             );
             let t1063 = T::fused(
-                t554,
-                t234,
-                T::fused(t445, t234, -T::fused(t10, t614, t210 * t616)),
+                t863,
+                t403,
+                T::fused(t493, t403, T::fused(t851, t407, T::fused(t494, t407, -t1062))),
             );
             let t1064 = T::fused(
-                t705,
-                t547,
-                T::fused(t542, t222, T::fused(t446, t222, T::fused(t544, t710, t1063))),
+                t853,
+                t939,
+                -T::fused(t430, t976, T::fused(t944, t856, T::fused(t425, t982, -t1063))),
             );
             let t1065 = T::fused(
-                -t15,
-                T::fused(t377, t736, T::fused(t382, t742, -t1062)),
-                t8 * T::fused(t382, t736, -T::fused(t377, t742, t1064)),
+                t184,
+                t923,
+                T::fused(t383, t925, -T::fused(-t371, t914, t384 * t926)),
             );
             let t1066 = T::fused(
-                t554,
-                t126,
-                T::fused(t445, t126, T::fused(t542, t128, T::fused(t446, t128, -t605))),
+                t851,
+                t403,
+                T::fused(t494, t403, -T::fused(t863, t407, T::fused(t493, t407, -t1065))),
             );
             let t1067 = T::fused(
-                t544,
-                t770,
-                -T::fused(t382, t799, T::fused(t775, t547, T::fused(t377, t805, -t1066))),
+                t939,
+                t856,
+                T::fused(t425, t976, T::fused(t853, t944, -T::fused(t430, t982, -t1066))),
             );
-            let t1068 = T::fused(
-                t542,
-                t126,
-                T::fused(t446, t126, -T::fused(t554, t128, T::fused(t445, t128, -t614))),
-            );
+            let t1068 = T::fused(t52, t1064, t57 * t1067);
             let t1069 = T::fused(
-                t770,
-                t547,
-                T::fused(t377, t799, T::fused(t544, t775, -T::fused(t382, t805, -t1068))),
+                t276,
+                t1051,
+                T::fused(t302, t1056, T::fused(-t331, t1061, t219 * t1068)),
             );
-            let t1070 = T::fused(t8, t1067, t15 * t1069);
+            let t1070 = T::fused(
+                t428,
+                t588,
+                -T::fused(t38, t886, T::fused(t431, t590, t38 * t456)),
+            );
             let t1071 = T::fused(
-                t445,
-                t59,
-                T::fused(t834, t547, T::fused(t542, t63, t446 * t63)),
+                t431,
+                t588,
+                T::fused(t38, t865, T::fused(t428, t590, t38 * t458)),
             );
             let t1072 = T::fused(
-                t377,
-                t856,
-                T::fused(t382, t861, -T::fused(t544, t832, T::fused(t554, t59, t1071))),
+                t3,
+                T::fused(t418, t858, t1070),
+                t26 * T::fused(t418, t871, t1071),
             );
             let t1073 = T::fused(
-                t446,
-                t59,
-                -T::fused(t544, t834, T::fused(t554, t63, t445 * t63)),
+                t428,
+                t628,
+                -T::fused(t616, t871, -T::fused(t865, t254, t458 * t254)),
             );
             let t1074 = T::fused(
-                t382,
-                t856,
-                -T::fused(t377, t861, T::fused(t832, t547, T::fused(t542, t59, t1073))),
+                t431,
+                t628,
+                T::fused(t616, t858, T::fused(t254, t886, t456 * t254)),
             );
-            let t1075 = T::fused(-t15, t1072, t8 * t1074);
+            let t1075 = T::fused(
+                -t3,
+                T::fused(t431, t625, -t1073),
+                t26 * T::fused(t428, t625, t1074),
+            );
             let t1076 = T::fused(
-                t886,
-                t547,
-                -T::fused(t377, t907, -T::fused(t554, t7, t445 * t7)),
+                t456,
+                t284,
+                -T::fused(t659, t871, T::fused(t865, t286, T::fused(t458, t286, -t891))),
             );
             let t1077 = T::fused(
-                t544,
-                t886,
-                T::fused(t382, t907, -T::fused(t542, t7, t446 * t7)),
+                t655,
+                t858,
+                -T::fused(t428, t677, -T::fused(t284, t886, T::fused(t431, t682, t1076))),
             );
             let t1078 = T::fused(
-                t8,
-                T::fused(t544, t884, -T::fused(t382, t905, t1076)),
-                t15 * T::fused(t884, t547, T::fused(t377, t905, t1077)),
+                t458,
+                t284,
+                -(t913 + T::fused(t659, t858, -T::fused(t286, t886, t456 * t286))),
             );
-            let t1079 = t29 * t1078;
-            let t1080 = t51 * t1079;
+            let t1079 = T::fused(
+                t655,
+                t871,
+                -T::fused(t431, t677, T::fused(t865, t284, T::fused(t428, t682, t1078))),
+            );
+            let t1080 = T::fused(t3, t1077, t26 * t1079);
             let t1081 = T::fused(
-                t21,
-                t445,
-                T::fused(t926, t547, T::fused(t542, t34, t446 * t34)),
+                t456,
+                t317,
+                T::fused(t720, t858, T::fused(-t57, t913, t306 * t915)),
             );
             let t1082 = T::fused(
-                t544,
-                t925,
-                T::fused(t382, t939, -T::fused(t377, t944, T::fused(t21, t554, t1081))),
+                t717,
+                t871,
+                -T::fused(t865, t309, T::fused(t458, t309, -T::fused(t317, t886, t1081))),
             );
             let t1083 = T::fused(
-                t21,
-                t446,
-                -T::fused(t544, t926, T::fused(t554, t34, t445 * t34)),
+                t865,
+                t317,
+                T::fused(t458, t317, -T::fused(t57, t891, t720 * t871)),
             );
             let t1084 = T::fused(
-                t925,
-                t547,
-                -T::fused(t377, t939, T::fused(t382, t944, T::fused(t21, t542, t1083))),
+                t717,
+                t858,
+                T::fused(t309, t886, T::fused(t456, t309, -T::fused(t306, t917, -t1083))),
             );
-            let t1085 = T::fused(-t15, t1082, t8 * t1084);
-            let t1086 = k(7.462686567164179) * t1085;
-            let t1087 = t0 * t1086;
-            let t1088 = k(0.1) * t1087;
-            let t1089 = t1088 + (t1085 + t1088);
-            let t1090 = t1088 + (t1088 + T::fused(-t6, t1080, t3 * t1089)) - t1075;
-            let t1091 = t86 * t1090;
-            let t1092 = t25 * t1086;
-            let t1093 = t31 * t1079;
-            let t1094 = T::fused(t6, t1092, t3 * t1093);
-            let t1095 = T::fused(t105, t1091, t1094);
-            let t1096 = k(0.1) * t1095;
-            let t1097 = T::fused(-t103, t1091, T::fused(t3, t1080, t6 * t1089));
-            let t1098 = k(0.1) * t1094;
-            let t1099 = T::fused(t99, t1091, t1098 + (t1078 + t1098));
-            let t1100 = t1096 + (T::fused(-t15, t1097, t8 * t1099) + t1096) - t1070;
-            let t1101 = t162 * t1100;
-            let t1102 = T::fused(-t171, t1091, T::fused(-t3, t1092, t6 * t1093));
-            let t1103 = T::fused(-t165, t1091, t1087);
-            let t1104 = T::fused(t15, t1102, t8 * t1103);
-            let t1105 = k(0.1) * T::fused(-t204, t1101, t1104);
-            let t1106 = T::fused(-t202, t1101, T::fused(t8, t1097, t15 * t1099));
-            let t1107 = k(0.1) * t1104;
-            let t1108 = T::fused(-t198, t1101, t1107 + (t1075 + t1107));
-            let t1109 = t1105 + (T::fused(-t10, t1106, t5 * t1108) + t1105) - t1065;
-            let t1110 = t275 * t1109;
+            let t1085 = T::fused(
+                -t3,
+                T::fused(t431, t735, -T::fused(t428, t742, t1082)),
+                t26 * T::fused(t428, t735, T::fused(t431, t742, -t1084)),
+            );
+            let t1086 = T::fused(
+                t92,
+                t891,
+                T::fused(t340, t917, T::fused(t332, t913, t342 * t915)),
+            );
+            let t1087 = T::fused(
+                t456,
+                t351,
+                T::fused(t777, t871, -T::fused(t865, t358, T::fused(t458, t358, -t1086))),
+            );
+            let t1088 = T::fused(
+                t773,
+                t858,
+                -T::fused(t428, t802, -T::fused(t351, t886, T::fused(t431, t807, t1087))),
+            );
+            let t1089 = T::fused(
+                t456,
+                t358,
+                T::fused(t340, t915, -T::fused(-t332, t891, t342 * t917)),
+            );
+            let t1090 = T::fused(
+                t458,
+                t351,
+                -T::fused(t92, t913, -T::fused(t777, t858, T::fused(t358, t886, t1089))),
+            );
+            let t1091 = T::fused(
+                t773,
+                t871,
+                -T::fused(t431, t802, T::fused(t865, t351, T::fused(t428, t807, t1090))),
+            );
+            let t1092 = T::fused(t3, t1088, t26 * t1091);
+            let t1093 = T::fused(
+                t382,
+                t915,
+                -T::fused(t372, t913, -T::fused(t373, t891, t385 * t917)),
+            );
+            let t1094 = T::fused(
+                t458,
+                t388,
+                T::fused(t397, t886, T::fused(t456, t397, T::fused(t943, t858, t1093))),
+            );
+            let t1095 = T::fused(
+                t431,
+                t966,
+                T::fused(t428, t973, -T::fused(t940, t871, -T::fused(t865, t388, t1094))),
+            );
+            let t1096 = T::fused(
+                t943,
+                t871,
+                T::fused(t372, t891, -T::fused(-t373, t913, t385 * t915)),
+            );
+            let t1097 = T::fused(
+                t456,
+                t388,
+                T::fused(t382, t917, -T::fused(t865, t397, T::fused(t458, t397, -t1096))),
+            );
+            let t1098 = T::fused(
+                t428,
+                t966,
+                -T::fused(t431, t973, T::fused(t940, t858, T::fused(t388, t886, t1097))),
+            );
+            let t1099 = T::fused(-t3, t1095, t26 * t1098);
+            let t1100 = T::fused(
+                t276,
+                t1080,
+                T::fused(-t302, t1085, T::fused(-t331, t1092, t219 * t1099)),
+            );
+            let t1101 = T::fused(
+                -t12,
+                T::fused(t434, t579, -T::fused(k(0.05), t465 + t899, t437 * t580)),
+                t0 * T::fused(t437, t579, T::fused(-k(0.05), t466 + t898, t434 * t580)),
+            );
+            let t1102 = T::fused(
+                t612,
+                t872,
+                -T::fused(t437, t626, -T::fused(t14, t878, -T::fused(t434, t627, t879))),
+            );
+            let t1103 = T::fused(
+                t612,
+                t878,
+                -T::fused(t434, t626, t890 - T::fused(-t14, t872, t437 * t627)),
+            );
+            let t1104 = T::fused(-t0, t1102, t12 * t1103);
+            let t1105 = T::fused(
+                t466,
+                t280,
+                -T::fused(t656, t878, T::fused(t26, t879, t658 * t872)),
+            );
+            let t1106 = T::fused(
+                t279,
+                t899,
+                T::fused(t465, t279, T::fused(t278, t908, -T::fused(t280, t898, t1105))),
+            );
+            let t1107 = T::fused(
+                t278,
+                t900,
+                -T::fused(t656, t872, -T::fused(t658, t878, t26 * t890)),
+            );
+            let t1108 = T::fused(
+                t279,
+                t898,
+                T::fused(t466, t279, T::fused(t280, t899, T::fused(t465, t280, -t1107))),
+            );
+            let t1109 = T::fused(
+                -t12,
+                T::fused(t434, t671, T::fused(t437, t674, -t1106)),
+                t0 * T::fused(t437, t671, -T::fused(t434, t674, t1108)),
+            );
+            let t1110 = T::fused(
+                t315,
+                t899,
+                T::fused(t465, t315, -T::fused(-t303, t890, t312 * t900)),
+            );
             let t1111 = T::fused(
-                t10,
-                T::fused(t186, t1101, T::fused(-t8, t1102, t15 * t1103)),
-                t5 * T::fused(-t164, t1101, t1095),
+                t52,
+                t879,
+                -T::fused(
+                    t314,
+                    t898,
+                    T::fused(t466, t314, -T::fused(t310, t908, -t1110)),
+                ),
             );
-            let t1112 = k(0.1) * T::fused(-t298, t1110, t1111);
-            let t1113 = k(0.1) * t1111;
+            let t1112 = T::fused(
+                t710,
+                t872,
+                -T::fused(
+                    t437,
+                    t738,
+                    -T::fused(t713, t878, -T::fused(t434, t740, t1111)),
+                ),
+            );
+            let t1113 = T::fused(
+                t466,
+                t315,
+                T::fused(t310, t900, -T::fused(-t303, t879, t312 * t908)),
+            );
             let t1114 = T::fused(
-                -t17,
-                T::fused(t296, t1110, T::fused(t5, t1106, t10 * t1108)),
-                t14 * T::fused(-t293, t1110, t1113 + (t1070 + t1113)),
+                t437,
+                t740,
+                T::fused(t314, t899, T::fused(t465, t314, -T::fused(t315, t898, t1113))),
             );
-            let t1115 = t372
-                * (t1112 + (t1114 + t1112) - T::fused(t8, t1057, t15 * t1060));
-            let t1116 = T::fused(
-                t311,
-                t606,
-                -T::fused(t301, t604, -T::fused(t302, t582, t314 * t608)),
+            let t1115 = T::fused(
+                t710,
+                t878,
+                -T::fused(t434, t738, T::fused(t52, t890, T::fused(t713, t872, -t1114))),
             );
+            let t1116 = T::fused(-t0, t1112, t12 * t1115);
             let t1117 = T::fused(
-                t410,
-                t317,
-                T::fused(t326, t577, T::fused(t408, t326, T::fused(t634, t549, t1116))),
+                t776,
+                t872,
+                -T::fused(t353, t879, -T::fused(t341, t890, t343 * t900)),
             );
             let t1118 = T::fused(
-                t383,
-                t657,
-                T::fused(t380, t664, -T::fused(t631, t562, -T::fused(t556, t317, t1117))),
+                t339,
+                t908,
+                -T::fused(
+                    t345,
+                    t898,
+                    T::fused(t466, t345, -T::fused(t774, t878, -t1117)),
+                ),
             );
             let t1119 = T::fused(
-                t634,
-                t562,
-                T::fused(t301, t582, -T::fused(-t302, t604, t314 * t606)),
+                t434,
+                t796,
+                -T::fused(
+                    t437,
+                    t799,
+                    -T::fused(t344, t899, T::fused(t465, t344, -t1118)),
+                ),
             );
             let t1120 = T::fused(
-                t408,
-                t317,
-                T::fused(t311, t608, -T::fused(t556, t326, T::fused(t410, t326, -t1119))),
+                t353,
+                t890,
+                -T::fused(t776, t878, -T::fused(t341, t879, t343 * t908)),
             );
             let t1121 = T::fused(
-                t380,
-                t657,
-                -T::fused(t383, t664, T::fused(t631, t549, T::fused(t317, t577, t1120))),
+                t345,
+                t899,
+                T::fused(
+                    t465,
+                    t345,
+                    -T::fused(t339, t900, -T::fused(t774, t872, -t1120)),
+                ),
             );
             let t1122 = T::fused(
-                t5,
-                t582,
-                T::fused(t214, t608, T::fused(t206, t604, t216 * t606)),
+                t437,
+                t796,
+                T::fused(t434, t799, T::fused(t344, t898, T::fused(t466, t344, -t1121))),
             );
-            let t1123 = T::fused(
-                t408,
-                t225,
-                T::fused(t704, t562, -T::fused(t556, t232, T::fused(t410, t232, -t1122))),
-            );
+            let t1123 = T::fused(-t12, t1119, t0 * t1122);
             let t1124 = T::fused(
-                t700,
-                t549,
-                -T::fused(t380, t729, -T::fused(t225, t577, T::fused(t383, t734, t1123))),
+                t395,
+                t899,
+                T::fused(t465, t395, -T::fused(t374, t890, t393 * t900)),
             );
             let t1125 = T::fused(
-                t408,
-                t232,
-                T::fused(t214, t606, -T::fused(-t206, t582, t216 * t608)),
+                t375,
+                t879,
+                -T::fused(
+                    t394,
+                    t898,
+                    T::fused(t466, t394, -T::fused(t389, t908, -t1124)),
+                ),
             );
             let t1126 = T::fused(
-                t410,
-                t225,
-                -T::fused(t5, t604, -T::fused(t704, t549, T::fused(t232, t577, t1125))),
+                t933,
+                t872,
+                T::fused(t437, t969, -T::fused(t936, t878, -T::fused(t434, t971, t1125))),
             );
             let t1127 = T::fused(
-                t700,
-                t562,
-                -T::fused(t383, t729, T::fused(t556, t225, T::fused(t380, t734, t1126))),
+                t466,
+                t395,
+                T::fused(t389, t900, -T::fused(t374, t879, t393 * t908)),
             );
             let t1128 = T::fused(
-                t408,
-                t122,
-                T::fused(t774, t549, T::fused(-t15, t604, t111 * t606)),
+                t437,
+                t971,
+                T::fused(t394, t899, T::fused(t465, t394, -T::fused(t395, t898, t1127))),
             );
             let t1129 = T::fused(
-                t771,
-                t562,
-                -T::fused(t556, t114, T::fused(t410, t114, -T::fused(t122, t577, t1128))),
+                t933,
+                t878,
+                T::fused(t434, t969, T::fused(t375, t890, T::fused(t936, t872, -t1128))),
             );
-            let t1130 = T::fused(
-                t556,
-                t122,
-                T::fused(t410, t122, -T::fused(t15, t582, t774 * t562)),
-            );
+            let t1130 = T::fused(-t0, t1126, t12 * t1129);
             let t1131 = T::fused(
-                t771,
-                t549,
-                T::fused(t114, t577, T::fused(t408, t114, -T::fused(t111, t608, -t1130))),
+                t276,
+                t1109,
+                T::fused(-t302, t1116, T::fused(-t331, t1123, t219 * t1130)),
             );
-            let t1132 = T::fused(
-                -t3,
-                T::fused(t383, t789, -T::fused(t380, t796, t1129)),
-                t6 * T::fused(t380, t789, T::fused(t383, t796, -t1131)),
-            );
+            let t1132 = k(2.0) * t226;
             let t1133 = T::fused(
-                t408,
-                t60,
-                -T::fused(t831, t562, T::fused(t556, t62, T::fused(t410, t62, -t582))),
+                t184,
+                t599,
+                T::fused(-t188, t609, T::fused(k(0.1), u0 * t1132, t543 * t1132)),
             );
-            let t1134 = T::fused(
-                t827,
-                t549,
-                -T::fused(t380, t849, -T::fused(t60, t577, T::fused(t383, t854, t1133))),
-            );
+            let t1134 = k(2.0) * t261;
             let t1135 = T::fused(
-                t410,
-                t60,
-                -(t604 + T::fused(t831, t549, -T::fused(t62, t577, t408 * t62))),
+                t188,
+                t644,
+                T::fused(-t184, t650, T::fused(k(0.1), u0 * t1134, t543 * t1134)),
             );
-            let t1136 = T::fused(
-                t827,
-                t562,
-                -T::fused(t383, t849, T::fused(t556, t60, T::fused(t380, t854, t1135))),
+            let t1136 = k(2.0) * t292;
+            let t1137 = T::fused(
+                t184,
+                t696,
+                T::fused(-t188, t706, T::fused(k(0.1), u0 * t1136, t543 * t1136)),
             );
-            let t1137 = T::fused(t3, t1134, t6 * t1136);
-            let t1138 = T::fused(
-                t380,
-                t897,
-                -T::fused(t885, t562, -T::fused(t556, t2, t410 * t2)),
-            );
+            let t1138 = k(2.0) * t328;
             let t1139 = T::fused(
-                t383,
-                t897,
-                T::fused(t885, t549, T::fused(t2, t577, t408 * t2)),
+                t188,
+                t762,
+                T::fused(t184, t768, T::fused(k(0.1), u0 * t1138, t543 * t1138)),
             );
-            let t1140 = T::fused(
-                -t3,
-                T::fused(t383, t894, -t1138),
-                t6 * T::fused(t380, t894, t1139),
+            let t1140 = k(2.0) * t368;
+            let t1141 = T::fused(
+                -t188,
+                t834,
+                T::fused(t184, t823, T::fused(k(0.1), u0 * t1140, t543 * t1140)),
             );
-            let t1141 = t29 * t1140;
-            let t1142 = t51 * t1141;
+            let t1142 = k(2.0) * t415;
             let t1143 = T::fused(
-                t380,
-                t940,
-                -T::fused(t33, t577, T::fused(t383, t942, t33 * t408)),
+                t188,
+                t993,
+                T::fused(-t184, t1005, T::fused(k(0.1), u0 * t1142, t543 * t1142)),
             );
             let t1144 = T::fused(
-                t383,
-                t940,
-                T::fused(t33, t556, T::fused(t380, t942, t33 * t410)),
+                -t1137,
+                t276,
+                T::fused(t1139, t302, T::fused(t1141, t331, t219 * t1143)),
             );
             let t1145 = T::fused(
-                t3,
-                T::fused(t924, t549, t1143),
-                t6 * T::fused(t924, t562, t1144),
+                -t92,
+                t606,
+                T::fused(k(0.1), T::fused(-t422, t607, u1 * t597), t509 * t597),
             );
-            let t1146 = k(7.462686567164179) * t1145;
-            let t1147 = t0 * t1146;
-            let t1148 = k(0.1) * t1147;
-            let t1149 = t1148 + (t1145 + t1148);
-            let t1150 = t1148 + (t1148 + T::fused(-t6, t1142, t3 * t1149)) - t1137;
-            let t1151 = t86 * t1150;
-            let t1152 = t25 * t1146;
-            let t1153 = t31 * t1141;
-            let t1154 = T::fused(t6, t1152, t3 * t1153);
-            let t1155 = T::fused(t105, t1151, t1154);
-            let t1156 = k(0.1) * t1155;
-            let t1157 = T::fused(-t103, t1151, T::fused(t3, t1142, t6 * t1149));
-            let t1158 = k(0.1) * t1154;
-            let t1159 = T::fused(t99, t1151, t1158 + (t1140 + t1158));
-            let t1160 = t1156 + (T::fused(-t15, t1157, t8 * t1159) + t1156) + t1132;
-            let t1161 = t162 * t1160;
-            let t1162 = T::fused(-t171, t1151, T::fused(-t3, t1152, t6 * t1153));
-            let t1163 = T::fused(-t165, t1151, t1147);
-            let t1164 = T::fused(t15, t1162, t8 * t1163);
-            let t1165 = k(0.1) * T::fused(-t204, t1161, t1164);
-            let t1166 = T::fused(-t202, t1161, T::fused(t8, t1157, t15 * t1159));
-            let t1167 = k(0.1) * t1164;
-            let t1168 = T::fused(-t198, t1161, t1167 + (t1137 + t1167));
-            let t1169 = t1165 + (T::fused(-t10, t1166, t5 * t1168) + t1165)
-                - T::fused(t3, t1124, t6 * t1127);
-            let t1170 = t275 * t1169;
-            let t1171 = T::fused(
-                t10,
-                T::fused(t186, t1161, T::fused(-t8, t1162, t15 * t1163)),
-                t5 * T::fused(-t164, t1161, t1155),
+            let t1146 = T::fused(
+                -t429,
+                t578,
+                T::fused(t115, t602, T::fused(-t422, t421, t1145)),
             );
-            let t1172 = k(0.1) * T::fused(-t298, t1170, t1171);
-            let t1173 = k(0.1) * t1171;
-            let t1174 = T::fused(
-                -t17,
-                T::fused(t296, t1170, T::fused(t5, t1166, t10 * t1168)),
-                t14 * T::fused(-t293, t1170, t1173 - (t1132 - t1173)),
+            let t1147 = T::fused(
+                t115,
+                t641,
+                T::fused(k(0.1), T::fused(t422, t642, u1 * t648), t509 * t648),
             );
-            let t1175 = t372
-                * (t1172 + (t1174 + t1172) - T::fused(-t3, t1118, t6 * t1121));
-            let t1176 = T::fused(
-                t324,
-                t590,
-                T::fused(t417, t324, -T::fused(t303, t581, t322 * t591)),
+            let t1148 = T::fused(
+                t422,
+                t621,
+                T::fused(-t429, t620, T::fused(t92, t635, t1147)),
             );
-            let t1177 = T::fused(
-                t304,
-                t570,
-                -T::fused(
-                    t323,
-                    t589,
-                    T::fused(t418, t323, -T::fused(t318, t599, -t1176)),
-                ),
-            );
-            let t1178 = T::fused(
-                t624,
-                t563,
-                T::fused(t389, t660, -T::fused(t627, t569, -T::fused(t386, t662, t1177))),
-            );
-            let t1179 = T::fused(
-                t418,
-                t324,
-                T::fused(t318, t591, -T::fused(t303, t570, t322 * t599)),
-            );
-            let t1180 = T::fused(
-                t389,
-                t662,
-                T::fused(t323, t590, T::fused(t417, t323, -T::fused(t324, t589, t1179))),
-            );
-            let t1181 = T::fused(
-                t624,
-                t569,
-                T::fused(t386, t660, T::fused(t304, t581, T::fused(t627, t563, -t1180))),
-            );
-            let t1182 = T::fused(
+            let t1149 = T::fused(
+                t92,
                 t703,
-                t563,
-                -T::fused(t227, t570, -T::fused(t215, t581, t217 * t591)),
+                T::fused(k(0.1), T::fused(-t422, t704, u1 * t694), t509 * t694),
             );
-            let t1183 = T::fused(
-                t213,
-                t599,
-                -T::fused(
-                    t219,
-                    t589,
-                    T::fused(t418, t219, -T::fused(t701, t569, -t1182)),
-                ),
+            let t1150 = T::fused(
+                t429,
+                t667,
+                T::fused(t115, t699, T::fused(-t422, t663, t1149)),
             );
+            let t1151 = T::fused(
+                t429,
+                t724,
+                T::fused(k(0.1), T::fused(t422, t760, u1 * t766), t509 * t766),
+            );
+            let t1152 = T::fused(
+                t422,
+                t726,
+                T::fused(-t115, t754, T::fused(t92, t759, t1151)),
+            );
+            let t1153 = T::fused(
+                -t92,
+                t831,
+                T::fused(k(0.1), T::fused(-t422, t832, u1 * t821), t509 * t821),
+            );
+            let t1154 = T::fused(
+                -t429,
+                t791,
+                T::fused(t115, t827, T::fused(-t422, t784, t1153)),
+            );
+            let t1155 = T::fused(
+                -t429,
+                t1000,
+                T::fused(k(0.1), T::fused(t422, t953, u1 * t1003), t509 * t1003),
+            );
+            let t1156 = T::fused(
+                t422,
+                t957,
+                T::fused(t115, t984, T::fused(-t92, t990, t1155)),
+            );
+            let t1157 = T::fused(
+                t1150,
+                t276,
+                T::fused(-t1152, t302, T::fused(-t1154, t331, t219 * t1156)),
+            );
+            let t1158 = T::fused(-t425, t576, T::fused(-t426, t577, t596));
+            let t1159 = T::fused(t426, t618, T::fused(t425, t619, -t647));
+            let t1160 = T::fused(t425, t665, T::fused(t426, t666, -t693));
+            let t1161 = T::fused(-t426, t722, T::fused(t425, t723, t765));
+            let t1162 = T::fused(t425, t789, T::fused(t426, t790, -t819));
+            let t1163 = T::fused(-t426, t945, T::fused(t425, t949, t1002));
+            let t1164 = T::fused(
+                t1160,
+                t276,
+                T::fused(t1161, t302, T::fused(t1162, t331, t219 * t1163)),
+            );
+            let t1165 = T::fused(-t436, t419, T::fused(t431, t420, t604));
+            let t1166 = T::fused(t431, t615, T::fused(t436, t617, -t632));
+            let t1167 = T::fused(t436, t660, T::fused(t431, t662, -t701));
+            let t1168 = T::fused(t431, t716, T::fused(t436, t721, t756));
+            let t1169 = T::fused(-t436, t778, T::fused(t431, t783, -t829));
+            let t1170 = T::fused(t431, t939, T::fused(t436, t944, t986));
+            let t1171 = T::fused(
+                t1167,
+                t276,
+                T::fused(t1168, t302, T::fused(t1169, t331, t219 * t1170)),
+            );
+            let t1172 = T::fused(t434, t418, t584);
+            let t1173 = T::fused(-t433, t616, t637);
+            let t1174 = T::fused(t434, t655, T::fused(t433, t659, -t686));
+            let t1175 = T::fused(-t433, t717, T::fused(t434, t720, t747));
+            let t1176 = T::fused(-t434, t773, T::fused(t433, t777, t811));
+            let t1177 = T::fused(t433, t940, T::fused(t434, t943, -t978));
+            let t1178 = T::fused(
+                -t1174,
+                t276,
+                T::fused(t1175, t302, T::fused(-t1176, t331, t219 * t1177)),
+            );
+            let t1179 = T::fused(t438, t612, T::fused(t14, t447, t624));
+            let t1180 = T::fused(-t438, t656, t447 * t658) + t680;
+            let t1181 = T::fused(t438, t710, T::fused(t447, t713, t731));
+            let t1182 = T::fused(t438, t774, t447 * t776) + t804;
+            let t1183 = T::fused(-t438, t933, T::fused(t447, t936, t962));
             let t1184 = T::fused(
-                t386,
-                t723,
-                -T::fused(
-                    t389,
-                    t726,
-                    -T::fused(t218, t590, T::fused(t417, t218, -t1183)),
-                ),
+                t1180,
+                t276,
+                T::fused(t1181, t302, T::fused(t1182, t331, t219 * t1183)),
             );
-            let t1185 = T::fused(
-                t227,
-                t581,
-                -T::fused(t703, t569, -T::fused(t215, t570, t217 * t599)),
+            let t1185 = k(0.2) * t220;
+            let t1186 = t184 * t220;
+            let t1187 = t188 * t220;
+            let t1188 = t165
+                * (t133 + T::fused(t190, t1185, T::fused(t183, t1186, t187 * t1187)));
+            let t1189 = k(0.2) * t252;
+            let t1190 = t184 * t252;
+            let t1191 = t188 * t252;
+            let t1192 = t165
+                * (t248 + T::fused(t190, t1189, T::fused(t183, t1190, t187 * t1191)));
+            let t1193 = k(0.2) * t276;
+            let t1194 = t184 * t276;
+            let t1195 = t188 * t276;
+            let t1196 = t165
+                * (t272 + T::fused(t190, t1193, T::fused(t183, t1194, t187 * t1195)));
+            let t1197 = k(0.2) * t302;
+            let t1198 = t184 * t302;
+            let t1199 = t188 * t302;
+            (
+                t1006,
+                t1007,
+                t1012,
+                t1017,
+                t1022,
+                t1027,
+                t1032,
+                t1037,
+                t1038,
+                t1043,
+                t1046,
+                t1051,
+                t1056,
+                t1061,
+                t1068,
+                t1069,
+                t1072,
+                t1075,
+                t1080,
+                t1085,
+                t1092,
+                t1099,
+                t1100,
+                t1101,
+                t1104,
+                t1109,
+                t1116,
+                t1123,
+                t1130,
+                t1131,
+                t1133,
+                t1135,
+                t1137,
+                t1139,
+                t1141,
+                t1143,
+                t1144,
+                t1146,
+                t1148,
+                t1150,
+                t1152,
+                t1154,
+                t1156,
+                t1157,
+                t1158,
+                t1159,
+                t1160,
+                t1161,
+                t1162,
+                t1163,
+                t1164,
+                t1165,
+                t1166,
+                t1167,
+                t1168,
+                t1169,
+                t1170,
+                t1171,
+                t1172,
+                t1173,
+                t1174,
+                t1175,
+                t1176,
+                t1177,
+                t1178,
+                t1179,
+                t1180,
+                t1181,
+                t1182,
+                t1183,
+                t1184,
+                t1185,
+                t1186,
+                t1187,
+                t1188,
+                t1189,
+                t1190,
+                t1191,
+                t1192,
+                t1193,
+                t1194,
+                t1195,
+                t1196,
+                t1197,
+                t1198,
+                t1199,
+            )
+        };
+        let (
+            t1209,
+            t1210,
+            t1211,
+            t1212,
+            t1213,
+            t1214,
+            t1215,
+            t1216,
+            t1217,
+            t1218,
+            t1219,
+            t1220,
+            t1230,
+            t1240,
+            t1281,
+            t1282,
+            t1283,
+            t1284,
+            t1285,
+            t1286,
+            t1287,
+            t1288,
+            t1289,
+            t1290,
+            t1291,
+            t1292,
+            t1297,
+            t1298,
+            t1300,
+            t1302,
+            t1303,
+            t1308,
+            t1309,
+            t1311,
+            t1313,
+            t1314,
+            t1319,
+            t1320,
+            t1322,
+            t1324,
+            t1330,
+            t1331,
+            t1333,
+            t1335,
+            t1341,
+            t1342,
+            t1344,
+            t1346,
+            t1352,
+            t1353,
+            t1355,
+            t1357,
+            t1359,
+            t1360,
+            t1361,
+            t1362,
+            t1363,
+            t1364,
+            t1365,
+            t1366,
+            t1367,
+            t1368,
+            t1369,
+            t1370,
+            t1372,
+            t1374,
+            t1376,
+            t1378,
+            t1380,
+            t1382,
+            t1384,
+            t1386,
+            t1388,
+            t1390,
+            t1392,
+            t1394,
+            t1395,
+            t1396,
+            t1397,
+            t1398,
+            t1399,
+        ) = {
+            let t1200 = t165
+                * (t298 + T::fused(t190, t1197, T::fused(t183, t1198, t187 * t1199)));
+            let t1201 = k(0.2) * t331;
+            let t1202 = t184 * t331;
+            let t1203 = t188 * t331;
+            let t1204 = t165
+                * (k(1.0) + T::fused(t190, t1201, T::fused(t183, t1202, t187 * t1203)));
+            let t1205 = t184 * t219;
+            let t1206 = t188 * t219;
+            let t1207 = k(0.2) * t219;
+            let t1208 = t165
+                * T::fused(t190, t1207, T::fused(t183, t1205, t187 * t1206));
+            let t1209 = T::fused(
+                t294,
+                t1196,
+                T::fused(t329, t1200, T::fused(-t370, t1204, t416 * t1208)),
             );
-            let t1186 = T::fused(
-                t219,
-                t590,
-                T::fused(
-                    t417,
-                    t219,
-                    -T::fused(t213, t591, -T::fused(t701, t563, -t1185)),
-                ),
+            let t1210 = T::fused(
+                t1196,
+                t708,
+                T::fused(-t1200, t770, T::fused(-t1204, t836, t1208 * t1006)),
             );
-            let t1187 = T::fused(
-                t389,
-                t723,
-                T::fused(t386, t726, T::fused(t218, t589, T::fused(t418, t218, -t1186))),
+            let t1211 = T::fused(
+                -t1196,
+                t1022,
+                T::fused(t1200, t1027, T::fused(-t1204, t1032, t1208 * t1037)),
             );
-            let t1188 = T::fused(
-                t120,
-                t590,
-                T::fused(t417, t120, -T::fused(-t108, t581, t117 * t591)),
+            let t1212 = T::fused(
+                t1196,
+                t1051,
+                T::fused(t1200, t1056, T::fused(-t1204, t1061, t1208 * t1068)),
             );
-            let t1189 = T::fused(
-                t8,
-                t570,
-                -T::fused(
-                    t119,
-                    t589,
-                    T::fused(t418, t119, -T::fused(t115, t599, -t1188)),
-                ),
+            let t1213 = T::fused(
+                t1196,
+                t1080,
+                T::fused(-t1200, t1085, T::fused(-t1204, t1092, t1208 * t1099)),
             );
-            let t1190 = T::fused(
-                t764,
-                t563,
-                -T::fused(
-                    t389,
-                    t792,
-                    -T::fused(t767, t569, -T::fused(t386, t794, t1189)),
-                ),
+            let t1214 = T::fused(
+                t1196,
+                t1109,
+                T::fused(-t1200, t1116, T::fused(-t1204, t1123, t1208 * t1130)),
             );
-            let t1191 = T::fused(
-                t418,
-                t120,
-                T::fused(t115, t591, -T::fused(-t108, t570, t117 * t599)),
+            let t1215 = T::fused(
+                -t1137,
+                t1196,
+                T::fused(t1139, t1200, T::fused(t1141, t1204, t1143 * t1208)),
             );
-            let t1192 = T::fused(
-                t389,
-                t794,
-                T::fused(t119, t590, T::fused(t417, t119, -T::fused(t120, t589, t1191))),
+            let t1216 = T::fused(
+                t1150,
+                t1196,
+                T::fused(-t1152, t1200, T::fused(-t1154, t1204, t1156 * t1208)),
             );
-            let t1193 = T::fused(
-                t764,
-                t569,
-                -T::fused(t386, t792, T::fused(t8, t581, T::fused(t767, t563, -t1192))),
+            let t1217 = T::fused(
+                t1160,
+                t1196,
+                T::fused(t1161, t1200, T::fused(t1162, t1204, t1163 * t1208)),
             );
-            let t1194 = T::fused(-t0, t1190, t25 * t1193);
-            let t1195 = T::fused(
-                t418,
-                t56,
-                -T::fused(t828, t569, T::fused(t6, t570, t830 * t563)),
+            let t1218 = T::fused(
+                t1167,
+                t1196,
+                T::fused(t1168, t1200, T::fused(t1169, t1204, t1170 * t1208)),
             );
-            let t1196 = T::fused(
-                t55,
-                t590,
-                T::fused(t417, t55, T::fused(t54, t599, -T::fused(t56, t589, t1195))),
+            let t1219 = T::fused(
+                -t1174,
+                t1196,
+                T::fused(t1175, t1200, T::fused(-t1176, t1204, t1177 * t1208)),
             );
-            let t1197 = T::fused(
-                t54,
-                t591,
-                -T::fused(t828, t563, -T::fused(t830, t569, t6 * t581)),
+            let t1220 = T::fused(
+                t1180,
+                t1196,
+                T::fused(t1181, t1200, T::fused(t1182, t1204, t1183 * t1208)),
             );
-            let t1198 = T::fused(
-                t55,
-                t589,
-                T::fused(t418, t55, T::fused(t56, t590, T::fused(t417, t56, -t1197))),
-            );
-            let t1199 = T::fused(
-                -t25,
-                T::fused(t386, t843, T::fused(t389, t846, -t1196)),
-                t0 * T::fused(t389, t843, -T::fused(t386, t846, t1198)),
-            );
-            let t1200 = T::fused(
-                t881,
-                t563,
-                -T::fused(t389, t895, -T::fused(t26, t569, -T::fused(t386, t896, t570))),
-            );
-            let t1201 = T::fused(
-                t881,
-                t569,
-                -T::fused(t386, t895, t581 - T::fused(-t26, t563, t389 * t896)),
-            );
-            let t1202 = T::fused(-t0, t1200, t25 * t1201);
-            let t1203 = t29 * t1202;
-            let t1204 = t51 * t1203;
-            let t1205 = T::fused(
-                -t25,
-                T::fused(t386, t931, -T::fused(k(0.05), t417 + t590, t389 * t932)),
-                t0 * T::fused(t389, t931, T::fused(-k(0.05), t418 + t589, t386 * t932)),
-            );
-            let t1206 = k(7.462686567164179) * t1205;
-            let t1207 = t0 * t1206;
-            let t1208 = k(0.1) * t1207;
-            let t1209 = t1208 + (t1205 + t1208);
-            let t1210 = t1208 + (t1208 + T::fused(t6, t1204, t3 * t1209)) - t1199;
-            let t1211 = t86 * t1210;
-            let t1212 = t25 * t1206;
-            let t1213 = t31 * t1203;
-            let t1214 = T::fused(-t6, t1212, t3 * t1213);
-            let t1215 = T::fused(-t105, t1211, t1214);
-            let t1216 = k(0.1) * t1215;
-            let t1217 = T::fused(-t103, t1211, T::fused(-t3, t1204, t6 * t1209));
-            let t1218 = k(0.1) * t1214;
-            let t1219 = T::fused(-t99, t1211, t1218 + (t1202 + t1218));
-            let t1220 = t1216 + (T::fused(t15, t1217, t8 * t1219) + t1216) - t1194;
-            let t1221 = t162 * t1220;
-            let t1222 = T::fused(t171, t1211, T::fused(t3, t1212, t6 * t1213));
-            let t1223 = T::fused(-t165, t1211, t1207);
-            let t1224 = T::fused(-t15, t1222, t8 * t1223);
-            let t1225 = k(0.1) * T::fused(t204, t1221, t1224);
-            let t1226 = T::fused(-t202, t1221, T::fused(-t8, t1217, t15 * t1219));
-            let t1227 = k(0.1) * t1224;
-            let t1228 = T::fused(t198, t1221, t1227 + (t1199 + t1227));
-            let t1229 = t1225 + (T::fused(t10, t1226, t5 * t1228) + t1225)
-                - T::fused(-t25, t1184, t0 * t1187);
-            let t1230 = t275 * t1229;
-            let t1231 = T::fused(
-                -t10,
-                T::fused(-t186, t1221, T::fused(t8, t1222, t15 * t1223)),
-                t5 * T::fused(-t164, t1221, t1215),
-            );
-            let t1232 = k(0.1) * T::fused(t298, t1230, t1231);
-            let t1233 = k(0.1) * t1231;
-            let t1234 = T::fused(
-                t17,
-                T::fused(t296, t1230, T::fused(-t5, t1226, t10 * t1228)),
-                t14 * T::fused(t293, t1230, t1233 + (t1194 + t1233)),
-            );
-            let t1235 = t372
-                * (t1232 + (t1234 + t1232) + T::fused(-t0, t1178, t25 * t1181));
-            let t1236 = k(2.0) * t18;
-            let t1237 = T::fused(
-                t17,
-                t913,
-                T::fused(-t14, t919, T::fused(k(0.1), u0 * t1236, t495 * t1236)),
-            );
-            let t1238 = t29 * t1237;
-            let t1239 = t31 * t1238;
-            let t1240 = k(2.0) * t39;
-            let t1241 = T::fused(
-                t14,
-                t951,
-                T::fused(-t17, t961, T::fused(k(0.1), u0 * t1240, t495 * t1240)),
-            );
-            let t1242 = k(7.462686567164179) * t1241;
-            let t1243 = t25 * t1242;
-            let t1244 = T::fused(-t3, t1239, t6 * t1243);
-            let t1245 = k(0.1) * t1244;
-            let t1246 = t0 * t1242;
-            let t1247 = k(0.1) * t1246;
-            let t1248 = t1247 + (t1241 + t1247);
-            let t1249 = t51 * t1238;
-            let t1250 = k(2.0) * t68;
-            let t1251 = T::fused(
-                t14,
-                t868,
-                T::fused(-t17, t878, T::fused(k(0.1), u0 * t1250, t495 * t1250)),
-            );
-            let t1252 = t1251 + (t1247 + (t1247 + T::fused(t3, t1248, t6 * t1249)));
-            let t1253 = t86 * t1252;
-            let t1254 = T::fused(t99, t1253, t1245 - (t1237 - t1245));
-            let t1255 = T::fused(t103, t1253, T::fused(-t6, t1248, t3 * t1249));
-            let t1256 = T::fused(t105, t1253, t1244);
-            let t1257 = k(0.1) * t1256;
-            let t1258 = k(2.0) * t133;
-            let t1259 = T::fused(
-                t17,
-                t816,
-                T::fused(t14, t822, T::fused(k(0.1), u0 * t1258, t495 * t1258)),
-            );
-            let t1260 = t1259 - (t1257 + (t1257 + T::fused(t8, t1254, t15 * t1255)));
-            let t1261 = t162 * t1260;
-            let t1262 = T::fused(-t165, t1253, t1246);
-            let t1263 = T::fused(t171, t1253, T::fused(t6, t1239, t3 * t1243));
-            let t1264 = T::fused(
-                -t5,
-                T::fused(t164, t1261, t1256),
-                t10 * T::fused(t186, t1261, -T::fused(t15, t1262, t8 * t1263)),
-            );
-            let t1265 = k(0.1) * t1264;
-            let t1266 = T::fused(-t8, t1262, t15 * t1263);
-            let t1267 = k(0.1) * t1266;
-            let t1268 = T::fused(t198, t1261, -(t1267 + (t1251 + t1267)));
-            let t1269 = T::fused(t202, t1261, -T::fused(-t15, t1254, t8 * t1255));
-            let t1270 = k(0.1) * T::fused(t204, t1261, -t1266);
-            let t1271 = k(2.0) * t242;
-            let t1272 = T::fused(
-                -t17,
-                t761,
-                T::fused(t14, t750, T::fused(k(0.1), u0 * t1271, t495 * t1271)),
-            );
-            let t1273 = t1272 + (t1270 + (t1270 - T::fused(-t5, t1268, t10 * t1269)));
-            let t1274 = t275 * t1273;
-            let t1275 = T::fused(
-                t14,
-                T::fused(t293, t1274, t1265 - (t1259 - t1265)),
-                t17 * T::fused(t296, t1274, T::fused(t10, t1268, t5 * t1269)),
-            );
-            let t1276 = k(0.1) * T::fused(t298, t1274, t1264);
-            let t1277 = k(2.0) * t344;
-            let t1278 = T::fused(
-                t17,
-                t684,
-                T::fused(-t14, t696, T::fused(k(0.1), u0 * t1277, t495 * t1277)),
-            );
-            let t1279 = t372 * (t1278 + (t1276 + (t1276 + t1275)));
-            let t1280 = T::fused(
-                t10,
-                t910,
-                T::fused(k(0.1), T::fused(t374, t911, u1 * t917), t461 * t917),
-            );
+            let t1221 = k(0.1) * t1186;
+            let t1222 = t1221 + (t1185 + t1221);
+            let t1223 = t92 * t1222;
+            let t1224 = k(0.2) * t1188;
+            let t1225 = t115 * t1222;
+            let t1226 = T::fused(t92, t1188, t115 * t1187);
+            let t1227 = T::fused(-t115, t1188, t92 * t1187);
+            let t1228 = T::fused(t125, t1226, t129 * t1227)
+                + T::fused(t114, t1225, T::fused(-t91, t1223, t131 * t1224));
+            let t1229 = t89 * (t61 + t1228);
+            let t1230 = t1186 - t1229;
+            let t1231 = k(0.1) * t1190;
+            let t1232 = t1231 + (t1189 + t1231);
+            let t1233 = t92 * t1232;
+            let t1234 = k(0.2) * t1192;
+            let t1235 = t115 * t1232;
+            let t1236 = T::fused(t92, t1192, t115 * t1191);
+            let t1237 = T::fused(-t115, t1192, t92 * t1191);
+            let t1238 = T::fused(t125, t1236, t129 * t1237)
+                + T::fused(t114, t1235, T::fused(-t91, t1233, t131 * t1234));
+            let t1239 = t89 * (t239 + t1238);
+            let t1240 = t1190 - t1239;
+            let t1241 = k(0.1) * t1194;
+            let t1242 = t1241 + (t1193 + t1241);
+            let t1243 = t92 * t1242;
+            let t1244 = k(0.2) * t1196;
+            let t1245 = t115 * t1242;
+            let t1246 = T::fused(t92, t1196, t115 * t1195);
+            let t1247 = T::fused(-t115, t1196, t92 * t1195);
+            let t1248 = T::fused(t125, t1246, t129 * t1247)
+                + T::fused(t114, t1245, T::fused(-t91, t1243, t131 * t1244));
+            let t1249 = t89 * (t264 + t1248);
+            let t1250 = t1194 - t1249;
+            let t1251 = k(0.1) * t1198;
+            let t1252 = t1251 + (t1197 + t1251);
+            let t1253 = t92 * t1252;
+            let t1254 = k(0.2) * t1200;
+            let t1255 = t115 * t1252;
+            let t1256 = T::fused(t92, t1200, t115 * t1199);
+            let t1257 = T::fused(-t115, t1200, t92 * t1199);
+            let t1258 = T::fused(t125, t1256, t129 * t1257)
+                + T::fused(t114, t1255, T::fused(-t91, t1253, t131 * t1254));
+            let t1259 = t89 * (k(1.0) + t1258);
+            let t1260 = t1198 - t1259;
+            let t1261 = k(0.1) * t1202;
+            let t1262 = t1261 + (t1201 + t1261);
+            let t1263 = t92 * t1262;
+            let t1264 = k(0.2) * t1204;
+            let t1265 = t115 * t1262;
+            let t1266 = T::fused(t92, t1204, t115 * t1203);
+            let t1267 = T::fused(-t115, t1204, t92 * t1203);
+            let t1268 = T::fused(t125, t1266, t129 * t1267)
+                + T::fused(t114, t1265, T::fused(-t91, t1263, t131 * t1264));
+            let t1269 = t89 * t1268;
+            let t1270 = t1202 - t1269;
+            let t1271 = k(0.1) * t1205;
+            let t1272 = t1271 + (t1207 + t1271);
+            let t1273 = t92 * t1272;
+            let t1274 = k(0.2) * t1208;
+            let t1275 = t115 * t1272;
+            let t1276 = T::fused(t92, t1208, t115 * t1206);
+            let t1277 = T::fused(-t115, t1208, t92 * t1206);
+            let t1278 = T::fused(t125, t1276, t129 * t1277)
+                + T::fused(t114, t1275, T::fused(-t91, t1273, t131 * t1274));
+            let t1279 = t89 * t1278;
+            let t1280 = t1205 - t1279;
             let t1281 = T::fused(
-                t374,
-                t890,
-                T::fused(-t381, t889, T::fused(t5, t904, t1280)),
+                t294,
+                t1250,
+                T::fused(t329, t1260, T::fused(-t370, t1270, t416 * t1280)),
             );
-            let t1282 = t29 * t1281;
-            let t1283 = t31 * t1282;
+            let t1282 = T::fused(
+                t1250,
+                t708,
+                T::fused(-t1260, t770, T::fused(-t1270, t836, t1280 * t1006)),
+            );
+            let t1283 = T::fused(
+                -t1250,
+                t1022,
+                T::fused(t1260, t1027, T::fused(-t1270, t1032, t1280 * t1037)),
+            );
             let t1284 = T::fused(
-                -t5,
-                t958,
-                T::fused(k(0.1), T::fused(-t374, t959, u1 * t949), t461 * t949),
+                t1250,
+                t1051,
+                T::fused(t1260, t1056, T::fused(-t1270, t1061, t1280 * t1068)),
             );
             let t1285 = T::fused(
-                -t381,
-                t930,
-                T::fused(t10, t954, T::fused(-t374, t927, t1284)),
+                t1250,
+                t1080,
+                T::fused(-t1260, t1085, T::fused(-t1270, t1092, t1280 * t1099)),
             );
-            let t1286 = k(7.462686567164179) * t1285;
-            let t1287 = t25 * t1286;
-            let t1288 = T::fused(t3, t1283, t6 * t1287);
-            let t1289 = k(0.1) * t1288;
-            let t1290 = t0 * t1286;
-            let t1291 = k(0.1) * t1290;
-            let t1292 = t1291 + (t1285 + t1291);
-            let t1293 = t51 * t1282;
-            let t1294 = T::fused(
-                t5,
-                t875,
-                T::fused(k(0.1), T::fused(-t374, t876, u1 * t866), t461 * t866),
+            let t1286 = T::fused(
+                t1250,
+                t1109,
+                T::fused(-t1260, t1116, T::fused(-t1270, t1123, t1280 * t1130)),
             );
-            let t1295 = T::fused(
-                t381,
-                t839,
-                T::fused(t10, t871, T::fused(-t374, t835, t1294)),
+            let t1287 = T::fused(
+                -t1137,
+                t1250,
+                T::fused(t1139, t1260, T::fused(t1141, t1270, t1143 * t1280)),
             );
-            let t1296 = t1295 + (t1291 + (t1291 - T::fused(-t3, t1292, t6 * t1293)));
-            let t1297 = t86 * t1296;
-            let t1298 = T::fused(t99, t1297, t1289 + (t1281 + t1289));
-            let t1299 = T::fused(t103, t1297, -T::fused(t6, t1292, t3 * t1293));
-            let t1300 = T::fused(t105, t1297, t1288);
-            let t1301 = k(0.1) * t1300;
-            let t1302 = T::fused(
-                t381,
-                t778,
-                T::fused(k(0.1), T::fused(t374, t814, u1 * t820), t461 * t820),
-            );
-            let t1303 = T::fused(
-                t374,
-                t780,
-                T::fused(-t10, t808, T::fused(t5, t813, t1302)),
-            );
-            let t1304 = t1303 - (t1301 + (t1301 + T::fused(t8, t1298, t15 * t1299)));
-            let t1305 = t162 * t1304;
-            let t1306 = T::fused(-t165, t1297, t1290);
-            let t1307 = T::fused(t171, t1297, T::fused(-t6, t1283, t3 * t1287));
-            let t1308 = T::fused(
-                -t5,
-                T::fused(t164, t1305, t1300),
-                t10 * T::fused(t186, t1305, -T::fused(t15, t1306, t8 * t1307)),
-            );
-            let t1309 = k(0.1) * t1308;
-            let t1310 = T::fused(-t8, t1306, t15 * t1307);
-            let t1311 = k(0.1) * t1310;
-            let t1312 = T::fused(t198, t1305, -(t1311 + (t1295 + t1311)));
-            let t1313 = T::fused(t202, t1305, -T::fused(-t15, t1298, t8 * t1299));
-            let t1314 = k(0.1) * T::fused(t204, t1305, -t1310);
-            let t1315 = T::fused(
-                -t5,
-                t758,
-                T::fused(k(0.1), T::fused(-t374, t759, u1 * t748), t461 * t748),
-            );
-            let t1316 = T::fused(
-                -t381,
-                t718,
-                T::fused(t10, t754, T::fused(-t374, t711, t1315)),
-            ) + (t1314 + (t1314 - T::fused(-t5, t1312, t10 * t1313)));
-            let t1317 = t275 * t1316;
-            let t1318 = T::fused(
-                t14,
-                T::fused(t293, t1317, t1309 - (t1303 - t1309)),
-                t17 * T::fused(t296, t1317, T::fused(t10, t1312, t5 * t1313)),
-            );
-            let t1319 = k(0.1) * T::fused(t298, t1317, t1308);
-            let t1320 = T::fused(
-                -t381,
-                t691,
-                T::fused(k(0.1), T::fused(t374, t644, u1 * t694), t461 * t694),
-            );
-            let t1321 = T::fused(
-                t374,
-                t648,
-                T::fused(t10, t675, T::fused(-t5, t681, t1320)),
-            ) - (t1319 + (t1319 + t1318));
-            let t1322 = t372 * t1321;
-            let t1323 = T::fused(t378, t887, T::fused(t377, t888, -t916));
-            let t1324 = t29 * t1323;
-            let t1325 = t31 * t1324;
-            let t1326 = T::fused(-t377, t928, T::fused(-t378, t929, t948));
-            let t1327 = k(7.462686567164179) * t1326;
-            let t1328 = t25 * t1327;
-            let t1329 = T::fused(t3, t1325, t6 * t1328);
-            let t1330 = k(0.1) * t1329;
-            let t1331 = t0 * t1327;
-            let t1332 = k(0.1) * t1331;
-            let t1333 = t1332 + (t1326 + t1332);
-            let t1334 = t51 * t1324;
-            let t1335 = T::fused(t377, t837, T::fused(t378, t838, -t865));
-            let t1336 = t1335 + (t1332 + (t1332 - T::fused(-t3, t1333, t6 * t1334)));
-            let t1337 = t86 * t1336;
-            let t1338 = T::fused(t99, t1337, t1330 + (t1323 + t1330));
-            let t1339 = T::fused(t103, t1337, -T::fused(t6, t1333, t3 * t1334));
-            let t1340 = T::fused(t105, t1337, t1329);
-            let t1341 = k(0.1) * t1340;
-            let t1342 = T::fused(-t378, t776, T::fused(t377, t777, t819));
-            let t1343 = t1342 + (t1341 + (t1341 + T::fused(t8, t1338, t15 * t1339)));
-            let t1344 = t162 * t1343;
-            let t1345 = T::fused(-t165, t1337, t1331);
-            let t1346 = T::fused(t171, t1337, T::fused(-t6, t1325, t3 * t1328));
-            let t1347 = T::fused(
-                t5,
-                T::fused(-t164, t1344, t1340),
-                t10 * T::fused(t186, t1344, T::fused(t15, t1345, t8 * t1346)),
-            );
-            let t1348 = k(0.1) * t1347;
-            let t1349 = T::fused(-t8, t1345, t15 * t1346);
-            let t1350 = k(0.1) * t1349;
-            let t1351 = T::fused(t198, t1344, t1350 + (t1335 + t1350));
-            let t1352 = T::fused(t202, t1344, T::fused(-t15, t1338, t8 * t1339));
-            let t1353 = k(0.1) * T::fused(t204, t1344, t1349);
-            let t1354 = T::fused(t377, t716, T::fused(t378, t717, -t746))
-                + (t1353 + (t1353 - T::fused(-t5, t1351, t10 * t1352)));
-            let t1355 = t275 * t1354;
-            let t1356 = T::fused(
-                t14,
-                T::fused(t293, t1355, t1348 - (t1342 - t1348)),
-                t17 * T::fused(t296, t1355, T::fused(t10, t1351, t5 * t1352)),
-            );
-            let t1357 = k(0.1) * T::fused(t298, t1355, t1347);
-            let t1358 = T::fused(-t378, t636, T::fused(t377, t640, t693))
-                + (t1357 + (t1357 + t1356));
-            let t1359 = t372 * t1358;
-            let t1360 = T::fused(t383, t884, T::fused(t388, t886, -t901));
-            let t1361 = t29 * t1360;
-            let t1362 = t31 * t1361;
-            let t1363 = T::fused(-t388, t925, T::fused(t383, t926, t956));
-            let t1364 = k(7.462686567164179) * t1363;
-            let t1365 = t25 * t1364;
-            let t1366 = T::fused(t3, t1362, t6 * t1365);
-            let t1367 = k(0.1) * t1366;
-            let t1368 = t0 * t1364;
-            let t1369 = k(0.1) * t1368;
-            let t1370 = t1369 + (t1363 + t1369);
-            let t1371 = t51 * t1361;
-            let t1372 = T::fused(t388, t832, T::fused(t383, t834, -t873));
-            let t1373 = t1372 - (t1369 + (t1369 - T::fused(-t3, t1370, t6 * t1371)));
-            let t1374 = t86 * t1373;
-            let t1375 = T::fused(t99, t1374, -(t1367 + (t1360 + t1367)));
-            let t1376 = T::fused(t103, t1374, T::fused(t6, t1370, t3 * t1371));
-            let t1377 = T::fused(t105, t1374, -t1366);
-            let t1378 = k(0.1) * t1377;
-            let t1379 = T::fused(t383, t770, T::fused(t388, t775, t810));
-            let t1380 = t1379 + (t1378 + (t1378 + T::fused(t8, t1375, t15 * t1376)));
-            let t1381 = t162 * t1380;
-            let t1382 = T::fused(t165, t1374, t1368);
-            let t1383 = T::fused(t171, t1374, -T::fused(-t6, t1362, t3 * t1365));
-            let t1384 = T::fused(
-                t5,
-                T::fused(-t164, t1381, t1377),
-                t10 * T::fused(t186, t1381, T::fused(-t15, t1382, t8 * t1383)),
-            );
-            let t1385 = k(0.1) * t1384;
-            let t1386 = T::fused(t8, t1382, t15 * t1383);
-            let t1387 = k(0.1) * t1386;
-            let t1388 = T::fused(t198, t1381, t1387 + (t1372 + t1387));
-            let t1389 = T::fused(t202, t1381, T::fused(-t15, t1375, t8 * t1376));
-            let t1390 = k(0.1) * T::fused(t204, t1381, t1386);
-            let t1391 = T::fused(-t388, t705, T::fused(t383, t710, -t756))
-                + (t1390 + (t1390 - T::fused(-t5, t1388, t10 * t1389)));
-            let t1392 = t275 * t1391;
-            let t1393 = T::fused(
-                t14,
-                T::fused(t293, t1392, t1385 - (t1379 - t1385)),
-                t17 * T::fused(t296, t1392, T::fused(t10, t1388, t5 * t1389)),
-            );
-            let t1394 = k(0.1) * T::fused(t298, t1392, t1384);
-            let t1395 = T::fused(t383, t630, T::fused(t388, t635, t677))
-                + (t1394 + (t1394 + t1393));
-            let t1396 = t372 * t1395;
-            let t1397 = T::fused(-t385, t885, t906);
-            let t1398 = t29 * t1397;
-            let t1399 = t31 * t1398;
-            let t1400 = T::fused(t386, t924, t936);
-            let t1401 = k(7.462686567164179) * t1400;
-            let t1402 = t25 * t1401;
-            let t1403 = T::fused(-t3, t1399, t6 * t1402);
-            let t1404 = k(0.1) * t1403;
-            let t1405 = t0 * t1401;
-            let t1406 = k(0.1) * t1405;
-            let t1407 = t1406 + (t1400 + t1406);
-            let t1408 = t51 * t1398;
-            let t1409 = T::fused(t386, t827, T::fused(t385, t831, -t858));
-            let t1410 = t1409 - (t1406 + (t1406 + T::fused(t3, t1407, t6 * t1408)));
-            let t1411 = t86 * t1410;
-            let t1412 = T::fused(t99, t1411, -(t1404 - (t1397 - t1404)));
-            let t1413 = T::fused(t103, t1411, -T::fused(-t6, t1407, t3 * t1408));
-            let t1414 = T::fused(t105, t1411, -t1403);
-            let t1415 = k(0.1) * t1414;
-            let t1416 = T::fused(-t385, t771, T::fused(t386, t774, t801));
-            let t1417 = t1416 - (t1415 + (t1415 + T::fused(t8, t1412, t15 * t1413)));
-            let t1418 = t162 * t1417;
-            let t1419 = T::fused(t165, t1411, t1405);
-            let t1420 = T::fused(t171, t1411, -T::fused(t6, t1399, t3 * t1402));
-            let t1421 = T::fused(
-                -t5,
-                T::fused(t164, t1418, t1414),
-                t10 * T::fused(t186, t1418, -T::fused(-t15, t1419, t8 * t1420)),
-            );
-            let t1422 = k(0.1) * t1421;
-            let t1423 = T::fused(t8, t1419, t15 * t1420);
-            let t1424 = k(0.1) * t1423;
-            let t1425 = T::fused(t198, t1418, -(t1424 + (t1409 + t1424)));
-            let t1426 = T::fused(t202, t1418, -T::fused(-t15, t1412, t8 * t1413));
-            let t1427 = k(0.1) * T::fused(t204, t1418, -t1423);
-            let t1428 = T::fused(-t386, t700, T::fused(t385, t704, t738))
-                - (t1427 + (t1427 - T::fused(-t5, t1425, t10 * t1426)));
-            let t1429 = t275 * t1428;
-            let t1430 = T::fused(
-                t14,
-                T::fused(t293, t1429, -(t1422 - (t1416 - t1422))),
-                t17 * T::fused(t296, t1429, -T::fused(t10, t1425, t5 * t1426)),
-            );
-            let t1431 = k(0.1) * T::fused(t298, t1429, -t1421);
-            let t1432 = T::fused(t385, t631, T::fused(t386, t634, -t669))
-                - (t1431 + (t1431 + t1430));
-            let t1433 = t372 * t1432;
-            let t1434 = T::fused(t390, t881, T::fused(t26, t399, t893));
-            let t1435 = t29 * t1434;
-            let t1436 = t31 * t1435;
-            let t1437 = t3 * t1436;
-            let t1438 = k(0.1) * t1437;
-            let t1439 = t51 * t1435;
-            let t1440 = T::fused(-t390, t828, t399 * t830) + t852;
-            let t1441 = T::fused(t6, t1439, t1440);
-            let t1442 = t86 * t1441;
-            let t1443 = T::fused(t99, t1442, -(t1438 + (t1434 + t1438)));
-            let t1444 = T::fused(t3, t1439, t103 * t1442);
-            let t1445 = T::fused(t105, t1442, -t1437);
-            let t1446 = k(0.1) * t1445;
-            let t1447 = T::fused(t390, t764, T::fused(t399, t767, t785));
-            let t1448 = t1447 + (t1446 + (t1446 + T::fused(t8, t1443, t15 * t1444)));
-            let t1449 = t162 * t1448;
-            let t1450 = t165 * t1442;
-            let t1451 = T::fused(t6, t1436, t171 * t1442);
-            let t1452 = T::fused(
-                t5,
-                T::fused(-t164, t1449, t1445),
-                t10 * T::fused(t186, t1449, T::fused(-t15, t1450, t8 * t1451)),
-            );
-            let t1453 = k(0.1) * t1452;
-            let t1454 = T::fused(t8, t1450, t15 * t1451);
-            let t1455 = k(0.1) * t1454;
-            let t1456 = T::fused(t198, t1449, t1455 + (t1440 + t1455));
-            let t1457 = T::fused(t202, t1449, T::fused(-t15, t1443, t8 * t1444));
-            let t1458 = k(0.1) * T::fused(t204, t1449, t1454);
-            let t1459 = T::fused(t390, t701, t399 * t703) + t731
-                + (t1458 + (t1458 - T::fused(-t5, t1456, t10 * t1457)));
-            let t1460 = t275 * t1459;
-            let t1461 = T::fused(
-                t14,
-                T::fused(t293, t1460, t1453 - (t1447 - t1453)),
-                t17 * T::fused(t296, t1460, T::fused(t10, t1456, t5 * t1457)),
-            );
-            let t1462 = k(0.1) * T::fused(t298, t1460, t1452);
-            let t1463 = T::fused(-t390, t624, T::fused(t399, t627, t653))
-                + (t1462 + (t1462 + t1461));
-            let t1464 = t372 * t1463;
-            let t1465 = k(0.2) * t373;
-            let t1466 = t14 * t373;
-            let t1467 = t17 * t373;
-            let t1468 = t275
-                * (t244 - T::fused(t298, t1465, T::fused(t293, t1466, t296 * t1467)));
-            let t1469 = t17 * t993;
-            let t1470 = t14 * t993;
-            let t1471 = k(0.2) * t993;
-            let t1472 = t275
-                * (t987 + T::fused(t298, t1471, T::fused(t296, t1469, t293 * t1470)));
-            let t1473 = t17 * t1054;
-            let t1474 = t14 * t1054;
-            let t1475 = k(0.2) * t1054;
-            let t1476 = t275
-                * (t1048 - T::fused(t298, t1475, T::fused(t296, t1473, t293 * t1474)));
-            let t1477 = t17 * t1115;
-            let t1478 = t14 * t1115;
-            let t1479 = k(0.2) * t1115;
-            let t1480 = t275
-                * (t1109 - T::fused(t298, t1479, T::fused(t296, t1477, t293 * t1478)));
-            let t1481 = t17 * t1175;
-            let t1482 = t14 * t1175;
-            let t1483 = k(0.2) * t1175;
-            let t1484 = t275
-                * (t1169 - T::fused(t298, t1483, T::fused(t296, t1481, t293 * t1482)));
-            let t1485 = t17 * t1235;
-            let t1486 = t14 * t1235;
-            let t1487 = k(0.2) * t1235;
-            let t1488 = t275
-                * (t1229 + T::fused(t298, t1487, T::fused(t296, t1485, t293 * t1486)));
-            let t1489 = k(0.2) * t1279;
-            let t1490 = t14 * t1279;
-            let t1491 = t17 * t1279;
-            let t1492 = t275
-                * (t1273 + T::fused(t298, t1489, T::fused(t293, t1490, t296 * t1491)));
-            let t1493 = k(0.2) * t1322;
-            let t1494 = t14 * t1322;
-            let t1495 = t17 * t1322;
-            let t1496 = t275
-                * (t1316 - T::fused(t298, t1493, T::fused(t293, t1494, t296 * t1495)));
-            let t1497 = k(0.2) * t1359;
-            let t1498 = t14 * t1359;
-            let t1499 = t17 * t1359;
-            (
-                t1017,
-                t1024,
-                t1029,
-                t1039,
-                t1054,
-                t1078,
-                t1085,
-                t1090,
-                t1100,
-                t1115,
-                t1140,
-                t1145,
+            let t1288 = T::fused(
                 t1150,
+                t1250,
+                T::fused(-t1152, t1260, T::fused(-t1154, t1270, t1156 * t1280)),
+            );
+            let t1289 = T::fused(
                 t1160,
-                t1175,
-                t1202,
-                t1205,
+                t1250,
+                T::fused(t1161, t1260, T::fused(t1162, t1270, t1163 * t1280)),
+            );
+            let t1290 = T::fused(
+                t1167,
+                t1250,
+                T::fused(t1168, t1260, T::fused(t1169, t1270, t1170 * t1280)),
+            );
+            let t1291 = T::fused(
+                -t1174,
+                t1250,
+                T::fused(t1175, t1260, T::fused(-t1176, t1270, t1177 * t1280)),
+            );
+            let t1292 = T::fused(
+                t1180,
+                t1250,
+                T::fused(t1181, t1260, T::fused(t1182, t1270, t1183 * t1280)),
+            );
+            let t1293 = k(0.1) * t1229;
+            let t1294 = t1293 + (t1223 + t1293);
+            let t1295 = k(0.1) * t1226;
+            let t1296 = t1295 + (t1224 + t1295);
+            let t1297 = T::fused(-t52, t1296, t57 * t1225);
+            let t1298 = T::fused(t57, t1296, t52 * t1225);
+            let t1299 = T::fused(-t52, t1229, t57 * t1227);
+            let t1300 = T::fused(t57, t1229, t52 * t1227);
+            let t1301 = T::fused(-t48, t1299, t55 * t1300)
+                + T::fused(t99, t1298, -T::fused(-t58, t1294, t93 * t1297));
+            let t1302 = t33 * (t4 + t1301);
+            let t1303 = t1226 + t1302;
+            let t1304 = k(0.1) * t1239;
+            let t1305 = t1304 + (t1233 + t1304);
+            let t1306 = k(0.1) * t1236;
+            let t1307 = t1306 + (t1234 + t1306);
+            let t1308 = T::fused(-t52, t1307, t57 * t1235);
+            let t1309 = T::fused(t57, t1307, t52 * t1235);
+            let t1310 = T::fused(-t52, t1239, t57 * t1237);
+            let t1311 = T::fused(t57, t1239, t52 * t1237);
+            let t1312 = T::fused(-t48, t1310, t55 * t1311)
+                + T::fused(t99, t1309, -T::fused(-t58, t1305, t93 * t1308));
+            let t1313 = t33 * (t233 + t1312);
+            let t1314 = t1236 + t1313;
+            let t1315 = k(0.1) * t1249;
+            let t1316 = t1315 + (t1243 + t1315);
+            let t1317 = k(0.1) * t1246;
+            let t1318 = t1317 + (t1244 + t1317);
+            let t1319 = T::fused(-t52, t1318, t57 * t1245);
+            let t1320 = T::fused(t57, t1318, t52 * t1245);
+            let t1321 = T::fused(-t52, t1249, t57 * t1247);
+            let t1322 = T::fused(t57, t1249, t52 * t1247);
+            let t1323 = T::fused(-t48, t1321, t55 * t1322)
+                + T::fused(t99, t1320, -T::fused(-t58, t1316, t93 * t1319));
+            let t1324 = t33 * (k(1.0) + t1323);
+            let t1325 = t1246 + t1324;
+            let t1326 = k(0.1) * t1259;
+            let t1327 = t1326 + (t1253 + t1326);
+            let t1328 = k(0.1) * t1256;
+            let t1329 = t1328 + (t1254 + t1328);
+            let t1330 = T::fused(-t52, t1329, t57 * t1255);
+            let t1331 = T::fused(t57, t1329, t52 * t1255);
+            let t1332 = T::fused(-t52, t1259, t57 * t1257);
+            let t1333 = T::fused(t57, t1259, t52 * t1257);
+            let t1334 = T::fused(-t48, t1332, t55 * t1333)
+                + T::fused(t99, t1331, -T::fused(-t58, t1327, t93 * t1330));
+            let t1335 = t33 * t1334;
+            let t1336 = t1256 + t1335;
+            let t1337 = k(0.1) * t1269;
+            let t1338 = t1337 + (t1263 + t1337);
+            let t1339 = k(0.1) * t1266;
+            let t1340 = t1339 + (t1264 + t1339);
+            let t1341 = T::fused(-t52, t1340, t57 * t1265);
+            let t1342 = T::fused(t57, t1340, t52 * t1265);
+            let t1343 = T::fused(-t52, t1269, t57 * t1267);
+            let t1344 = T::fused(t57, t1269, t52 * t1267);
+            let t1345 = T::fused(-t48, t1343, t55 * t1344)
+                + T::fused(t99, t1342, -T::fused(-t58, t1338, t93 * t1341));
+            let t1346 = t33 * t1345;
+            let t1347 = t1266 + t1346;
+            let t1348 = k(0.1) * t1279;
+            let t1349 = t1348 + (t1273 + t1348);
+            let t1350 = k(0.1) * t1276;
+            let t1351 = t1350 + (t1274 + t1350);
+            let t1352 = T::fused(-t52, t1351, t57 * t1275);
+            let t1353 = T::fused(t57, t1351, t52 * t1275);
+            let t1354 = T::fused(-t52, t1279, t57 * t1277);
+            let t1355 = T::fused(t57, t1279, t52 * t1277);
+            let t1356 = T::fused(-t48, t1354, t55 * t1355)
+                + T::fused(t99, t1353, -T::fused(-t58, t1349, t93 * t1352));
+            let t1357 = t33 * t1356;
+            let t1358 = t1276 + t1357;
+            let t1359 = T::fused(
+                t294,
+                t1325,
+                T::fused(t329, t1336, T::fused(-t370, t1347, t416 * t1358)),
+            );
+            let t1360 = T::fused(
+                t1325,
+                t708,
+                T::fused(-t1336, t770, T::fused(-t1347, t836, t1358 * t1006)),
+            );
+            let t1361 = T::fused(
+                -t1325,
+                t1022,
+                T::fused(t1336, t1027, T::fused(-t1347, t1032, t1358 * t1037)),
+            );
+            let t1362 = T::fused(
+                t1325,
+                t1051,
+                T::fused(t1336, t1056, T::fused(-t1347, t1061, t1358 * t1068)),
+            );
+            let t1363 = T::fused(
+                t1325,
+                t1080,
+                T::fused(-t1336, t1085, T::fused(-t1347, t1092, t1358 * t1099)),
+            );
+            let t1364 = T::fused(
+                t1325,
+                t1109,
+                T::fused(-t1336, t1116, T::fused(-t1347, t1123, t1358 * t1130)),
+            );
+            let t1365 = T::fused(
+                -t1137,
+                t1325,
+                T::fused(t1139, t1336, T::fused(t1141, t1347, t1143 * t1358)),
+            );
+            let t1366 = T::fused(
+                t1150,
+                t1325,
+                T::fused(-t1152, t1336, T::fused(-t1154, t1347, t1156 * t1358)),
+            );
+            let t1367 = T::fused(
+                t1160,
+                t1325,
+                T::fused(t1161, t1336, T::fused(t1162, t1347, t1163 * t1358)),
+            );
+            let t1368 = T::fused(
+                t1167,
+                t1325,
+                T::fused(t1168, t1336, T::fused(t1169, t1347, t1170 * t1358)),
+            );
+            let t1369 = T::fused(
+                -t1174,
+                t1325,
+                T::fused(t1175, t1336, T::fused(-t1176, t1347, t1177 * t1358)),
+            );
+            let t1370 = T::fused(
+                t1180,
+                t1325,
+                T::fused(t1181, t1336, T::fused(t1182, t1347, t1183 * t1358)),
+            );
+            let t1371 = k(0.1) * t1299;
+            let t1372 = t1371 - (t1294 - t1371);
+            let t1373 = T::fused(
+                t39,
+                T::fused(t3, t1372, t26 * t1298),
+                t17 * T::fused(t26, t1302, t3 * t1300),
+            );
+            let t1374 = T::fused(t23, t1373, t1299);
+            let t1375 = k(0.1) * t1310;
+            let t1376 = t1375 - (t1305 - t1375);
+            let t1377 = T::fused(
+                t39,
+                T::fused(t3, t1376, t26 * t1309),
+                t17 * T::fused(t26, t1313, t3 * t1311),
+            );
+            let t1378 = T::fused(t23, k(1.0) + t1377, t1310);
+            let t1379 = k(0.1) * t1321;
+            let t1380 = t1379 - (t1316 - t1379);
+            let t1381 = T::fused(
+                t39,
+                T::fused(t3, t1380, t26 * t1320),
+                t17 * T::fused(t26, t1324, t3 * t1322),
+            );
+            let t1382 = T::fused(t23, t1381, t1321);
+            let t1383 = k(0.1) * t1332;
+            let t1384 = t1383 - (t1327 - t1383);
+            let t1385 = T::fused(
+                t39,
+                T::fused(t3, t1384, t26 * t1331),
+                t17 * T::fused(t26, t1335, t3 * t1333),
+            );
+            let t1386 = T::fused(t23, t1385, t1332);
+            let t1387 = k(0.1) * t1343;
+            let t1388 = t1387 - (t1338 - t1387);
+            let t1389 = T::fused(
+                t39,
+                T::fused(t3, t1388, t26 * t1342),
+                t17 * T::fused(t26, t1346, t3 * t1344),
+            );
+            let t1390 = T::fused(t23, t1389, t1343);
+            let t1391 = k(0.1) * t1354;
+            let t1392 = t1391 - (t1349 - t1391);
+            let t1393 = T::fused(
+                t39,
+                T::fused(t3, t1392, t26 * t1353),
+                t17 * T::fused(t26, t1357, t3 * t1355),
+            );
+            let t1394 = T::fused(t23, t1393, t1354);
+            let t1395 = T::fused(
+                t294,
+                t1382,
+                T::fused(t329, t1386, T::fused(-t370, t1390, t416 * t1394)),
+            );
+            let t1396 = T::fused(
+                t1382,
+                t708,
+                T::fused(-t1386, t770, T::fused(-t1390, t836, t1394 * t1006)),
+            );
+            let t1397 = T::fused(
+                -t1382,
+                t1022,
+                T::fused(t1386, t1027, T::fused(-t1390, t1032, t1394 * t1037)),
+            );
+            let t1398 = T::fused(
+                t1382,
+                t1051,
+                T::fused(t1386, t1056, T::fused(-t1390, t1061, t1394 * t1068)),
+            );
+            let t1399 = T::fused(
+                t1382,
+                t1080,
+                T::fused(-t1386, t1085, T::fused(-t1390, t1092, t1394 * t1099)),
+            );
+            (
+                t1209,
                 t1210,
+                t1211,
+                t1212,
+                t1213,
+                t1214,
+                t1215,
+                t1216,
+                t1217,
+                t1218,
+                t1219,
                 t1220,
-                t1235,
-                t1237,
-                t1241,
-                t1252,
-                t1260,
-                t1279,
+                t1230,
+                t1240,
                 t1281,
+                t1282,
+                t1283,
+                t1284,
                 t1285,
-                t1296,
-                t1304,
+                t1286,
+                t1287,
+                t1288,
+                t1289,
+                t1290,
+                t1291,
+                t1292,
+                t1297,
+                t1298,
+                t1300,
+                t1302,
+                t1303,
+                t1308,
+                t1309,
+                t1311,
+                t1313,
+                t1314,
+                t1319,
+                t1320,
                 t1322,
-                t1323,
-                t1326,
-                t1336,
-                t1343,
-                t1354,
+                t1324,
+                t1330,
+                t1331,
+                t1333,
+                t1335,
+                t1341,
+                t1342,
+                t1344,
+                t1346,
+                t1352,
+                t1353,
+                t1355,
+                t1357,
                 t1359,
                 t1360,
+                t1361,
+                t1362,
                 t1363,
-                t1373,
+                t1364,
+                t1365,
+                t1366,
+                t1367,
+                t1368,
+                t1369,
+                t1370,
+                t1372,
+                t1374,
+                t1376,
+                t1378,
                 t1380,
-                t1391,
+                t1382,
+                t1384,
+                t1386,
+                t1388,
+                t1390,
+                t1392,
+                t1394,
+                t1395,
                 t1396,
                 t1397,
-                t1400,
-                t1410,
-                t1417,
-                t1428,
-                t1433,
-                t1434,
-                t1441,
-                t1448,
-                t1459,
-                t1464,
-                t1465,
-                t1466,
-                t1467,
-                t1468,
-                t1469,
-                t1470,
-                t1471,
-                t1472,
-                t1473,
-                t1474,
-                t1475,
-                t1476,
-                t1477,
-                t1478,
-                t1479,
-                t1480,
-                t1481,
-                t1482,
-                t1483,
-                t1484,
-                t1485,
-                t1486,
-                t1487,
-                t1488,
-                t1489,
-                t1490,
-                t1491,
-                t1492,
-                t1493,
-                t1494,
-                t1495,
-                t1496,
-                t1497,
-                t1498,
-                t1499,
+                t1398,
+                t1399,
             )
-        });
+        };
         let (
-            t1500,
-            t1502,
-            t1504,
-            t1506,
-            t1508,
-            t1510,
-            t1512,
-            t1518,
-            t1521,
-            t1523,
-            t1530,
-            t1532,
-            t1539,
-            t1541,
-            t1548,
-            t1550,
-            t1557,
-            t1559,
-            t1566,
-            t1572,
-            t1575,
-            t1581,
-            t1584,
-            t1590,
-            t1593,
-            t1599,
-            t1602,
-            t1608,
-            t1611,
-            t1617,
-            t1620,
-            t1627,
-            t1630,
-            t1632,
-            t1640,
-            t1642,
-            t1650,
-            t1652,
-            t1660,
-            t1662,
-            t1670,
-            t1672,
-            t1680,
-            t1687,
-            t1690,
-            t1697,
-            t1700,
-            t1707,
-            t1710,
-            t1717,
-            t1720,
-            t1727,
-            t1730,
-            t1737,
-            t1740,
-            t1743,
-            t1746,
-            t1749,
-            t1752,
-            t1755,
-            t1758,
-            t1761,
-            t1764,
-            t1767,
-            t1770,
-            t1773,
-            t1776,
-            t1778,
-            t1780,
-            t1781,
-            t1784,
-            t1785,
-            t1788,
-            t1789,
-            t1792,
-            t1793,
-            t1796,
-            t1797,
-            t1800,
-            t1802,
-            t1804,
-            t1806,
-            t1808,
-            t1810,
-            t1812,
-            t1814,
-            t1816,
-            t1818,
-            t1820,
-            t1822,
-            t1824,
-        ) = gyro_sim::apart(move || {
-            let t1500 = t275
-                * (t1354 + T::fused(t298, t1497, T::fused(t293, t1498, t296 * t1499)));
-            let t1501 = k(0.2) * t1396;
-            let t1502 = t14 * t1396;
-            let t1503 = t17 * t1396;
-            let t1504 = t275
-                * (t1391 + T::fused(t298, t1501, T::fused(t293, t1502, t296 * t1503)));
-            let t1505 = k(0.2) * t1433;
-            let t1506 = t14 * t1433;
-            let t1507 = t17 * t1433;
-            let t1508 = t275
-                * (t1428 - T::fused(t298, t1505, T::fused(t293, t1506, t296 * t1507)));
-            let t1509 = k(0.2) * t1464;
-            let t1510 = t14 * t1464;
-            let t1511 = t17 * t1464;
-            let t1512 = t275
-                * (t1459 + T::fused(t298, t1509, T::fused(t293, t1510, t296 * t1511)));
-            let t1513 = k(0.1) * t1466;
-            let t1514 = t1513 + (t1465 + t1513);
-            let t1515 = t5 * t1514;
-            let t1516 = k(0.2) * t1468;
-            let t1517 = t10 * t1514;
-            let t1518 = T::fused(-t5, t1468, t10 * t1467);
-            let t1519 = T::fused(t10, t1468, t5 * t1467);
-            let t1520 = T::fused(t198, t1518, t202 * t1519)
-                + T::fused(t186, t1517, -T::fused(t164, t1515, t204 * t1516));
-            let t1521 = t162 * (t135 + t1520);
-            let t1522 = T::fused(-t5, t1469, t10 * t1472);
-            let t1523 = T::fused(t10, t1469, t5 * t1472);
-            let t1524 = k(0.1) * t1470;
-            let t1525 = t1524 + (t1471 + t1524);
-            let t1526 = t10 * t1525;
-            let t1527 = k(0.2) * t1472;
-            let t1528 = t5 * t1525;
-            let t1529 = T::fused(-t186, t1526, T::fused(-t204, t1527, t164 * t1528))
-                - T::fused(-t202, t1522, t198 * t1523);
-            let t1530 = t162 * (t978 - t1529);
-            let t1531 = T::fused(t5, t1473, t10 * t1476);
-            let t1532 = T::fused(-t10, t1473, t5 * t1476);
-            let t1533 = k(0.1) * t1474;
-            let t1534 = t1533 + (t1475 + t1533);
-            let t1535 = t10 * t1534;
-            let t1536 = k(0.2) * t1476;
-            let t1537 = t5 * t1534;
-            let t1538 = T::fused(-t186, t1535, T::fused(t204, t1536, t164 * t1537))
-                + T::fused(-t202, t1531, t198 * t1532);
-            let t1539 = t162 * (t1039 - t1538);
-            let t1540 = T::fused(t5, t1477, t10 * t1480);
-            let t1541 = T::fused(-t10, t1477, t5 * t1480);
-            let t1542 = k(0.1) * t1478;
-            let t1543 = t1542 + (t1479 + t1542);
-            let t1544 = t10 * t1543;
-            let t1545 = k(0.2) * t1480;
-            let t1546 = t5 * t1543;
-            let t1547 = T::fused(-t186, t1544, T::fused(t204, t1545, t164 * t1546))
-                + T::fused(-t202, t1540, t198 * t1541);
-            let t1548 = t162 * (t1100 - t1547);
-            let t1549 = T::fused(t5, t1481, t10 * t1484);
-            let t1550 = T::fused(-t10, t1481, t5 * t1484);
-            let t1551 = k(0.1) * t1482;
-            let t1552 = t1551 + (t1483 + t1551);
-            let t1553 = t10 * t1552;
-            let t1554 = k(0.2) * t1484;
-            let t1555 = t5 * t1552;
-            let t1556 = T::fused(-t186, t1553, T::fused(t204, t1554, t164 * t1555))
-                + T::fused(-t202, t1549, t198 * t1550);
-            let t1557 = t162 * (t1160 - t1556);
-            let t1558 = T::fused(-t5, t1485, t10 * t1488);
-            let t1559 = T::fused(t10, t1485, t5 * t1488);
-            let t1560 = k(0.1) * t1486;
-            let t1561 = t1560 + (t1487 + t1560);
-            let t1562 = t10 * t1561;
-            let t1563 = k(0.2) * t1488;
-            let t1564 = t5 * t1561;
-            let t1565 = T::fused(-t186, t1562, T::fused(-t204, t1563, t164 * t1564))
-                - T::fused(-t202, t1558, t198 * t1559);
-            let t1566 = t162 * (t1220 - t1565);
-            let t1567 = k(0.1) * t1490;
-            let t1568 = t1567 + (t1489 + t1567);
-            let t1569 = t5 * t1568;
-            let t1570 = k(0.2) * t1492;
-            let t1571 = t10 * t1568;
-            let t1572 = T::fused(t5, t1492, t10 * t1491);
-            let t1573 = T::fused(-t10, t1492, t5 * t1491);
-            let t1574 = T::fused(t198, t1572, t202 * t1573)
-                + T::fused(t186, t1571, T::fused(-t164, t1569, t204 * t1570));
-            let t1575 = t162 * (t1260 + t1574);
-            let t1576 = k(0.1) * t1494;
-            let t1577 = t1576 + (t1493 + t1576);
-            let t1578 = t5 * t1577;
-            let t1579 = k(0.2) * t1496;
-            let t1580 = t10 * t1577;
-            let t1581 = T::fused(-t5, t1496, t10 * t1495);
-            let t1582 = T::fused(t10, t1496, t5 * t1495);
-            let t1583 = T::fused(t198, t1581, t202 * t1582)
-                + T::fused(t186, t1580, -T::fused(t164, t1578, t204 * t1579));
-            let t1584 = t162 * (t1304 - t1583);
-            let t1585 = k(0.1) * t1498;
-            let t1586 = t1585 + (t1497 + t1585);
-            let t1587 = t5 * t1586;
-            let t1588 = k(0.2) * t1500;
-            let t1589 = t10 * t1586;
-            let t1590 = T::fused(t5, t1500, t10 * t1499);
-            let t1591 = T::fused(-t10, t1500, t5 * t1499);
-            let t1592 = T::fused(t198, t1590, t202 * t1591)
-                + T::fused(t186, t1589, T::fused(-t164, t1587, t204 * t1588));
-            let t1593 = t162 * (t1343 + t1592);
-            let t1594 = k(0.1) * t1502;
-            let t1595 = t1594 + (t1501 + t1594);
-            let t1596 = t5 * t1595;
-            let t1597 = k(0.2) * t1504;
-            let t1598 = t10 * t1595;
-            let t1599 = T::fused(t5, t1504, t10 * t1503);
-            let t1600 = T::fused(-t10, t1504, t5 * t1503);
-            let t1601 = T::fused(t198, t1599, t202 * t1600)
-                + T::fused(t186, t1598, T::fused(-t164, t1596, t204 * t1597));
-            let t1602 = t162 * (t1380 + t1601);
-            let t1603 = k(0.1) * t1506;
-            let t1604 = t1603 + (t1505 + t1603);
-            let t1605 = t5 * t1604;
-            let t1606 = k(0.2) * t1508;
-            let t1607 = t10 * t1604;
-            let t1608 = T::fused(-t5, t1508, t10 * t1507);
-            let t1609 = T::fused(t10, t1508, t5 * t1507);
-            let t1610 = T::fused(t198, t1608, t202 * t1609)
-                + T::fused(t186, t1607, -T::fused(t164, t1605, t204 * t1606));
-            let t1611 = t162 * (t1417 + t1610);
-            let t1612 = k(0.1) * t1510;
-            let t1613 = t1612 + (t1509 + t1612);
-            let t1614 = t5 * t1613;
-            let t1615 = k(0.2) * t1512;
-            let t1616 = t10 * t1613;
-            let t1617 = T::fused(t5, t1512, t10 * t1511);
-            let t1618 = T::fused(-t10, t1512, t5 * t1511);
-            let t1619 = T::fused(t198, t1617, t202 * t1618)
-                + T::fused(t186, t1616, T::fused(-t164, t1614, t204 * t1615));
-            let t1620 = t162 * (t1448 + t1619);
-            let t1621 = k(0.1) * t1521;
-            let t1622 = t1621 + (t1515 + t1621);
-            let t1623 = k(0.1) * t1518;
-            let t1624 = t1623 - (t1516 - t1623);
-            let t1625 = T::fused(-t8, t1624, t15 * t1517);
-            let t1626 = T::fused(t15, t1624, t8 * t1517);
-            let t1627 = T::fused(-t8, t1521, t15 * t1519);
-            let t1628 = T::fused(t15, t1521, t8 * t1519);
-            let t1629 = T::fused(-t99, t1627, t103 * t1628)
-                + T::fused(t171, t1626, -T::fused(-t105, t1622, t165 * t1625));
-            let t1630 = t86 * (t71 + t1629);
-            let t1631 = T::fused(-t8, t1522, t15 * t1530);
-            let t1632 = T::fused(t15, t1522, t8 * t1530);
-            let t1633 = k(0.1) * t1523;
-            let t1634 = t1633 + (t1527 + t1633);
-            let t1635 = T::fused(t8, t1526, t15 * t1634);
-            let t1636 = T::fused(-t15, t1526, t8 * t1634);
-            let t1637 = k(0.1) * t1530;
-            let t1638 = t1637 + (t1528 + t1637);
-            let t1639 = T::fused(t171, t1635, T::fused(t165, t1636, t105 * t1638))
-                + T::fused(t103, t1631, t99 * t1632);
-            let t1640 = t86 * (t968 - t1639);
-            let t1641 = T::fused(t8, t1531, t15 * t1539);
-            let t1642 = T::fused(-t15, t1531, t8 * t1539);
-            let t1643 = k(0.1) * t1532;
-            let t1644 = t1643 + (t1536 + t1643);
-            let t1645 = T::fused(-t8, t1535, t15 * t1644);
-            let t1646 = T::fused(t15, t1535, t8 * t1644);
-            let t1647 = k(0.1) * t1539;
-            let t1648 = t1647 + (t1537 + t1647);
-            let t1649 = T::fused(-t171, t1645, T::fused(-t165, t1646, t105 * t1648))
-                + T::fused(t103, t1641, t99 * t1642);
-            let t1650 = t86 * (t1029 + t1649);
-            let t1651 = T::fused(t8, t1540, t15 * t1548);
-            let t1652 = T::fused(-t15, t1540, t8 * t1548);
-            let t1653 = k(0.1) * t1541;
-            let t1654 = t1653 + (t1545 + t1653);
-            let t1655 = T::fused(-t8, t1544, t15 * t1654);
-            let t1656 = T::fused(t15, t1544, t8 * t1654);
-            let t1657 = k(0.1) * t1548;
-            let t1658 = t1657 + (t1546 + t1657);
-            let t1659 = T::fused(-t171, t1655, T::fused(-t165, t1656, t105 * t1658))
-                + T::fused(t103, t1651, t99 * t1652);
-            let t1660 = t86 * (t1090 + t1659);
-            let t1661 = T::fused(t8, t1549, t15 * t1557);
-            let t1662 = T::fused(-t15, t1549, t8 * t1557);
-            let t1663 = k(0.1) * t1550;
-            let t1664 = t1663 + (t1554 + t1663);
-            let t1665 = T::fused(-t8, t1553, t15 * t1664);
-            let t1666 = T::fused(t15, t1553, t8 * t1664);
-            let t1667 = k(0.1) * t1557;
-            let t1668 = t1667 + (t1555 + t1667);
-            let t1669 = T::fused(-t171, t1665, T::fused(-t165, t1666, t105 * t1668))
-                + T::fused(t103, t1661, t99 * t1662);
-            let t1670 = t86 * (t1150 + t1669);
-            let t1671 = T::fused(-t8, t1558, t15 * t1566);
-            let t1672 = T::fused(t15, t1558, t8 * t1566);
-            let t1673 = k(0.1) * t1559;
-            let t1674 = t1673 + (t1563 + t1673);
-            let t1675 = T::fused(t8, t1562, t15 * t1674);
-            let t1676 = T::fused(-t15, t1562, t8 * t1674);
-            let t1677 = k(0.1) * t1566;
-            let t1678 = t1677 + (t1564 + t1677);
-            let t1679 = T::fused(t171, t1675, T::fused(t165, t1676, t105 * t1678))
-                + T::fused(t103, t1671, t99 * t1672);
-            let t1680 = t86 * (t1210 - t1679);
-            let t1681 = k(0.1) * t1575;
-            let t1682 = t1681 + (t1569 + t1681);
-            let t1683 = k(0.1) * t1572;
-            let t1684 = t1683 + (t1570 + t1683);
-            let t1685 = T::fused(-t8, t1684, t15 * t1571);
-            let t1686 = T::fused(t15, t1684, t8 * t1571);
-            let t1687 = T::fused(-t8, t1575, t15 * t1573);
-            let t1688 = T::fused(t15, t1575, t8 * t1573);
-            let t1689 = T::fused(-t99, t1687, t103 * t1688)
-                + T::fused(t171, t1686, -T::fused(-t105, t1682, t165 * t1685));
-            let t1690 = t86 * (t1252 - t1689);
-            let t1691 = k(0.1) * t1584;
-            let t1692 = t1691 - (t1578 - t1691);
-            let t1693 = k(0.1) * t1581;
-            let t1694 = t1693 - (t1579 - t1693);
-            let t1695 = T::fused(-t8, t1694, t15 * t1580);
-            let t1696 = T::fused(t15, t1694, t8 * t1580);
-            let t1697 = T::fused(t8, t1584, t15 * t1582);
-            let t1698 = T::fused(-t15, t1584, t8 * t1582);
-            let t1699 = T::fused(-t99, t1697, t103 * t1698)
-                + T::fused(t171, t1696, -T::fused(t105, t1692, t165 * t1695));
-            let t1700 = t86 * (t1296 + t1699);
-            let t1701 = k(0.1) * t1593;
-            let t1702 = t1701 + (t1587 + t1701);
-            let t1703 = k(0.1) * t1590;
-            let t1704 = t1703 + (t1588 + t1703);
-            let t1705 = T::fused(-t8, t1704, t15 * t1589);
-            let t1706 = T::fused(t15, t1704, t8 * t1589);
-            let t1707 = T::fused(-t8, t1593, t15 * t1591);
-            let t1708 = T::fused(t15, t1593, t8 * t1591);
-            let t1709 = T::fused(-t99, t1707, t103 * t1708)
-                + T::fused(t171, t1706, -T::fused(-t105, t1702, t165 * t1705));
-            let t1710 = t86 * (t1336 + t1709);
-            let t1711 = k(0.1) * t1602;
-            let t1712 = t1711 + (t1596 + t1711);
-            let t1713 = k(0.1) * t1599;
-            let t1714 = t1713 + (t1597 + t1713);
-            let t1715 = T::fused(-t8, t1714, t15 * t1598);
-            let t1716 = T::fused(t15, t1714, t8 * t1598);
-            let t1717 = T::fused(-t8, t1602, t15 * t1600);
-            let t1718 = T::fused(t15, t1602, t8 * t1600);
-            let t1719 = T::fused(-t99, t1717, t103 * t1718)
-                + T::fused(t171, t1716, -T::fused(-t105, t1712, t165 * t1715));
-            let t1720 = t86 * (t1373 + t1719);
-            let t1721 = k(0.1) * t1611;
-            let t1722 = t1721 + (t1605 + t1721);
-            let t1723 = k(0.1) * t1608;
-            let t1724 = t1723 - (t1606 - t1723);
-            let t1725 = T::fused(-t8, t1724, t15 * t1607);
-            let t1726 = T::fused(t15, t1724, t8 * t1607);
-            let t1727 = T::fused(-t8, t1611, t15 * t1609);
-            let t1728 = T::fused(t15, t1611, t8 * t1609);
-            let t1729 = T::fused(-t99, t1727, t103 * t1728)
-                + T::fused(t171, t1726, -T::fused(-t105, t1722, t165 * t1725));
-            let t1730 = t86 * (t1410 - t1729);
-            let t1731 = k(0.1) * t1620;
-            let t1732 = t1731 + (t1614 + t1731);
-            let t1733 = k(0.1) * t1617;
-            let t1734 = t1733 + (t1615 + t1733);
-            let t1735 = T::fused(-t8, t1734, t15 * t1616);
-            let t1736 = T::fused(t15, t1734, t8 * t1616);
-            let t1737 = T::fused(-t8, t1620, t15 * t1618);
-            let t1738 = T::fused(t15, t1620, t8 * t1618);
-            let t1739 = T::fused(-t99, t1737, t103 * t1738)
-                + T::fused(t171, t1736, -T::fused(-t105, t1732, t165 * t1735));
-            let t1740 = t86 * (t1441 + t1739);
-            let t1741 = k(0.1) * t1627;
-            let t1742 = t1741 - (t1622 - t1741);
-            let t1743 = T::fused(
-                t31,
-                T::fused(t3, t1742, t6 * t1626),
-                t51 * T::fused(t6, t1630, t3 * t1628),
+            t1400,
+            t1401,
+            t1402,
+            t1403,
+            t1404,
+            t1405,
+            t1406,
+            t1411,
+            t1416,
+            t1437,
+            t1438,
+            t1439,
+            t1440,
+            t1441,
+            t1442,
+            t1443,
+            t1444,
+            t1445,
+            t1446,
+            t1447,
+            t1448,
+        ) = {
+            let t1400 = T::fused(
+                t1382,
+                t1109,
+                T::fused(-t1386, t1116, T::fused(-t1390, t1123, t1394 * t1130)),
             );
-            let t1744 = k(0.1) * t1632;
-            let t1745 = t1744 + (t1638 + t1744);
-            let t1746 = T::fused(
-                t51,
-                T::fused(-t3, t1631, t6 * t1640),
-                t31 * T::fused(-t6, t1635, t3 * t1745),
+            let t1401 = T::fused(
+                -t1137,
+                t1382,
+                T::fused(t1139, t1386, T::fused(t1141, t1390, t1143 * t1394)),
             );
-            let t1747 = k(0.1) * t1642;
-            let t1748 = t1747 + (t1648 + t1747);
-            let t1749 = T::fused(
-                -t51,
-                T::fused(t3, t1641, t6 * t1650),
-                t31 * T::fused(t6, t1645, t3 * t1748),
+            let t1402 = T::fused(
+                t1150,
+                t1382,
+                T::fused(-t1152, t1386, T::fused(-t1154, t1390, t1156 * t1394)),
             );
-            let t1750 = k(0.1) * t1652;
-            let t1751 = t1750 + (t1658 + t1750);
-            let t1752 = T::fused(
-                -t51,
-                T::fused(t3, t1651, t6 * t1660),
-                t31 * T::fused(t6, t1655, t3 * t1751),
+            let t1403 = T::fused(
+                t1160,
+                t1382,
+                T::fused(t1161, t1386, T::fused(t1162, t1390, t1163 * t1394)),
             );
-            let t1753 = k(0.1) * t1662;
-            let t1754 = t1753 + (t1668 + t1753);
-            let t1755 = T::fused(
-                -t51,
-                T::fused(t3, t1661, t6 * t1670),
-                t31 * T::fused(t6, t1665, t3 * t1754),
+            let t1404 = T::fused(
+                t1167,
+                t1382,
+                T::fused(t1168, t1386, T::fused(t1169, t1390, t1170 * t1394)),
             );
-            let t1756 = k(0.1) * t1672;
-            let t1757 = t1756 + (t1678 + t1756);
-            let t1758 = T::fused(
-                t51,
-                T::fused(-t3, t1671, t6 * t1680),
-                t31 * T::fused(-t6, t1675, t3 * t1757),
+            let t1405 = T::fused(
+                -t1174,
+                t1382,
+                T::fused(t1175, t1386, T::fused(-t1176, t1390, t1177 * t1394)),
             );
-            let t1759 = k(0.1) * t1687;
-            let t1760 = t1759 - (t1682 - t1759);
-            let t1761 = T::fused(
-                t31,
-                T::fused(t3, t1760, t6 * t1686),
-                t51 * T::fused(-t6, t1690, t3 * t1688),
+            let t1406 = T::fused(
+                t1180,
+                t1382,
+                T::fused(t1181, t1386, T::fused(t1182, t1390, t1183 * t1394)),
             );
-            let t1762 = k(0.1) * t1697;
-            let t1763 = t1762 + (t1692 + t1762);
-            let t1764 = T::fused(
-                t31,
-                T::fused(t3, t1763, t6 * t1696),
-                t51 * T::fused(t6, t1700, t3 * t1698),
-            );
-            let t1765 = k(0.1) * t1707;
-            let t1766 = t1765 - (t1702 - t1765);
-            let t1767 = T::fused(
-                t31,
-                T::fused(t3, t1766, t6 * t1706),
-                t51 * T::fused(t6, t1710, t3 * t1708),
-            );
-            let t1768 = k(0.1) * t1717;
-            let t1769 = t1768 - (t1712 - t1768);
-            let t1770 = T::fused(
-                t31,
-                T::fused(t3, t1769, t6 * t1716),
-                t51 * T::fused(t6, t1720, t3 * t1718),
-            );
-            let t1771 = k(0.1) * t1727;
-            let t1772 = t1771 - (t1722 - t1771);
-            let t1773 = T::fused(
-                t31,
-                T::fused(t3, t1772, t6 * t1726),
-                t51 * T::fused(-t6, t1730, t3 * t1728),
-            );
-            let t1774 = k(0.1) * t1737;
-            let t1775 = t1774 - (t1732 - t1774);
-            let t1776 = T::fused(
-                t31,
-                T::fused(t3, t1775, t6 * t1736),
-                t51 * T::fused(t6, t1740, t3 * t1738),
-            );
-            let t1777 = k(0.1) * t1630;
-            let t1778 = T::fused(-t3, t1630, t6 * t1628);
-            let t1779 = k(0.1) * t1778;
-            let t1780 = T::fused(
+            let t1407 = k(0.1) * t1302;
+            let t1408 = T::fused(-t3, t1302, t26 * t1300);
+            let t1409 = k(0.1) * t1408;
+            let t1410 = T::fused(
                 -t0,
-                t1779 + (t1779 - (t1777 + (t1625 + t1777))),
-                t25 * T::fused(-t6, t1742, t3 * t1626),
+                t1409 + (t1409 - (t1407 + (t1297 + t1407))),
+                t12 * T::fused(-t26, t1372, t3 * t1298),
             );
-            let t1781 = T::fused(t6, t1631, t3 * t1640);
-            let t1782 = k(0.1) * t1781;
-            let t1783 = k(0.1) * t1640;
-            let t1784 = T::fused(
-                -t25,
-                T::fused(t3, t1635, t6 * t1745),
-                t0 * (t1782 + (t1783 + (t1636 + t1783) + t1782)),
+            let t1411 = T::fused(
+                -k(149.2537313432836),
+                T::fused(k(0.05), t1410, k(1.0)),
+                t1408,
             );
-            let t1785 = T::fused(-t6, t1641, t3 * t1650);
-            let t1786 = k(0.1) * t1785;
-            let t1787 = k(0.1) * t1650;
-            let t1788 = T::fused(
-                t25,
-                T::fused(-t3, t1645, t6 * t1748),
-                t0 * (t1786 + (t1787 + (t1646 + t1787) + t1786)),
-            );
-            let t1789 = T::fused(-t6, t1651, t3 * t1660);
-            let t1790 = k(0.1) * t1789;
-            let t1791 = k(0.1) * t1660;
-            let t1792 = T::fused(
-                t25,
-                T::fused(-t3, t1655, t6 * t1751),
-                t0 * (t1790 + (t1791 + (t1656 + t1791) + t1790)),
-            );
-            let t1793 = T::fused(-t6, t1661, t3 * t1670);
-            let t1794 = k(0.1) * t1793;
-            let t1795 = k(0.1) * t1670;
-            let t1796 = T::fused(
-                t25,
-                T::fused(-t3, t1665, t6 * t1754),
-                t0 * (t1794 + (t1795 + (t1666 + t1795) + t1794)),
-            );
-            let t1797 = T::fused(t6, t1671, t3 * t1680);
-            let t1798 = k(0.1) * t1797;
-            let t1799 = k(0.1) * t1680;
-            let t1800 = T::fused(
-                -t25,
-                T::fused(t3, t1675, t6 * t1757),
-                t0 * (t1798 + (t1799 + (t1676 + t1799) + t1798)),
-            );
-            let t1801 = k(0.1) * t1690;
-            let t1802 = T::fused(t3, t1690, t6 * t1688);
-            let t1803 = k(0.1) * t1802;
-            let t1804 = T::fused(
+            let t1412 = k(0.1) * t1313;
+            let t1413 = T::fused(-t3, t1313, t26 * t1311);
+            let t1414 = k(0.1) * t1413;
+            let t1415 = T::fused(
                 -t0,
-                t1803 + (t1803 + (t1801 - (t1685 - t1801))),
-                t25 * T::fused(-t6, t1760, t3 * t1686),
+                t1414 + (t1414 - (t1412 + (t1308 + t1412))),
+                t12 * T::fused(-t26, t1376, t3 * t1309),
             );
-            let t1805 = k(0.1) * t1700;
-            let t1806 = T::fused(-t3, t1700, t6 * t1698);
-            let t1807 = k(0.1) * t1806;
-            let t1808 = T::fused(
+            let t1416 = T::fused(-k(7.462686567164179), t1415, t1413);
+            let t1417 = k(0.1) * t1324;
+            let t1418 = T::fused(-t3, t1324, t26 * t1322);
+            let t1419 = k(0.1) * t1418;
+            let t1420 = T::fused(
                 -t0,
-                t1807 + (t1807 - (t1805 + (t1695 + t1805))),
-                t25 * T::fused(-t6, t1763, t3 * t1696),
+                t1419 + (t1419 - (t1417 + (t1319 + t1417))),
+                t12 * T::fused(-t26, t1380, t3 * t1320),
             );
-            let t1809 = k(0.1) * t1710;
-            let t1810 = T::fused(-t3, t1710, t6 * t1708);
-            let t1811 = k(0.1) * t1810;
-            let t1812 = T::fused(
+            let t1421 = T::fused(-k(7.462686567164179), t1420, t1418);
+            let t1422 = k(0.1) * t1335;
+            let t1423 = T::fused(-t3, t1335, t26 * t1333);
+            let t1424 = k(0.1) * t1423;
+            let t1425 = T::fused(
                 -t0,
-                t1811 + (t1811 - (t1809 + (t1705 + t1809))),
-                t25 * T::fused(-t6, t1766, t3 * t1706),
+                t1424 + (t1424 - (t1422 + (t1330 + t1422))),
+                t12 * T::fused(-t26, t1384, t3 * t1331),
             );
-            let t1813 = k(0.1) * t1720;
-            let t1814 = T::fused(-t3, t1720, t6 * t1718);
-            let t1815 = k(0.1) * t1814;
-            let t1816 = T::fused(
+            let t1426 = T::fused(-k(7.462686567164179), t1425, t1423);
+            let t1427 = k(0.1) * t1346;
+            let t1428 = T::fused(-t3, t1346, t26 * t1344);
+            let t1429 = k(0.1) * t1428;
+            let t1430 = T::fused(
                 -t0,
-                t1815 + (t1815 - (t1813 + (t1715 + t1813))),
-                t25 * T::fused(-t6, t1769, t3 * t1716),
+                t1429 + (t1429 - (t1427 + (t1341 + t1427))),
+                t12 * T::fused(-t26, t1388, t3 * t1342),
             );
-            let t1817 = k(0.1) * t1730;
-            let t1818 = T::fused(t3, t1730, t6 * t1728);
-            let t1819 = k(0.1) * t1818;
-            let t1820 = T::fused(
+            let t1431 = T::fused(-k(7.462686567164179), t1430, t1428);
+            let t1432 = k(0.1) * t1357;
+            let t1433 = T::fused(-t3, t1357, t26 * t1355);
+            let t1434 = k(0.1) * t1433;
+            let t1435 = T::fused(
                 -t0,
-                t1819 + (t1819 + (t1817 - (t1725 - t1817))),
-                t25 * T::fused(-t6, t1772, t3 * t1726),
+                t1434 + (t1434 - (t1432 + (t1352 + t1432))),
+                t12 * T::fused(-t26, t1392, t3 * t1353),
             );
-            let t1821 = k(0.1) * t1740;
-            let t1822 = T::fused(-t3, t1740, t6 * t1738);
-            let t1823 = k(0.1) * t1822;
-            let t1824 = T::fused(
-                -t0,
-                t1823 + (t1823 - (t1821 + (t1735 + t1821))),
-                t25 * T::fused(-t6, t1775, t3 * t1736),
+            let t1436 = T::fused(-k(7.462686567164179), t1435, t1433);
+            let t1437 = T::fused(
+                t294,
+                t1421,
+                T::fused(t329, t1426, T::fused(-t370, t1431, t416 * t1436)),
+            );
+            let t1438 = T::fused(
+                t1421,
+                t708,
+                T::fused(-t1426, t770, T::fused(-t1431, t836, t1436 * t1006)),
+            );
+            let t1439 = T::fused(
+                -t1421,
+                t1022,
+                T::fused(t1426, t1027, T::fused(-t1431, t1032, t1436 * t1037)),
+            );
+            let t1440 = T::fused(
+                t1421,
+                t1051,
+                T::fused(t1426, t1056, T::fused(-t1431, t1061, t1436 * t1068)),
+            );
+            let t1441 = T::fused(
+                t1421,
+                t1080,
+                T::fused(-t1426, t1085, T::fused(-t1431, t1092, t1436 * t1099)),
+            );
+            let t1442 = T::fused(
+                t1421,
+                t1109,
+                T::fused(-t1426, t1116, T::fused(-t1431, t1123, t1436 * t1130)),
+            );
+            let t1443 = T::fused(
+                -t1137,
+                t1421,
+                T::fused(t1139, t1426, T::fused(t1141, t1431, t1143 * t1436)),
+            );
+            let t1444 = T::fused(
+                t1150,
+                t1421,
+                T::fused(-t1152, t1426, T::fused(-t1154, t1431, t1156 * t1436)),
+            );
+            let t1445 = T::fused(
+                t1160,
+                t1421,
+                T::fused(t1161, t1426, T::fused(t1162, t1431, t1163 * t1436)),
+            );
+            let t1446 = T::fused(
+                t1167,
+                t1421,
+                T::fused(t1168, t1426, T::fused(t1169, t1431, t1170 * t1436)),
+            );
+            let t1447 = T::fused(
+                -t1174,
+                t1421,
+                T::fused(t1175, t1426, T::fused(-t1176, t1431, t1177 * t1436)),
+            );
+            let t1448 = T::fused(
+                t1180,
+                t1421,
+                T::fused(t1181, t1426, T::fused(t1182, t1431, t1183 * t1436)),
             );
             (
-                t1500,
-                t1502,
-                t1504,
-                t1506,
-                t1508,
-                t1510,
-                t1512,
-                t1518,
-                t1521,
-                t1523,
-                t1530,
-                t1532,
-                t1539,
-                t1541,
-                t1548,
-                t1550,
-                t1557,
-                t1559,
-                t1566,
-                t1572,
-                t1575,
-                t1581,
-                t1584,
-                t1590,
-                t1593,
-                t1599,
-                t1602,
-                t1608,
-                t1611,
-                t1617,
-                t1620,
-                t1627,
-                t1630,
-                t1632,
-                t1640,
-                t1642,
-                t1650,
-                t1652,
-                t1660,
-                t1662,
-                t1670,
-                t1672,
-                t1680,
-                t1687,
-                t1690,
-                t1697,
-                t1700,
-                t1707,
-                t1710,
-                t1717,
-                t1720,
-                t1727,
-                t1730,
-                t1737,
-                t1740,
-                t1743,
-                t1746,
-                t1749,
-                t1752,
-                t1755,
-                t1758,
-                t1761,
-                t1764,
-                t1767,
-                t1770,
-                t1773,
-                t1776,
-                t1778,
-                t1780,
-                t1781,
-                t1784,
-                t1785,
-                t1788,
-                t1789,
-                t1792,
-                t1793,
-                t1796,
-                t1797,
-                t1800,
-                t1802,
-                t1804,
-                t1806,
-                t1808,
-                t1810,
-                t1812,
-                t1814,
-                t1816,
-                t1818,
-                t1820,
-                t1822,
-                t1824,
+                t1400,
+                t1401,
+                t1402,
+                t1403,
+                t1404,
+                t1405,
+                t1406,
+                t1411,
+                t1416,
+                t1437,
+                t1438,
+                t1439,
+                t1440,
+                t1441,
+                t1442,
+                t1443,
+                t1444,
+                t1445,
+                t1446,
+                t1447,
+                t1448,
             )
-        });
+        };
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -18576,78 +18576,78 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             k(0.0),
             k(0.0),
             k(1.0),
-            t373,
-            -t993,
-            t1054,
-            t1115,
-            t1175,
-            -t1235,
-            -t1279,
-            t1322,
-            -t1359,
-            t1396,
-            -t1433,
-            t1464,
-            -t1468,
-            -t1472,
-            -t1476,
-            -t1480,
-            -t1484,
-            -t1488,
-            -t1492,
-            -t1496,
-            -t1500,
-            t1504,
-            t1508,
-            t1512,
-            t1521 - t1466,
-            t1470 - t1530,
-            t1539 - t1474,
-            t1548 - t1478,
-            t1557 - t1482,
-            t1486 - t1566,
-            t1490 - t1575,
-            -(t1494 + t1584),
-            t1498 - t1593,
-            t1602 - t1502,
-            t1506 - t1611,
-            t1620 - t1510,
-            -(t1518 + t1630),
-            t1523 - t1640,
-            t1532 - t1650,
-            t1541 - t1660,
-            t1550 - t1670,
-            t1559 - t1680,
-            t1572 - t1690,
-            -(t1581 + t1700),
-            t1590 + t1710,
-            -(t1599 + t1720),
-            t1608 - t1730,
-            -(t1617 + t1740),
-            T::fused(-t29, t20 - t1743, t1627),
-            T::fused(t29, t921 + t1746, t1632),
-            -T::fused(t29, t1017 + t1749, t1642),
-            -T::fused(t29, t1078 + t1752, t1652),
-            -T::fused(t29, t1140 + t1755, t1662),
-            T::fused(t29, t1202 + t1758, t1672),
-            T::fused(t29, t1237 - t1761, -t1687),
-            T::fused(-t29, t1281 - t1764, t1697),
-            T::fused(t29, t1323 - t1767, -t1707),
-            T::fused(t29, t1360 + t1770, t1717),
-            -T::fused(t29, t1397 + t1773, t1727),
-            T::fused(t29, t1434 + t1776, t1737),
-            T::fused(k(149.2537313432836), T::fused(k(0.05), t1780, t41), -t1778),
-            T::fused(k(149.2537313432836), T::fused(k(0.05), t1784, t963), t1781),
-            T::fused(k(149.2537313432836), T::fused(k(0.05), t1788, t1024), t1785),
-            T::fused(k(149.2537313432836), T::fused(k(0.05), t1792, t1085), t1789),
-            T::fused(k(149.2537313432836), T::fused(k(0.05), t1796, t1145), t1793),
-            T::fused(k(149.2537313432836), T::fused(k(0.05), t1800, t1205), t1797),
-            T::fused(k(149.2537313432836), T::fused(-k(0.05), t1804, t1241), t1802),
-            T::fused(k(149.2537313432836), T::fused(k(0.05), t1808, t1285), -t1806),
-            T::fused(-k(149.2537313432836), T::fused(k(0.05), t1812, t1326), t1810),
-            -T::fused(k(149.2537313432836), T::fused(-k(0.05), t1816, t1363), t1814),
-            T::fused(-k(149.2537313432836), T::fused(k(0.05), t1820, t1400), t1818),
-            T::fused(k(7.462686567164179), t1824, -t1822),
+            T::fused(t230, t220, T::fused(-t262, t252, t417)),
+            T::fused(t220, t611, -T::fused(-t252, t652, t1007)),
+            T::fused(t220, t1012, T::fused(-t252, t1017, t1038)),
+            T::fused(t220, t1043, -T::fused(t252, t1046, t1069)),
+            T::fused(t220, t1072, -T::fused(t252, t1075, t1100)),
+            T::fused(t220, t1101, -T::fused(-t252, t1104, t1131)),
+            T::fused(t1133, t220, -T::fused(-t1135, t252, t1144)),
+            T::fused(t1146, t220, T::fused(-t1148, t252, t1157)),
+            -T::fused(t1158, t220, T::fused(-t1159, t252, t1164)),
+            T::fused(-t1165, t220, T::fused(t1166, t252, t1171)),
+            -T::fused(t1172, t220, T::fused(t1173, t252, t1178)),
+            T::fused(t1179, t252, t1184),
+            T::fused(t230, t1188, T::fused(-t262, t1192, t1209)),
+            T::fused(t1188, t611, -T::fused(-t1192, t652, t1210)),
+            T::fused(t1188, t1012, T::fused(-t1192, t1017, t1211)),
+            T::fused(t1188, t1043, -T::fused(t1192, t1046, t1212)),
+            T::fused(t1188, t1072, -T::fused(t1192, t1075, t1213)),
+            T::fused(t1188, t1101, -T::fused(-t1192, t1104, t1214)),
+            T::fused(t1133, t1188, -T::fused(-t1135, t1192, t1215)),
+            T::fused(t1146, t1188, T::fused(-t1148, t1192, t1216)),
+            -T::fused(t1158, t1188, T::fused(-t1159, t1192, t1217)),
+            T::fused(-t1165, t1188, T::fused(t1166, t1192, t1218)),
+            -T::fused(t1172, t1188, T::fused(t1173, t1192, t1219)),
+            T::fused(t1179, t1192, t1220),
+            -T::fused(t230, t1230, T::fused(-t262, t1240, t1281)),
+            T::fused(-t1230, t611, T::fused(-t1240, t652, t1282)),
+            -T::fused(t1230, t1012, T::fused(-t1240, t1017, t1283)),
+            T::fused(-t1230, t1043, T::fused(t1240, t1046, t1284)),
+            T::fused(-t1230, t1072, T::fused(t1240, t1075, t1285)),
+            T::fused(-t1230, t1101, T::fused(-t1240, t1104, t1286)),
+            T::fused(-t1133, t1230, T::fused(-t1135, t1240, t1287)),
+            -T::fused(t1146, t1230, T::fused(-t1148, t1240, t1288)),
+            T::fused(t1158, t1230, T::fused(-t1159, t1240, t1289)),
+            T::fused(t1165, t1230, -T::fused(t1166, t1240, t1290)),
+            T::fused(t1172, t1230, T::fused(t1173, t1240, t1291)),
+            -T::fused(t1179, t1240, t1292),
+            -T::fused(t230, t1303, T::fused(-t262, t1314, t1359)),
+            T::fused(-t1303, t611, T::fused(-t1314, t652, t1360)),
+            -T::fused(t1303, t1012, T::fused(-t1314, t1017, t1361)),
+            T::fused(-t1303, t1043, T::fused(t1314, t1046, t1362)),
+            T::fused(-t1303, t1072, T::fused(t1314, t1075, t1363)),
+            T::fused(-t1303, t1101, T::fused(-t1314, t1104, t1364)),
+            T::fused(-t1133, t1303, T::fused(-t1135, t1314, t1365)),
+            -T::fused(t1146, t1303, T::fused(-t1148, t1314, t1366)),
+            T::fused(t1158, t1303, T::fused(-t1159, t1314, t1367)),
+            T::fused(t1165, t1303, -T::fused(t1166, t1314, t1368)),
+            T::fused(t1172, t1303, T::fused(t1173, t1314, t1369)),
+            -T::fused(t1179, t1314, t1370),
+            T::fused(t230, t1374, T::fused(-t262, t1378, t1395)),
+            T::fused(t1374, t611, -T::fused(-t1378, t652, t1396)),
+            T::fused(t1374, t1012, T::fused(-t1378, t1017, t1397)),
+            T::fused(t1374, t1043, -T::fused(t1378, t1046, t1398)),
+            T::fused(t1374, t1072, -T::fused(t1378, t1075, t1399)),
+            T::fused(t1374, t1101, -T::fused(-t1378, t1104, t1400)),
+            T::fused(t1133, t1374, -T::fused(-t1135, t1378, t1401)),
+            T::fused(t1146, t1374, T::fused(-t1148, t1378, t1402)),
+            -T::fused(t1158, t1374, T::fused(-t1159, t1378, t1403)),
+            T::fused(-t1165, t1374, T::fused(t1166, t1378, t1404)),
+            -T::fused(t1172, t1374, T::fused(t1173, t1378, t1405)),
+            T::fused(t1179, t1378, t1406),
+            -T::fused(t230, t1411, T::fused(-t262, t1416, t1437)),
+            T::fused(-t1411, t611, T::fused(-t1416, t652, t1438)),
+            -T::fused(t1411, t1012, T::fused(-t1416, t1017, t1439)),
+            T::fused(-t1411, t1043, T::fused(t1416, t1046, t1440)),
+            T::fused(-t1411, t1072, T::fused(t1416, t1075, t1441)),
+            T::fused(-t1411, t1101, T::fused(-t1416, t1104, t1442)),
+            T::fused(-t1133, t1411, T::fused(-t1135, t1416, t1443)),
+            -T::fused(t1146, t1411, T::fused(-t1148, t1416, t1444)),
+            T::fused(t1158, t1411, T::fused(-t1159, t1416, t1445)),
+            T::fused(t1165, t1411, -T::fused(t1166, t1416, t1446)),
+            T::fused(t1172, t1411, T::fused(t1173, t1416, t1447)),
+            -T::fused(t1179, t1416, t1448),
         ];
         *dfdt = [
             k(0.0),

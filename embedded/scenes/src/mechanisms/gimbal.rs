@@ -15,8 +15,8 @@
 //! * joint_accelerations: 29 operations by normal form; 48 operations by recursion
 //! * joint_accelerations_at: 49 operations by normal form; 68 operations by recursion; 1 more compared
 //! * corrected_accelerations: 159 operations by normal form in the bodies' frames; 161 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 75 operations by derivatives of the balance, from its leaves, normal form; 75 operations by derivatives of the balance, from its roots, normal form; 5 more compared
-//! * joint_input_jacobian: 6 operations by normal form of that; 7 operations by derivatives of u̇, from its leaves; 5 more compared
+//! * joint_jacobian: 78 operations by derivatives of u̇, from its leaves; 78 operations by derivatives of u̇, from its roots; 7 more compared
+//! * joint_input_jacobian: 6 operations by normal form of that; 7 operations by derivatives of u̇, from its leaves; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 60 | 97 | 2 | 159 | 6 of 18 | 2659 | 161 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 81 | 0 | 135 | 0 of 15 | 724 | 135 |
 //! | corrected_solution | both | 92 | 148 | 2 | 242 | 6 of 33 | 23224 | 244 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 22 | 51 | 2 | 75 | 41 of 56 | 267 | 75 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 16 | 60 | 2 | 78 | 41 of 56 | 255 | 78 |
 //! | joint_input_jacobian | ∂f/∂(inputs) | 2 | 3 | 1 | 6 | 4 of 7 | 13 | 7 |
 //!
 //! # Proof
@@ -3715,7 +3715,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 7]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 75 operations (22 ±, 51 ×, 2 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 78 operations (16 ±, 60 ×, 2 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3729,47 +3729,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = k(1e-5) * t0;
-        let t2 = u1 * t1;
-        let t3 = x1.sin();
-        let t4 = u0 * t3;
-        let t5 = t0 * t0;
-        let t6 = T::fused(k(1.5625e-8), self.rotor_mass, k(6e-6));
-        let t7 = k(1.0) / T::fused(t6, t5, k(2e-6));
-        let t8 = t7
-            * T::fused(
-                -t2,
-                T::fused(-k(0.003125), (self.rotor_mass + k(64.0)) * t4, u2),
-                self.torque,
-            );
-        let t9 = k(3.125e-8) * self.rotor_mass;
-        let t10 = k(2e-6) + t9;
-        let t11 = t3 * t10;
-        let t12 = T::fused(k(1e-5), T::fused(k(100000.0), u0 * t2, t3 * t8), t8 * t11);
-        let t13 = k(1e-5) * u2;
-        let t14 = t3 * t13;
-        let t15 = T::fused(
+        let t1 = u0 * t0;
+        let t2 = self.rotor_mass + k(64.0);
+        let t3 = k(1e-5) * t0;
+        let t4 = u1 * t3;
+        let t5 = x1.sin();
+        let t6 = u1 * (k(1e-5) * t5);
+        let t7 = u0 * t5;
+        let t8 = T::fused(-k(0.003125), t2 * t7, u2);
+        let t9 = T::fused(k(1.5625e-8), self.rotor_mass, k(6e-6));
+        let t10 = k(1.0) / T::fused(t9, t0 * t0, k(2e-6));
+        let t11 = T::fused(-t4, t8, self.torque);
+        let t12 = T::fused(
+            t10,
+            T::fused(t4, k(0.003125) * (t2 * t1), t8 * t6),
+            t11 * (t10 * t10 * (t9 * (k(2.0) * (t5 * t0)))),
+        );
+        let t13 = t10 * (t4 * (k(0.003125) * (t5 * t2)));
+        let t14 = t10 * (t3 * t8);
+        let t15 = t10 * t4;
+        let t16 = self.rotor_mass - k(256.0);
+        let t17 = T::fused(-t16, t7, k(640.0) * u2);
+        let t18 = T::fused(
             -t0,
-            t12,
-            u1
-                * T::fused(
-                    u0,
-                    T::fused(-k(6.25e-8), t5 * (self.rotor_mass - k(96.0)), t10),
-                    -t14,
-                ),
+            u0 * (t16 * t1),
+            t5 * T::fused(-u0, t17, k(80000.0) * self.rotor_mass),
         );
-        let t16 = t7 * t15;
-        let t17 = t7 * (u1 * t0 * t11);
-        let t18 = t7 * (t0 * T::fused(-t4, t10, t13));
-        let t19 = t7 * t2;
-        let t20 = k(8e-6) - t9;
-        let t21 = T::fused(
-            -u0,
-            T::fused(u0 * t20, k(0.5) - t5, t14),
-            k(0.00125) * (self.rotor_mass * t3),
-        );
-        let t22 = k(1.0) / t6;
-        let t23 = u0 * t1;
+        let t19 = k(1.0) / t9;
+        let t20 = T::fused(k(100000.0), u0 * t6, -T::fused(t5, t12, t0 * (t10 * t11)));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3793,25 +3780,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
             k(1.0),
             k(0.0),
             k(0.0),
-            -t16,
+            t12,
             k(0.0),
-            t17,
-            -t18,
-            -t19,
-            k(0.0),
-            k(0.0),
-            t22 * t21,
-            k(0.0),
-            t22 * (t0 * T::fused(t4, t20, t13)),
-            k(0.0),
-            t22 * t23,
+            t13,
+            -t14,
+            -t15,
             k(0.0),
             k(0.0),
-            T::fused(t3, t16, T::fused(-t0, t8, u1 * t4)),
+            t19 * (k(1.5625e-8) * t18),
             k(0.0),
-            -T::fused(t3, t17, k(100000.0) * t2),
-            T::fused(-k(100000.0), t23, t3 * t18),
-            t3 * t19,
+            t19 * (k(1.5625e-8) * (t0 * T::fused(-u0, t5 * t16, t17))),
+            k(0.0),
+            t19 * (k(1.5625e-8) * (t0 * (k(640.0) * u0))),
+            k(0.0),
+            k(0.0),
+            t20,
+            k(0.0),
+            -T::fused(t5, t13, k(100000.0) * t4),
+            T::fused(-k(100000.0), u0 * t3, t5 * t14),
+            t5 * t15,
             k(0.0),
             k(0.0),
             k(0.0),
