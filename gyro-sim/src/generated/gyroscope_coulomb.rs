@@ -11,7 +11,7 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 439 operations by relative Euler parameters; 459 operations by rotations of the bodies
+//! * accelerations: 440 operations by relative Euler parameters; 460 operations by rotations of the bodies
 //! * joint_accelerations: 23 operations by normal form; 42 operations by recursion
 //! * joint_accelerations_at: 43 operations by normal form; 62 operations by recursion; 1 more compared
 //! * corrected_accelerations: 153 operations by normal form in the bodies' frames; 155 operations by normal form in the global frame; 5 more compared
@@ -26,9 +26,9 @@
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 | 1486 | 315 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
-//! | applied_force | (f, n' − w̃'J'w') | 3 | 13 | 0 | 16 | 9 of 18 | 18 | 16 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 174 | 260 | 5 | 439 | 7 of 18 | 505352 | 443 |
-//! | multipliers | λ, the accelerations being known | 117 | 188 | 3 | 308 | 0 of 15 | 3837 | 308 |
+//! | applied_force | (f, n' − w̃'J'w') | 3 | 14 | 0 | 17 | 9 of 18 | 20 | 17 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 174 | 261 | 5 | 440 | 7 of 18 | 505402 | 444 |
+//! | multipliers | λ, the accelerations being known | 117 | 191 | 3 | 311 | 0 of 15 | 3849 | 311 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 22 | 77 | 76 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -41,8 +41,8 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 27 | 1 | 43 | 0 of 3 | 246 | 44 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 95 | 1 | 153 | 6 of 18 | 2576 | 154 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 81 | 0 | 138 | 0 of 15 | 727 | 138 |
-//! | corrected_solution | both | 93 | 146 | 1 | 240 | 6 of 33 | 22580 | 241 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 84 | 0 | 141 | 0 of 15 | 735 | 141 |
+//! | corrected_solution | both | 93 | 147 | 1 | 241 | 6 of 33 | 22588 | 242 |
 //!
 //! # Proof
 //!
@@ -286,7 +286,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeCoulomb<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t0 * (k(1e-6) * (k(1000.0) * t0).tanh())),
+            -(t0 * (k(2e-6) * (k(1000.0) * t0).tanh())),
         ];
     }
 }
@@ -455,7 +455,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCoulomb<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            -(t0 * (k(1e-6) * (k(1000.0) * t0).tanh())),
+            -(t0 * (k(2e-6) * (k(1000.0) * t0).tanh())),
         ];
     }
     /// Writes Φ: 108 operations (50 ±, 58 ×, 0 ÷).
@@ -2095,7 +2095,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
             -(t84 + T::fused(t49, t65, T::fused(t44, t63, t46 * t64))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 16 operations (3 ±, 13 ×, 0 ÷) and 1 functions.
+    /// Writes (f, n' − w̃'J'w'): 17 operations (3 ±, 14 ×, 0 ÷) and 1 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2107,20 +2107,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh();
+        let t0 = k(2e-6) * (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh();
         *out = [
             k(0.0),
             k(-0.1),
             k(0.0),
             k(0.0),
             -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * T::fused(outer_ring_wx, outer_ring_wy, -t0),
+            T::fused(k(1e-6), outer_ring_wx * outer_ring_wy, -t0),
             k(0.0),
             k(-0.1),
             k(0.0),
             k(1e-6) * (inner_ring_wy * inner_ring_wz),
             k(0.0),
-            -(k(1e-6) * T::fused(inner_ring_wx, inner_ring_wy, -t0)),
+            T::fused(-k(1e-6), inner_ring_wx * inner_ring_wy, t0),
             k(0.0),
             k(-0.8),
             k(0.0),
@@ -2129,7 +2129,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 439 operations (174 ±, 260 ×, 5 ÷) and 1 functions.
+    /// Solves eq. (17): 440 operations (174 ±, 261 ×, 5 ÷) and 1 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2353,15 +2353,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
         let t86 = T::fused(t85, t84, T::fused(-t73, t72, t80 * t79))
             - T::fused(t19, t57, t22 * t59);
         let t87 = T::fused(
-            k(1e-6),
-            t62 - (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh(),
-            -t86,
-        );
+            -k(1e-6),
+            t62,
+            k(2e-6) * (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh(),
+        ) + t86;
         let t88 = t25 * t87;
         let t89 = T::fused(
             t23,
             t88,
-            -T::fused(
+            T::fused(
                 k(1e-6),
                 inner_ring_wy * inner_ring_wz,
                 T::fused(-t10, t57, t15 * t59),
@@ -2407,8 +2407,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
             + T::fused(t36, t57, t38 * t59);
         let t113 = T::fused(
             -t34,
-            T::fused(-t27, t107, t42 * t108) + t89,
-            t44 * (T::fused(-t42, t107, t46 * t108) + T::fused(t41, t88, -t112)),
+            T::fused(-t27, t107, t42 * t108) - t89,
+            t44 * (T::fused(-t42, t107, t46 * t108) - T::fused(t41, t88, t112)),
         );
         let t114 = T::fused(
             -t34,
@@ -2426,7 +2426,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
         let t117 = t116 / (k(1e-6) - T::fused(-t34, t45, t44 * t47));
         let t118 = t107 + T::fused(t115, t103, -T::fused(-t1, t102, t34 * t117));
         let t119 = t108 - T::fused(t115, t99, T::fused(-t1, t98, t44 * t117));
-        let t120 = t25 * (t87 + T::fused(-t23, t118, t41 * t119));
+        let t120 = t25 * (t87 - T::fused(-t23, t118, t41 * t119));
         *out = [
             k(0.0),
             k(0.0),
@@ -2439,16 +2439,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
             k(0.0),
             t118,
             -t119,
-            -t120,
-            T::fused(k(0.000125), t71, -T::fused(-t109, t119, t73 * t120)),
-            T::fused(k(0.000125), t78, T::fused(t110, t119, t80 * t120)),
-            -T::fused(k(0.000125), t83, T::fused(t111, t119, t85 * t120)),
+            t120,
+            T::fused(k(0.000125), t71, T::fused(t109, t119, t73 * t120)),
+            T::fused(k(0.000125), t78, -T::fused(-t110, t119, t80 * t120)),
+            T::fused(-k(0.000125), t83, T::fused(-t111, t119, t85 * t120)),
             k(0.0),
-            -(t56 + T::fused(t19, t120, -T::fused(t10, t118, t36 * t119))),
-            T::fused(t22, t120, -T::fused(-t15, t118, t38 * t119)) - t58,
+            T::fused(t19, t120, T::fused(t10, t118, t36 * t119)) - t56,
+            -(t58 + T::fused(t22, t120, T::fused(-t15, t118, t38 * t119))),
         ];
     }
-    /// Writes λ: 308 operations (117 ±, 188 ×, 3 ÷) and 1 functions.
+    /// Writes λ: 311 operations (117 ±, 191 ×, 3 ÷) and 1 functions.
     fn multipliers(
         &self,
         _t: T,
@@ -2588,18 +2588,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
             k(0.00025) * t51,
             -T::fused(-t0, k(0.00025) * t45, t2 * (k(0.00025) * t47)),
         );
-        let t69 = (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh();
+        let t69 = k(2e-6) * (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh();
         let t70 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, -t69) + inner_ring_dwz,
-            t68 - T::fused(t33, t67, t66),
-        );
+            -k(1e-6),
+            inner_ring_dwz,
+            T::fused(-k(1e-6), inner_ring_wx * inner_ring_wy, t69),
+        ) - (t68 - T::fused(t33, t67, t66));
         let t71 = T::fused(
             T::fused(t43, t64, -T::fused(-t37, t62, t40 * t63)),
             t70,
-            -T::fused(-t44, t35, t61 * t60),
+            T::fused(-t44, t35, t61 * t60),
         );
-        let t72 = T::fused(k(2e-6), outer_ring_dwx, -t71);
+        let t72 = T::fused(k(2e-6), outer_ring_dwx, t71);
         let t73 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t36));
         let t74 = k(2.0) * (t42 + t41);
         let t75 = k(1.0) / T::fused(-t37, t73, t74 * t43);
@@ -2611,12 +2611,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
             t35,
             T::fused(t73, t52, -T::fused(-t78, t48, t74 * t46)) * t60,
         );
-        let t80 = T::fused(T::fused(t73, t64, T::fused(t78, t63, t74 * t62)), t70, -t79);
+        let t80 = T::fused(T::fused(t73, t64, T::fused(t78, t63, t74 * t62)), t70, t79);
         let t81 = T::fused(
             k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -t69) - outer_ring_dwz,
-            -t80,
-        );
+            outer_ring_dwz,
+            T::fused(-k(1e-6), outer_ring_wx * outer_ring_wy, t69),
+        ) - t80;
         let t82 = k(2.0) * (t39 - t38);
         let t83 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t36));
         let t84 = k(2.0) * (t77 + t76);
@@ -2628,8 +2628,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCoulomb<T> {
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t37 * t75, t72, t74 * t75 * t81),
-            -T::fused(t43 * t75, t72, t73 * t75 * t81),
+            T::fused(-(t37 * t75), t72, t74 * t75 * t81),
+            T::fused(-(t43 * t75), t72, t73 * t75 * t81),
             -t1,
             -t3,
             -t5,
@@ -2674,7 +2674,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
         let t6 = T::fused(
             t1,
             T::fused(-u0, T::fused(k(0.399875), t4, u2), k(10.0)),
-            k(1e-6) * (k(1000.0) * u1).tanh(),
+            k(2e-6) * (k(1000.0) * u1).tanh(),
         );
         *out = [
             -t5,
@@ -2697,7 +2697,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
             rates[0],
             rates[1],
             rates[2],
-            -(u1 * (k(1e-6) * (k(1000.0) * u1).tanh())),
+            -(u1 * (k(2e-6) * (k(1000.0) * u1).tanh())),
         ];
     }
     /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
@@ -2938,7 +2938,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
         let t11 = T::fused(
             -t3,
             T::fused(outer_ring_wy, T::fused(k(0.399875), t8, t9), k(10.0)),
-            k(1e-6) * (k(1000.0) * t4).tanh(),
+            k(2e-6) * (k(1000.0) * t4).tanh(),
         );
         *out = [
             -t10,
@@ -3011,7 +3011,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
         let t16 = T::fused(
             -t4,
             T::fused(outer_ring_wy, T::fused(k(0.399875), t9, t10), k(10.0)),
-            k(1e-6) * (k(1000.0) * t5).tanh(),
+            k(2e-6) * (k(1000.0) * t5).tanh(),
         );
         let t17 = T::fused(k(166631.95167673402), t16, t12);
         let t18 = k(0.000125) * t17;
@@ -3083,7 +3083,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
             T::fused(rotor_wy, t10, T::fused(t24, t15, t21 * t17)),
         ];
     }
-    /// Writes λ: 138 operations (57 ±, 81 ×, 0 ÷) and 1 functions.
+    /// Writes λ: 141 operations (57 ±, 84 ×, 0 ÷) and 1 functions.
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3213,24 +3213,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
             t2 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13))),
         );
         let t31 = T::fused(t17, t19, t20 * t16);
-        let t32 = (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh();
+        let t32 = k(2e-6) * (k(1000.0) * (outer_ring_wz - inner_ring_wz)).tanh();
         let t33 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, -t32) + inner_ring_dwz,
-            -(t31 - T::fused(t4, k(0.00025) * (t11 + t10), -t30)),
-        );
+            -k(1e-6),
+            inner_ring_dwz,
+            T::fused(-k(1e-6), inner_ring_wx * inner_ring_wy, t32),
+        ) + (t31 - T::fused(t4, k(0.00025) * (t11 + t10), -t30));
         let t34 = T::fused(
             k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -t32) - outer_ring_dwz,
-            -t33,
-        );
+            outer_ring_dwz,
+            T::fused(-k(1e-6), outer_ring_wx * outer_ring_wy, t32),
+        ) - t33;
         let t35 = outer_ring_e0 * t28;
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t29, t27, t35 * t34),
-            -T::fused(t35, t27, t29 * t34),
+            -T::fused(t29, t27, t35 * t34),
+            T::fused(-t35, t27, t29 * t34),
             -t1,
             -t3,
             -t5,
@@ -3243,7 +3243,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 240 operations (93 ±, 146 ×, 1 ÷) and 1 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 241 operations (93 ±, 147 ×, 1 ÷) and 1 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3300,15 +3300,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
         let t13 = t8 * t11;
         let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
         let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
-        let t16 = (k(1000.0) * t5).tanh();
+        let t16 = k(2e-6) * (k(1000.0) * t5).tanh();
         let t17 = T::fused(
-            -t4,
-            T::fused(outer_ring_wy, T::fused(k(0.399875), t9, t10), k(10.0)),
-            k(1e-6) * t16,
+            k(166631.95167673402),
+            T::fused(
+                -t4,
+                T::fused(outer_ring_wy, T::fused(k(0.399875), t9, t10), k(10.0)),
+                t16,
+            ),
+            t12,
         );
-        let t18 = T::fused(k(166631.95167673402), t17, t12);
-        let t19 = k(0.000125) * t18;
-        let t20 = T::fused(
+        let t18 = k(0.000125) * t17;
+        let t19 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3317,10 +3320,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t21 = k(2.0) * t20;
-        let t22 = T::fused(-t20, t21, k(1.0));
-        let t23 = k(0.000125) * t15;
-        let t24 = T::fused(
+        let t20 = k(2.0) * t19;
+        let t21 = T::fused(-t19, t20, k(1.0));
+        let t22 = k(0.000125) * t15;
+        let t23 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3329,85 +3332,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t25 = t24 * t21;
-        let t26 = k(0.000125) * inner_ring_wy;
-        let t27 = inner_ring_wx * t26;
-        let t28 = k(0.000125) * inner_ring_wz;
-        let t29 = inner_ring_wx * t28;
-        let t30 = T::fused(-t27, t22, t29 * t25) - T::fused(t22, t19, t25 * t23);
-        let t31 = rotor_e0 * rotor_e3;
-        let t32 = rotor_e1 * rotor_e2;
-        let t33 = T::fused(inner_ring_wz, t28, inner_ring_wy * t26);
-        let t34 = rotor_e0 * rotor_e0;
-        let t35 = T::fused(
-            -(k(2.0) * (t32 - t31)),
-            t30,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
+        let t24 = t23 * t20;
+        let t25 = k(0.000125) * inner_ring_wy;
+        let t26 = inner_ring_wx * t25;
+        let t27 = k(0.000125) * inner_ring_wz;
+        let t28 = inner_ring_wx * t27;
+        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(t21, t18, t24 * t22);
+        let t30 = rotor_e0 * rotor_e3;
+        let t31 = rotor_e1 * rotor_e2;
+        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
+        let t33 = rotor_e0 * rotor_e0;
+        let t34 = T::fused(
+            -(k(2.0) * (t31 - t30)),
+            t29,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
         );
-        let t36 = T::fused(t27, t25, t29 * t22) - T::fused(-t25, t19, t22 * t23);
-        let t37 = rotor_e0 * rotor_e2;
-        let t38 = rotor_e1 * rotor_e3;
-        let t39 = T::fused(k(2.0) * (t38 + t37), t36, t35);
-        let t40 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
-            t30,
-            k(2.0) * (t32 + t31) * t33,
+        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(-t24, t18, t21 * t22);
+        let t36 = rotor_e0 * rotor_e2;
+        let t37 = rotor_e1 * rotor_e3;
+        let t38 = T::fused(k(2.0) * (t37 + t36), t35, t34);
+        let t39 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
+            t29,
+            k(2.0) * (t31 + t30) * t32,
         );
-        let t41 = rotor_e0 * rotor_e1;
-        let t42 = rotor_e2 * rotor_e3;
-        let t43 = T::fused(k(2.0) * (t42 - t41), t36, -t40);
-        let t44 = T::fused(k(2.0) * (t42 + t41), t30, k(2.0) * (t38 - t37) * t33);
-        let t45 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)),
-            t36,
-            t44,
+        let t40 = rotor_e0 * rotor_e1;
+        let t41 = rotor_e2 * rotor_e3;
+        let t42 = T::fused(k(2.0) * (t41 - t40), t35, -t39);
+        let t43 = T::fused(k(2.0) * (t41 + t40), t29, k(2.0) * (t37 - t36) * t32);
+        let t44 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)),
+            t35,
+            t43,
         );
-        let t46 = T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14;
-        let t47 = T::fused(rotor_wz, t10, T::fused(-t22, t15, t25 * t18));
-        let t48 = T::fused(rotor_wy, t10, T::fused(t25, t15, t22 * t18));
-        let t49 = k(0.08) * t39;
-        let t50 = T::fused(k(0.08), t43, k(0.8));
-        let t51 = k(0.1) + t50;
-        let t52 = k(0.08) * t45;
-        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t48);
-        let t54 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t47);
-        let t55 = T::fused(t22, t53, t25 * t54);
+        let t45 = T::fused(-k(100000.0), outer_ring_wy * t6, t13) + t14;
+        let t46 = T::fused(rotor_wz, t10, T::fused(-t21, t15, t24 * t17));
+        let t47 = T::fused(rotor_wy, t10, T::fused(t24, t15, t21 * t17));
+        let t48 = k(0.08) * t38;
+        let t49 = T::fused(k(0.08), t42, k(0.8));
+        let t50 = k(0.1) + t49;
+        let t51 = k(0.08) * t44;
+        let t52 = k(1e-6) * t12;
+        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t47);
+        let t54 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t46);
+        let t55 = T::fused(t21, t53, t24 * t54);
         let t56 = inner_ring_e0 * inner_ring_e1;
         let t57 = inner_ring_e2 * inner_ring_e3;
         let t58 = inner_ring_e0 * inner_ring_e0;
         let t59 = T::fused(
             -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t58))),
-            t50,
+            t49,
             k(0.00025)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t49,
+                * t48,
         );
-        let t60 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, -t16) + t18,
-            T::fused(-(k(0.00025) * (t57 + t56)), t52, t59) - t55,
-        );
-        let t61 = T::fused(k(1e-6), t12 - (t12 - t16), t60);
+        let t60 = T::fused(-(k(0.00025) * (t57 + t56)), t51, t59) - t55
+            - T::fused(
+                -k(1e-6),
+                t17,
+                T::fused(-k(1e-6), inner_ring_wx * inner_ring_wy, t16),
+            );
+        let t61 = t60 + (t52 + (t16 - t52));
         let t62 = k(2.0) * outer_ring_e2;
         let t63 = outer_ring_e0 * t62;
-        let t64 = T::fused(-t25, t53, t22 * t54);
+        let t64 = T::fused(-t24, t53, t21 * t54);
         let t65 = T::fused(
             k(0.00025) * (t57 - t56),
-            t50,
+            t49,
             k(0.00025)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t49,
+                * t48,
         );
         let t66 = T::fused(
             k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t58)),
-            t52,
+            t51,
             t65,
         ) - t64;
         let t67 = T::fused(-k(2e-6), t15, t66);
         let t68 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, t14),
-            k(1e-5) * t46,
+            k(1e-5) * t45,
         );
         let t69 = T::fused(t8, t67, t3 * t68);
         let t70 = T::fused(k(2e-6), t0, t69);
@@ -3424,26 +3429,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeCoulomb<T> {
             k(0.0),
             -t14,
             t15,
-            t18,
-            t39,
-            t43,
+            t17,
+            t38,
+            t42,
+            -t44,
             -t45,
             -t46,
-            -t47,
-            t48,
-            -t49,
-            -(k(0.1) + t51),
-            t52,
+            t47,
+            -t48,
+            -(k(0.1) + t50),
+            t51,
             T::fused(-t63, t61, t71 * t70),
             T::fused(t71, t61, t63 * t70),
-            -t49,
-            -t51,
-            t52,
+            -t48,
+            -t50,
+            t51,
             T::fused(-t8, t68, t3 * t67),
             -t69,
+            -t48,
             -t49,
-            -t50,
-            t52,
+            t51,
             t55,
             t64,
         ];

@@ -192,7 +192,7 @@ fn extreme(name: &str) -> Option<ReducedGyroscope> {
         "gyroscope-stiff" => ReducedGyroscope { step: 7e-5, ..sprung(1e-2) },
         "gyroscope-overdamped" => ReducedGyroscope { step: 1e-5, ..sprung(1.0) },
         "gyroscope-coulomb" => ReducedGyroscope {
-            forces: vec![AxisForce::Coulomb { level: 1e-6, rate: 1e-3 }],
+            forces: vec![AxisForce::Coulomb { level: 2e-6, rate: 1e-3 }],
             step: 1e-3,
             ..paper
         },

@@ -204,7 +204,7 @@ fn stiff_bearings_end_in_steady_precession() {
         let about_y = upright * sin * sin + level * cos * cos;
         assert_near(rate, 1e-3 * (0.01f64.sin() - sin) / about_y, ROUNDING_OF_RATES, page);
         assert_eq!([first.rates[0], first.positions[1]], [rate, beta], "{page}: still moving at 0.1 s");
-        assert_eq!(last.rates[1], 0.0f64.max(last.rates[1]).min(1e-24), "{page}");
+        assert!(last.rates[1].abs() < 1e-24, "{page}: {last:?}");
         assert_near(last.positions[0] - first.positions[0], 999.9 * rate, ROUNDING_OF_RATES, page);
     }
 }
@@ -256,10 +256,23 @@ fn what_rubs_takes_the_energy() {
 #[test]
 fn periods_repeat_the_motion() {
     let free = ReducedGyroscope::free_nutation();
-    let times = [0.0, 0.01, 0.1, 0.5, 1.0, 7.3];
+    let times = [0.0, 0.01, 0.1, 0.5, 1.0, 20.0];
     for (found, expected) in free.solve_by_periods(&times).iter().zip(free.solve(&times)) {
         let [_, alpha, beta, phi, alpha_rate, beta_rate, phi_rate, energy] = expected.values();
         assert_alike(found, [alpha, beta, phi], [alpha_rate, beta_rate, phi_rate], "free nutation");
         assert_near(found.energy, energy, ROUNDING, "energy");
     }
+}
+
+/// Errors of a period add up: another step makes other errors, and after 23 000 periods they still do not show.
+#[test]
+fn a_thousand_seconds_are_good_to_the_last_digits() {
+    let free = ReducedGyroscope::free_nutation();
+    let times = [1.0, 100.0, 999.99, 1000.0];
+    let other = ReducedGyroscope { step: 3e-3, ..free.clone() };
+    for (found, expected) in free.solve_by_periods(&times).iter().zip(other.solve_by_periods(&times)) {
+        assert_eq!(*found, expected);
+    }
+    let turns = free.solve_by_periods(&[1000.0])[0].phi / core::f64::consts::TAU;
+    assert!((turns - 15_915.0).abs() < 50.0, "{turns}");
 }
