@@ -71,7 +71,7 @@ const PLOT_HEIGHT: f64 = 230.0;
 /// One panel is drawn larger.
 const LARGE: f64 = 1.75;
 const LEFT: f64 = 62.0;
-const GAP: f64 = 18.0;
+const GAP: f64 = 34.0;
 const TITLE: f64 = 34.0;
 const PANEL_TITLE: f64 = 24.0;
 const TICKS: f64 = 22.0;

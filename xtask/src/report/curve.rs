@@ -43,7 +43,10 @@ pub(crate) struct Outcome {
     pub(crate) error: f64,
     /// Of each coordinate.
     pub(crate) errors: Vec<f64>,
-    /// Time of the processor, s.
+    /// Time of the processor as it was measured, s.
+    pub(crate) measured: f64,
+    /// The same as it would have been had the machine been as quick as it was most of the time: the ratio in terms of the
+    /// hand-derived second's median.
     pub(crate) seconds: f64,
     /// The same over that of the hand-derived second.
     pub(crate) ratio: f64,
@@ -85,6 +88,11 @@ impl Curve {
             self.integrator,
             self.treatment.name()
         )
+    }
+
+    /// Whether they differ in the integrator at most.
+    pub(crate) fn is_like(&self, other: &Self) -> bool {
+        (self.engine, self.precision, self.treatment) == (other.engine, other.precision, other.treatment)
     }
 
     pub(crate) fn approach(&self, setting: Setting, budget: u64) -> Approach {

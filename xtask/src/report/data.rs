@@ -42,7 +42,7 @@ pub(crate) fn runs(points: &[Point], truth: &Truth, t_end: f64) -> String {
     table(&head, points.iter().map(row))
 }
 
-const RUN_HEAD: [&str; 18] = [
+const RUN_HEAD: [&str; 19] = [
     "engine",
     "precision",
     "integrator",
@@ -52,6 +52,7 @@ const RUN_HEAD: [&str; 18] = [
     "value",
     "error",
     "CPU time [s]",
+    "as measured [s]",
     "over the hand-derived second",
     "steps",
     "rejected",
@@ -66,7 +67,8 @@ const RUN_HEAD: [&str; 18] = [
 fn figures(outcome: &Outcome) -> Vec<String> {
     let s = &outcome.statistics;
     let counts = [s.accepted, s.rejected, s.corrections, s.work.evaluations, s.work.jacobians];
-    let mut row: Vec<String> = [outcome.error, outcome.seconds, outcome.ratio].map(short).to_vec();
+    let mut row: Vec<String> =
+        [outcome.error, outcome.seconds, outcome.measured, outcome.ratio].map(short).to_vec();
     row.extend(counts.map(|count| count.to_string()));
     row.extend([outcome.position_violation, outcome.velocity_violation, outcome.energy_drift].map(short));
     row

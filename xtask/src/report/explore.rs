@@ -4,8 +4,7 @@ use super::curve::{Curve, Point, Setting, Treatment};
 use super::lab::Lab;
 use super::truth::Truth;
 use crate::args::{Engine, Precision};
-use gyro_assembled::Careful;
-use gyro_model::Tree;
+use gyro_assembled::{Careful, Recursive};
 use gyro_runner::{Correction, Integrator};
 
 /// How much is tried.
@@ -70,9 +69,8 @@ pub(crate) fn treatments(lab: &Lab) -> Vec<Treatment> {
 
 /// The forms of the twin that a model can have.
 pub(crate) fn twins(lab: &Lab) -> Vec<Engine> {
-    let is_tree = Tree::of(&lab.model).loop_joints.is_empty() && lab.has_joint_coordinates();
     let mut twins = Vec::new();
-    if is_tree {
+    if Recursive::<f64>::new(&lab.model).is_ok() {
         twins.push(Engine::Recursive);
     }
     if Careful::<f64>::supports(&lab.model).is_ok() {

@@ -230,9 +230,12 @@ pub(crate) fn drift(drifts: &[Drift], scene: &str) -> Chart {
         let Ok(course) = &drift.outcome else { continue };
         let style = treatment_style(drift.treatment);
         let over_time = |values: &[f64]| {
-            // What is exactly zero has no logarithm.
-            let points = course.times.iter().copied().zip(values.iter().map(|value| value.max(DRIFTS.0)));
-            Line { points: points.collect(), style }
+            // The largest so far; what is exactly zero has no logarithm.
+            let largest = values.iter().scan(DRIFTS.0, |largest, value| {
+                *largest = largest.max(*value);
+                Some(*largest)
+            });
+            Line { points: course.times.iter().copied().zip(largest).collect(), style }
         };
         violations.push(over_time(&course.violations));
         energy.push(over_time(&course.energy));
@@ -244,11 +247,8 @@ pub(crate) fn drift(drifts: &[Drift], scene: &str) -> Chart {
         y: Axis { label: "violation, energy error (pure numbers)".to_owned(), limits: DRIFTS },
         n_columns: 2,
         panels: vec![
-            Panel {
-                title: "worst constraint, lengths over the mechanism's size".to_owned(),
-                lines: violations,
-            },
-            Panel { title: "energy error over the energy that moves".to_owned(), lines: energy },
+            Panel { title: "worst constraint so far".to_owned(), lines: violations },
+            Panel { title: "worst energy error so far".to_owned(), lines: energy },
         ],
         legend,
     }

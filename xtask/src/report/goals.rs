@@ -41,7 +41,7 @@ impl Goal {
             Limit::Near(value, by) => format!("{} ± {}", number(value, 4), number(by, 2)),
         };
         let reached = self.reached.map_or("nothing".to_owned(), |reached| number(reached, 3));
-        let verdict = if self.is_met() { "met" } else { "**not met**" };
+        let verdict = if self.is_met() { "met" } else { "not met" };
         vec![self.what.clone(), limit, reached, self.by.clone(), verdict.to_owned()]
     }
 }

@@ -26,6 +26,7 @@ pub(crate) struct Lab {
     programs: [PathBuf; 2],
     twin: PathBuf,
     sessions: Vec<((Engine, Precision), Session)>,
+    has_joint_coordinates: bool,
 }
 
 /// A run that was made.
@@ -53,7 +54,16 @@ impl Lab {
             .map_err(|e| Failure::Usage(e.to_string()))?;
         let program = |precision| nested::program(&model, &module, precision);
         let programs = [program(Precision::F64)?, program(Precision::F32)?];
-        Self::with_programs(model, path, name, programs, twin)
+        let lab = Self::with_programs(model, path, name, programs, twin)?;
+        Ok(Self { has_joint_coordinates: module.code.contains("gyro_sim::JointSpace for"), ..lab })
+    }
+
+    /// The same scene, to be changed.
+    pub(crate) fn again(&self) -> Result<Self, Failure> {
+        let programs = self.programs.clone();
+        let lab =
+            Self::with_programs(self.model.clone(), &self.path, self.name.clone(), programs, &self.twin)?;
+        Ok(Self { has_joint_coordinates: self.has_joint_coordinates, ..lab })
     }
 
     /// The same scene with one of its numbers made a parameter, in `f64`.
@@ -65,7 +75,7 @@ impl Lab {
         let program = nested::program(&model, &module, Precision::F64)?;
         let programs = [program.clone(), program];
         let lab = Self::with_programs(model, &self.path, self.name.clone(), programs, &self.twin)?;
-        Ok(Self { parameters, ..lab })
+        Ok(Self { parameters, has_joint_coordinates: self.has_joint_coordinates, ..lab })
     }
 
     fn with_programs(
@@ -87,6 +97,7 @@ impl Lab {
             programs,
             twin: twin.to_path_buf(),
             sessions: Vec::new(),
+            has_joint_coordinates: false,
             model,
         })
     }
@@ -97,9 +108,7 @@ impl Lab {
 
     /// Whether the model is a tree whose generated code has joint coordinates.
     pub(crate) fn has_joint_coordinates(&self) -> bool {
-        gyro_model::Tree::of(&self.model).loop_joints.is_empty()
-            && self.model.couplers.is_empty()
-            && self.model.drivers.is_empty()
+        self.has_joint_coordinates
     }
 
     /// The reference solution, or what has to do in its place.
@@ -224,6 +233,7 @@ impl Lab {
             Outcome {
                 error: truth.judge(&errors),
                 errors,
+                measured: timing.measured.seconds,
                 seconds: timing.measured.seconds,
                 ratio: timing.measured.ratio,
                 statistics: timing.statistics,

@@ -5,7 +5,7 @@ use crate::args::{Engine, Precision};
 use crate::linear::Linear;
 use gyro_assembled::Dense;
 use gyro_model::{ForceKind, Model, Number, Rational, to_f64};
-use gyro_runner::{Approach, Coordinates, Correction, Integrator, Settings, When};
+use gyro_runner::{Approach, Coordinates, Correction, Integrator, JointSample, Sample, Settings, When};
 use gyro_sim::integrate::{Method, Work};
 use gyro_sim::{Differentiable, Dop853, Kutta4, Ode, Rodas4, Tsit5};
 use nalgebra::{Complex, DMatrix, Schur};
@@ -121,6 +121,14 @@ impl Knob {
                 format!("damping of `{}` in SI units", model.forces[force].name).replace('`', "")
             }
             Self::Rates => "rates of the start, as multiples of the page's".to_owned(),
+        }
+    }
+
+    /// How far it is turned either way, in decades: with slower rates other motions take over than those about the start.
+    pub(crate) fn decades(self) -> u32 {
+        match self {
+            Self::Damping(..) => 2,
+            Self::Rates => 1,
         }
     }
 
@@ -256,8 +264,10 @@ pub(crate) fn search(guess: f64, mut is_stable: impl FnMut(f64) -> bool) -> Foun
     found
 }
 
-/// A run counts as unstable when it fails or its kinetic energy exceeds the largest of an accurate run this many times.
-const BOUND: f64 = 2.0;
+/// A run counts as unstable when it fails or when a rate exceeds the largest that it has in an accurate run this many times. What hardly
+/// turns there may turn as fast as this part of the fastest.
+const BOUND: f64 = 30.0;
+const SLOW: f64 = 1e-4;
 
 /// The limits of an integrator on a lab's scene as it is set.
 pub(crate) fn find(
@@ -282,26 +292,46 @@ pub(crate) fn find(
     };
     let t_end = lab.t_end.min(STEPS as f64 * guess);
     let accurate = lab.run(who, &plan(t_end, t_end, approach(Integrator::Rodas4, Some(1e-6))))?;
-    let largest = accurate.samples.iter().map(|sample| sample.kinetic).fold(0.0, f64::max);
+    let largest = accurate.samples.iter().map(rates).reduce(larger).unwrap_or_default();
+    let fastest = largest.iter().copied().fold(0.0, f64::max);
+    let is_bounded = |rates: &[f64]| {
+        // What is not a number is not bounded.
+        rates.iter().zip(&largest).all(|(rate, largest)| *rate <= BOUND * largest.max(SLOW * fastest))
+    };
     Ok(search(guess, |step| {
         let run = lab.run(who, &plan(STEPS as f64 * step, step, approach(integrator, None)));
-        run.is_ok_and(|run| run.samples.iter().all(|sample| sample.kinetic <= BOUND * largest))
+        run.is_ok_and(|run| run.samples.iter().map(rates).all(|rates| is_bounded(&rates)))
     }))
 }
 
-/// A lab in which the knob can be turned, and how.
-pub(crate) fn turnable(lab: &Lab, knob: Knob) -> Result<Lab, crate::failure::Failure> {
-    let (mut model, mut parameters) = (lab.model.clone(), Vec::new());
-    if let Knob::Damping(force, value) = knob {
-        let index = model.parameters.len();
-        let exact = |value| Rational::from_float(value).unwrap_or_default();
-        parameters.extend(model.parameters.iter().map(|p| to_f64(&p.value)));
-        parameters.push(value);
-        model.parameters.push(gyro_model::Parameter { name: "map_damping".to_owned(), value: exact(value) });
-        if let ForceKind::Damper { damping, .. } = &mut model.forces[force].kind {
-            *damping = Number::Parameter { index, negated: false };
+/// The sizes of all rates of a sample.
+fn rates(sample: &Sample) -> Vec<f64> {
+    let mut rates = Vec::new();
+    for coordinate in &sample.coordinates {
+        match coordinate {
+            JointSample::Angle { rate, .. } | JointSample::Length { rate, .. } => rates.push(rate.abs()),
+            JointSample::Orientation { rate, .. } => rates.extend(rate.map(f64::abs)),
         }
     }
+    rates.extend(sample.bodies.iter().flat_map(|body| body.velocity.map(f64::abs)));
+    rates
+}
+
+fn larger(a: Vec<f64>, b: Vec<f64>) -> Vec<f64> {
+    a.iter().zip(&b).map(|(a, b)| a.max(*b)).collect()
+}
+
+/// A lab in which the knob can be turned.
+pub(crate) fn turnable(lab: &Lab, knob: Knob) -> Result<Lab, crate::failure::Failure> {
+    let Knob::Damping(force, value) = knob else { return lab.again() };
+    let mut model = lab.model.clone();
+    let mut parameters: Vec<f64> = model.parameters.iter().map(|p| to_f64(&p.value)).collect();
+    parameters.push(value);
+    if let ForceKind::Damper { damping, .. } = &mut model.forces[force].kind {
+        *damping = Number::Parameter { index: model.parameters.len(), negated: false };
+    }
+    let value = Rational::from_float(value).unwrap_or_default();
+    model.parameters.push(gyro_model::Parameter { name: "map_damping".to_owned(), value });
     lab.variant(model, parameters)
 }
 

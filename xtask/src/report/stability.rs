@@ -24,12 +24,13 @@ pub(crate) struct Column {
 /// The explicit methods; Rodas has no limit.
 const INTEGRATORS: [Integrator; 3] = [Integrator::Rk4, Integrator::Tsit5, Integrator::Dop853];
 
-/// Maps of the explicit methods over a hundred to one either way, and in words what could not be found.
+/// Maps of the explicit methods and in words what could not be found.
 pub(crate) fn maps(lab: &Lab, knob: Knob, per_decade: u32) -> Result<(Vec<Map>, Vec<String>), Failure> {
     let mut turned = limits::turnable(lab, knob)?;
-    let n = (2 * DECADES * per_decade).max(2);
+    let decades = knob.decades();
+    let n = (2 * decades * per_decade).max(2);
     let value =
-        |k: u32| knob.nominal() * 10f64.powf(f64::from(DECADES) * (2.0 * f64::from(k) / f64::from(n) - 1.0));
+        |k: u32| knob.nominal() * 10f64.powf(f64::from(decades) * (2.0 * f64::from(k) / f64::from(n) - 1.0));
     let mut maps = INTEGRATORS.map(|integrator| Map { integrator, columns: Vec::new() });
     let mut troubles = Vec::new();
     for value in (0..=n).map(value) {
@@ -56,5 +57,3 @@ pub(crate) fn maps(lab: &Lab, knob: Knob, per_decade: u32) -> Result<(Vec<Map>, 
     }
     Ok((maps.into(), troubles))
 }
-
-const DECADES: u32 = 2;

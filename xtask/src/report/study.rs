@@ -139,7 +139,19 @@ fn points(lab: &mut Lab, truth: &Truth, effort: ladders::Effort, progress: &Coun
         points.extend(explore::explore(lab, truth, curve, &effort));
         progress.advance(&curve.name());
     }
+    even_out(&mut points);
     points
+}
+
+/// Takes out what the machine's speed has varied by in the meantime.
+fn even_out(points: &mut [Point]) {
+    let outcomes = || points.iter().filter_map(|point| point.outcome.as_ref().ok());
+    let mut yardsticks: Vec<f64> = outcomes().map(|outcome| outcome.measured / outcome.ratio).collect();
+    yardsticks.sort_by(f64::total_cmp);
+    let Some(&yardstick) = yardsticks.get(yardsticks.len() / 2) else { return };
+    for outcome in points.iter_mut().filter_map(|point| point.outcome.as_mut().ok()) {
+        outcome.seconds = outcome.ratio * yardstick;
+    }
 }
 
 /// Orders in `f64`, where every step ends on the constraints or there are none.
