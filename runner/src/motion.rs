@@ -394,7 +394,7 @@ where
     M: Partition + Projection + 'static,
 {
     match approach.correction {
-        Keeping::None => explicit(Plain, correction, approach, y),
+        Keeping::None | Keeping::MassWeighted => explicit(Plain, correction, approach, y),
         Keeping::Baumgarte(rate) => explicit(Steered(rate), correction, approach, y),
         _ => explicit(Cheap, correction, approach, y),
     }

@@ -56,7 +56,7 @@ pub(crate) fn amplification(integrator: Integrator, z: Complex<f64>) -> f64 {
 }
 
 /// What a step may add to a motion that does not grow: what adds less takes more steps to show than a run has.
-const GROWTH: f64 = 1e-2;
+const GROWTH: f64 = 1e-3;
 
 /// The largest |z| along the ray of an eigenvalue up to which a method is stable; `None` if there is no end to it.
 pub(crate) fn limit_along(integrator: Integrator, eigenvalue: Complex<f64>) -> Option<f64> {
@@ -209,8 +209,11 @@ fn maximal(model: &Model, factor: f64) -> Result<DMatrix<f64>, String> {
 /// Of differences, relative to an element.
 const STEP: f64 = 1e-3;
 
-/// Steps of a run that decides: growth of one in a hundred shows.
+/// Steps of a run that decides: growth of one in a thousand shows.
 const STEPS: u64 = 4000;
+
+/// Samples of such a run: a motion that bursts may die again, having taken the scene's energy with it.
+const SAMPLES: f64 = 1000.0;
 
 /// Relative width to which a limit is found.
 const WIDTH: f64 = 0.01;
@@ -266,7 +269,7 @@ pub(crate) fn search(guess: f64, mut is_stable: impl FnMut(f64) -> bool) -> Foun
 
 /// A run counts as unstable when it fails or when a rate exceeds the largest that it has in an accurate run this many times. What hardly
 /// turns there may turn as fast as this part of the fastest.
-const BOUND: f64 = 30.0;
+const BOUND: f64 = 10.0;
 const SLOW: f64 = 1e-4;
 
 /// The limits of an integrator on a lab's scene as it is set.
@@ -286,7 +289,7 @@ pub(crate) fn find(
         budget: Some(200_000),
     };
     let plan = |t_end: f64, step: f64, approach| Plan {
-        settings: Settings { t_end, step, correct_every: None, sample_every: t_end / 20.0 },
+        settings: Settings { t_end, step, correct_every: None, sample_every: t_end / SAMPLES },
         approach,
         measure_for: None,
     };
@@ -354,7 +357,7 @@ pub(crate) fn turn(lab: &mut Lab, nominal: &Lab, knob: Knob, value: f64) {
 mod tests {
     use super::*;
 
-    /// Of limits, whose growth is one in a hundred.
+    /// Of limits, whose growth is one in a thousand.
     const NEAR: f64 = 0.01;
 
     #[test]
