@@ -52,6 +52,7 @@ mod assembled;
 mod balance;
 mod careful;
 mod charts;
+pub mod child;
 mod course;
 mod dense;
 mod energy;

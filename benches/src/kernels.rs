@@ -1,9 +1,9 @@
 //! What is measured: one line for each kernel.
 
-use crate::floor::FLOPS;
-use crate::scene::{STEP, Scene};
+use crate::scene::Scene;
 use crate::sheet::Sheet;
 use gyro_sim::{Equations, JointForm, JointSpace, Ode, Partition, Partitioned, Rk4};
+use gyro_yardstick::{FLOPS, STEP};
 use std::fmt;
 use std::hint::black_box;
 
@@ -210,14 +210,7 @@ const SECOND: &str = "the paper's second";
 /// Whole runs; the floor comes first.
 pub fn runs(scene: &Scene) -> Vec<Kernel<'_>> {
     vec![
-        Kernel::new(SECOND, "floor, by hand, RK4", None, || {
-            let mut y = scene.floor.start();
-            let mut rk4 = Rk4::new(&y);
-            for step in 0..CORRECTIONS * STEPS_PER_CORRECTION {
-                rk4.step(&scene.floor, f64::from(step) * STEP, STEP, &mut y);
-            }
-            black_box(y);
-        }),
+        Kernel::new(SECOND, "floor, by hand, RK4", None, || black_box(scene.floor).second()),
         Kernel::new(SECOND, "generated, joint coordinates, RK4", None, || {
             let form = JointForm(&scene.generated);
             let mut x = form.start();

@@ -2,10 +2,10 @@
 
 use crate::Kernel;
 use crate::kernels::{CORRECTIONS, STEPS_PER_CORRECTION};
-use crate::scene::STEP;
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
 use gyro_sim::{Charted, JointForm, JointSpace, Mechanism, Ode, Partition, Partitioned, Rk4, Scalar, charts};
+use gyro_yardstick::STEP;
 use std::hint::black_box;
 
 /// The scalar runs, then the pack.

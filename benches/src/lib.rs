@@ -4,14 +4,13 @@
 //! Every kernel does its work on the same state, in the middle of the paper's second and on the constraints, in the same build.
 //! [`Scene::new`] checks all that is measured against the floor first: what is wrong is not fast.
 
-mod floor;
 mod kernels;
 pub mod lanes;
 mod round;
 mod scene;
 mod sheet;
 
-pub use floor::Floor;
+pub use gyro_yardstick::Floor;
 pub use kernels::{Kernel, kernels, runs};
 pub use round::{Clock, Figure, counted, interleaved};
 pub use scene::Scene;

@@ -1,12 +1,9 @@
 //! The paper's scene as everyone who computes it sees it.
 
-use crate::Floor;
 use gyro_assembled::{Careful, Dense, Recursive};
 use gyro_sim::generated::{gyroscope::Gyroscope, gyroscope_maximal::GyroscopeMaximal};
 use gyro_sim::{Equations, Ode, Rk4};
-
-/// The paper's step, s.
-pub(crate) const STEP: f64 = 1e-4;
+use gyro_yardstick::{Floor, STEP};
 
 /// Steps to the state at which kernels are measured: 0.37 s, where nothing is zero.
 const STEPS: u32 = 3700;

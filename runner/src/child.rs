@@ -1,33 +1,67 @@
 //! The program that the command line compiles around a generated mechanism: all but its five lines.
 
 use crate::motion::Kit;
-use crate::protocol::{Reply, Request, sample_line};
-use crate::{Event, Summary, run_by};
+use crate::protocol::{END, Reply, Request, sample_line};
+use crate::{Event, Failure, Settings, Summary, run_by, time_by};
 use gyro_sim::{Partition, Ports};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufRead, BufWriter, Write};
 use std::process::ExitCode;
+use std::time::Duration;
 
-/// Reads a request from standard input, runs the mechanism that `build` makes of the request's parameters with the kit beside it, and
-/// writes the samples to standard output as they come.
+/// Reads requests from standard input, one after the other, runs the mechanism that `build` makes of a request's parameters with the kit
+/// beside it, and writes the samples to standard output as they come.
 ///
-/// The exit code says whether the run was complete; the last line says why not.
-pub fn main<M: Partition + Ports + 'static, K: Kit<M>>(build: impl FnOnce(&[f64]) -> (M, K)) -> ExitCode {
-    let mut output = BufWriter::new(io::stdout().lock());
-    let outcome = answer(build, &mut output);
-    let is_complete = outcome.is_ok();
-    let last = outcome.map_or_else(Reply::Failed, Reply::Done);
-    let told = writeln!(output, "{}", last.to_line()).and_then(|()| output.flush());
-    if is_complete && told.is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+/// The exit code says whether the last run was complete; the last line of its answer says why not.
+pub fn main<M: Partition + Ports + 'static, K: Kit<M>>(build: impl Fn(&[f64]) -> (M, K)) -> ExitCode {
+    answer_all(|request, output| {
+        let (mut mechanism, kit) = build(&request.parameters);
+        answer(&mut mechanism, &kit, request, output)
+    })
 }
 
-/// The figures of the run, or in words why there are none.
-fn answer<M: Partition + Ports + 'static, K: Kit<M>>(
-    build: impl FnOnce(&[f64]) -> (M, K),
-    output: &mut impl Write,
+/// The same for whatever can answer a request.
+pub fn answer_all(mut answer: impl FnMut(&Request, &mut dyn Write) -> Result<Summary, String>) -> ExitCode {
+    let mut input = io::stdin().lock();
+    let mut output = BufWriter::new(io::stdout().lock());
+    let mut is_well = true;
+    while let Some(text) = request_text(&mut input) {
+        let request = text.and_then(|text| Request::parse(&text).map_err(|e| e.to_string()));
+        let outcome = request.and_then(|request| answer(&request, &mut output));
+        is_well = outcome.is_ok();
+        let last = outcome.map_or_else(Reply::Failed, Reply::Done);
+        let told = writeln!(output, "{}", last.to_line()).and_then(|()| output.flush());
+        if told.is_err() {
+            return ExitCode::FAILURE;
+        }
+    }
+    if is_well { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// The lines up to the end of a request; `None` when nothing comes any more.
+fn request_text(input: &mut impl BufRead) -> Option<Result<String, String>> {
+    let mut text = String::new();
+    loop {
+        let began = text.len();
+        match input.read_line(&mut text) {
+            Ok(0) => return (!text.is_empty()).then_some(Ok(text)),
+            Ok(_) if text[began..].trim_end() == END => return Some(Ok(text)),
+            Ok(_) => (),
+            Err(error) => return Some(Err(error.to_string())),
+        }
+    }
+}
+
+/// Runs, and measures if that is asked for: the figures of the run, or in words why there are none.
+///
+/// # Errors
+/// The failure in words.
+pub fn answer<M: Partition + Ports + 'static>(
+    mechanism: &mut M,
+    kit: &dyn Kit<M>,
+    request: &Request,
+    output: &mut dyn Write,
 ) -> Result<Summary, String> {
-    let text = io::read_to_string(io::stdin()).map_err(|e| e.to_string())?;
-    let request = Request::parse(&text).map_err(|e| e.to_string())?;
-    let (mut mechanism, kit) = build(&request.parameters);
+    let plan: (&Settings, _) = (&request.settings, &request.approach);
     let told = |event: Event<'_>| match event {
         Event::Sample(sample) => writeln!(output, "{}", sample_line(sample)),
         Event::Linear(linear) => writeln!(output, "{}", Reply::Linear(linear.clone()).to_line()),
@@ -36,6 +70,24 @@ fn answer<M: Partition + Ports + 'static, K: Kit<M>>(
             output.flush()
         }
     };
-    run_by(&mut mechanism, &kit, (&request.settings, &request.approach), &request.start, told)
-        .map_err(|e| e.to_string())
+    let in_words = |failure: Failure| failure.to_string();
+    let summary = run_by(mechanism, kit, plan, &request.start, told).map_err(in_words)?;
+    if let Some(seconds) = request.measure_for {
+        let budget = Duration::from_secs_f64(seconds);
+        let timing = time_by(mechanism, kit, plan, &request.start, budget).map_err(in_words)?;
+        writeln!(output, "{}", Reply::Timed(timing).to_line()).map_err(|e| e.to_string())?;
+    }
+    Ok(summary)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn requests_end_with_a_line_of_their_own_or_with_the_input() {
+        let mut input = "settings 1 2\nend\nwhen x\nendless\n".as_bytes();
+        let texts: Vec<_> = std::iter::from_fn(|| request_text(&mut input)).map(Result::unwrap).collect();
+        assert_eq!(texts, ["settings 1 2\nend\n", "when x\nendless\n"]);
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! [`run`] takes any [`gyro_sim::Partition`] from its start to the end of the run and hands out a [`Sample`] at each
 //! sample time. The command line calls it in its own process for the runtime-assembled twin; for generated code it
-//! compiles a small program around [`child::main`] and speaks with it in the words of [`protocol`].
+//! compiles a small program around [`child::main`] and speaks with it in the words of [`protocol`]. [`time_by`] makes the same run for its time.
 //!
 //! ```text
 //! settings ─schedule─▶ segments ─run─▶ samples ─summary─▶ worst violations, energy drift
@@ -21,6 +21,7 @@ mod run;
 mod sample;
 mod schedule;
 mod summary;
+mod timing;
 
 pub use approach::{Approach, Coordinates, Correction, Integrator, When};
 pub use companion::{companions, differences};
@@ -30,6 +31,7 @@ pub use run::{Event, Start, run, run_by};
 pub use sample::{BodySample, JointSample, Sample};
 pub use schedule::{Impossible, Schedule, Segment, Settings};
 pub use summary::{Summary, Tracker, energy_error};
+pub use timing::{Timing, time_by};
 
 #[cfg(test)]
 mod spinner;

@@ -1,12 +1,13 @@
 //! How the command line and the program that it compiles speak with each other: lines of words and numbers.
 //!
-//! Numbers are printed with as many digits as it takes to read the same number back. The command line writes one
-//! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output.
+//! Numbers are printed with as many digits as it takes to read the same number back. The command line writes a
+//! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output, and waits for the next.
 
 use crate::motion::Linear;
-use crate::{Approach, BodySample, Input, JointSample, Sample, Settings, Start, Summary};
+use crate::{Approach, BodySample, Input, JointSample, Sample, Settings, Start, Summary, Timing};
 use gyro_sim::Statistics;
 use gyro_sim::integrate::Work;
+use gyro_yardstick::Measured;
 use std::fmt::Write as _;
 use std::str::{FromStr, SplitAsciiWhitespace};
 
@@ -21,7 +22,12 @@ pub struct Request {
     pub parameters: Vec<f64>,
     /// Where to start.
     pub start: Start,
+    /// How long the run may be repeated for its time, s; `None` if nobody asks for that.
+    pub measure_for: Option<f64>,
 }
+
+/// The line after a request.
+pub const END: &str = "end";
 
 /// One line of an answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,6 +38,8 @@ pub enum Reply {
     Linear(Linear),
     /// The run has reached this time, s.
     Progress(f64),
+    /// What the run costs when nobody looks at it.
+    Timed(Timing),
     /// The run is complete.
     Done(Summary),
     /// The run has failed: why, in words.
@@ -76,7 +84,8 @@ impl Request {
             input.rows.iter().for_each(|row| words(&mut text, "", row));
             text.push('\n');
         }
-        text
+        let _ = self.measure_for.map(|seconds| writeln!(text, "measure_for {seconds:?}"));
+        text + END + "\n"
     }
 
     /// Reads a request.
@@ -86,7 +95,8 @@ impl Request {
     pub fn parse(text: &str) -> Result<Self, Garbled> {
         let settings = Settings { t_end: 0.0, step: 0.0, correct_every: None, sample_every: 0.0 };
         let approach = Approach::default();
-        let mut request = Self { settings, approach, parameters: Vec::new(), start: Start::default() };
+        let start = Start::default();
+        let mut request = Self { settings, approach, parameters: Vec::new(), start, measure_for: None };
         for line in text.lines() {
             request.take(line).ok_or_else(|| Garbled(line.to_owned()))?;
         }
@@ -114,6 +124,8 @@ impl Request {
             "turn_references" => self.start.turn_references = list(values)?,
             "angles" => self.start.angles = list(values)?,
             "observe" => self.start.observed_bodies = list(values)?,
+            "measure_for" => self.measure_for = Some(values.parse().ok()?),
+            END => (),
             "input" => self.start.inputs.push(input(values)?),
             _ => return None,
         }
@@ -136,16 +148,17 @@ impl Reply {
             }
             Self::Progress(t) => format!("progress {t:?}"),
             Self::Done(s) => {
-                let Statistics { accepted, rejected, corrections, work, limited_by_stability, .. } =
-                    s.statistics;
                 let mut text = format!("done {} {}", s.steps, s.chart_switches);
                 words(&mut text, "", &[s.position_violation, s.velocity_violation, s.norm_violation]);
                 words(&mut text, "", &[s.energy_drift, s.run_time_s]);
-                words(&mut text, "", &[accepted, rejected, corrections, work.evaluations, work.jacobians]);
-                words(&mut text, "", &[limited_by_stability]);
-                let Statistics { fastest_rate, shortest_step, longest_step, .. } = s.statistics;
-                words(&mut text, "", &[fastest_rate, shortest_step, longest_step]);
+                statistics(&mut text, &s.statistics);
                 words(&mut text, "", s.smallest_pivot.as_slice());
+                text
+            }
+            Self::Timed(Timing { measured, statistics: met }) => {
+                let mut text = format!("timed {}", measured.runs);
+                words(&mut text, "", &[measured.seconds, measured.ratio]);
+                statistics(&mut text, met);
                 text
             }
             Self::Failed(words) => format!("failed {}", words.replace('\n', " ")),
@@ -167,6 +180,7 @@ impl Reply {
             "sample" => Self::Sample(words.sample()?),
             "linear" => Self::Linear(words.linear()?),
             "progress" => Self::Progress(words.next()?),
+            "timed" => Self::Timed(words.timing()?),
             "done" => Self::Done(words.summary()?),
             "failed" => return Some(Self::Failed(rest.to_owned())),
             _ => return None,
@@ -215,20 +229,29 @@ impl Words<'_> {
             norm_violation: self.next()?,
             energy_drift: self.next()?,
             run_time_s: self.next()?,
-            statistics: Statistics {
-                accepted: self.next()?,
-                rejected: self.next()?,
-                corrections: self.next()?,
-                work: Work { evaluations: self.next()?, jacobians: self.next()? },
-                limited_by_stability: self.next()?,
-                fastest_rate: self.next()?,
-                shortest_step: self.next()?,
-                longest_step: self.next()?,
-            },
+            statistics: self.statistics()?,
             smallest_pivot: match self.0.next() {
                 Some(word) => Some(word.parse().ok()?),
                 None => None,
             },
+        })
+    }
+
+    fn timing(&mut self) -> Option<Timing> {
+        let measured = Measured { runs: self.next()?, seconds: self.next()?, ratio: self.next()? };
+        Some(Timing { measured, statistics: self.statistics()? })
+    }
+
+    fn statistics(&mut self) -> Option<Statistics> {
+        Some(Statistics {
+            accepted: self.next()?,
+            rejected: self.next()?,
+            corrections: self.next()?,
+            work: Work { evaluations: self.next()?, jacobians: self.next()? },
+            limited_by_stability: self.next()?,
+            fastest_rate: self.next()?,
+            shortest_step: self.next()?,
+            longest_step: self.next()?,
         })
     }
 
@@ -267,6 +290,13 @@ impl Words<'_> {
         }
         Some(sample)
     }
+}
+
+fn statistics(text: &mut String, s: &Statistics) {
+    let counts = [s.accepted, s.rejected, s.corrections, s.work.evaluations, s.work.jacobians];
+    words(text, "", &counts);
+    words(text, "", &[s.limited_by_stability]);
+    words(text, "", &[s.fastest_rate, s.shortest_step, s.longest_step]);
 }
 
 /// One sample as a reply line, without its end.
@@ -352,6 +382,7 @@ mod tests {
                     ],
                     observed_bodies: vec![0, 12],
                 },
+                measure_for: correct_every.map(|every| 3.0 * every),
             };
             assert_eq!(Request::parse(&request.to_text()).unwrap(), request);
         }
@@ -389,6 +420,10 @@ mod tests {
                 by_inputs: vec![AWKWARD[6]; 2],
             }),
             Reply::Progress(0.25),
+            Reply::Timed(Timing {
+                measured: Measured { runs: 9, seconds: AWKWARD[1], ratio: AWKWARD[6] },
+                statistics: Statistics { accepted: 3, fastest_rate: AWKWARD[4], ..Statistics::default() },
+            }),
             Reply::Done(summary),
             Reply::Failed("at t = 1 s the end".to_owned()),
         ] {

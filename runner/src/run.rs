@@ -119,7 +119,7 @@ pub fn run_by<M: Partition + Ports + 'static>(
 }
 
 /// The schedule of an approach: its own corrections, or none to be scheduled, do not divide the run.
-fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
+pub(crate) fn scheduled(settings: &Settings, approach: &Approach) -> Settings {
     let has_moments = approach.coordinates == Coordinates::Maximal
         && !matches!(approach.correction, Correction::None | Correction::Baumgarte(_))
         && approach.when.is_none()
@@ -268,7 +268,7 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
 }
 
 /// The state of a start: `(q, v)`, then zero work where the mechanism counts work, then turn references.
-fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::State, Failure> {
+pub(crate) fn state<M: Partition>(mechanism: &M, start: &Start) -> Result<M::State, Failure> {
     let mut state = mechanism.start();
     refuse_misfit(mechanism, state.as_ref().len(), start)?;
     let (known, rest) = state.as_mut().split_at_mut(13 * mechanism.n_bodies());

@@ -96,7 +96,11 @@ fn integrators_keep_their_orders_through_corrections() {
     let gyroscope = Gyroscope::<f64>::default();
     let corrected = Corrected(&gyroscope);
     assert_orders("rk4", 4.0, orders(&corrected, Kutta4::new, &[1500, 2000, 3000, 4000, 6000]));
-    assert_orders("tsit5", 5.0, orders(&corrected, Tsit5::new, &[400, 600, 800, 1000, 1200, 1400, 1600, 1800]));
+    assert_orders(
+        "tsit5",
+        5.0,
+        orders(&corrected, Tsit5::new, &[400, 600, 800, 1000, 1200, 1400, 1600, 1800]),
+    );
     assert_orders("dop853", 8.0, orders(&corrected, Dop853::new, &[110, 140, 180, 220, 260]));
     let (duals, zeros) = (Gyroscope::<Dual<f64, 4>>::default(), vec![0.0; 39 * 39]);
     let system = ByDuals::new(Exact(&gyroscope), Exact(&duals), &zeros);

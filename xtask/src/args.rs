@@ -21,6 +21,7 @@ pub(crate) enum Command {
     Import(ImportArgs),
     Verify(VerifyArgs),
     Performance(PerformanceArgs),
+    Report(ReportArgs),
     Embedded(EmbeddedArgs),
 }
 
@@ -270,6 +271,29 @@ pub(crate) struct PerformanceArgs {
     /// Measure packs of lanes alone and leave the other tables alone
     #[arg(long, conflicts_with = "bodies")]
     pub(crate) only_lanes: bool,
+}
+
+/// Report error against run time, drift and stability of scenes
+///
+/// Runs each scene by every integrator, correction, coordinates and precision and by the twins, counts errors from a reference solution of
+/// its own, and writes a page for each scene as Markdown and as one HTML file, figures, raw data as CSV and an index. All of it
+/// takes about twenty minutes; leave the machine alone meanwhile.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  cargo xtask report                             every model in models/, to docs/report
+  cargo xtask report models/gyroscope.toml
+  cargo xtask report --quick                     a minute, to target/report
+  cargo xtask report ~/gimbal.toml --out ~/gimbal-report")]
+pub(crate) struct ReportArgs {
+    /// Model pages; all of models/ if none is given
+    #[arg(value_name = "MODEL")]
+    pub(crate) models: Vec<PathBuf>,
+    /// Few points and short runs, and the paper's scene alone if none is given
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Folder of the report [default: docs/report; target/report with --quick]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// Run the firmware and write docs/embedded.md

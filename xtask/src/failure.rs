@@ -16,6 +16,14 @@ pub(crate) enum Failure {
 }
 
 impl Failure {
+    /// What is wrong.
+    pub(crate) fn words(&self) -> String {
+        match self {
+            Self::Usage(words) | Self::Run(words) => words.clone(),
+            Self::Page(mistakes) => mistakes.render(),
+        }
+    }
+
     /// Says so on standard error; returns the exit status.
     pub(crate) fn report(&self) -> ExitCode {
         let mut stderr = std::io::stderr();

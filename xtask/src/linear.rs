@@ -62,10 +62,15 @@ impl Linear {
 
     /// Linearises a model about its start; says why that cannot be done.
     pub(crate) fn about_start(model: &Model) -> Result<Self, String> {
+        Self::about_start_at(model, 1.0)
+    }
+
+    /// The same with all rates of the start multiplied.
+    pub(crate) fn about_start_at(model: &Model, factor: f64) -> Result<Self, String> {
         let joints = revolute_joints(model)?;
         let assembled = model.assemble().map_err(|e| e.to_string())?;
         let angles = joints.iter().map(|&j| assembled.joints[j].position[0]);
-        let rates = joints.iter().map(|&j| assembled.joints[j].rate[0]);
+        let rates = joints.iter().map(|&j| factor * assembled.joints[j].rate[0]);
         let start = DVector::from_iterator(2 * joints.len(), angles.chain(rates));
         let (system, n) = (System { model, joints: &joints }, joints.len());
         let fastest = start.rows(n, n).amax();
@@ -76,6 +81,11 @@ impl Linear {
         let steps = DVector::from_fn(2 * n, |k, _| if k < n { ANGLE_STEP } else { RATE_STEP });
         let a = jacobian(|x| system.derivative(x), &base, &steps)?;
         Ok(Self { joints, base, x0, f0, a })
+    }
+
+    /// A of `ẋ = f₀ + A x`; x has angles, then rates.
+    pub(crate) fn matrix(&self) -> &DMatrix<f64> {
+        &self.a
     }
 
     /// The angles at so many times, `interval` apart from zero on; says why linear theory does not hold so long.

@@ -20,6 +20,7 @@ mod performance;
 mod plot;
 mod progress;
 mod remarks;
+mod report;
 mod rounding;
 mod scaling;
 mod scene;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Command::Inspect(args) => inspect::inspect(&args),
         Command::Import(args) => urdf::import(&args),
         Command::Performance(args) => performance::performance(&args),
+        Command::Report(args) => report::report(&args),
         Command::Embedded(args) => embedded::embedded(&args),
         Command::Verify(args) => verify::verify_models(&args),
     };

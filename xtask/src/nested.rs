@@ -11,32 +11,47 @@ use crate::scene::Scene;
 use crate::verify::verify_quickly;
 use crate::{files, machine_code};
 use gyro_codegen::Module;
+use gyro_model::Model;
 use gyro_runner::protocol::{Reply, Request};
-use gyro_runner::{Event, Summary};
+use gyro_runner::{Event, Summary, Timing};
 use std::collections::hash_map::DefaultHasher;
 use std::fs::{self, File};
 use std::hash::{Hash, Hasher};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// Generates, compiles and runs; `tell` hears of samples and progress.
 pub(crate) fn simulate(scene: &Scene, tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
     let module = gyro_codegen::generate_model(&scene.page_name, &scene.page)
         .map_err(|e| Failure::Usage(e.to_string()))?;
-    let package = Package::program(&module, scene.precision);
-    if !package.is_there() {
-        verify_quickly(&scene.page, &module)?;
-    }
-    build(&package)?;
-    let program = package.built(&format!("{}{}", package.name, std::env::consts::EXE_SUFFIX));
+    let program = program(&scene.page, &module, scene.precision)?;
     let request = Request {
         settings: scene.settings,
         approach: scene.approach,
         parameters: scene.parameters(),
         start: scene.start.clone(),
+        measure_for: None,
     };
-    converse(&program, &request, tell)
+    Ok(Session::open(&program, &[])?.ask(&request, tell)?.0)
+}
+
+/// Compiles a module into a program that answers requests; returns where it is.
+pub(crate) fn program(page: &Model, module: &Module, precision: Precision) -> Result<PathBuf, Failure> {
+    let package = Package::program(module, precision);
+    if !package.is_there() {
+        verify_quickly(page, module)?;
+    }
+    build(&package)?;
+    Ok(package.program_file())
+}
+
+/// Compiles the twin, optimised, into a program that takes the path of a page, the name of a form and of a precision and answers
+/// requests; returns where it is.
+pub(crate) fn twin() -> Result<PathBuf, Failure> {
+    let package = Package::twin();
+    build(&package)?;
+    Ok(package.program_file())
 }
 
 /// Compiles the functions of these names for `f64`, optimised; the library, in which each has its symbol.
@@ -53,7 +68,8 @@ struct Package {
     manifest: String,
     /// Name and text of the file at its root.
     root: (&'static str, String),
-    mechanism: String,
+    /// The generated module; none in a program of the twin.
+    mechanism: Option<String>,
     /// What rustc is told besides.
     options: &'static [&'static str],
 }
@@ -67,7 +83,18 @@ impl Package {
         let mut hasher = DefaultHasher::new();
         (&root.1, &module.code).hash(&mut hasher);
         let name = format!("{}-{:016x}", module.name, hasher.finish());
-        Self { manifest: manifest(&name), name, root, mechanism: module.code.clone(), options }
+        let manifest = manifest(&name, &["gyro-sim", "runner"]);
+        Self { manifest, name, root, mechanism: Some(module.code.clone()), options }
+    }
+
+    fn twin() -> Self {
+        let name = "gyro-twin".to_owned();
+        let manifest = manifest(&name, &["assembled", "model"]);
+        Self { manifest, name, root: ("main.rs", TWIN.to_owned()), mechanism: None, options: &[] }
+    }
+
+    fn program_file(&self) -> PathBuf {
+        self.built(&format!("{}{}", self.name, std::env::consts::EXE_SUFFIX))
     }
 
     /// Where Cargo puts what it builds.
@@ -81,7 +108,8 @@ impl Package {
 
     /// Whether this very module was written, and so verified, before.
     fn is_there(&self) -> bool {
-        files::holds(&self.folder().join("src").join("mechanism.rs"), &self.mechanism)
+        let file = self.folder().join("src").join("mechanism.rs");
+        self.mechanism.as_ref().is_some_and(|mechanism| files::holds(&file, mechanism))
     }
 }
 
@@ -119,9 +147,37 @@ fn main() -> std::process::ExitCode {{
     )
 }
 
-fn manifest(name: &str) -> String {
-    let path = |folder: &str| files::root().join(folder).to_string_lossy().into_owned();
-    let (gyro_sim, gyro_runner) = (path("gyro-sim"), path("runner"));
+/// The program of the twin.
+const TWIN: &str = r#"use gyro_assembled::{Form, Precision, child};
+use std::{env, fs, path::Path};
+
+fn main() -> std::process::ExitCode {
+    let arguments: Vec<String> = env::args().collect();
+    let [_, page, form, precision] = &arguments[..] else { panic!("a page, a form and a precision were expected") };
+    let folder = Path::new(page).parent().unwrap_or(Path::new(""));
+    let text = fs::read_to_string(page).expect("the page can be read");
+    let mut load = |table: &str| fs::read_to_string(folder.join(table)).map_err(|e| e.to_string());
+    let model = gyro_model::read_with(page, &text, &mut load).unwrap_or_else(|e| panic!("{}", e.render()));
+    let form = match form.as_str() {
+        "recursive" => Form::Recursive,
+        "careful" => Form::Careful,
+        _ => Form::Dense,
+    };
+    let precision = if precision == "f32" { Precision::Single } else { Precision::Double };
+    child::main(&model, form, precision)
+}
+"#;
+
+/// A manifest with these folders of the workspace as dependencies.
+fn manifest(name: &str, folders: &[&str]) -> String {
+    let dependency = |folder: &&str| {
+        let path = files::root().join(folder).to_string_lossy().into_owned();
+        match *folder {
+            "gyro-sim" => format!("gyro-sim = {{ path = {path:?}, default-features = false }}\n"),
+            folder => format!("gyro-{folder} = {{ path = {path:?} }}\n"),
+        }
+    };
+    let dependencies: String = folders.iter().map(dependency).collect();
     format!(
         "[package]
 name = \"{name}\"
@@ -132,9 +188,7 @@ publish = false
 [workspace]
 
 [dependencies]
-gyro-sim = {{ path = {gyro_sim:?}, default-features = false }}
-gyro-runner = {{ path = {gyro_runner:?} }}
-
+{dependencies}
 [profile.release]
 debug = false
 "
@@ -160,7 +214,9 @@ fn build(package: &Package) -> Result<(), Failure> {
     files::write(&folder.join("Cargo.toml"), &package.manifest)?;
     let (file, root) = &package.root;
     files::write(&folder.join("src").join(file), root)?;
-    files::write(&folder.join("src").join("mechanism.rs"), &package.mechanism)?;
+    if let Some(mechanism) = &package.mechanism {
+        files::write(&folder.join("src").join("mechanism.rs"), mechanism)?;
+    }
     copy_lock_file(&folder).map_err(said)?;
     let _spinner = Spinner::new(format!("compiling {}", package.name));
     compile(package, &target())
@@ -211,36 +267,69 @@ fn cargo(package: &Package, target: &Path, options: &[&str]) -> Result<Option<St
     Ok((!output.status.success()).then(words))
 }
 
-/// Hands the request to the program and listens to its replies.
-fn converse(program: &Path, request: &Request, mut tell: impl FnMut(Event<'_>)) -> Result<Summary, Failure> {
-    let said = |e: std::io::Error| Failure::Run(format!("{}: {e}", program.display()));
-    let mut child =
-        Command::new(program).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().map_err(said)?;
-    let mut input = child.stdin.take().expect("standard input is piped");
-    input.write_all(request.to_text().as_bytes()).map_err(said)?;
-    drop(input);
-    let output = BufReader::new(child.stdout.take().expect("standard output is piped"));
-    let answer = listen(output, &mut tell);
-    if answer.is_err() {
-        // It may have ended by itself.
-        let _ = child.kill();
+/// A program under way that answers requests.
+#[derive(Debug)]
+pub(crate) struct Session {
+    program: PathBuf,
+    child: Child,
+    input: Option<ChildStdin>,
+    replies: BufReader<ChildStdout>,
+}
+
+impl Session {
+    /// Starts the program.
+    pub(crate) fn open(program: &Path, arguments: &[&str]) -> Result<Self, Failure> {
+        let mut command = Command::new(program);
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = command.spawn().map_err(|e| Failure::Run(format!("{}: {e}", program.display())))?;
+        let input = child.stdin.take();
+        let replies = BufReader::new(child.stdout.take().expect("standard output is piped"));
+        Ok(Self { program: program.to_path_buf(), child, input, replies })
     }
-    let status = child.wait().map_err(said)?;
-    match answer? {
-        Some(summary) => Ok(summary),
-        None => Err(Failure::Run(format!("{} ended without an answer: {status}", program.display()))),
+
+    /// Hands a request to the program and listens to its replies.
+    pub(crate) fn ask(
+        &mut self,
+        request: &Request,
+        mut tell: impl FnMut(Event<'_>),
+    ) -> Result<(Summary, Option<Timing>), Failure> {
+        let input = self.input.as_mut().expect("standard input is piped");
+        input
+            .write_all(request.to_text().as_bytes())
+            .map_err(|e| Failure::Run(format!("{}: {e}", self.program.display())))?;
+        match listen(&mut self.replies, &mut tell)? {
+            Some(answer) => Ok(answer),
+            None => {
+                let ended = self.child.wait().map_or_else(|e| e.to_string(), |status| status.to_string());
+                Err(Failure::Run(format!("{} ended without an answer: {ended}", self.program.display())))
+            }
+        }
     }
 }
 
-/// The summary, if the replies come to one.
-fn listen(output: impl BufRead, tell: &mut impl FnMut(Event<'_>)) -> Result<Option<Summary>, Failure> {
+impl Drop for Session {
+    fn drop(&mut self) {
+        // Without input a program ends by itself; one in the middle of a run does not hear of that.
+        drop(self.input.take());
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// What the replies come to, if they do.
+fn listen(
+    output: &mut impl BufRead,
+    tell: &mut impl FnMut(Event<'_>),
+) -> Result<Option<(Summary, Option<Timing>)>, Failure> {
+    let mut timing = None;
     for line in output.lines() {
         let line = line.map_err(|e| Failure::Run(e.to_string()))?;
-        match Reply::parse(&line).map_err(|e| Failure::Run(format!("the generated program: {e}")))? {
+        match Reply::parse(&line).map_err(|e| Failure::Run(format!("the program: {e}")))? {
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
             Reply::Linear(linear) => tell(Event::Linear(&linear)),
             Reply::Progress(t) => tell(Event::Progress(t)),
-            Reply::Done(summary) => return Ok(Some(summary)),
+            Reply::Timed(timed) => timing = Some(timed),
+            Reply::Done(summary) => return Ok(Some((summary, timing))),
             Reply::Failed(words) => return Err(Failure::Run(words)),
         }
     }
@@ -252,9 +341,11 @@ mod tests {
     use super::*;
     use gyro_codegen::Sheet;
 
-    fn heard(text: &str) -> (Result<Option<Summary>, Failure>, usize) {
+    type Heard = Result<Option<(Summary, Option<Timing>)>, Failure>;
+
+    fn heard(text: &str) -> (Heard, usize) {
         let mut n_samples = 0;
-        let outcome = listen(text.as_bytes(), &mut |event: Event<'_>| {
+        let outcome = listen(&mut text.as_bytes(), &mut |event: Event<'_>| {
             n_samples += usize::from(matches!(event, Event::Sample(_)));
         });
         (outcome, n_samples)
@@ -263,10 +354,11 @@ mod tests {
     #[test]
     fn replies_are_heard_to_their_end() {
         let sample = "sample 0.0 1.0 0.0 0.0 0.0 0.0 0.0 0 angle 0.0 1.0\n";
-        let done = Summary { steps: 10, ..Summary::default() };
-        let (outcome, n_samples) =
-            heard(&format!("{sample}progress 0.5\n{sample}{}\n", Reply::Done(done).to_line()));
-        assert_eq!((outcome.unwrap().unwrap().steps, n_samples), (10, 2));
+        let (outcome, n_samples) = heard(&format!(
+            "{sample}progress 0.5\n{sample}{}\n",
+            Reply::Done(Summary { steps: 10, ..Summary::default() }).to_line()
+        ));
+        assert_eq!((outcome.unwrap().unwrap().0.steps, n_samples), (10, 2));
         let (outcome, n_samples) = heard(&format!("{sample}failed at t = 0.5 s\n"));
         assert!(matches!(outcome, Err(Failure::Run(words)) if words == "at t = 0.5 s"));
         assert_eq!(n_samples, 1);

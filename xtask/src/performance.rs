@@ -190,6 +190,18 @@ pub(crate) fn three(value: f64) -> String {
 
 /// What the figures depend on besides the code.
 fn machine() -> Result<String, Failure> {
+    let flags = std::env::var("RUSTFLAGS").unwrap_or_default();
+    let flags = if flags.is_empty() { "no further flags".to_owned() } else { format!("flags `{flags}`") };
+    Ok(format!("{}; profile `bench` (optimised, thin LTO, one codegen unit), {flags}.\n", hardware()?))
+}
+
+/// The same for programs that are compiled with a profile.
+pub(crate) fn machine_in(profile: &str) -> Result<String, Failure> {
+    Ok(format!("{}; profile `{profile}`", hardware()?))
+}
+
+/// Processor, system and compiler.
+fn hardware() -> Result<String, Failure> {
     let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model =
         info.lines().find_map(|line| line.strip_prefix("model name")).and_then(|l| l.split_once(": "));
@@ -197,10 +209,8 @@ fn machine() -> Result<String, Failure> {
     let cores = std::thread::available_parallelism().map_or(0, std::num::NonZero::get);
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let version = output(Command::new(rustc).arg("--version"))?;
-    let flags = std::env::var("RUSTFLAGS").unwrap_or_default();
-    let flags = if flags.is_empty() { "no further flags".to_owned() } else { format!("flags `{flags}`") };
     Ok(format!(
-        "{cpu}, {cores} cores, {} {}; {}; profile `bench` (optimised, thin LTO, one codegen unit), {flags}.\n",
+        "{cpu}, {cores} cores, {} {}; {}",
         std::env::consts::ARCH,
         std::env::consts::OS,
         version.trim()

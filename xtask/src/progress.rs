@@ -64,3 +64,39 @@ impl Drop for Spinner {
         self.0.finish_and_clear();
     }
 }
+
+/// Shows how much of a list is done, one list after the other.
+#[derive(Debug)]
+pub(crate) struct Count {
+    bar: ProgressBar,
+    prefix: String,
+}
+
+impl Count {
+    pub(crate) fn new(prefix: String) -> Self {
+        let style = ProgressStyle::with_template("{prefix} {bar:30} {pos}/{len} {msg} ({elapsed})");
+        let bar = ProgressBar::new(1).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Self { bar, prefix }
+    }
+
+    /// A new list of so many.
+    pub(crate) fn begin(&self, what: &str, length: u64) {
+        self.bar.set_prefix(format!("{} {what}", self.prefix));
+        self.bar.set_length(length);
+        self.bar.set_position(0);
+        self.bar.set_message("");
+    }
+
+    /// One of them is done.
+    pub(crate) fn advance(&self, what: &str) {
+        self.bar.inc(1);
+        self.bar.set_message(what.to_owned());
+    }
+}
+
+impl Drop for Count {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

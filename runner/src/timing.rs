@@ -1,0 +1,58 @@
+//! What a run costs without being looked at.
+
+use crate::motion::Kit;
+use crate::run::{scheduled, state};
+use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
+use gyro_sim::{Error, Partition, Ports, Statistics};
+use gyro_yardstick::{Measured, beside};
+use std::time::Duration;
+
+/// What a run costs: its steps and corrections alone, no samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Timing {
+    /// Its time.
+    pub measured: Measured,
+    /// What the steps have cost and met.
+    pub statistics: Statistics,
+}
+
+/// Makes a run for its time, for about as long as `budget` but at least once.
+///
+/// # Errors
+/// [`Failure::Run`] as of [`run_by`](crate::run_by).
+pub fn time_by<M: Partition + Ports + 'static>(
+    mechanism: &M,
+    kit: &dyn Kit<M>,
+    (settings, approach): (&Settings, &Approach),
+    start: &Start,
+    budget: Duration,
+) -> Result<Timing, Failure> {
+    let settings = Settings { sample_every: settings.t_end, ..scheduled(settings, approach) };
+    let y = state(mechanism, start)?;
+    let segments: Vec<_> = Schedule::new(&settings).collect();
+    let mut statistics = Statistics::default();
+    let once = || -> Result<(), Failure> {
+        let mut motion = kit.begin(mechanism, approach, &y).map_err(Failure::Run)?;
+        let in_words = |error: Error| Failure::Run(describe_in(mechanism, approach.coordinates, &error));
+        if approach.tolerance.is_some() {
+            while motion.time() < settings.t_end {
+                motion.step_towards(mechanism, settings.t_end).map_err(in_words)?;
+            }
+        } else {
+            for segment in &segments {
+                #[expect(clippy::cast_precision_loss, reason = "step numbers stay below 2⁵³")]
+                let h = (segment.to - segment.from) / segment.n_steps as f64;
+                for _ in 0..segment.n_steps {
+                    motion.step(mechanism, h).map_err(in_words)?;
+                }
+                if segment.corrects {
+                    motion.correct(mechanism).map_err(in_words)?;
+                }
+            }
+        }
+        statistics = motion.statistics();
+        Ok(())
+    };
+    let measured = beside(budget, once)?;
+    Ok(Timing { measured, statistics })
+}

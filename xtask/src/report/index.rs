@@ -1,0 +1,145 @@
+//! The index: a line for each scene, and all goals. It is kept as two tables of data, so that a report on one scene leaves the lines of
+//! others as they are.
+
+use super::best::{best, smallest_error};
+use super::curve::Point;
+use super::data::table;
+use super::goals;
+use super::page::Page;
+use super::study::Study;
+use super::write::CHOICES;
+use crate::args::{Engine, Precision};
+use crate::failure::Failure;
+use crate::files;
+use crate::words::number;
+use std::path::Path;
+
+const HEAD: [&str; 9] = [
+    "scene",
+    "1e-6, joint",
+    "1e-6, maximal",
+    "1e-10, joint",
+    "1e-10, maximal",
+    "twin over generated at 1e-6",
+    "smallest error in f32",
+    "runs",
+    "failed",
+];
+
+/// Puts a scene into the index.
+pub(crate) fn add(study: &Study, machine: &str, folder: &Path) -> Result<(), Failure> {
+    let scenes = merged(&folder.join("index.csv"), &HEAD, &study.lab.name, vec![row(study)])?;
+    let mut head = vec!["scene"];
+    head.extend(&goals::HEAD[..4]);
+    head.push("verdict");
+    let with_name = |goal: &goals::Goal| {
+        let mut row = vec![study.lab.name.clone()];
+        row.extend(goal.row());
+        row
+    };
+    let goals = merged(
+        &folder.join("goals.csv"),
+        &head,
+        &study.lab.name,
+        study.goals.iter().map(with_name).collect(),
+    )?;
+    let page = page(scenes, goals, machine);
+    files::write(&folder.join("index.md"), &page.markdown())?;
+    files::write(&folder.join("index.html"), &page.html("gyro-sim: error against run time"))?;
+    Ok(())
+}
+
+/// The rows of a table with those of a scene replaced, in the order of names; the file is written anew.
+fn merged(
+    path: &Path,
+    head: &[&str],
+    scene: &str,
+    new: Vec<Vec<String>>,
+) -> Result<Vec<Vec<String>>, Failure> {
+    let mut rows: Vec<Vec<String>> = match csv::Reader::from_path(path) {
+        Ok(mut reader) => {
+            let rows = reader.records().filter_map(Result::ok);
+            rows.map(|row| row.iter().map(str::to_owned).collect()).collect()
+        }
+        Err(_) => Vec::new(),
+    };
+    // What another version has written is not understood any more.
+    rows.retain(|row| row.len() == head.len() && row.first().is_some_and(|name| name != scene));
+    rows.extend(new);
+    rows.sort_by(|a, b| a[0].cmp(&b[0]));
+    let head: Vec<String> = head.iter().map(|s| (*s).to_owned()).collect();
+    files::write(path, &table(&head, rows.iter().cloned()))?;
+    Ok(rows)
+}
+
+fn row(study: &Study) -> Vec<String> {
+    let ratio = |target: f64, belongs: fn(&Point) -> bool| {
+        let chosen = best(study.points.iter().filter(|point| belongs(point)), target)?;
+        chosen.outcome.as_ref().ok().map(|outcome| outcome.ratio)
+    };
+    let cell = |value: Option<f64>| value.map_or("-".to_owned(), |value| number(value, 3));
+    let ours =
+        |point: &Point| point.curve.engine == Engine::Generated && point.curve.precision == Precision::F64;
+    let twin = match (ratio(1e-6, CHOICES[3].1), ratio(1e-6, ours)) {
+        (Some(twin), Some(ours)) => Some(twin / ours),
+        _ => None,
+    };
+    let single = smallest_error(study.points.iter().filter(|point| point.curve.precision == Precision::F32));
+    let failed = study.points.iter().filter(|point| point.outcome.is_err()).count();
+    vec![
+        study.lab.name.clone(),
+        cell(ratio(1e-6, CHOICES[0].1)),
+        cell(ratio(1e-6, CHOICES[1].1)),
+        cell(ratio(1e-10, CHOICES[0].1)),
+        cell(ratio(1e-10, CHOICES[1].1)),
+        cell(twin),
+        cell(single),
+        study.points.len().to_string(),
+        failed.to_string(),
+    ]
+}
+
+fn page(scenes: Vec<Vec<String>>, goals: Vec<Vec<String>>, machine: &str) -> Page {
+    let mut page = Page::default();
+    page.heading(1, "Error against run time");
+    page.text(format!(
+        "One page for each scene, written by `cargo xtask report` and measured on {machine}. Costs are CPU time over that of the \
+         hand-derived second (the paper's scene in minimal coordinates by RK4, 10 000 steps) in the same process; errors are counted from \
+         reference solutions of their own."
+    ));
+    let linked = |mut row: Vec<String>| {
+        row[0] = format!("[{0}]({0}.md)", row[0]);
+        row
+    };
+    page.heading(2, "Scenes");
+    page.text("What the cheapest generated run costs whose error is at most 1e-6 and 1e-10; - where none has so small an error.");
+    page.table(&HEAD, scenes.into_iter().map(linked).collect());
+    if !goals.is_empty() {
+        page.heading(2, "Goals");
+        let mut head = vec!["scene"];
+        head.extend(goals::HEAD);
+        page.table(&head, goals.into_iter().map(linked).collect());
+    }
+    page
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::files::tests::Folder;
+
+    #[test]
+    fn a_scene_s_rows_are_replaced_and_others_kept() {
+        let folder = Folder::new();
+        let path = folder.0.join("x.csv");
+        let rows = |list: &[(&str, &str)]| {
+            list.iter().map(|(a, b)| vec![(*a).to_owned(), (*b).to_owned()]).collect::<Vec<_>>()
+        };
+        merged(&path, &["scene", "value"], "b", rows(&[("b", "1"), ("b", "2")])).unwrap();
+        merged(&path, &["scene", "value"], "a", rows(&[("a", "3")])).unwrap();
+        let found = merged(&path, &["scene", "value"], "b", rows(&[("b", "4, 5")])).unwrap();
+        assert_eq!(found, rows(&[("a", "3"), ("b", "4, 5")]));
+        // Another head is another version.
+        assert_eq!(merged(&path, &["scene", "x", "y"], "c", vec![]).unwrap().len(), 0);
+    }
+}

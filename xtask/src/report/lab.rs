@@ -1,0 +1,255 @@
+//! A scene and the programs that compute it.
+
+use super::curve::{Curve, Outcome, Point, Setting, Treatment};
+use super::truth::{INTERVALS, Truth};
+use crate::args::{Engine, Precision};
+use crate::failure::Failure;
+use crate::nested::{self, Session};
+use crate::{files, scene};
+use gyro_model::Model;
+use gyro_runner::protocol::Request;
+use gyro_runner::{Approach, Correction, Event, Integrator, Sample, Settings, Start, Summary, Timing};
+use std::path::{Path, PathBuf};
+
+/// A scene, how long it is followed, and what computes it.
+#[derive(Debug)]
+pub(crate) struct Lab {
+    pub(crate) model: Model,
+    /// The page.
+    pub(crate) path: PathBuf,
+    /// The page's name, as its reference and its report are called.
+    pub(crate) name: String,
+    pub(crate) t_end: f64,
+    pub(crate) start: Start,
+    parameters: Vec<f64>,
+    /// The generated programs for `f64` and `f32`.
+    programs: [PathBuf; 2],
+    twin: PathBuf,
+    sessions: Vec<((Engine, Precision), Session)>,
+    has_joint_coordinates: bool,
+}
+
+/// A run that was made.
+#[derive(Debug)]
+pub(crate) struct Run {
+    pub(crate) samples: Vec<Sample>,
+    pub(crate) summary: Summary,
+    pub(crate) timing: Option<Timing>,
+}
+
+/// When to sample, how to step, and how long to measure.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan {
+    pub(crate) settings: Settings,
+    pub(crate) approach: Approach,
+    pub(crate) measure_for: Option<f64>,
+}
+
+impl Lab {
+    /// Reads a page and compiles what computes it.
+    pub(crate) fn new(path: &Path, twin: &Path) -> Result<Self, Failure> {
+        let model = scene::read(path)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        let module = gyro_codegen::generate_model(&files::shown(path), &model)
+            .map_err(|e| Failure::Usage(e.to_string()))?;
+        let program = |precision| nested::program(&model, &module, precision);
+        let programs = [program(Precision::F64)?, program(Precision::F32)?];
+        let lab = Self::with_programs(model, path, name, programs, twin)?;
+        Ok(Self { has_joint_coordinates: module.code.contains("gyro_sim::JointSpace for"), ..lab })
+    }
+
+    /// The same scene, to be changed.
+    pub(crate) fn again(&self) -> Result<Self, Failure> {
+        let programs = self.programs.clone();
+        let lab =
+            Self::with_programs(self.model.clone(), &self.path, self.name.clone(), programs, &self.twin)?;
+        Ok(Self { has_joint_coordinates: self.has_joint_coordinates, ..lab })
+    }
+
+    /// The same scene with one of its numbers made a parameter, in `f64`.
+    pub(crate) fn variant(&self, model: Model, parameters: Vec<f64>) -> Result<Self, Failure> {
+        let name = format!("{}_map", self.model.name);
+        let model = Model { name, ..model };
+        let module =
+            gyro_codegen::generate_model("map.toml", &model).map_err(|e| Failure::Usage(e.to_string()))?;
+        let program = nested::program(&model, &module, Precision::F64)?;
+        let programs = [program.clone(), program];
+        let lab = Self::with_programs(model, &self.path, self.name.clone(), programs, &self.twin)?;
+        Ok(Self { parameters, has_joint_coordinates: self.has_joint_coordinates, ..lab })
+    }
+
+    fn with_programs(
+        model: Model,
+        path: &Path,
+        name: String,
+        programs: [PathBuf; 2],
+        twin: &Path,
+    ) -> Result<Self, Failure> {
+        let assembled = model.assemble().map_err(|e| Failure::Usage(format!("{}: {e}", path.display())))?;
+        let start = scene::start(&model, &assembled);
+        let parameters = model.parameters.iter().map(|p| gyro_model::to_f64(&p.value)).collect();
+        Ok(Self {
+            t_end: model.simulation.t_end,
+            path: path.to_path_buf(),
+            name,
+            start,
+            parameters,
+            programs,
+            twin: twin.to_path_buf(),
+            sessions: Vec::new(),
+            has_joint_coordinates: false,
+            model,
+        })
+    }
+
+    pub(crate) fn set_parameters(&mut self, parameters: Vec<f64>) {
+        self.parameters = parameters;
+    }
+
+    /// Whether the model is a tree whose generated code has joint coordinates.
+    pub(crate) fn has_joint_coordinates(&self) -> bool {
+        self.has_joint_coordinates
+    }
+
+    /// The reference solution, or what has to do in its place.
+    pub(crate) fn truth(&mut self) -> Result<Truth, Failure> {
+        if let Some(reference) = gyro_reference::scene(&self.name).filter(|_| self.is_shipped()) {
+            return Ok(Truth::of_reference(&self.model, &reference, self.t_end));
+        }
+        let engine = if self.has_joint_coordinates() { Engine::Recursive } else { Engine::Dense };
+        let correction = Correction::Partition;
+        let curve = Curve {
+            engine,
+            precision: Precision::F64,
+            integrator: Integrator::Dop853,
+            treatment: Treatment::Maximal(correction),
+        };
+        let setting = Setting::Tolerance(TIGHT);
+        let run = self
+            .run((engine, Precision::F64), &self.plan(&curve, setting, 10_000_000, None))
+            .map_err(Failure::Run)?;
+        let source = format!(
+            "the {} by dop853 at a tolerance of {TIGHT:e}, because this page has no reference solution: errors below about a \
+             hundred times that mean nothing",
+            super::curve::who(engine)
+        );
+        Ok(Truth::of_samples(&self.model, source, &run.samples))
+    }
+
+    /// A page of this name elsewhere is another scene.
+    fn is_shipped(&self) -> bool {
+        files::shown(&self.path) == format!("models/{}.toml", self.name)
+    }
+
+    /// A run of a curve.
+    pub(crate) fn plan(
+        &self,
+        curve: &Curve,
+        setting: Setting,
+        budget: u64,
+        measure_for: Option<f64>,
+    ) -> Plan {
+        let (step, every) = match setting {
+            Setting::Tolerance(_) => (self.t_end, INTERVALS),
+            // Samples are taken where a step ends.
+            Setting::Steps(n) => (self.t_end / n as f64, common(n, INTERVALS)),
+        };
+        let settings = Settings {
+            t_end: self.t_end,
+            step,
+            correct_every: None,
+            sample_every: self.t_end / every as f64,
+        };
+        Plan { settings, approach: curve.approach(setting, budget), measure_for }
+    }
+
+    /// Makes a run; in words why it is not complete.
+    pub(crate) fn run(&mut self, who: (Engine, Precision), plan: &Plan) -> Result<Run, String> {
+        let request = Request {
+            settings: plan.settings,
+            approach: plan.approach,
+            parameters: self.parameters.clone(),
+            start: self.start.clone(),
+            measure_for: plan.measure_for,
+        };
+        let session = self.session(who)?;
+        let mut samples = Vec::new();
+        let answer = session.ask(&request, |event| {
+            if let Event::Sample(sample) = event {
+                samples.push(sample.clone());
+            }
+        });
+        match answer {
+            Ok((summary, timing)) => Ok(Run { samples, summary, timing }),
+            Err(failure) => {
+                let words = failure.words();
+                // A program that is gone answers nothing any more.
+                if words.contains("ended without an answer") {
+                    self.sessions.retain(|(whose, _)| *whose != who);
+                }
+                Err(words)
+            }
+        }
+    }
+
+    fn session(&mut self, who: (Engine, Precision)) -> Result<&mut Session, String> {
+        let at = match self.sessions.iter().position(|(whose, _)| *whose == who) {
+            Some(at) => at,
+            None => {
+                let session = self.open(who).map_err(|failure| failure.words())?;
+                self.sessions.push((who, session));
+                self.sessions.len() - 1
+            }
+        };
+        Ok(&mut self.sessions[at].1)
+    }
+
+    fn open(&self, (engine, precision): (Engine, Precision)) -> Result<Session, Failure> {
+        let form = match engine {
+            Engine::Generated => {
+                let program = usize::from(precision == Precision::F32);
+                return Session::open(&self.programs[program], &[]);
+            }
+            Engine::Recursive => "recursive",
+            Engine::Assembled => "careful",
+            Engine::Dense => "dense",
+        };
+        Session::open(&self.twin, &[&self.path.to_string_lossy(), form, precision.name()])
+    }
+
+    /// A point of a curve.
+    pub(crate) fn point(
+        &mut self,
+        truth: &Truth,
+        curve: &Curve,
+        setting: Setting,
+        limits: (u64, f64),
+    ) -> Point {
+        let plan = self.plan(curve, setting, limits.0, Some(limits.1));
+        let t_end = self.t_end;
+        let outcome = self.run((curve.engine, curve.precision), &plan).map(|run| {
+            let timing = run.timing.unwrap_or_default();
+            let errors = truth.errors(&run.samples, t_end);
+            Outcome {
+                error: truth.judge(&errors),
+                errors,
+                measured: timing.measured.seconds,
+                seconds: timing.measured.seconds,
+                ratio: timing.measured.ratio,
+                statistics: timing.statistics,
+                position_violation: run.summary.position_violation,
+                velocity_violation: run.summary.velocity_violation,
+                energy_drift: run.summary.energy_drift,
+            }
+        });
+        Point { curve: *curve, setting, outcome }
+    }
+}
+
+/// The tolerance where there is no reference solution.
+const TIGHT: f64 = 1e-13;
+
+/// The greatest common divisor.
+fn common(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { common(b, a % b) }
+}

@@ -1,0 +1,76 @@
+//! `cargo xtask report`: error against run time, drift and stability of scenes, as pages, figures and raw data.
+//!
+//! ```text
+//! page ─lab─▶ programs ─explore, drift, stability─▶ points, long runs, maps ─best, order, goals─▶ tables
+//!    ─figures, chart─▶ SVG ─page─▶ NAME.md, NAME.html ─data─▶ CSV ─index─▶ index.md, index.html
+//! ```
+
+mod best;
+mod chart;
+mod curve;
+mod data;
+mod drift;
+mod explore;
+mod figures;
+mod goals;
+mod index;
+mod lab;
+mod limits;
+mod order;
+mod page;
+mod stability;
+mod stiff;
+mod study;
+mod truth;
+mod write;
+
+use crate::args::ReportArgs;
+use crate::failure::Failure;
+use crate::progress::Count;
+use crate::{files, nested};
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+use study::{Effort, Study};
+
+/// Measures scenes and writes their pages and the index.
+pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
+    let pages = pages(args)?;
+    let folder = args.out.clone().unwrap_or_else(|| {
+        // A quick look does not replace what was measured with care.
+        let root = files::root();
+        if args.quick { root.join("target").join("report") } else { root.join("docs").join("report") }
+    });
+    fs::create_dir_all(folder.join("images")).map_err(|e| unusable(&folder, &e))?;
+    let twin = nested::twin()?;
+    let machine = crate::performance::machine_in("release")?;
+    let effort = if args.quick { Effort::quick() } else { Effort::full() };
+    for (index, path) in pages.iter().enumerate() {
+        let progress = Count::new(format!("{} of {}", index + 1, pages.len()));
+        let study = Study::new(path, &twin, &effort, &progress)?;
+        write::study(&study, &machine, &folder)?;
+        index::add(&study, &machine, &folder)?;
+        eprintln!("wrote {}", folder.join(format!("{}.md", study.lab.name)).display());
+    }
+    Ok(())
+}
+
+/// The pages to report on: those given; of all shipped ones; in quick mode the paper's scene.
+fn pages(args: &ReportArgs) -> Result<Vec<PathBuf>, Failure> {
+    let models = files::root().join("models");
+    match (args.models.is_empty(), args.quick) {
+        (false, _) => Ok(args.models.clone()),
+        (true, true) => Ok(vec![models.join("gyroscope.toml")]),
+        (true, false) => {
+            let entries = fs::read_dir(&models).map_err(|e| unusable(&models, &e))?;
+            let paths = entries.map(|entry| entry.map(|entry| entry.path()));
+            let mut paths = paths.collect::<Result<Vec<_>, _>>().map_err(|e| unusable(&models, &e))?;
+            paths.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+            paths.sort();
+            Ok(paths)
+        }
+    }
+}
+
+fn unusable(path: &Path, error: &io::Error) -> Failure {
+    Failure::Run(format!("{} cannot be used: {error}", path.display()))
+}
