@@ -107,17 +107,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeOverdamped<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            k(0.9999875000260416),
+            k(0.9999998750000026),
             k(0.0),
             k(0.0),
-            k(0.004999979166692708),
-            k(0.00012499375005208316),
-            k(1.2499791667708331e-6),
+            k(0.0004999999791666669),
+            k(0.00012499993750000524),
+            k(1.249999791666677e-7),
             k(0.0),
-            k(0.9999875000260416),
+            k(0.9999998750000026),
             k(0.0),
             k(0.0),
-            k(0.004999979166692708),
+            k(0.0004999999791666669),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -137,7 +137,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeOverdamped<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            k(0.01),
+            k(0.001),
         ]
     }
     /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 74 operations (25 ±, 49 ×, 0 ÷).
@@ -3013,7 +3013,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeOverdamped<T> {
     type Solution = [T; 33];
     fn joint_start(&self) -> Self::Joints {
         let k = T::constant;
-        [k(0.0), k(0.01), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
+        [k(0.0), k(0.001), k(0.0), k(0.0), k(0.0), k(100.0), k(0.0)]
     }
     fn rates(&self) -> Self::Rates {
         [T::constant(0.0); 3]

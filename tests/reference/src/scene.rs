@@ -176,7 +176,7 @@ fn extreme(name: &str) -> Option<ReducedGyroscope> {
     let sprung = |damping: f64| {
         let spring = AxisForce::Spring { stiffness: 1e3, free: 0.0 };
         ReducedGyroscope {
-            beta: 0.01,
+            beta: 0.001,
             forces: vec![spring, AxisForce::Damper(damping)],
             ..ReducedGyroscope::paper()
         }
