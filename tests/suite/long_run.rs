@@ -8,7 +8,8 @@ use gyro_runner::Settings;
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::integrate::Method;
 use gyro_sim::{
-    Control, Direct, Error, Kutta4, MassWeighted, Mechanism, Ode, Partition, Partitioned, Solver, Tsit5, Turns, When, violation,
+    Control, Direct, Error, Kutta4, MassWeighted, Mechanism, Ode, Partition, Partitioned, Solver, Tsit5,
+    Turns, When, violation,
 };
 use gyro_sim_suite::{PAPER, coordinate, generated, model, simulate};
 use std::sync::LazyLock;
