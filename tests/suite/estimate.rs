@@ -3,11 +3,13 @@
 
 use gyro_reference::{JointRow, scene};
 use gyro_runner::{
-    Approach, Coordinates, Integrator, JointSample, Sample, Settings, Start, companions, differences,
+    Approach, Coordinates, Difference, Integrator, JointSample, Sample, Settings, companions, differences,
 };
+use gyro_sim::Real;
 use gyro_sim_suite::{
     Duals, EXTREME, Engine, duals, extreme, generated, model, moved, rotation, shelves, start_of,
 };
+use std::collections::HashMap;
 
 /// How far a joint coordinate or its rate is off, and how large it is, both at worst.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,8 +73,128 @@ pub fn estimate(
     settings: &Settings,
     approach: &Approach,
     mut run: impl FnMut(&Settings, &Approach) -> Option<Vec<Sample>>,
-) -> Option<Vec<f64>> {
+) -> Option<Vec<Difference>> {
     let companions = companions(settings, approach, false);
     let other = companions.iter().find_map(|(settings, approach)| run(settings, approach))?;
     Some(differences(samples, &other))
+}
+
+/// Steps of a page's own length, and samples of a run.
+const STEPS: f64 = 1000.0;
+const SAMPLES: f64 = 10.0;
+
+/// The estimate is never so many times too small, nor so many times too large.
+const TOO_SMALL: f64 = 10.0;
+const TOO_LARGE: f64 = 100.0;
+
+/// Errors smaller than a hundred units in the last place are rounding, and not estimated.
+const ULPS: f64 = 100.0 * f64::EPSILON;
+
+/// A page, and the companions that it has had.
+struct Page {
+    name: String,
+    engine: Engine,
+    rows: Vec<JointRow>,
+    settings: Settings,
+    companions: HashMap<String, Option<Vec<Sample>>>,
+    /// Errors estimated, and the smallest and the largest estimate in terms of the error.
+    n_estimates: u32,
+    range: [f64; 2],
+    wrong: Vec<String>,
+}
+
+impl Page {
+    /// `None` for a page that has no reference.
+    fn new(name: &str) -> Option<Self> {
+        scene(name)?;
+        let step = model(name).simulation.step;
+        let t_end = STEPS * step;
+        let settings =
+            Settings { t_end, step, correct_every: Some(5.0 * step), sample_every: t_end / SAMPLES };
+        Some(Self {
+            name: name.to_owned(),
+            engine: generated(name),
+            rows: expected(name, &settings),
+            settings,
+            companions: HashMap::new(),
+            n_estimates: 0,
+            range: [f64::INFINITY, 0.0],
+            wrong: Vec::new(),
+        })
+    }
+
+    fn duals<T: Real + 'static>(&self) -> Duals<T> {
+        if EXTREME.contains(&self.name.as_str()) { duals(&self.name) } else { Duals::none() }
+    }
+
+    /// A run by an approach in steps of so many times the page's own.
+    fn check<T: Real + 'static>(&mut self, engine: &Engine<T>, times: f64, approach: &Approach) {
+        let (step, start) = (times * self.settings.step, start_of(&model(&self.name)));
+        let settings = Settings { step, correct_every: Some(5.0 * step), ..self.settings };
+        let what = format!("{}, {approach}, step {step:e} s", self.name);
+        let (samples, outcome) = moved(engine, &*engine.kit(self.duals()), (&settings, approach), &start);
+        if let Err(failure) = outcome {
+            return self.wrong.push(format!("{what}: {failure}"));
+        }
+        let (double, kit) = (&self.engine, self.engine.kit(self.duals()));
+        let companions = &mut self.companions;
+        let estimates = estimate(&samples, &settings, approach, |settings, approach| {
+            // Error control does not ask for a step.
+            let step = approach.tolerance.map_or(settings.step, |_| 0.0);
+            let run = || {
+                let (samples, outcome) = moved(double, &*kit, (settings, approach), &start);
+                outcome.is_ok().then_some(samples)
+            };
+            companions.entry(format!("{step} {approach:?}")).or_insert_with(run).clone()
+        });
+        let Some(estimates) = estimates else {
+            return self.wrong.push(format!("{what}: no companion has come to its end"));
+        };
+        let [positions, rates] = deviations(&samples, &self.rows);
+        let of = |deviations: Vec<Deviation>, estimate: fn(&Difference) -> f64| {
+            let estimates: Vec<f64> = estimates.iter().map(estimate).collect();
+            deviations.into_iter().zip(estimates).enumerate()
+        };
+        for (k, (deviation, estimate)) in of(positions, |e| e.position).chain(of(rates, |e| e.rate)) {
+            let Deviation { error, size } = deviation;
+            if error <= ULPS * (1.0 + size) {
+                continue;
+            }
+            let ratio = estimate / error;
+            self.n_estimates += 1;
+            self.range = [self.range[0].min(ratio), self.range[1].max(ratio)];
+            if !(1.0 / TOO_SMALL..=TOO_LARGE).contains(&ratio) {
+                self.wrong
+                    .push(format!("{what}: coordinate {k} is off by {error:.1e}, estimated {estimate:.1e}"));
+            }
+        }
+    }
+}
+
+#[test]
+fn the_estimate_is_of_the_size_of_the_error() {
+    let mut wrong = Vec::new();
+    for name in shelves()[0].pages() {
+        let Some(mut page) = Page::new(&name) else { continue };
+        let engine = page.engine.clone();
+        let (is_tree, is_extreme) = (engine.is_tree(), EXTREME.contains(&name.as_str()));
+        let controlled = |integrator, tolerance| Approach {
+            integrator,
+            tolerance: Some(tolerance),
+            coordinates: if is_tree { Coordinates::Joint } else { Coordinates::Maximal },
+            ..Approach::default()
+        };
+        page.check(&engine, 1.0, &Approach::default());
+        page.check(&engine, 10.0, &Approach::default());
+        page.check(&engine, 1.0, &controlled(Integrator::Dop853, 1e-6));
+        if is_tree || is_extreme {
+            page.check(&engine, 1.0, &controlled(Integrator::Rodas4, 1e-5));
+        }
+        if is_extreme {
+            page.check(&extreme::<f32>(&name), 1.0, &Approach::default());
+        }
+        println!("{name}: {} estimates, {:.2?} times the error", page.n_estimates, page.range);
+        wrong.append(&mut page.wrong);
+    }
+    assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
 }

@@ -19,9 +19,9 @@ pub struct Engine<T = f64> {
 
 type AsTree<T> = for<'a> fn(&'a dyn Erased<T>) -> Option<&'a dyn ErasedTree<T>>;
 
-/// The same mechanism in dual numbers.
+/// The same mechanism in dual numbers, where there is need of it.
 #[derive(Debug)]
-pub struct Duals<T = f64>(Box<dyn ErasedDuals<T>>);
+pub struct Duals<T = f64>(Option<Box<dyn ErasedDuals<T>>>);
 
 /// A choice of independent coordinates of any mechanism.
 #[derive(Debug)]
@@ -75,7 +75,12 @@ impl<T: Real + 'static> Duals<T> {
     where
         D: Ode<Scalar = Dual<T, COLUMNS>> + Feed + Clone + Debug + 'static,
     {
-        Self(Box::new(mechanism))
+        Self(Some(Box::new(mechanism)))
+    }
+
+    /// For what Rodas does not integrate in maximal coordinates: each page costs its compilation.
+    pub fn none() -> Self {
+        Self(None)
     }
 }
 
@@ -87,7 +92,7 @@ impl<T: 'static> Clone for Engine<T> {
 
 impl<T: 'static> Clone for Duals<T> {
     fn clone(&self) -> Self {
-        Self(self.0.cloned())
+        Self(self.0.as_ref().map(|duals| duals.cloned()))
     }
 }
 
@@ -391,18 +396,22 @@ impl<T: Real + 'static> Ode for Duals<T> {
     type Scalar = Dual<T, COLUMNS>;
     type State = Vec<Dual<T, COLUMNS>>;
     fn start(&self) -> Self::State {
-        self.0.start()
+        self.0.as_ref().expect(NO_DUALS).start()
     }
     fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
-        self.0.derivative(t, y, dy);
+        self.0.as_ref().expect(NO_DUALS).derivative(t, y, dy);
     }
 }
 
 impl<T: Real + 'static> Feed for Duals<T> {
     fn feed(&mut self, index: usize, value: Self::Scalar) {
-        self.0.feed(index, value);
+        if let Some(duals) = &mut self.0 {
+            duals.feed(index, value);
+        }
     }
 }
+
+const NO_DUALS: &str = "this page has no dual numbers here: add it to `duals`";
 
 impl<T: Real + 'static> Ode for Engine<T> {
     type Scalar = T;
