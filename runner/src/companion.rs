@@ -1,6 +1,6 @@
 //! Companion runs: what a run is compared with to estimate its error.
 
-use crate::{Approach, Coordinates, Integrator, JointSample, Sample, Settings};
+use crate::{Approach, Coordinates, Correction, Integrator, JointSample, Sample, Settings, When};
 
 /// The finest tolerance that double precision can resolve in every element.
 const FINEST: f64 = 2e-15;
@@ -26,25 +26,79 @@ pub fn companions(settings: &Settings, approach: &Approach, inputs_vary: bool) -
     }
     let finer = match approach.tolerance {
         Some(tolerance) => {
-            (*settings, Approach { tolerance: Some((tolerance / 100.0).max(FINEST)), ..*approach })
+            // A run's own budget is none for a finer one.
+            let tolerance = Some((tolerance / 100.0).max(FINEST));
+            (*settings, Approach { tolerance, budget: Some(PATIENCE), ..*approach })
         }
         None => (Settings { step: settings.step / 4.0, ..*settings }, *approach),
     };
-    companions.push(finer);
+    let corrected = |correction| {
+        let when = Some(When::Steps(1));
+        (finer.0, Approach { coordinates: Coordinates::Maximal, correction, when, ..finer.1 })
+    };
+    let is_corrected = !matches!(approach.correction, Correction::None | Correction::Baumgarte(_));
+    // What drifts off the constraints may leave a singular pose in another way than it came, however fine it is.
+    companions.extend(is_corrected.then_some(finer));
+    companions.extend([Correction::Partition, Correction::MassWeighted].map(corrected));
+    companions.extend((!is_corrected).then_some(finer));
     companions
 }
 
-/// The largest difference of each coordinate's positions over all samples of two runs; of orientations the angle between them.
-pub fn differences(samples: &[Sample], others: &[Sample]) -> Vec<f64> {
-    let mut worst = vec![0.0; samples.first().map_or(0, |sample| sample.coordinates.len())];
+/// How far two runs differ in one joint coordinate, at worst over all samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Difference {
+    /// Of positions; of orientations the angle between them.
+    pub position: f64,
+    /// Of rates.
+    pub rate: f64,
+    /// The largest position and the largest rate of the second run; zero the position where it is an orientation.
+    pub largest: [f64; 2],
+}
+
+impl Difference {
+    /// In units of this tolerance, relative and absolute alike, the larger one of position and rate.
+    pub fn in_tolerances(&self, tolerance: f64) -> f64 {
+        let [position, rate] = self.largest.map(|size| tolerance * (1.0 + size));
+        larger(self.position / position, self.rate / rate)
+    }
+}
+
+/// The differences of all joint coordinates of two runs with the same samples.
+pub fn differences(samples: &[Sample], others: &[Sample]) -> Vec<Difference> {
+    let mut worst = vec![Difference::default(); samples.first().map_or(0, |sample| sample.coordinates.len())];
     for (sample, other) in samples.iter().zip(others) {
         for ((worst, one), other) in worst.iter_mut().zip(&sample.coordinates).zip(&other.coordinates) {
-            let distance = distance(one, other);
-            // What is no number stays.
-            *worst = if distance <= *worst || f64::is_nan(*worst) { *worst } else { distance };
+            worst.position = larger(worst.position, distance(one, other));
+            let [rate, other_rate] = [one, other].map(rate);
+            worst.rate = larger(worst.rate, gap(&rate, &other_rate));
+            let largest = [size(other), gap(&other_rate, &[0.0; 3])];
+            worst.largest = core::array::from_fn(|k| larger(worst.largest[k], largest[k]));
         }
     }
     worst
+}
+
+/// What is no number stays.
+fn larger(worst: f64, x: f64) -> f64 {
+    if x <= worst || worst.is_nan() { worst } else { x }
+}
+
+fn gap(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+}
+
+fn rate(joint: &JointSample) -> [f64; 3] {
+    match *joint {
+        JointSample::Angle { rate, .. } | JointSample::Length { rate, .. } => [rate, 0.0, 0.0],
+        JointSample::Orientation { rate, .. } => rate,
+    }
+}
+
+fn size(joint: &JointSample) -> f64 {
+    match joint {
+        JointSample::Angle { position, .. } | JointSample::Length { position, .. } => position.abs(),
+        JointSample::Orientation { .. } => 0.0,
+    }
 }
 
 fn distance(one: &JointSample, other: &JointSample) -> f64 {
@@ -53,8 +107,8 @@ fn distance(one: &JointSample, other: &JointSample) -> f64 {
         | (JointSample::Length { position: a, .. }, JointSample::Length { position: b, .. }) => (a - b).abs(),
         (JointSample::Orientation { position: a, .. }, JointSample::Orientation { position: b, .. }) => {
             // p and −p are one orientation.
-            let gap = |sign: f64| a.iter().zip(b).map(|(a, b)| (a - sign * b).powi(2)).sum::<f64>().sqrt();
-            2.0 * gap(1.0).min(gap(-1.0))
+            let opposite = b.map(|component| -component);
+            2.0 * gap(a, b).min(gap(a, &opposite))
         }
         _ => f64::NAN,
     }

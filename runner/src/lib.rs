@@ -24,7 +24,7 @@ mod summary;
 mod timing;
 
 pub use approach::{Approach, Coordinates, Correction, Integrator, When};
-pub use companion::{companions, differences};
+pub use companion::{Difference, companions, differences};
 pub use failure::{Failure, describe, describe_in};
 pub use input::Input;
 pub use run::{Event, Start, run, run_by};

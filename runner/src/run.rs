@@ -7,7 +7,7 @@ use crate::{
     Approach, Coordinates, Correction, Failure, Input, Integrator, Sample, Schedule, Segment, Settings,
     Summary, Tracker, describe, describe_in,
 };
-use gyro_sim::{Error, Partition, Ports, Scalar, Turns};
+use gyro_sim::{Error, Partition, Ports, Real, Scalar, Turns};
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -211,6 +211,8 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
 
     /// Steps under error control until a time is passed.
     fn advance_beyond(&mut self, t: f64, t_end: f64) -> Result<(), Error> {
+        // As the motion counts time: in single precision the end may come before this number.
+        let t = M::Scalar::constant(t).to_f64();
         while self.motion.time() < t {
             let began = Instant::now();
             self.motion.step_towards(self.mechanism, t_end)?;

@@ -38,7 +38,7 @@ fn hard_state(start: &[f64], random: &mut Random) -> Vec<f64> {
 }
 
 /// Calls everything once, through a corrected step and a reading of the turns.
-fn exercise<T: Real>(mechanism: &Engine<T>, y: &Vec<T>) -> Result<(), Error> {
+fn exercise<T: Real + 'static>(mechanism: &Engine<T>, y: &Vec<T>) -> Result<(), Error> {
     let t = T::constant(0.0);
     let (mut phi, mut rows) = (mechanism.constraints(), mechanism.rows());
     mechanism.phi(t, y, &mut phi);
@@ -75,7 +75,7 @@ struct Survives {
 }
 
 impl Survives {
-    fn check<T: Real>(&mut self, page: &str, mechanism: &Engine<T>) {
+    fn check<T: Real + 'static>(&mut self, page: &str, mechanism: &Engine<T>) {
         let start: Vec<f64> = mechanism.start().iter().map(|x| x.to_f64()).collect();
         let mut random = Random::new(5);
         for index in 0..STATES {
@@ -143,7 +143,7 @@ fn every_kind_of_part_is_in_a_mechanism_of_single_precision() {
 }
 
 /// A step so long that the motion is lost: an error, and one that tells the time.
-fn check_long_steps<T: Real>(page: &str, mechanism: &Engine<T>) {
+fn check_long_steps<T: Real + 'static>(page: &str, mechanism: &Engine<T>) {
     for step in [1.0, 1e3, 1e30, f64::NAN] {
         let (mut y, mut ends) = (mechanism.start(), mechanism.start());
         let mut solver = Partitioned::new(mechanism, &y);

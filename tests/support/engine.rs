@@ -1,16 +1,27 @@
 //! Any mechanism behind one type: a mechanism is compiled once for each precision, and what runs and compares mechanisms once
 //! for all of them.
 
+use gyro_runner::motion::{COLUMNS, Feed, Kit, TreeWithJacobian, WithDuals};
 use gyro_sim::{
-    Energy, Equations, Error, JointInfo, Mechanism, Ode, OutputInfo, Partition, Ports, Projection, Real,
-    RowInfo, Storage,
+    Dual, Energy, Equations, Error, JointInfo, JointJacobian, JointSpace, Mechanism, Ode, OutputInfo,
+    Partition, Ports, Projection, Real, RowInfo, Storage,
 };
 use std::any::Any;
 use std::fmt::Debug;
 
 /// A mechanism that does everything there is to do, generated or not.
 #[derive(Debug)]
-pub struct Engine<T = f64>(Box<dyn Erased<T>>);
+pub struct Engine<T = f64> {
+    mechanism: Box<dyn Erased<T>>,
+    /// The same as a tree, if it is one.
+    tree: AsTree<T>,
+}
+
+type AsTree<T> = for<'a> fn(&'a dyn Erased<T>) -> Option<&'a dyn ErasedTree<T>>;
+
+/// The same mechanism in dual numbers, where there is need of it.
+#[derive(Debug)]
+pub struct Duals<T = f64>(Option<Box<dyn ErasedDuals<T>>>);
 
 /// A choice of independent coordinates of any mechanism.
 #[derive(Debug)]
@@ -22,13 +33,66 @@ impl<T: Real + 'static> Engine<T> {
     where
         M: Partition<Scalar = T, Independent: 'static> + Projection + Ports + Clone + Debug + 'static,
     {
-        Self(Box::new(mechanism))
+        Self { mechanism: Box::new(mechanism), tree: |_| None }
+    }
+
+    /// A tree, with its joint coordinates.
+    pub fn of_tree<M>(mechanism: M) -> Self
+    where
+        M: Partition<Scalar = T, Independent: 'static>
+            + Projection
+            + Ports
+            + JointJacobian
+            + Clone
+            + Debug
+            + 'static,
+    {
+        let tree: AsTree<T> = |mechanism| {
+            let mechanism = mechanism as &dyn Any;
+            mechanism.downcast_ref::<M>().map(|tree| tree as &dyn ErasedTree<T>)
+        };
+        Self { mechanism: Box::new(mechanism), tree }
+    }
+
+    /// Whether it has joint coordinates.
+    pub fn is_tree(&self) -> bool {
+        (self.tree)(&*self.mechanism).is_some()
+    }
+
+    /// All that motions of it can be begun with, as a program of its own would have it.
+    pub fn kit(&self, duals: Duals<T>) -> Box<dyn Kit<Self>> {
+        if self.is_tree() { Box::new(TreeWithJacobian(duals)) } else { Box::new(WithDuals(duals)) }
+    }
+
+    fn tree(&self) -> &dyn ErasedTree<T> {
+        (self.tree)(&*self.mechanism).expect("only trees have joint coordinates")
     }
 }
 
-impl<T> Clone for Engine<T> {
+impl<T: Real + 'static> Duals<T> {
+    /// The same mechanism, its type forgotten.
+    pub fn new<D>(mechanism: D) -> Self
+    where
+        D: Ode<Scalar = Dual<T, COLUMNS>> + Feed + Clone + Debug + 'static,
+    {
+        Self(Some(Box::new(mechanism)))
+    }
+
+    /// For what Rodas does not integrate in maximal coordinates: each page costs its compilation.
+    pub fn none() -> Self {
+        Self(None)
+    }
+}
+
+impl<T: 'static> Clone for Engine<T> {
     fn clone(&self) -> Self {
-        self.0.cloned()
+        Self { mechanism: self.mechanism.cloned(), tree: self.tree }
+    }
+}
+
+impl<T: 'static> Clone for Duals<T> {
+    fn clone(&self) -> Self {
+        Self(self.0.as_ref().map(|duals| duals.cloned()))
     }
 }
 
@@ -48,6 +112,7 @@ impl PartialEq for Choice {
 #[derive(Clone, Copy, Debug)]
 enum Term {
     Derivative,
+    CorrectedDerivative,
     Phi,
     VelocityResidual,
     Readings,
@@ -61,9 +126,9 @@ enum Term {
 }
 
 /// The traits of a mechanism with all buffers as slices.
-trait Erased<T>: Debug {
-    fn cloned(&self) -> Engine<T>;
-    /// The start for [`Term::Derivative`], else zeros.
+trait Erased<T>: Any + Debug {
+    fn cloned(&self) -> Box<dyn Erased<T>>;
+    /// The start for derivatives, else zeros.
     fn buffer(&self, term: Term) -> Vec<T>;
     fn write(&self, term: Term, t: T, y: &[T], out: &mut [T]);
     fn multipliers(&self, t: T, y: &[T], accelerations: &[T], lambda: &mut [T]);
@@ -89,6 +154,26 @@ trait Erased<T>: Debug {
     fn n_inputs(&self) -> usize;
     fn input_name(&self, index: usize) -> &str;
     fn set_input(&mut self, index: usize, value: T) -> bool;
+}
+
+/// What solvers and linearisation ask of a tree.
+trait ErasedTree<T> {
+    fn joint_start(&self) -> Vec<T>;
+    fn rates(&self) -> Vec<T>;
+    fn jacobian_buffer(&self) -> Vec<T>;
+    fn input_jacobian_buffer(&self) -> Vec<T>;
+    fn joint_derivative(&self, t: T, x: &[T], dx: &mut [T]);
+    fn joint_jacobian(&self, t: T, x: &[T], dfdx: &mut [T], dfdt: &mut [T]);
+    fn joint_input_jacobian(&self, t: T, x: &[T], out: &mut [T]);
+    fn to_maximal(&self, t: T, x: &[T], y: &mut [T]);
+    fn to_joints(&self, t: T, y: &[T], x: &mut [T]);
+}
+
+trait ErasedDuals<T>: Debug {
+    fn cloned(&self) -> Box<dyn ErasedDuals<T>>;
+    fn start(&self) -> Vec<Dual<T, COLUMNS>>;
+    fn derivative(&self, t: Dual<T, COLUMNS>, y: &[Dual<T, COLUMNS>], dy: &mut [Dual<T, COLUMNS>]);
+    fn feed(&mut self, index: usize, value: Dual<T, COLUMNS>);
 }
 
 trait ErasedChoice: Any + Debug {
@@ -134,12 +219,12 @@ impl<T: Real + 'static, M> Erased<T> for M
 where
     M: Partition<Scalar = T, Independent: 'static> + Projection + Ports + Clone + Debug + 'static,
 {
-    fn cloned(&self) -> Engine<T> {
-        Engine::new(self.clone())
+    fn cloned(&self) -> Box<dyn Erased<T>> {
+        Box::new(self.clone())
     }
     fn buffer(&self, term: Term) -> Vec<T> {
         match term {
-            Term::Derivative => listed(self.start()),
+            Term::Derivative | Term::CorrectedDerivative => listed(self.start()),
             Term::Phi => listed(self.constraints()),
             Term::VelocityResidual | Term::Nu | Term::Gamma => listed(self.rows()),
             Term::Readings => listed(self.readings()),
@@ -154,6 +239,9 @@ where
         let y = &filled(self.start(), y);
         match term {
             Term::Derivative => through(self.start(), out, |dy| self.derivative(t, y, dy)),
+            Term::CorrectedDerivative => {
+                through(self.start(), out, |dy| self.corrected_derivative(t, y, dy));
+            }
             Term::Phi => through(self.constraints(), out, |phi| self.phi(t, y, phi)),
             Term::VelocityResidual => through(self.rows(), out, |rows| self.velocity_residual(t, y, rows)),
             Term::Readings => through(self.readings(), out, |readings| self.read_joints(t, y, readings)),
@@ -246,160 +334,302 @@ where
     }
 }
 
-impl<T: Real> Ode for Engine<T> {
-    type Scalar = T;
-    type State = Vec<T>;
-    fn start(&self) -> Vec<T> {
-        self.0.buffer(Term::Derivative)
+impl<T: Real + 'static, M: JointJacobian<Scalar = T>> ErasedTree<T> for M {
+    fn joint_start(&self) -> Vec<T> {
+        listed(JointSpace::joint_start(self))
     }
-    fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
-        self.0.write(Term::Derivative, t, y, dy);
+    fn rates(&self) -> Vec<T> {
+        listed(JointSpace::rates(self))
+    }
+    fn jacobian_buffer(&self) -> Vec<T> {
+        listed(self.joint_jacobian_buffer())
+    }
+    fn input_jacobian_buffer(&self) -> Vec<T> {
+        listed(JointJacobian::input_jacobian_buffer(self))
+    }
+    fn joint_derivative(&self, t: T, x: &[T], dx: &mut [T]) {
+        let buffer = JointSpace::joint_start(self);
+        let x = &filled(buffer.clone(), x);
+        through(buffer, dx, |dx| JointSpace::joint_derivative(self, t, x, dx));
+    }
+    fn joint_jacobian(&self, t: T, x: &[T], dfdx: &mut [T], dfdt: &mut [T]) {
+        let (mut jacobian, buffer) = (self.joint_jacobian_buffer(), JointSpace::joint_start(self));
+        let x = &filled(buffer.clone(), x);
+        through(buffer, dfdt, |dfdt| JointJacobian::joint_jacobian(self, t, x, &mut jacobian, dfdt));
+        dfdx.copy_from_slice(jacobian.as_ref());
+    }
+    fn joint_input_jacobian(&self, t: T, x: &[T], out: &mut [T]) {
+        let x = &filled(JointSpace::joint_start(self), x);
+        let buffer = JointJacobian::input_jacobian_buffer(self);
+        through(buffer, out, |out| JointJacobian::joint_input_jacobian(self, t, x, out));
+    }
+    fn to_maximal(&self, t: T, x: &[T], y: &mut [T]) {
+        let x = &filled(JointSpace::joint_start(self), x);
+        through(filled(self.start(), y), y, |y| JointSpace::to_maximal(self, t, x, y));
+    }
+    fn to_joints(&self, t: T, y: &[T], x: &mut [T]) {
+        let (y, before) = (&filled(self.start(), y), filled(JointSpace::joint_start(self), x));
+        through(before, x, |x| JointSpace::to_joints(self, t, y, x));
     }
 }
 
-impl<T: Real> Mechanism for Engine<T> {
+impl<T: Real + 'static, D> ErasedDuals<T> for D
+where
+    D: Ode<Scalar = Dual<T, COLUMNS>> + Feed + Clone + Debug + 'static,
+{
+    fn cloned(&self) -> Box<dyn ErasedDuals<T>> {
+        Box::new(self.clone())
+    }
+    fn start(&self) -> Vec<Dual<T, COLUMNS>> {
+        listed(Ode::start(self))
+    }
+    fn derivative(&self, t: Dual<T, COLUMNS>, y: &[Dual<T, COLUMNS>], dy: &mut [Dual<T, COLUMNS>]) {
+        let y = &filled(Ode::start(self), y);
+        through(Ode::start(self), dy, |dy| Ode::derivative(self, t, y, dy));
+    }
+    fn feed(&mut self, index: usize, value: Dual<T, COLUMNS>) {
+        Feed::feed(self, index, value);
+    }
+}
+
+impl<T: Real + 'static> Ode for Duals<T> {
+    type Scalar = Dual<T, COLUMNS>;
+    type State = Vec<Dual<T, COLUMNS>>;
+    fn start(&self) -> Self::State {
+        self.0.as_ref().expect(NO_DUALS).start()
+    }
+    fn derivative(&self, t: Self::Scalar, y: &Self::State, dy: &mut Self::State) {
+        self.0.as_ref().expect(NO_DUALS).derivative(t, y, dy);
+    }
+}
+
+impl<T: Real + 'static> Feed for Duals<T> {
+    fn feed(&mut self, index: usize, value: Self::Scalar) {
+        if let Some(duals) = &mut self.0 {
+            duals.feed(index, value);
+        }
+    }
+}
+
+const NO_DUALS: &str = "this page has no dual numbers here: add it to `duals`";
+
+impl<T: Real + 'static> Ode for Engine<T> {
+    type Scalar = T;
+    type State = Vec<T>;
+    fn start(&self) -> Vec<T> {
+        self.mechanism.buffer(Term::Derivative)
+    }
+    fn derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+        self.mechanism.write(Term::Derivative, t, y, dy);
+    }
+}
+
+impl<T: Real + 'static> Mechanism for Engine<T> {
     type Rows = Vec<T>;
     type Constraints = Vec<T>;
     type Readings = Vec<T>;
     fn rows(&self) -> Vec<T> {
-        self.0.buffer(Term::Nu)
+        self.mechanism.buffer(Term::Nu)
     }
     fn constraints(&self) -> Vec<T> {
-        self.0.buffer(Term::Phi)
+        self.mechanism.buffer(Term::Phi)
     }
     fn readings(&self) -> Vec<T> {
-        self.0.buffer(Term::Readings)
+        self.mechanism.buffer(Term::Readings)
+    }
+    fn corrected_derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
+        self.mechanism.write(Term::CorrectedDerivative, t, y, dy);
     }
     fn phi(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::Phi, t, y, out);
+        self.mechanism.write(Term::Phi, t, y, out);
     }
     fn velocity_residual(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::VelocityResidual, t, y, out);
+        self.mechanism.write(Term::VelocityResidual, t, y, out);
     }
     fn energy(&self, t: T, y: &Vec<T>) -> Energy<T> {
-        self.0.energy(t, y)
+        self.mechanism.energy(t, y)
     }
     fn read_joints(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::Readings, t, y, out);
+        self.mechanism.write(Term::Readings, t, y, out);
     }
     fn n_bodies(&self) -> usize {
-        self.0.n_bodies()
+        self.mechanism.n_bodies()
     }
     fn n_joints(&self) -> usize {
-        self.0.n_joints()
+        self.mechanism.n_joints()
     }
     fn body_name(&self, body: usize) -> &str {
-        self.0.body_name(body)
+        self.mechanism.body_name(body)
     }
     fn joint(&self, joint: usize) -> JointInfo<'_> {
-        self.0.joint(joint)
+        self.mechanism.joint(joint)
     }
     fn coupler_name(&self, coupler: usize) -> &str {
-        self.0.coupler_name(coupler)
+        self.mechanism.coupler_name(coupler)
     }
     fn driver_name(&self, driver: usize) -> &str {
-        self.0.driver_name(driver)
+        self.mechanism.driver_name(driver)
     }
     fn row(&self, row: usize) -> RowInfo {
-        self.0.row(row)
+        self.mechanism.row(row)
     }
     fn size(&self) -> T {
-        self.0.size()
+        self.mechanism.size()
     }
     fn work(&self, y: &Vec<T>) -> T {
-        self.0.work(y)
+        self.mechanism.work(y)
     }
 }
 
-impl<T: Real> Partition for Engine<T> {
+impl<T: Real + 'static> Partition for Engine<T> {
     type Independent = Choice;
     fn independent(&self, t: T, y: &Vec<T>) -> Choice {
-        self.0.independent(t, y)
+        self.mechanism.independent(t, y)
     }
     fn follow(&self, t: T, y: &Vec<T>, choice: &mut Choice) -> u32 {
-        self.0.follow(t, y, choice)
+        self.mechanism.follow(t, y, choice)
     }
     fn newton_step(&self, t: T, choice: &Choice, y: &mut Vec<T>) -> Result<(), Error> {
-        self.0.newton_step(t, choice, y)
+        self.mechanism.newton_step(t, choice, y)
     }
     fn solve_velocities(&self, t: T, choice: &Choice, y: &mut Vec<T>) -> Result<(), Error> {
-        self.0.solve_velocities(t, choice, y)
+        self.mechanism.solve_velocities(t, choice, y)
     }
 }
 
-impl<T: Real> Equations for Engine<T> {
+impl<T: Real + 'static> Equations for Engine<T> {
     type Velocities = Vec<T>;
     type PhiQ = Vec<T>;
     type PhiPi = Vec<T>;
     type Accelerations = Vec<T>;
     fn velocities(&self) -> Vec<T> {
-        self.0.buffer(Term::AppliedForce)
+        self.mechanism.buffer(Term::AppliedForce)
     }
     fn phi_q_values(&self) -> Vec<T> {
-        self.0.buffer(Term::PhiQ)
+        self.mechanism.buffer(Term::PhiQ)
     }
     fn phi_pi_values(&self) -> Vec<T> {
-        self.0.buffer(Term::PhiPi)
+        self.mechanism.buffer(Term::PhiPi)
     }
     fn accelerations_buffer(&self) -> Vec<T> {
-        self.0.buffer(Term::Accelerations)
+        self.mechanism.buffer(Term::Accelerations)
     }
     fn phi_q_pattern(&self) -> &[(u16, u16)] {
-        self.0.phi_q_pattern()
+        self.mechanism.phi_q_pattern()
     }
     fn phi_pi_pattern(&self) -> &[(u16, u16)] {
-        self.0.phi_pi_pattern()
+        self.mechanism.phi_pi_pattern()
     }
     fn phi_q(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::PhiQ, t, y, out);
+        self.mechanism.write(Term::PhiQ, t, y, out);
     }
     fn phi_pi(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::PhiPi, t, y, out);
+        self.mechanism.write(Term::PhiPi, t, y, out);
     }
     fn nu(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::Nu, t, y, out);
+        self.mechanism.write(Term::Nu, t, y, out);
     }
     fn gamma(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::Gamma, t, y, out);
+        self.mechanism.write(Term::Gamma, t, y, out);
     }
     fn applied_force(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::AppliedForce, t, y, out);
+        self.mechanism.write(Term::AppliedForce, t, y, out);
     }
     fn accelerations(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::Accelerations, t, y, out);
+        self.mechanism.write(Term::Accelerations, t, y, out);
     }
     fn multipliers(&self, t: T, y: &Vec<T>, accelerations: &Vec<T>, lambda: &mut Vec<T>) {
-        self.0.multipliers(t, y, accelerations, lambda);
+        self.mechanism.multipliers(t, y, accelerations, lambda);
     }
 }
 
-impl<T: Real> Projection for Engine<T> {
+impl<T: Real + 'static> Projection for Engine<T> {
     fn project(&self, t: T, y: &Vec<T>, rows: &Vec<T>, motion: &mut Vec<T>) {
-        self.0.project(t, y, rows, motion);
+        self.mechanism.project(t, y, rows, motion);
     }
 }
 
-impl<T: Real> Ports for Engine<T> {
+impl<T: Real + 'static> Ports for Engine<T> {
     type Outputs = Vec<T>;
     fn outputs_buffer(&self) -> Vec<T> {
-        self.0.buffer(Term::Outputs)
+        self.mechanism.buffer(Term::Outputs)
     }
     fn outputs(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
-        self.0.write(Term::Outputs, t, y, out);
+        self.mechanism.write(Term::Outputs, t, y, out);
     }
     fn n_outputs(&self) -> usize {
-        self.0.n_outputs()
+        self.mechanism.n_outputs()
     }
     fn output(&self, index: usize) -> OutputInfo<'_> {
-        self.0.output(index)
+        self.mechanism.output(index)
     }
     fn n_inputs(&self) -> usize {
-        self.0.n_inputs()
+        self.mechanism.n_inputs()
     }
     fn input_name(&self, index: usize) -> &str {
-        self.0.input_name(index)
+        self.mechanism.input_name(index)
     }
     fn set_input(&mut self, index: usize, value: T) -> bool {
-        self.0.set_input(index, value)
+        self.mechanism.set_input(index, value)
+    }
+}
+
+/// Only what solvers and linearisation ask for.
+impl<T: Real + 'static> JointSpace for Engine<T> {
+    type Joints = Vec<T>;
+    type Rates = Vec<T>;
+    type Solution = Vec<T>;
+    fn joint_start(&self) -> Vec<T> {
+        self.tree().joint_start()
+    }
+    fn rates(&self) -> Vec<T> {
+        self.tree().rates()
+    }
+    fn solution(&self) -> Vec<T> {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn joint_accelerations(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn joint_derivative(&self, t: T, x: &Vec<T>, dx: &mut Vec<T>) {
+        self.tree().joint_derivative(t, x, dx);
+    }
+    fn to_maximal(&self, t: T, x: &Vec<T>, y: &mut Vec<T>) {
+        self.tree().to_maximal(t, x, y);
+    }
+    fn to_joints(&self, t: T, y: &Vec<T>, x: &mut Vec<T>) {
+        self.tree().to_joints(t, y, x);
+    }
+    fn joint_accelerations_at(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn corrected_accelerations(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn corrected_multipliers(&self, _: T, _: &Vec<T>, _: &Vec<T>, _: &mut Vec<T>) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+    fn corrected_solution(&self, _: T, _: &Vec<T>, _: &mut Vec<T>) {
+        unreachable!("{NOT_FORWARDED}")
+    }
+}
+
+/// Each kernel of each page costs its compilation.
+const NOT_FORWARDED: &str = "ask the mechanism itself: an engine does not have it";
+
+impl<T: Real + 'static> JointJacobian for Engine<T> {
+    type Jacobian = Vec<T>;
+    type InputJacobian = Vec<T>;
+    fn joint_jacobian_buffer(&self) -> Vec<T> {
+        self.tree().jacobian_buffer()
+    }
+    fn input_jacobian_buffer(&self) -> Vec<T> {
+        self.tree().input_jacobian_buffer()
+    }
+    fn joint_jacobian(&self, t: T, x: &Vec<T>, dfdx: &mut Vec<T>, dfdt: &mut Vec<T>) {
+        self.tree().joint_jacobian(t, x, dfdx, dfdt);
+    }
+    fn joint_input_jacobian(&self, t: T, x: &Vec<T>, out: &mut Vec<T>) {
+        self.tree().joint_input_jacobian(t, x, out);
     }
 }

@@ -2,8 +2,11 @@
 
 use crate::Engine;
 use gyro_model::{Joint, JointKind, Model};
-use gyro_runner::{Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run};
-use gyro_sim::{Equations, Mechanism, Ports};
+use gyro_runner::motion::Kit;
+use gyro_runner::{
+    Approach, Event, Failure, Input, JointSample, Sample, Settings, Start, Summary, run, run_by,
+};
+use gyro_sim::{Equations, Mechanism, Ports, Real};
 
 /// The paper's settings for one second, section 7.
 pub const PAPER: Settings =
@@ -76,6 +79,23 @@ pub fn fed(
     let mut samples = Vec::new();
     let start = Start { inputs, ..start_of(model) };
     let outcome = run(&mut mechanism.clone(), settings, &start, |event| {
+        if let Event::Sample(sample) = event {
+            samples.push(sample.clone());
+        }
+        Ok(())
+    });
+    (samples, outcome)
+}
+
+/// A run by any approach: its samples, as far as it came, and how it ended.
+pub fn moved<T: Real + 'static>(
+    mechanism: &Engine<T>,
+    kit: &dyn Kit<Engine<T>>,
+    by: (&Settings, &Approach),
+    start: &Start,
+) -> (Vec<Sample>, Result<Summary, Failure>) {
+    let mut samples = Vec::new();
+    let outcome = run_by(&mut mechanism.clone(), kit, by, start, |event| {
         if let Event::Sample(sample) = event {
             samples.push(sample.clone());
         }

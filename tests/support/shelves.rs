@@ -1,11 +1,11 @@
 //! The pages of models with their generated mechanisms: those that are shipped and those for tests alone.
 
-use crate::Engine;
 use crate::generated as own;
+use crate::{Duals, Engine};
 use gyro_assembled::{Careful, Dense};
 use gyro_codegen::Module;
 use gyro_model::{Model, Tree};
-use gyro_sim::generated as shipped;
+use gyro_sim::{Real, generated as shipped};
 use std::path::{Path, PathBuf};
 
 /// A folder of pages and the folder of their generated modules.
@@ -34,68 +34,72 @@ pub fn generated(page: &str) -> Engine {
         "cam" => Engine::new(own::cam::Cam::default()),
         "carried" => Engine::new(own::carried::Carried::default()),
         "carried-block" => Engine::new(own::carried_block::CarriedBlock::default()),
-        "compound-pendulum" => Engine::new(shipped::compound_pendulum::CompoundPendulum::default()),
+        "compound-pendulum" => Engine::of_tree(shipped::compound_pendulum::CompoundPendulum::default()),
         "cylindrical" => Engine::new(own::cylindrical::Cylindrical::default()),
         "driven-four-bar" => Engine::new(own::driven_four_bar::DrivenFourBar::default()),
-        "driven-gyroscope" => Engine::new(shipped::driven_gyroscope::DrivenGyroscope::default()),
+        "driven-gyroscope" => Engine::of_tree(shipped::driven_gyroscope::DrivenGyroscope::default()),
         "four-bar" => Engine::new(shipped::four_bar::FourBar::default()),
         "four-bar-in-line" => Engine::new(shipped::four_bar_in_line::FourBarInLine::default()),
         "four-bar-revolute" => Engine::new(shipped::four_bar_revolute::FourBarRevolute::default()),
-        "free-body" => Engine::new(shipped::free_body::FreeBody::default()),
+        "free-body" => Engine::of_tree(shipped::free_body::FreeBody::default()),
         "friction" => Engine::new(own::friction::Friction::default()),
         "gear" => Engine::new(own::gear::Gear::default()),
-        "gyroscope" => Engine::new(shipped::gyroscope::Gyroscope::default()),
-        "gyroscope-at-rest" => Engine::new(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
+        "gyroscope" => Engine::of_tree(shipped::gyroscope::Gyroscope::default()),
+        "gyroscope-at-rest" => Engine::of_tree(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
         "gyroscope-bearings" => Engine::new(own::gyroscope_bearings::GyroscopeBearings::default()),
         "gyroscope-combined-offsets" => {
-            Engine::new(shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default())
+            Engine::of_tree(shipped::gyroscope_combined_offsets::GyroscopeCombinedOffsets::default())
         }
-        "gyroscope-coulomb" => Engine::new(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
-        "gyroscope-fast" => Engine::new(shipped::gyroscope_fast::GyroscopeFast::default()),
+        "gyroscope-coulomb" => Engine::of_tree(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
+        "gyroscope-fast" => Engine::of_tree(shipped::gyroscope_fast::GyroscopeFast::default()),
         "gyroscope-free-nutation" => {
-            Engine::new(shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
+            Engine::of_tree(shipped::gyroscope_free_nutation::GyroscopeFreeNutation::default())
         }
         "gyroscope-gimbal-lock" => {
-            Engine::new(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default())
+            Engine::of_tree(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default())
         }
         "gyroscope-heavy-rotor" => {
-            Engine::new(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default())
+            Engine::of_tree(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default())
         }
         "gyroscope-light-rings" => {
-            Engine::new(shipped::gyroscope_light_rings::GyroscopeLightRings::default())
+            Engine::of_tree(shipped::gyroscope_light_rings::GyroscopeLightRings::default())
         }
-        "gyroscope-long" => Engine::new(shipped::gyroscope_long::GyroscopeLong::default()),
-        "gyroscope-maximal" => Engine::new(shipped::gyroscope_maximal::GyroscopeMaximal::default()),
+        "gyroscope-long" => Engine::of_tree(shipped::gyroscope_long::GyroscopeLong::default()),
+        "gyroscope-maximal" => Engine::of_tree(shipped::gyroscope_maximal::GyroscopeMaximal::default()),
         "gyroscope-misalignments" => {
-            Engine::new(shipped::gyroscope_misalignments::GyroscopeMisalignments::default())
+            Engine::of_tree(shipped::gyroscope_misalignments::GyroscopeMisalignments::default())
         }
-        "gyroscope-overdamped" => Engine::new(shipped::gyroscope_overdamped::GyroscopeOverdamped::default()),
-        "gyroscope-parameters" => Engine::new(shipped::gyroscope_parameters::GyroscopeParameters::default()),
+        "gyroscope-overdamped" => {
+            Engine::of_tree(shipped::gyroscope_overdamped::GyroscopeOverdamped::default())
+        }
+        "gyroscope-parameters" => {
+            Engine::of_tree(shipped::gyroscope_parameters::GyroscopeParameters::default())
+        }
         "gyroscope-radial-imbalance" => {
-            Engine::new(shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default())
+            Engine::of_tree(shipped::gyroscope_radial_imbalance::GyroscopeRadialImbalance::default())
         }
         "gyroscope-rolling-base" => {
-            Engine::new(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
+            Engine::of_tree(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
         }
-        "gyroscope-stiff" => Engine::new(shipped::gyroscope_stiff::GyroscopeStiff::default()),
-        "gyroscope-viscous" => Engine::new(shipped::gyroscope_viscous::GyroscopeViscous::default()),
-        "heavy-top" => Engine::new(shipped::heavy_top::HeavyTop::default()),
+        "gyroscope-stiff" => Engine::of_tree(shipped::gyroscope_stiff::GyroscopeStiff::default()),
+        "gyroscope-viscous" => Engine::of_tree(shipped::gyroscope_viscous::GyroscopeViscous::default()),
+        "heavy-top" => Engine::of_tree(shipped::heavy_top::HeavyTop::default()),
         "loads" => Engine::new(own::loads::Loads::default()),
         "motor" => Engine::new(own::motor::Motor::default()),
         "parallelogram" => Engine::new(own::parallelogram::Parallelogram::default()),
         "pendulum" => Engine::new(own::pendulum::Pendulum::default()),
         "pitching-bearings" => Engine::new(own::pitching_bearings::PitchingBearings::default()),
-        "pitching-gyroscope" => Engine::new(shipped::pitching_gyroscope::PitchingGyroscope::default()),
+        "pitching-gyroscope" => Engine::of_tree(shipped::pitching_gyroscope::PitchingGyroscope::default()),
         "planar" => Engine::new(own::planar::Planar::default()),
         "point-on-line" => Engine::new(own::point_on_line::PointOnLine::default()),
         "prismatic" => Engine::new(own::prismatic::Prismatic::default()),
         "rod" => Engine::new(own::rod::Rod::default()),
         "screw" => Engine::new(own::screw::Screw::default()),
         "spherical" => Engine::new(own::spherical::Spherical::default()),
-        "spinning-top" => Engine::new(shipped::spinning_top::SpinningTop::default()),
+        "spinning-top" => Engine::of_tree(shipped::spinning_top::SpinningTop::default()),
         "stops" => Engine::new(own::stops::Stops::default()),
         "tether" => Engine::new(own::tether::Tether::default()),
-        "torsion" => Engine::new(shipped::torsion::Torsion::default()),
+        "torsion" => Engine::of_tree(shipped::torsion::Torsion::default()),
         "universal" => Engine::new(own::universal::Universal::default()),
         "weld" => Engine::new(own::weld::Weld::default()),
         _ => panic!("{page}.toml has no line in tests/support/shelves.rs: add it"),
@@ -127,6 +131,81 @@ pub fn in_single_precision() -> Vec<(&'static str, Engine<f32>)> {
         ("universal", Engine::new(own::universal::Universal::default())),
         ("weld", Engine::new(own::weld::Weld::default())),
     ]
+}
+
+/// Extreme scenes, and the plain ones that they are variants of.
+pub const EXTREME: [&str; 13] = [
+    "gyroscope",
+    "gyroscope-fast",
+    "gyroscope-at-rest",
+    "gyroscope-light-rings",
+    "gyroscope-heavy-rotor",
+    "gyroscope-gimbal-lock",
+    "gyroscope-stiff",
+    "gyroscope-overdamped",
+    "gyroscope-coulomb",
+    "gyroscope-rolling-base",
+    "gyroscope-long",
+    "four-bar",
+    "four-bar-in-line",
+];
+
+/// The generated mechanism of an extreme scene in any precision.
+///
+/// # Panics
+/// If it is none of [`EXTREME`].
+pub fn extreme<T: Real + 'static>(page: &str) -> Engine<T> {
+    match page {
+        "gyroscope" => Engine::of_tree(shipped::gyroscope::Gyroscope::default()),
+        "gyroscope-fast" => Engine::of_tree(shipped::gyroscope_fast::GyroscopeFast::default()),
+        "gyroscope-at-rest" => Engine::of_tree(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
+        "gyroscope-light-rings" => {
+            Engine::of_tree(shipped::gyroscope_light_rings::GyroscopeLightRings::default())
+        }
+        "gyroscope-heavy-rotor" => {
+            Engine::of_tree(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default())
+        }
+        "gyroscope-gimbal-lock" => {
+            Engine::of_tree(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default())
+        }
+        "gyroscope-stiff" => Engine::of_tree(shipped::gyroscope_stiff::GyroscopeStiff::default()),
+        "gyroscope-overdamped" => {
+            Engine::of_tree(shipped::gyroscope_overdamped::GyroscopeOverdamped::default())
+        }
+        "gyroscope-coulomb" => Engine::of_tree(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
+        "gyroscope-rolling-base" => {
+            Engine::of_tree(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
+        }
+        "gyroscope-long" => Engine::of_tree(shipped::gyroscope_long::GyroscopeLong::default()),
+        "four-bar" => Engine::new(shipped::four_bar::FourBar::default()),
+        "four-bar-in-line" => Engine::new(shipped::four_bar_in_line::FourBarInLine::default()),
+        _ => panic!("{page} is no extreme scene"),
+    }
+}
+
+/// The same in dual numbers.
+///
+/// # Panics
+/// If it is none of [`EXTREME`].
+pub fn duals<T: Real + 'static>(page: &str) -> Duals<T> {
+    match page {
+        "gyroscope" => Duals::new(shipped::gyroscope::Gyroscope::default()),
+        "gyroscope-fast" => Duals::new(shipped::gyroscope_fast::GyroscopeFast::default()),
+        "gyroscope-at-rest" => Duals::new(shipped::gyroscope_at_rest::GyroscopeAtRest::default()),
+        "gyroscope-light-rings" => Duals::new(shipped::gyroscope_light_rings::GyroscopeLightRings::default()),
+        "gyroscope-heavy-rotor" => Duals::new(shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default()),
+        "gyroscope-gimbal-lock" => Duals::new(shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default()),
+        "gyroscope-stiff" => Duals::new(shipped::gyroscope_stiff::GyroscopeStiff::default()),
+        "gyroscope-overdamped" => Duals::new(shipped::gyroscope_overdamped::GyroscopeOverdamped::default()),
+        "gyroscope-coulomb" => Duals::new(shipped::gyroscope_coulomb::GyroscopeCoulomb::default()),
+        "gyroscope-rolling-base" => {
+            Duals::new(shipped::gyroscope_rolling_base::GyroscopeRollingBase::default())
+        }
+        "gyroscope-long" => Duals::new(shipped::gyroscope_long::GyroscopeLong::default()),
+        "four-bar" => Duals::new(shipped::four_bar::FourBar::default()),
+        "four-bar-in-line" => Duals::new(shipped::four_bar_in_line::FourBarInLine::default()),
+        _ => panic!("{page} is no extreme scene"),
+    }
 }
 
 /// The careful twin of a model.

@@ -45,7 +45,8 @@ pub(crate) fn object(
     });
     if let Some(verdict) = verdict {
         object["verdict"] = json!({
-            "estimated_errors": verdict.errors.iter().map(|(name, _, error)| (name.clone(), json!(error))).collect::<Map<_, _>>(),
+            "estimated_errors": by_name(&verdict.errors),
+            "estimated_rate_errors": by_name(&verdict.rate_errors),
             "companion": verdict.companion,
             "smallest_pivot": summary.smallest_pivot,
             "fastest_eigenvalue": verdict.fastest_eigenvalue,
@@ -109,4 +110,9 @@ pub(crate) fn redundant(model: &Model) -> Vec<Value> {
         })
     });
     rows.collect()
+}
+
+/// Errors by the names of their coordinates.
+fn by_name(errors: &[(String, &'static str, f64)]) -> Value {
+    errors.iter().map(|(name, _, error)| (name.clone(), json!(error))).collect::<Map<_, _>>().into()
 }

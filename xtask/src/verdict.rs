@@ -18,6 +18,10 @@ use std::fmt::Write as _;
 pub(crate) struct Verdict {
     /// Estimated error of each joint coordinate over the run, with its name and unit.
     pub(crate) errors: Vec<(String, &'static str, f64)>,
+    /// The same of their rates.
+    pub(crate) rate_errors: Vec<(String, &'static str, f64)>,
+    /// The largest of all in units of the tolerance, where there is one.
+    in_tolerances: f64,
     /// What the companion was.
     pub(crate) companion: String,
     /// The fastest eigenvalue of the linearised motion at the end, 1/s; none for mechanisms without a joint form.
@@ -68,10 +72,23 @@ fn companions(scene: &Scene) -> Vec<Scene> {
 fn compare(scene: &Scene, outcome: &Outcome, companion: &Scene, other: &Outcome) -> Verdict {
     let columns = columns::coordinates(&scene.model);
     let differences = differences(&outcome.samples, &other.samples);
-    let errors =
-        columns.iter().zip(differences).map(|(c, error)| (c.name.clone(), c.unit(), error)).collect();
+    let tolerance = scene.approach.tolerance.unwrap_or(1.0);
+    let in_tolerances = differences.iter().map(|d| d.in_tolerances(tolerance));
     let fastest_eigenvalue = outcome.linear.as_ref().or(other.linear.as_ref()).map(fastest);
-    let mut verdict = Verdict { errors, companion: words(companion), fastest_eigenvalue, advice: Vec::new() };
+    let mut verdict = Verdict {
+        errors: Vec::new(),
+        rate_errors: Vec::new(),
+        in_tolerances: in_tolerances.fold(0.0, |worst, x| if x <= worst { worst } else { x }),
+        companion: words(companion),
+        fastest_eigenvalue,
+        advice: Vec::new(),
+    };
+    for (column, difference) in columns.into_iter().zip(differences) {
+        let units =
+            if column.is_orientation() { ("rad", "rad/s") } else { (column.unit(), column.rate_unit()) };
+        verdict.errors.push((column.name.clone(), units.0, difference.position));
+        verdict.rate_errors.push((column.name, units.1, difference.rate));
+    }
     verdict.advice = advice(scene, outcome, &verdict);
     verdict
 }
@@ -106,18 +123,22 @@ const SMALL_PIVOT: f64 = 1e-3;
 fn advice(scene: &Scene, outcome: &Outcome, verdict: &Verdict) -> Vec<String> {
     let mut advice = Vec::new();
     let statistics = &outcome.summary.statistics;
-    let worst = verdict.errors.iter().map(|e| e.2).fold(0.0, f64::max);
+    let [worst, worst_rate] = [&verdict.errors, &verdict.rate_errors]
+        .map(|errors| errors.iter().map(|e| e.2).fold(0.0, |worst, e| if e <= worst { worst } else { e }));
     let approach = &scene.approach;
     match approach.tolerance {
-        Some(tolerance) if worst > 10.0 * tolerance => advice.push(format!(
+        Some(tolerance) if verdict.in_tolerances <= 10.0 => {
+            advice.push(format!("The errors are within ten times the tolerance of {tolerance:e}."));
+        }
+        Some(tolerance) => advice.push(format!(
             "Errors have added up to {} times the tolerance: for {tolerance:e} over this run try --tolerance {:.0e}.",
-            number(worst / tolerance, 2),
-            tolerance * tolerance / worst
+            number(verdict.in_tolerances, 2),
+            tolerance / verdict.in_tolerances
         )),
-        Some(tolerance) => advice.push(format!("The errors are within ten times the tolerance of {tolerance:e}.")),
-        None if worst.is_finite() => advice.push(format!(
-            "The result can be trusted to {}; half the step would divide a smooth motion's error by {}.",
+        None if worst.is_finite() && worst_rate.is_finite() => advice.push(format!(
+            "Positions can be trusted to {}, rates to {}; half the step would divide a smooth motion's errors by {}.",
             number(worst, 2),
+            number(worst_rate, 2),
             2_u32.pow(order(approach.integrator))
         )),
         None => advice.push("The result cannot be trusted: the companion ends elsewhere.".to_owned()),
@@ -174,13 +195,12 @@ fn order(integrator: Integrator) -> u32 {
 /// The verdict in words.
 pub(crate) fn text(verdict: &Verdict, outcome: &Outcome) -> String {
     let row = |name: String, value: String| vec![name, value];
-    let mut rows: Vec<Vec<String>> = verdict
-        .errors
-        .iter()
-        .map(|(name, unit, error)| {
-            row(format!("estimated error of {name}"), format!("{} {unit}", number(*error, 2)))
-        })
-        .collect();
+    let mut rows = Vec::new();
+    for (errors, of) in [(&verdict.errors, ""), (&verdict.rate_errors, "the rate of ")] {
+        rows.extend(errors.iter().map(|(name, unit, error)| {
+            row(format!("estimated error of {of}{name}"), format!("{} {unit}", number(*error, 2)))
+        }));
+    }
     if let Some(pivot) = outcome.summary.smallest_pivot {
         rows.push(row("smallest pivot of the constraints".to_owned(), number(pivot, 3)));
     }
