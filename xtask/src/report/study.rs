@@ -108,6 +108,8 @@ impl Study {
         let mut goals = Vec::new();
         if is_paper {
             goals.extend(goals::of_the_paper(&points, lab.t_end));
+        }
+        if is_paper && effort.is_full {
             goals.extend(kept(&drifts, long));
             goals.extend(of_orders(&orders));
         }
@@ -215,6 +217,7 @@ fn kept(drifts: &[Drift], long: f64) -> Vec<Goal> {
             limit: Limit::AtMost(limit),
             reached: course.and_then(|course| course.errors.as_ref()?.first().copied()),
             by: "rk4, step 1e-4 s, corrected every 5e-4 s".to_owned(),
+            is_time: false,
         }
     };
     KEPT.into_iter().map(goal).collect()
@@ -234,6 +237,7 @@ fn of_orders(orders: &[(Integrator, Treatment, Option<Order>)]) -> Vec<Goal> {
             limit: Limit::Near(expected(*integrator), 0.5),
             reached: order.map(|order| order.order),
             by: treatment.name(),
+            is_time: false,
         })
         .collect()
 }
