@@ -213,7 +213,7 @@ const STEP: f64 = 1e-3;
 const STEPS: u64 = 4000;
 
 /// Samples of such a run: a motion that bursts may die again, having taken the scene's energy with it.
-const SAMPLES: f64 = 1000.0;
+const SAMPLES: f64 = 500.0;
 
 /// Relative width to which a limit is found.
 const WIDTH: f64 = 0.01;
