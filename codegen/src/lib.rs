@@ -33,7 +33,7 @@
 //! ```
 //!
 //! The pipeline, one file an arrow: `system` lowers the model to poses and frames, `constraints` writes Φ, `kinematics`
-//! differentiates it (`differentiate`), `dynamics` adds masses and forces, `freedom` and `null_space` solve eq. (17), `partition` the coordinate
+//! differentiates it (`differentiate`), `dynamics` adds masses and forces, `freedom`, `null_space` and `mass_matrix` solve eq. (17), `partition` the coordinate
 //! partition, `definitions` expands, `schedule` orders, `emit` and `module` write.
 #![deny(missing_docs)]
 
@@ -55,6 +55,7 @@ mod joint_space;
 mod kinematics;
 mod ldl;
 mod linear;
+mod mass_matrix;
 mod module;
 mod motion;
 mod multipliers;

@@ -69,6 +69,13 @@ pub enum Error {
         /// The step that stability allows, s.
         step: f64,
     },
+    /// The time to go to is not finite.
+    NoEnd {
+        /// Time, s.
+        t: f64,
+        /// The time to go to, s.
+        t_end: f64,
+    },
     /// The tolerances are no positive numbers, or finer than the number type can resolve.
     Tolerance {
         /// Relative tolerance.
@@ -103,6 +110,7 @@ impl fmt::Display for Error {
             Self::StepTooShort { t, step, index } => {
                 write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
             }
+            Self::NoEnd { t, t_end } => write!(f, "at t = {t} s there is no way to t = {t_end} s"),
             Self::TooManySteps { t, steps } => {
                 write!(f, "at t = {t} s the budget of {steps} steps is used up")
             }

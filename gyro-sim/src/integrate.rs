@@ -62,8 +62,8 @@ pub trait Embedded<O: Ode<Scalar: Real>>: Method<O> {
     /// The estimate shrinks like h to the power of this.
     const ERROR_ORDER: u32;
 
-    /// The estimated error of the last attempt in units of what is tolerated, that of the worst element, and its index. The weights say
-    /// what is tolerated of each element. Infinite where the attempt has led to what is not finite.
+    /// The estimated error of the last attempt in units of what is tolerated, the root mean square over the elements of the state, and the
+    /// index of the worst. The weights say what is tolerated of each element. Infinite where the attempt has led to what is not finite.
     fn error(&self, h: O::Scalar, weights: &O::State) -> (O::Scalar, usize);
 }
 
@@ -101,20 +101,22 @@ fn sum<T: Scalar, const N: usize>(terms: &[(T, &[T]); N], i: usize) -> T {
     sum
 }
 
-/// The largest of the elements' errors over their weights, and its index.
+/// The root mean square of the elements' errors over their weights, and the index of the largest.
 #[inline(always)]
-fn worst<T: Real, S: Storage<T>>(weights: &S, error: impl Fn(usize) -> T) -> (T, usize) {
-    let mut worst = (T::constant(0.0), 0);
+fn size<T: Real, S: Storage<T>>(weights: &S, error: impl Fn(usize) -> T) -> (T, usize) {
+    let (mut sum, mut n, mut worst) = (T::constant(0.0), 0.0, (T::constant(0.0), 0));
     for (i, weight) in weights.as_ref().iter().enumerate() {
         let error = (error(i) / *weight).abs();
         if !error.is_finite() {
             return (T::constant(f64::INFINITY), i);
         }
+        sum = T::fused(error, error, sum);
+        n += 1.0;
         if error > worst.0 {
             worst = (error, i);
         }
     }
-    worst
+    ((sum / T::constant(n)).sqrt(), worst.1)
 }
 
 /// The squares of the lengths of differences, of slopes and of the states that they belong to: a rate.

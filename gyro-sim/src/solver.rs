@@ -283,8 +283,9 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         let is_due = match self.control.when {
             When::Steps(steps) => self.since_correction + 1 >= steps,
             When::Violation(limit) => {
+                let violation = self.correction.violation(system, t, &self.trial).to_f64();
                 // What is not a number is corrected too, and so noticed.
-                !(self.correction.violation(system, t, &self.trial).to_f64() <= limit)
+                violation > limit || violation.is_nan()
             }
         };
         if is_due {
@@ -344,10 +345,12 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         M: Embedded<O>,
         C: Correction<O>,
     {
-        while self.t < t_end {
+        loop {
             self.step_towards(system, t_end)?;
+            if self.t >= t_end {
+                return Ok(());
+            }
         }
-        Ok(())
     }
 
     /// One step, as long as the tolerances allow and not beyond `t_end`.
@@ -362,7 +365,10 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         C: Correction<O>,
     {
         self.check_control()?;
-        if !(t_end > self.t) {
+        if !t_end.is_finite() {
+            return Err(Error::NoEnd { t: self.t.to_f64(), t_end: t_end.to_f64() });
+        }
+        if t_end <= self.t {
             return Ok(());
         }
         if self.next_step == T::constant(0.0) {

@@ -18,6 +18,8 @@ pub struct Approach {
     pub when: Option<When>,
     /// Steps after which the run is given up, under error control; `None` for the solver's own.
     pub budget: Option<u64>,
+    /// Whether pivots are to be looked at, and the motion to be linearised about where it ends.
+    pub examine: bool,
 }
 
 /// The method.

@@ -64,6 +64,7 @@ pub fn answer<M: Partition + Ports + 'static>(
     let plan: (&Settings, _) = (&request.settings, &request.approach);
     let told = |event: Event<'_>| match event {
         Event::Sample(sample) => writeln!(output, "{}", sample_line(sample)),
+        Event::Linear(linear) => writeln!(output, "{}", Reply::Linear(linear.clone()).to_line()),
         Event::Progress(t) => {
             writeln!(output, "{}", Reply::Progress(t).to_line())?;
             output.flush()

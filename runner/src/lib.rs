@@ -11,9 +11,11 @@
 
 mod approach;
 pub mod child;
+mod companion;
 mod failure;
 mod input;
 pub mod motion;
+mod pivots;
 pub mod protocol;
 mod run;
 mod sample;
@@ -22,6 +24,7 @@ mod summary;
 mod timing;
 
 pub use approach::{Approach, Coordinates, Correction, Integrator, When};
+pub use companion::{companions, differences};
 pub use failure::{Failure, describe, describe_in};
 pub use input::Input;
 pub use run::{Event, Start, run, run_by};

@@ -1,11 +1,13 @@
 //! A motion under way, whatever integrates it.
 
 use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
+use crate::pivots;
 use gyro_sim::integrate::{Embedded, Method};
 use gyro_sim::{
-    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, Error, JointForm,
-    JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition, Partitioning, Ports,
-    Projection, Real, Rodas4, Scalar, Solver, Statistics, Storage, Tsit5, Uncorrected, When,
+    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Differentiable, Dop853, Dual, Error,
+    JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
+    Partitioning, Ports, Projection, Real, Rodas4, Scalar, Solver, Statistics, Storage, Tsit5, Uncorrected,
+    When,
 };
 
 /// A motion of a mechanism. The mechanism is handed in at each call, so that its inputs can be set in between.
@@ -47,6 +49,34 @@ pub trait Kit<M: Partition + Ports> {
     /// # Errors
     /// What the mechanism lacks for this approach.
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String>;
+    /// The smallest pivot of the constraint Jacobian by full pivoting, lengths in units of the mechanism's size; `None` where the
+    /// Jacobian is not at hand. It vanishes in singular poses.
+    fn smallest_pivot(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<f64> {
+        None
+    }
+    /// The linearisation of the joint form about a maximal state; `None` for what has no joint form.
+    fn linearise(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<Linear> {
+        None
+    }
+}
+
+/// A tree's joint form near a state: `ẋ ≈ f + A δx + B δu`, with x the joint coordinates and rates (and the work done), u the inputs.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Linear {
+    /// Time, s.
+    pub t: f64,
+    /// The joint state.
+    pub state: Vec<f64>,
+    /// Its derivative.
+    pub slope: Vec<f64>,
+    /// A = ∂f/∂x, row by row.
+    pub by_state: Vec<f64>,
+    /// B = ∂f/∂u, row by row.
+    pub by_inputs: Vec<f64>,
+}
+
+fn in_f64<T: Real>(numbers: &[T]) -> Vec<f64> {
+    numbers.iter().map(|x| x.to_f64()).collect()
 }
 
 /// For whatever can be partitioned.
@@ -68,6 +98,18 @@ pub struct Tree<D>(pub D);
 /// For trees with a generated Jacobian.
 #[derive(Clone, Copy, Debug)]
 pub struct TreeWithJacobian<D>(pub D);
+
+/// A system with inputs.
+pub trait Feed: Ode {
+    /// Sets an input until it is set anew.
+    fn feed(&mut self, index: usize, value: Self::Scalar);
+}
+
+impl<M: Ports> Feed for M {
+    fn feed(&mut self, index: usize, value: M::Scalar) {
+        self.set_input(index, value);
+    }
+}
 
 /// Columns of a Jacobian that are computed at a time.
 pub const COLUMNS: usize = 4;
@@ -93,12 +135,16 @@ impl<M: Partition + Ports + Projection + 'static> Kit<M> for Projecting {
         let correction = keeping(mechanism, approach, y)?;
         Ok(maximal(approach, correction, y))
     }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
 }
 
 impl<M, D> Kit<M> for WithDuals<D>
 where
     M: Partition + Ports + Projection + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         only_maximal(approach)?;
@@ -108,12 +154,16 @@ where
         }
         Ok(maximal(approach, correction, y))
     }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
 }
 
 impl<M, D> Kit<M> for Tree<D>
 where
     M: Partition + Ports + Projection + JointSpace + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + JointSpace + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + JointSpace + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -127,12 +177,41 @@ where
         }
         Ok(explicit(Joint, Uncorrected, approach, &x))
     }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
+
+    fn linearise(&self, mechanism: &M, t: f64, y: &M::State) -> Option<Linear> {
+        let (x, time) = (joints(mechanism, y), Scalar::constant(t));
+        let zero = M::Scalar::constant(0.0);
+        let duals = JointDuals(self.0.clone(), vec![zero; square(x.as_ref())]);
+        let (mut by_state, mut by_time) = (duals.1.clone(), x.clone());
+        let mut slope = x.clone();
+        mechanism.joint_derivative(time, &x, &mut slope);
+        duals.system(mechanism).jacobian(time, &x, &mut by_state, &mut by_time);
+        let n_inputs = mechanism.n_inputs();
+        let mut by_inputs = vec![zero; n_inputs * x.as_ref().len()];
+        for input in 0..n_inputs {
+            let column = input_column(&self.0, input, time, x.as_ref());
+            for (row, slope) in by_inputs.chunks_exact_mut(n_inputs).zip(column) {
+                row[input] = slope;
+            }
+        }
+        Some(Linear {
+            t,
+            state: in_f64(x.as_ref()),
+            slope: in_f64(slope.as_ref()),
+            by_state: in_f64(&by_state),
+            by_inputs: in_f64(&by_inputs),
+        })
+    }
 }
 
 impl<M, D> Kit<M> for TreeWithJacobian<D>
 where
     M: Partition + Ports + Projection + JointJacobian + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
 {
     fn begin(&self, mechanism: &M, approach: &Approach, y: &M::State) -> Result<Box<dyn Motion<M>>, String> {
         if approach.coordinates == Coordinates::Maximal {
@@ -144,6 +223,27 @@ where
             return Ok(adaptive(Joint, method, Uncorrected, approach, &x));
         }
         Ok(explicit(Joint, Uncorrected, approach, &x))
+    }
+
+    fn smallest_pivot(&self, mechanism: &M, t: f64, y: &M::State) -> Option<f64> {
+        Some(pivots::smallest(mechanism, t, y))
+    }
+
+    fn linearise(&self, mechanism: &M, t: f64, y: &M::State) -> Option<Linear> {
+        let (x, time) = (joints(mechanism, y), Scalar::constant(t));
+        let (mut slope, mut by_time) = (x.clone(), x.clone());
+        let (mut by_state, mut by_inputs) =
+            (mechanism.joint_jacobian_buffer(), mechanism.input_jacobian_buffer());
+        mechanism.joint_derivative(time, &x, &mut slope);
+        mechanism.joint_jacobian(time, &x, &mut by_state, &mut by_time);
+        mechanism.joint_input_jacobian(time, &x, &mut by_inputs);
+        Some(Linear {
+            t,
+            state: in_f64(x.as_ref()),
+            slope: in_f64(slope.as_ref()),
+            by_state: in_f64(by_state.as_ref()),
+            by_inputs: in_f64(by_inputs.as_ref()),
+        })
     }
 }
 
@@ -163,6 +263,23 @@ fn only_explicit(approach: &Approach) -> Result<(), String> {
 
 fn square<T>(state: &[T]) -> usize {
     state.len() * state.len()
+}
+
+/// ∂f/∂u of one input. What the input is set to does not matter: it enters linearly.
+fn input_column<T: Real, D>(duals: &D, input: usize, t: T, x: &[T]) -> Vec<T>
+where
+    D: JointSpace<Scalar = Dual<T, COLUMNS>> + Feed + Clone,
+{
+    let mut duals = duals.clone();
+    let (mut arguments, zero, one) = (duals.joint_start(), T::constant(0.0), T::constant(1.0));
+    let slopes = core::array::from_fn(|k| if k == 0 { one } else { zero });
+    duals.feed(input, Dual { value: zero, slopes });
+    for (argument, value) in arguments.as_mut().iter_mut().zip(x) {
+        *argument = Dual::new(*value);
+    }
+    let mut out = arguments.clone();
+    duals.joint_derivative(Dual::new(t), &arguments, &mut out);
+    out.as_ref().iter().map(|number| number.slopes[0]).collect()
 }
 
 /// The joint state of a maximal one.
@@ -195,7 +312,7 @@ struct Plain;
 /// A mechanism as a system of its own.
 struct Exact<'a, M>(&'a M);
 
-impl<M: Mechanism> Ode for Exact<'_, M> {
+impl<M: Ode> Ode for Exact<'_, M> {
     type Scalar = M::Scalar;
     type State = M::State;
 
@@ -263,7 +380,7 @@ struct Duals<D, T>(D, Vec<T>);
 impl<M, D> Lens<M> for Duals<D, M::Scalar>
 where
     M: Mechanism<State: 'static, Scalar: 'static> + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
 {
     type State = M::State;
     type System<'a> = ByDuals<'a, Exact<'a, M>, Exact<'a, D>, Vec<M::Scalar>, COLUMNS>;
@@ -275,7 +392,7 @@ where
         copy::<M>(from, to);
     }
     fn set_input(&mut self, index: usize, value: f64) {
-        self.0.set_input(index, Scalar::constant(value));
+        self.0.feed(index, Scalar::constant(value));
     }
 }
 
@@ -300,7 +417,7 @@ struct JointDuals<D, T>(D, Vec<T>);
 impl<M, D> Lens<M> for JointDuals<D, M::Scalar>
 where
     M: JointSpace<Joints: 'static, Scalar: 'static> + 'static,
-    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+    D: JointSpace<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
 {
     type State = M::Joints;
     type System<'a> = ByDuals<'a, JointForm<'a, M>, JointForm<'a, D>, Vec<M::Scalar>, COLUMNS>;
@@ -312,7 +429,7 @@ where
         mechanism.to_maximal(t, from, to);
     }
     fn set_input(&mut self, index: usize, value: f64) {
-        self.0.set_input(index, Scalar::constant(value));
+        self.0.feed(index, Scalar::constant(value));
     }
 }
 
@@ -376,7 +493,7 @@ fn in_maximal<M, D>(
 ) -> Result<Box<dyn Motion<M>>, String>
 where
     M: Partition + Ports + Projection + JointSpace + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + Clone + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + Clone + 'static,
 {
     let correction = match approach.correction {
         Keeping::ClosedForm => Boxed(Box::new(ClosedForm::new(mechanism))),
@@ -394,6 +511,7 @@ where
     M: Partition + Projection + 'static,
 {
     match approach.correction {
+        // The projection is as good as it is only with accelerations that are exact off the constraints.
         Keeping::None | Keeping::MassWeighted => explicit(Plain, correction, approach, y),
         Keeping::Baumgarte(rate) => explicit(Steered(rate), correction, approach, y),
         _ => explicit(Cheap, correction, approach, y),
@@ -410,7 +528,7 @@ fn implicit<M, D>(
 ) -> Box<dyn Motion<M>>
 where
     M: Partition + 'static,
-    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Ports + 'static,
+    D: Ode<Scalar = Dual<M::Scalar, COLUMNS>> + Feed + 'static,
 {
     let duals = Duals(duals, vec![M::Scalar::constant(0.0); square(y.as_ref())]);
     let method = Rodas4::new(&duals.system(mechanism), y);
@@ -459,11 +577,13 @@ fn solver<S: Storage<T>, T: Real, A, C>(
         control = control.with_tolerance(tolerance);
     }
     control.budget = approach.budget.unwrap_or(control.budget);
+    let has_corrections = approach.coordinates == Coordinates::Maximal
+        && !matches!(approach.correction, Keeping::None | Keeping::Baumgarte(_));
     control.when = match (approach.when, approach.tolerance) {
-        (Some(when), _) => when.into(),
-        (None, Some(_)) => When::Steps(1),
-        // The schedule says when.
-        (None, None) => When::Steps(u32::MAX),
+        (Some(when), _) if has_corrections => when.into(),
+        (None, Some(_)) if has_corrections => When::Steps(1),
+        // Never, or when the schedule says so.
+        _ => When::Steps(u32::MAX),
     };
     Solver::new(method, correction, T::constant(0.0), y).with_control(control)
 }

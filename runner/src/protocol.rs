@@ -3,6 +3,7 @@
 //! Numbers are printed with as many digits as it takes to read the same number back. The command line writes a
 //! [`Request`] to the program's standard input; the program answers with [`Reply`] lines on its standard output, and waits for the next.
 
+use crate::motion::Linear;
 use crate::{Approach, BodySample, Input, JointSample, Sample, Settings, Start, Summary, Timing};
 use gyro_sim::Statistics;
 use gyro_sim::integrate::Work;
@@ -33,6 +34,8 @@ pub const END: &str = "end";
 pub enum Reply {
     /// The mechanism at a sample time.
     Sample(Sample),
+    /// The linearisation at the end.
+    Linear(Linear),
     /// The run has reached this time, s.
     Progress(f64),
     /// What the run costs when nobody looks at it.
@@ -63,11 +66,13 @@ impl Request {
         if let Some(every) = correct_every {
             let _ = writeln!(text, "correct_every {every:?}");
         }
-        let Approach { integrator, tolerance, coordinates, correction, when, budget } = self.approach;
+        let Approach { integrator, tolerance, coordinates, correction, when, budget, examine } =
+            self.approach;
         let _ = writeln!(text, "integrator {integrator}\ncoordinates {coordinates}\ncorrection {correction}");
         let _ = tolerance.map(|tolerance| writeln!(text, "tolerance {tolerance:?}"));
         let _ = when.map(|when| writeln!(text, "when {when}"));
         let _ = budget.map(|budget| writeln!(text, "budget {budget}"));
+        let _ = writeln!(text, "examine {examine}");
         line(&mut text, "parameters", &self.parameters);
         line(&mut text, "positions", &self.start.positions);
         line(&mut text, "velocities", &self.start.velocities);
@@ -111,6 +116,7 @@ impl Request {
             "coordinates" => self.approach.coordinates = values.parse().ok()?,
             "correction" => self.approach.correction = values.parse().ok()?,
             "when" => self.approach.when = Some(values.parse().ok()?),
+            "examine" => self.approach.examine = values.parse().ok()?,
             "budget" => self.approach.budget = Some(values.parse().ok()?),
             "parameters" => self.parameters = list(values)?,
             "positions" => self.start.positions = list(values)?,
@@ -132,12 +138,21 @@ impl Reply {
     pub fn to_line(&self) -> String {
         match self {
             Self::Sample(sample) => sample_line(sample),
+            Self::Linear(linear) => {
+                let mut text =
+                    format!("linear {:?} {} {}", linear.t, linear.state.len(), linear.by_inputs.len());
+                for values in [&linear.state, &linear.slope, &linear.by_state, &linear.by_inputs] {
+                    words(&mut text, "", values);
+                }
+                text
+            }
             Self::Progress(t) => format!("progress {t:?}"),
             Self::Done(s) => {
                 let mut text = format!("done {} {}", s.steps, s.chart_switches);
                 words(&mut text, "", &[s.position_violation, s.velocity_violation, s.norm_violation]);
                 words(&mut text, "", &[s.energy_drift, s.run_time_s]);
                 statistics(&mut text, &s.statistics);
+                words(&mut text, "", s.smallest_pivot.as_slice());
                 text
             }
             Self::Timed(Timing { measured, statistics: met }) => {
@@ -163,6 +178,7 @@ impl Reply {
         let mut words = Words(rest.split_ascii_whitespace());
         let reply = match key {
             "sample" => Self::Sample(words.sample()?),
+            "linear" => Self::Linear(words.linear()?),
             "progress" => Self::Progress(words.next()?),
             "timed" => Self::Timed(words.timing()?),
             "done" => Self::Done(words.summary()?),
@@ -189,6 +205,21 @@ impl Words<'_> {
         Some(array)
     }
 
+    fn list(&mut self, n: usize) -> Option<Vec<f64>> {
+        (0..n).map(|_| self.next()).collect()
+    }
+
+    fn linear(&mut self) -> Option<Linear> {
+        let (t, n, m): (f64, usize, usize) = (self.next()?, self.next()?, self.next()?);
+        Some(Linear {
+            t,
+            state: self.list(n)?,
+            slope: self.list(n)?,
+            by_state: self.list(n * n)?,
+            by_inputs: self.list(m)?,
+        })
+    }
+
     fn summary(&mut self) -> Option<Summary> {
         Some(Summary {
             steps: self.next()?,
@@ -199,6 +230,10 @@ impl Words<'_> {
             energy_drift: self.next()?,
             run_time_s: self.next()?,
             statistics: self.statistics()?,
+            smallest_pivot: match self.0.next() {
+                Some(word) => Some(word.parse().ok()?),
+                None => None,
+            },
         })
     }
 
@@ -333,6 +368,7 @@ mod tests {
                     correction: Correction::Baumgarte(AWKWARD[0]),
                     when: correct_every.map(When::Violation),
                     budget: correct_every.map(|_| 7),
+                    examine: correct_every.is_some(),
                 },
                 parameters: vec![1.0 / 7.0],
                 start: Start {
@@ -373,9 +409,16 @@ mod tests {
             chart_switches: 7,
         };
         let summary =
-            Summary { steps: 10_000, chart_switches: 32, energy_drift: 1e-14, ..Default::default() };
+            Summary { steps: 10_000, chart_switches: 32, smallest_pivot: Some(0.5), ..Default::default() };
         for reply in [
             Reply::Sample(sample),
+            Reply::Linear(Linear {
+                t: AWKWARD[0],
+                state: AWKWARD[..2].to_vec(),
+                slope: AWKWARD[2..4].to_vec(),
+                by_state: AWKWARD[1..5].to_vec(),
+                by_inputs: vec![AWKWARD[6]; 2],
+            }),
             Reply::Progress(0.25),
             Reply::Timed(Timing {
                 measured: Measured { runs: 9, seconds: AWKWARD[1], ratio: AWKWARD[6] },

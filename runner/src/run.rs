@@ -1,7 +1,7 @@
 //! The loop.
 
 use crate::input::{any_varies, set};
-use crate::motion::{self, Kit, Motion};
+use crate::motion::{self, Kit, Linear, Motion};
 use crate::sample::Observer;
 use crate::{
     Approach, Coordinates, Correction, Failure, Input, Integrator, Sample, Schedule, Segment, Settings,
@@ -34,6 +34,8 @@ pub struct Start {
 pub enum Event<'a> {
     /// The mechanism at a sample time.
     Sample(&'a Sample),
+    /// The linearisation at the end, if it is asked for and there is one.
+    Linear(&'a Linear),
     /// The run has reached this time, s. Comes every now and then, for a progress bar.
     Progress(f64),
 }
@@ -97,6 +99,7 @@ pub fn run_by<M: Partition + Ports + 'static>(
         advanced.map_err(|e| in_words(run.mechanism, e))?;
         if segment.samples {
             let sample = run.sample(segment.to).map_err(|e| in_words(run.mechanism, e))?;
+            run.look_at_pivots(kit, approach, segment.to);
             tracker.add(&sample);
             tell(Event::Sample(&sample))?;
         }
@@ -106,6 +109,11 @@ pub fn run_by<M: Partition + Ports + 'static>(
         }
     }
     run.finish();
+    if let Some(linear) =
+        approach.examine.then(|| kit.linearise(run.mechanism, settings.t_end, &run.y)).flatten()
+    {
+        tell(Event::Linear(&linear))?;
+    }
     tracker.finish(&mut run.summary);
     Ok(run.summary)
 }
@@ -240,6 +248,15 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
             self.read_turns(t)?;
         }
         Ok(self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches()))
+    }
+
+    fn look_at_pivots(&mut self, kit: &dyn Kit<M>, approach: &Approach, t: f64) {
+        if let Some(pivot) =
+            approach.examine.then(|| kit.smallest_pivot(self.mechanism, t, &self.y)).flatten()
+        {
+            let smallest = &mut self.summary.smallest_pivot;
+            *smallest = Some(smallest.map_or(pivot, |before| before.min(pivot)));
+        }
     }
 
     fn finish(&mut self) {

@@ -98,6 +98,9 @@ const FAULTS: &[Fault] = &[
     fault("null_space.rs", "four-bar", "closing::close(graph, kinematics, tree, (&self.closing, «&changes»), free)", "&kinematics.gamma"),
     fault("null_space.rs", "pair", "let free = «tree.respond(graph, Excitation { bias, forced, along }).motions»;", "forced"),
     fault("freedom.rs", "pair", "accelerated(graph, «&changes[self.rows.clone()]», &self.forced)", "changes"),
+    fault("mass_matrix.rs", "gyroscope-combined-offsets", "let linear = «graph.mul(body.mass, linear)»;", "linear"),
+    fault("mass_matrix.rs", "gyroscope-combined-offsets", "let product = «graph.mul(inertia, cosine)»;", "Graph::ZERO"),
+    fault("mass_matrix.rs", "gyroscope-combined-offsets", "taken[parent.slot] = «taken[parent.slot].plus(graph, &carried)»;", "carried"),
     // The coordinate partition.
     fault("partition.rs", "bob", "let factor = «graph.mul(half, difference)»;", "difference"),
     fault("partition.rs", "spherical", "let (residual, two) = (graph.sub(Graph::ONE, square), «graph.integer(2)»);", "graph.integer(1)"),

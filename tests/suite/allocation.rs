@@ -4,7 +4,12 @@
 
 use gyro_assembled::{Careful, Dense};
 use gyro_sim::generated::{gyroscope::Gyroscope, gyroscope_viscous::GyroscopeViscous};
-use gyro_sim::{JointCoordinate, Partition, Partitioned, Turns, violation};
+use gyro_sim::integrate::{Embedded, Method};
+use gyro_sim::{
+    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, JointCoordinate, JointForm,
+    JointSpace, Kutta4, MassWeighted, Ode, Partition, Partitioned, Partitioning, Rodas4, Solver, Tsit5,
+    Turns, Uncorrected, violation,
+};
 use gyro_sim_suite::model;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -66,6 +71,72 @@ fn a_generated_simulation_allocates_nothing() {
     assert!(worst < 1e-12 && (alpha - 0.1).abs() < 1e-3, "it did run: {worst:e}, alpha {alpha}");
     let (count, _) = allocations(|| simulation(&GyroscopeViscous::default(), A_SECOND));
     assert_eq!(count, 0);
+}
+
+/// Fixed steps and steps under error control with interpolation, in maximal coordinates with one correction.
+macro_rules! count_with {
+    ($gyroscope:ident, $correction:expr) => {{
+        let y = $gyroscope.start();
+        let system = Corrected(&$gyroscope);
+        let count = |solve: &dyn Fn() -> f64| {
+            let (count, end) = allocations(solve);
+            assert!(end >= 0.01, "it did run to {end} s");
+            count
+        };
+        let control = Control::default().with_tolerance(1e-6);
+        let (duals, zeros) = (GyroscopeViscous::<Dual<f64, 4>>::default(), [0.0; 40 * 40]);
+        let implicit = ByDuals::new(system, Corrected(&duals), &zeros);
+        count(&|| fixed(&system, Kutta4::new(&y), $correction, &y))
+            + count(&|| adaptive(&system, Tsit5::new(&y), $correction, control, &y))
+            + count(&|| adaptive(&system, Dop853::new(&y), $correction, control, &y))
+            + count(&|| adaptive(&implicit, Rodas4::new(&implicit, &y), $correction, control, &y))
+    }};
+}
+
+fn fixed<O, M, C>(system: &O, method: M, correction: C, y: &O::State) -> f64
+where
+    O: Ode<Scalar = f64>,
+    M: Method<O>,
+    C: Correction<O>,
+{
+    let mut solver = Solver::new(method, correction, 0.0, y);
+    solver.advance(system, 1e-3, 20).unwrap();
+    solver.time()
+}
+
+fn adaptive<O, M, C>(system: &O, method: M, correction: C, control: Control, y: &O::State) -> f64
+where
+    O: Ode<Scalar = f64>,
+    M: Embedded<O>,
+    C: Correction<O>,
+{
+    let mut solver = Solver::new(method, correction, 0.0, y).with_control(control);
+    let mut within = y.clone();
+    while solver.time() < 0.02 {
+        let before = solver.time();
+        solver.step_towards(system, 0.02).unwrap();
+        solver.interpolate(system, 0.5 * (before + solver.time()), &mut within).unwrap();
+    }
+    solver.time()
+}
+
+#[test]
+fn every_integrator_with_every_correction_allocates_nothing() {
+    let gyroscope = GyroscopeViscous::<f64>::default();
+    let start = gyroscope.start();
+    assert_eq!(count_with!(gyroscope, Uncorrected), 0);
+    assert_eq!(count_with!(gyroscope, Partitioning::new(&gyroscope, 0.0, &start)), 0);
+    assert_eq!(count_with!(gyroscope, ClosedForm::new(&gyroscope)), 0);
+    assert_eq!(count_with!(gyroscope, MassWeighted::new(&gyroscope)), 0);
+    let steered = Baumgarte { mechanism: &gyroscope, rate: 100.0 };
+    assert_eq!(allocations(|| fixed(&steered, Kutta4::new(&start), Uncorrected, &start)).0, 0);
+    let (x, form) = (gyroscope.joint_start(), JointForm(&gyroscope));
+    let control = Control::default().with_tolerance(1e-6);
+    let joint = || {
+        adaptive(&form, Dop853::new(&x), Uncorrected, control, &x);
+        adaptive(&form, Rodas4::new(&form, &x), Uncorrected, control, &x)
+    };
+    assert_eq!(allocations(joint).0, 0);
 }
 
 #[test]

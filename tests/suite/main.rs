@@ -10,6 +10,7 @@ mod finite_differences;
 mod forces;
 mod four_bar;
 mod generated_files;
+mod integrators;
 mod joint_jacobian;
 mod joint_kinds;
 mod joint_readings;

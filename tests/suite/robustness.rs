@@ -90,6 +90,7 @@ impl Survives {
                 Err(Error::NoConvergence { .. }) => self.errors[1] += 1,
                 Err(Error::Singular { .. }) => self.errors[2] += 1,
                 Err(Error::Jump { .. }) => self.errors[3] += 1,
+                Err(other) => panic!("fixed steps do not end in {other:?}"),
             }
             let is_finite = y.iter().all(|x| x.is_finite());
             assert!(is_finite || outcome.is_err(), "{page}, state {index} passes: {values:?}");

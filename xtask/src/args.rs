@@ -108,6 +108,7 @@ pub(crate) struct InspectArgs {
   cargo xtask simulate models/gyroscope.toml --engine assembled --t-end 10
   cargo xtask simulate models/gyroscope.toml --method direct --step 2e-4 --out /tmp/direct
   cargo xtask simulate models/gyroscope.toml --integrator dop853 --tolerance 1e-9 --coordinates joint --verify
+  cargo xtask simulate models/gyroscope.toml --linearize 0.5 --json
   cargo xtask simulate my-gimbal.toml --set rotor_mass=0.085 --json
   cargo xtask simulate my-gimbal.toml --input motor=torque.csv --input brake=0.01")]
 pub(crate) struct SimulateArgs {
@@ -150,6 +151,9 @@ pub(crate) struct SimulateArgs {
     /// Run a second time with a finer step or tolerance, and say in words how far the result can be trusted
     #[arg(long)]
     pub(crate) verify: bool,
+    /// End the run at this time and print the linearisation of the joint coordinates there: A, B and eigenvalues. Trees only
+    #[arg(long, value_name = "S", value_parser = seconds, allow_hyphen_values = true, conflicts_with = "t_end")]
+    pub(crate) linearize: Option<f64>,
     /// Number type of the run
     #[arg(long, value_enum, default_value_t = Precision::F64)]
     pub(crate) precision: Precision,

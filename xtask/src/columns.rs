@@ -30,6 +30,11 @@ impl Shown {
         if self.kind.is_some_and(CoordinateKind::is_angle) { "rad" } else { "m" }
     }
 
+    /// Whether it is an orientation, of four Euler parameters and three rates.
+    pub(crate) fn is_orientation(&self) -> bool {
+        self.kind.is_none()
+    }
+
     /// Unit of its rate.
     pub(crate) fn rate_unit(&self) -> &'static str {
         if self.kind.is_some_and(CoordinateKind::is_angle) { "rad/s" } else { "m/s" }

@@ -1,14 +1,22 @@
 //! The summary as one JSON object.
 
 use crate::scene::Scene;
-use crate::{columns, remarks};
+use crate::verdict::{Outcome, Verdict};
+use crate::{columns, linearization, remarks};
 use gyro_model::Model;
-use gyro_runner::{JointSample, Sample, Summary};
+use gyro_runner::JointSample;
+use gyro_runner::motion::Linear;
 use serde_json::{Map, Value, json};
 
 /// The object: see the documentation of `simulate --json`.
-pub(crate) fn object(scene: &Scene, last: &Sample, summary: &Summary) -> Value {
-    json!({
+pub(crate) fn object(
+    scene: &Scene,
+    outcome: &Outcome,
+    verdict: Option<&Verdict>,
+    linear: Option<&Linear>,
+) -> Value {
+    let (summary, last) = (&outcome.summary, outcome.samples.last().expect("the start is a sample"));
+    let mut object = json!({
         "model": scene.model.name,
         "engine": scene.engine.name(),
         "method": scene.method(),
@@ -34,7 +42,20 @@ pub(crate) fn object(scene: &Scene, last: &Sample, summary: &Summary) -> Value {
         "steps_limited_by_stability": summary.statistics.limited_by_stability,
         "chart_switches": summary.chart_switches,
         "run_time_s": summary.run_time_s,
-    })
+    });
+    if let Some(verdict) = verdict {
+        object["verdict"] = json!({
+            "estimated_errors": verdict.errors.iter().map(|(name, _, error)| (name.clone(), json!(error))).collect::<Map<_, _>>(),
+            "companion": verdict.companion,
+            "smallest_pivot": summary.smallest_pivot,
+            "fastest_eigenvalue": verdict.fastest_eigenvalue,
+            "advice": verdict.advice,
+        });
+    }
+    if let Some(linear) = linear {
+        object["linearization"] = linearization::object(&scene.model, linear);
+    }
+    object
 }
 
 /// For each joint its coordinates: numbers if there is a single one, else arrays in their order.

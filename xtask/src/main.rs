@@ -13,6 +13,7 @@ mod inspect;
 mod json;
 mod lanes;
 mod linear;
+mod linearization;
 mod machine_code;
 mod nested;
 mod performance;
@@ -29,6 +30,7 @@ mod stability;
 mod summary;
 mod urdf;
 mod variants;
+mod verdict;
 mod verify;
 mod words;
 

@@ -326,6 +326,7 @@ fn listen(
         let line = line.map_err(|e| Failure::Run(e.to_string()))?;
         match Reply::parse(&line).map_err(|e| Failure::Run(format!("the program: {e}")))? {
             Reply::Sample(sample) => tell(Event::Sample(&sample)),
+            Reply::Linear(linear) => tell(Event::Linear(&linear)),
             Reply::Progress(t) => tell(Event::Progress(t)),
             Reply::Timed(timed) => timing = Some(timed),
             Reply::Done(summary) => return Ok(Some((summary, timing))),

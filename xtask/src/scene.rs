@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 
 /// A run to be made.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Scene {
     /// The model as its page gives it: what code is generated from.
     pub(crate) page: Model,
@@ -101,6 +101,7 @@ fn approach(model: &Model, args: &SimulateArgs) -> Approach {
         correction,
         when: args.correct_when,
         budget: args.budget,
+        examine: args.verify || args.linearize.is_some(),
     }
 }
 
@@ -115,7 +116,7 @@ fn settings(model: &Model, args: &SimulateArgs) -> Settings {
     let correct_every = is_corrected.then_some(args.correct_every.unwrap_or(page.correct_every));
     let grid = correct_every.unwrap_or(step);
     Settings {
-        t_end: args.t_end.unwrap_or(page.t_end),
+        t_end: args.linearize.or(args.t_end).unwrap_or(page.t_end),
         step,
         correct_every,
         sample_every: args.every.unwrap_or_else(|| nearest_multiple(page.sample_every, grid)),

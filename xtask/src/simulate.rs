@@ -4,7 +4,8 @@ use crate::args::{Engine, Precision, SimulateArgs};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::scene::Scene;
-use crate::{columns, files, json, nested, plot, summary, words};
+use crate::verdict::{self, Outcome};
+use crate::{columns, files, json, linearization, nested, plot, summary, words};
 use gyro_assembled::{Form, QuickLookError, quick_look};
 use gyro_model::Model;
 use gyro_runner::{Event, Sample, Summary};
@@ -16,20 +17,32 @@ use std::path::{Path, PathBuf};
 pub(crate) fn simulate(args: &SimulateArgs) -> Result<(), Failure> {
     let scene = Scene::new(args)?;
     let folder = folder(args, &scene.model.name)?;
-    let mut samples = Vec::new();
-    let run = match run(&scene, &mut samples) {
-        Ok(run) => run,
-        Err(failure) => return Err(keep_what_there_is(&scene.model, &samples, folder.as_deref(), failure)),
+    let mut outcome = Outcome::default();
+    if let Err(failure) = run(&scene, &mut outcome) {
+        return Err(keep_what_there_is(&scene.model, &outcome.samples, folder.as_deref(), failure));
+    }
+    if args.linearize.is_some() && outcome.linear.is_none() {
+        let words = "--linearize is about joint coordinates: for mechanisms without closed loops, and --engine generated";
+        return Err(Failure::Usage(words.to_owned()));
+    }
+    let verdict = match args.verify {
+        true => Some(verdict::verdict(&scene, &outcome, |companion| {
+            let mut other = Outcome::default();
+            run(companion, &mut other).map(|()| other)
+        })?),
+        false => None,
     };
     let written = match &folder {
-        Some(folder) => write_files(&scene.model, &samples, folder)?,
+        Some(folder) => write_files(&scene.model, &outcome.samples, folder)?,
         None => Vec::new(),
     };
-    let last = samples.last().expect("the start is a sample");
+    let linear = outcome.linear.as_ref().filter(|_| args.linearize.is_some());
     let text = if args.json {
-        format!("{}\n", json::object(&scene, last, &run))
+        format!("{}\n", json::object(&scene, &outcome, verdict.as_ref(), linear))
     } else {
-        summary::text(&scene, &samples, &run, &written)
+        let linear = linear.map_or(String::new(), |linear| linearization::text(&scene.model, linear));
+        let verdict = verdict.map_or(String::new(), |verdict| verdict::text(&verdict, &outcome));
+        summary::text(&scene, &outcome.samples, &outcome.summary, &(verdict + &linear), &written)
     };
     say(&text)
 }
@@ -45,20 +58,24 @@ fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-fn run(scene: &Scene, samples: &mut Vec<Sample>) -> Result<Summary, Failure> {
+/// Runs a scene; what there is up to a failure is kept in the outcome.
+fn run(scene: &Scene, outcome: &mut Outcome) -> Result<(), Failure> {
     let mut progress = Progress::new(scene.settings.t_end);
+    let Outcome { samples, linear, .. } = outcome;
     let mut tell = |event: Event<'_>| match event {
         Event::Sample(sample) => samples.push(sample.clone()),
+        Event::Linear(found) => *linear = Some(found.clone()),
         Event::Progress(t) => progress.reached(t),
     };
-    let outcome = match scene.engine {
+    let summary = match scene.engine {
         Engine::Generated => nested::simulate(scene, &mut tell),
         Engine::Assembled => twin(scene, Form::for_model(&scene.model), &mut tell),
         Engine::Dense => twin(scene, Form::Dense, &mut tell),
         Engine::Recursive => twin(scene, Form::Recursive, &mut tell),
     };
     progress.finish();
-    outcome
+    outcome.summary = summary?;
+    Ok(())
 }
 
 /// Runs the runtime-assembled twin in this process.

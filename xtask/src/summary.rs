@@ -18,7 +18,13 @@ const DIGITS: usize = 12;
 const FEW: usize = 3;
 
 /// The whole summary.
-pub(crate) fn text(scene: &Scene, samples: &[Sample], run: &Summary, written: &[PathBuf]) -> String {
+pub(crate) fn text(
+    scene: &Scene,
+    samples: &[Sample],
+    run: &Summary,
+    verdict: &str,
+    written: &[PathBuf],
+) -> String {
     let last = samples.last().expect("the start is a sample");
     let mut text = head(scene, run, last);
     text += &moved(&scene.moved);
@@ -26,6 +32,7 @@ pub(crate) fn text(scene: &Scene, samples: &[Sample], run: &Summary, written: &[
     text += &outputs(&scene.model, last);
     text += &quality(scene, samples, run, last);
     text += &compare::text(scene, samples);
+    text += verdict;
     if !written.is_empty() {
         text.push('\n');
     }

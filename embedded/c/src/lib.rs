@@ -144,9 +144,10 @@ impl Simulation {
 fn status(error: Error) -> GimbalStatus {
     match error {
         Error::NotFinite { .. } => GimbalStatus::NotFinite,
-        Error::NoConvergence { .. } => GimbalStatus::NoConvergence,
         Error::Singular { .. } => GimbalStatus::Singular,
         Error::Jump { .. } => GimbalStatus::Jump,
+        // The rest comes of error control, which is not used here.
+        _ => GimbalStatus::NoConvergence,
     }
 }
 

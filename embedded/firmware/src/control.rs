@@ -104,6 +104,12 @@ fn report(error: Error) {
         Error::NoConvergence { t, .. } => ("the constraints cannot be met", t),
         Error::Singular { t, .. } => ("the pose is singular", t),
         Error::Jump { t, .. } => ("a correction would be too large", t),
+        // They come of error control, which is not used here.
+        Error::StepTooShort { t, .. }
+        | Error::TooManySteps { t, .. }
+        | Error::Stiff { t, .. }
+        | Error::NoEnd { t, .. } => ("the steps are too short", t),
+        Error::Tolerance { .. } => ("the tolerance cannot be met", 0.0),
     };
     print::text(words);
     print::text(" at ms ");

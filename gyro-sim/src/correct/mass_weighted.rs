@@ -6,6 +6,9 @@ use crate::{Error, Owner, Projection, Real, Scalar};
 
 /// The nearest state that satisfies the constraints: of all changes that do, the smallest as the masses weigh it, δᵀ M δ, first of the
 /// positions, then of the velocities. What is integrated well, because it moves much mass, is changed least.
+///
+/// A change of the positions keeps the rates ṙ and ṗ of the coordinates, and so turns w' by `−½ δπ' × w'`. Integrate
+/// the mechanism itself, exact off the constraints, rather than [`Corrected`](crate::Corrected): only then are errors as small as this correction can make them.
 #[derive(Clone, Debug)]
 pub struct MassWeighted<M: Projection> {
     phi: M::Constraints,
@@ -51,9 +54,11 @@ impl<M: Projection<Scalar: Real>> MassWeighted<M> {
             self.rows.as_mut().iter_mut().zip(self.phi.as_ref()).for_each(|(row, phi)| *row = -*phi);
             mechanism.project(t, y, &self.rows, &mut self.change);
             self.refuse_jump(mechanism, t, worst.owner)?;
-            for (position, change) in y.as_mut().chunks_exact_mut(7).zip(self.change.as_ref().chunks_exact(6))
-            {
+            let (positions, velocities) = y.as_mut().split_at_mut(7 * mechanism.n_bodies());
+            let bodies = positions.chunks_exact_mut(7).zip(velocities.chunks_exact_mut(6));
+            for ((position, velocity), change) in bodies.zip(self.change.as_ref().chunks_exact(6)) {
                 displace(position, change);
+                turn(velocity, change);
             }
         }
         let owner = worst.owner.unwrap_or(Owner::Body(0));
@@ -114,4 +119,15 @@ fn displace<T: Scalar>(position: &mut [T], change: &[T]) {
     *e1 = p[1] + p[0] * x - p[3] * y + p[2] * z;
     *e2 = p[2] + p[3] * x + p[0] * y - p[1] * z;
     *e3 = p[3] - p[2] * x + p[1] * y + p[0] * z;
+}
+
+/// `w' − ½ δπ' × w'` of one body: the angular velocity that belongs to the same ṗ.
+fn turn<T: Scalar>(velocity: &mut [T], change: &[T]) {
+    let [_, _, _, wx, wy, wz] = velocity else { return };
+    let [_, _, _, x, y, z] = change else { return };
+    let half = T::constant(0.5);
+    let w = [*wx, *wy, *wz];
+    *wx = w[0] - half * (*y * w[2] - *z * w[1]);
+    *wy = w[1] - half * (*z * w[0] - *x * w[2]);
+    *wz = w[2] - half * (*x * w[1] - *y * w[0]);
 }

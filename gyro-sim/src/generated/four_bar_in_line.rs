@@ -14,6 +14,7 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 1192 operations by rotations of the bodies; 1192 operations by relative Euler parameters
+//! * project: 1003 operations by rotations of the bodies; 1003 operations by relative Euler parameters
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -28,6 +29,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 497 | 686 | 9 | 1192 | 0 of 21 | 1.4e10 | 1193 |
 //! | multipliers | λ, the accelerations being known | 104 | 165 | 3 | 272 | 0 of 17 | 1608 | 272 |
+//! | project | (δr, δπ') that changes the rows as given | 421 | 573 | 9 | 1003 | 0 of 18 | 1.2e10 | 1004 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
@@ -37,7 +39,7 @@
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //!
@@ -2609,6 +2611,700 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarInLine<T> {
             closing0,
             closing1,
             closing2,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBarInLine<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 1003 operations (421 ±, 573 ×, 9 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let crank_e0 = y[3];
+        let crank_e1 = y[4];
+        let crank_e2 = y[5];
+        let crank_e3 = y[6];
+        let coupler_e0 = y[10];
+        let coupler_e1 = y[11];
+        let coupler_e2 = y[12];
+        let coupler_e3 = y[13];
+        let rocker_e0 = y[17];
+        let rocker_e1 = y[18];
+        let rocker_e2 = y[19];
+        let rocker_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let row15 = rows[15];
+        let row16 = rows[16];
+        let (
+            t10,
+            t16,
+            t27,
+            t30,
+            t34,
+            t35,
+            t37,
+            t40,
+            t41,
+            t42,
+            t46,
+            t47,
+            t48,
+            t49,
+            t50,
+            t52,
+            t54,
+            t57,
+            t59,
+            t60,
+            t61,
+            t63,
+            t66,
+            t67,
+            t68,
+            t70,
+            t78,
+            t90,
+            t94,
+            t98,
+            t110,
+            t138,
+            t139,
+            t141,
+            t144,
+            t145,
+            t147,
+            t148,
+            t149,
+            t154,
+            t155,
+            t156,
+            t158,
+            t161,
+            t162,
+            t164,
+            t165,
+            t167,
+            t168,
+            t169,
+            t170,
+            t171,
+            t172,
+            t174,
+            t175,
+            t177,
+            t178,
+            t186,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t198,
+            t199,
+        ) = {
+            let t0 = crank_e0 * crank_e3;
+            let t1 = crank_e1 * crank_e2;
+            let t2 = k(2.0) * (t1 + t0);
+            let t3 = t1 - t0;
+            let t4 = k(2.0) * t3;
+            let t5 = crank_e0 * crank_e0;
+            let t6 = k(0.5) - T::fused(crank_e2, crank_e2, t5);
+            let t7 = k(2.0) * t6;
+            let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t5));
+            let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
+            let t10 = T::fused(t7 * t9, row3, t4 * t9 * row4);
+            let t11 = crank_e0 * crank_e2;
+            let t12 = crank_e1 * crank_e3;
+            let t13 = t12 + t11;
+            let t14 = k(0.2) * t13;
+            let t15 = coupler_e0 * coupler_e0;
+            let t16 = k(0.5) - T::fused(coupler_e2, coupler_e2, t15);
+            let t17 = crank_e0 * crank_e1;
+            let t18 = crank_e2 * crank_e3;
+            let t19 = t18 - t17;
+            let t20 = k(2.0) * t19;
+            let t21 = coupler_e0 * coupler_e3;
+            let t22 = coupler_e1 * coupler_e2;
+            let t23 = t22 - t21;
+            let t24 = k(2.0) * t13;
+            let t25 = coupler_e0 * coupler_e1;
+            let t26 = coupler_e2 * coupler_e3;
+            let t27 = t26 + t25;
+            let t28 = k(0.5) - T::fused(crank_e3, crank_e3, t5);
+            let t29 = k(2.0) * t28;
+            let t30 = T::fused(
+                t29,
+                k(2.0) * t27,
+                -T::fused(-t20, k(2.0) * t16, t24 * (k(2.0) * t23)),
+            );
+            let t31 = coupler_e0 * coupler_e2;
+            let t32 = coupler_e1 * coupler_e3;
+            let t33 = t32 + t31;
+            let t34 = k(0.5) * t33;
+            let t35 = k(0.5) - T::fused(coupler_e3, coupler_e3, t15);
+            let t36 = k(2.0) * t35;
+            let t37 = t26 - t25;
+            let t38 = k(2.0) * t37;
+            let t39 = k(2.0) * t33;
+            let t40 = T::fused(t29, t36, T::fused(t20, t38, t24 * t39));
+            let t41 = k(0.5) * t23;
+            let t42 = T::fused(t34, t30, t41 * t40);
+            let t43 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t15));
+            let t44 = k(2.0) * (t22 + t21);
+            let t45 = k(2.0) * (t32 - t31);
+            let t46 = T::fused(t29, t45, -T::fused(-t24, t43, t20 * t44));
+            let t47 = k(5e-5) * t46;
+            let t48 = k(0.0835) * t30;
+            let t49 = k(0.0835) * t40;
+            let t50 = k(1.0) / T::fused(t40, t49, T::fused(t46, t47, t30 * t48));
+            let t51 = t50 * t42;
+            let t52 = T::fused(-t48, t51, t34);
+            let t53 = t48 * t50;
+            let t54 = k(1.0) / T::fused(-t48, t53, k(0.0835));
+            let t55 = t54 * t52;
+            let t56 = t47 * t50;
+            let t57 = t48 * t56;
+            let t58 = T::fused(-t47, t51, t57 * t55);
+            let t59 = k(0.5) * t37;
+            let t60 = k(0.5) * t16;
+            let t61 = T::fused(-t59, t30, t60 * t40);
+            let t62 = t50 * t61;
+            let t63 = T::fused(t48, t62, t59);
+            let t64 = t54 * t63;
+            let t65 = T::fused(t47, t62, t57 * t64);
+            let t66 = k(0.5) * t35;
+            let t67 = k(0.5) * t27;
+            let t68 = T::fused(-t66, t30, t67 * t40);
+            let t69 = t50 * t68;
+            let t70 = T::fused(t48, t69, t66);
+            let t71 = t54 * t70;
+            let t72 = T::fused(t47, t69, t57 * t71);
+            let t73 = k(1.0) / T::fused(t40, t40, t46 * t46);
+            let t74 = t40 * t73 * row13;
+            let t75 = t54 * t57;
+            let t76 = T::fused(t57, t75, -T::fused(-t47, t56, k(5e-5)));
+            let t77 = t46 * t73 * row13;
+            let t78 = t49 * t53;
+            let t79 = T::fused(t49, t56, t78 * t75);
+            let t80 = T::fused(-t76, t74, t79 * t77)
+                + T::fused(t72, row12, -T::fused(t58, row10, t65 * row11));
+            let t81 = T::fused(t78, t55, T::fused(-t49, t51, t41));
+            let t82 = T::fused(t78, t64, -T::fused(-t49, t62, t60));
+            let t83 = T::fused(t78, t71, -T::fused(-t49, t69, t67));
+            let t84 = T::fused(t78, t54 * t78, -T::fused(-t49, t49 * t50, k(0.0835)));
+            let t85 = T::fused(-t79, t74, t84 * t77)
+                + T::fused(t83, row12, -T::fused(t81, row10, t82 * row11));
+            let t86 = T::fused(t42, t51, t52 * t55);
+            let t87 = T::fused(-t61, t51, t63 * t55);
+            let t88 = T::fused(-t68, t51, t70 * t55);
+            let t89 = T::fused(-t58, t74, t81 * t77)
+                + (row10 + T::fused(t88, row12, -T::fused(t86, row10, t87 * row11)));
+            let t90 = k(0.2) * t3;
+            let t91 = T::fused(t61, t62, t63 * t64);
+            let t92 = T::fused(t68, t62, t70 * t64);
+            let t93 = T::fused(-t65, t74, t82 * t77)
+                + (row11 + T::fused(t92, row12, -T::fused(t87, row10, t91 * row11)));
+            let t94 = k(0.2) * t6;
+            let t95 = T::fused(t68, t69, t70 * t71);
+            let t96 = T::fused(-t72, t74, t83 * t77)
+                - (row12 - T::fused(t95, row12, -T::fused(t88, row10, t92 * row11)));
+            let t97 = t18 + t17;
+            let t98 = k(0.2) * t97;
+            let t99 = T::fused(t98, t96, T::fused(-t90, t89, t94 * t93));
+            let t100 = T::fused(t98, t88, T::fused(-t90, t86, t94 * t87));
+            let t101 = T::fused(t46, t58, t40 * t81);
+            let t102 = t90 + t100 + t101;
+            let t103 = T::fused(t98, t92, T::fused(-t90, t87, t94 * t91));
+            let t104 = T::fused(t46, t65, t40 * t82);
+            let t105 = t94 - t103 - t104;
+            let t106 = T::fused(
+                -(t102 + T::fused(k(0.28), t3, t100)),
+                row0,
+                (t105 - T::fused(-k(0.28), t6, t103)) * row1,
+            );
+            let t107 = T::fused(t98, t95, T::fused(-t90, t88, t94 * t92));
+            let t108 = T::fused(t46, t72, t40 * t83);
+            let t109 = t98 - t107 - t108;
+            let t110 = T::fused(t2 * t9, row3, t8 * t9 * row4);
+            let t111 = k(2.0) * (t12 - t11);
+            let t112 = T::fused(t111, t45, T::fused(t8, t43, t2 * t44));
+            let t113 = T::fused(t111, t36, -T::fused(-t8, t39, t2 * t38));
+            let t114 = T::fused(
+                t46,
+                T::fused(t76, t112, t79 * t113),
+                t40 * T::fused(t79, t112, t84 * t113),
+            );
+            let t115 = T::fused(
+                -t90,
+                T::fused(t58, t112, t81 * t113),
+                t94 * T::fused(t65, t112, t82 * t113),
+            );
+            let t116 = T::fused(t98, T::fused(t72, t112, t83 * t113), t115);
+            let t117 = k(2.0) * t97;
+            let t118 = T::fused(t117, t45, -T::fused(t4, t43, t7 * t44));
+            let t119 = T::fused(t117, t36, -T::fused(-t7, t38, t4 * t39));
+            let t120 = T::fused(
+                t46,
+                T::fused(t76, t118, t79 * t119),
+                t40 * T::fused(t79, t118, t84 * t119),
+            );
+            let t121 = k(0.2) * t19;
+            let t122 = k(0.2) * t28;
+            let t123 = T::fused(t58, t118, t81 * t119);
+            let t124 = T::fused(t65, t118, t82 * t119);
+            let t125 = T::fused(t72, t118, t83 * t119);
+            let t126 = T::fused(t98, t125, T::fused(-t90, t123, t94 * t124))
+                - T::fused(t122, t108, T::fused(t14, t101, t121 * t104));
+            let t127 = T::fused(t122, t107, T::fused(t14, t100, t121 * t103));
+            let t128 = t14 - T::fused(t122, t88, T::fused(t14, t86, t121 * t87)) + t123;
+            let t129 = t121 - T::fused(t122, t92, T::fused(t14, t87, t121 * t91)) + t124;
+            let t130 = t122 - T::fused(t122, t95, T::fused(t14, t88, t121 * t92)) + t125;
+            let t131 = T::fused(t98, t130, T::fused(-t90, t128, t94 * t129))
+                + T::fused(t122, t109, T::fused(-t14, t102, t121 * t105));
+            let t132 = T::fused(
+                -(t116 + (t116 + t114)),
+                t110,
+                (t131 - t127 - (t127 - t126 - t120)) * t10,
+            );
+            let t133 = t132 - T::fused(t109 - T::fused(-k(0.28), t97, t107), row2, -t106)
+                + (t99 + (t99 + T::fused(t46, t80, t40 * t85)));
+            let t134 = T::fused(
+                t46,
+                T::fused(t46, t76, t40 * t79),
+                t40 * T::fused(t46, t79, t40 * t84),
+            );
+            let t135 = T::fused(t98, t107, T::fused(-t90, t100, t94 * t103));
+            let t136 = T::fused(
+                k(2.0),
+                T::fused(t98, t108, T::fused(-t90, t101, t94 * t104)),
+                t135,
+            );
+            let t137 = T::fused(
+                k(2.0),
+                T::fused(t98, t109, T::fused(t90, t102, t94 * t105)),
+                -t135,
+            );
+            let t138 = k(1.0)
+                / (t137 + (k(0.014) + (k(0.00135) - (t136 - (k(0.01) - t134)))));
+            let t139 = t138 * t133;
+            let t140 = T::fused(t14, t10, t90 * t139);
+            let t141 = row0 + t140;
+            let t142 = row10 + (t140 + t141);
+            let t143 = T::fused(-t121, t10, t94 * t139);
+            let t144 = row1 - t143;
+            let t145 = row11 - (t143 - t144);
+            let t146 = T::fused(-t122, t10, t98 * t139);
+            let t147 = row2 + t146;
+            let t148 = row12 + (t146 + t147);
+            let t149 = t74 - T::fused(t46, t139, T::fused(-t112, t110, t118 * t10));
+            let t150 = t77 + T::fused(t40, t139, T::fused(-t113, t110, t119 * t10));
+            let t151 = T::fused(-t57, t149, t78 * t150)
+                + T::fused(t70, t148, -T::fused(t52, t142, t63 * t145));
+            let t152 = t54 * t151;
+            let t153 = T::fused(t49, t150, T::fused(-t47, t149, t48 * t152))
+                + T::fused(t68, t148, -T::fused(-t42, t142, t61 * t145));
+            let t154 = t50 * t153;
+            let t155 = T::fused(-t30, t154, t152);
+            let t156 = T::fused(-t40, t154, t150);
+            let t157 = T::fused(t34, t155, t41 * t156);
+            let t158 = t142 + t157;
+            let t159 = rocker_e0 * rocker_e3;
+            let t160 = rocker_e1 * rocker_e2;
+            let t161 = k(2.0) * (t160 + t159);
+            let t162 = t160 - t159;
+            let t163 = k(2.0) * t162;
+            let t164 = rocker_e0 * rocker_e0;
+            let t165 = k(0.5) - T::fused(rocker_e2, rocker_e2, t164);
+            let t166 = k(2.0) * t165;
+            let t167 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t164));
+            let t168 = k(1.0) / T::fused(-t163, t161, t167 * t166);
+            let t169 = T::fused(t166 * t168, row8, t163 * t168 * row9);
+            let t170 = rocker_e0 * rocker_e1;
+            let t171 = rocker_e2 * rocker_e3;
+            let t172 = t171 + t170;
+            let t173 = T::fused(
+                k(0.08) * t172,
+                row7,
+                -T::fused(-(k(0.08) * t162), row5, k(0.08) * t165 * row6),
+            );
+            let t174 = k(186.9158878504673) * t173;
+            let t175 = k(0.2) * t162;
+            let t176 = T::fused(
+                -(k(0.2) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3)),
+                t169,
+                t175 * t174,
+            );
+            let t177 = row5 - t176;
+            let t178 = row14 + (t176 - t177 + (t157 + t158));
+            let t179 = T::fused(t33, t30, t23 * t40);
+            let t180 = t179 * t50;
+            let t181 = T::fused(-t48, t180, t33);
+            let t182 = t181 * t54;
+            let t183 = T::fused(
+                t46,
+                T::fused(-t47, t180, t182 * t57),
+                t40 * T::fused(t182, t78, T::fused(-t49, t180, t23)),
+            );
+            let t184 = T::fused(
+                -t90,
+                T::fused(t182, t52, -T::fused(-t180, t42, k(1.0))),
+                t94 * T::fused(-t180, t61, t182 * t63),
+            );
+            let t185 = T::fused(t98, T::fused(-t180, t68, t182 * t70), t184);
+            let t186 = (t185 + (t185 + t183)) * t138;
+            let t187 = t90 * t186;
+            let t188 = k(2.0) * t187;
+            let t189 = t94 * t186;
+            let t190 = k(2.0) * t189;
+            let t191 = t98 * t186;
+            let t192 = k(2.0) * t191;
+            let t193 = t46 * t186;
+            let t194 = t40 * t186;
+            let t195 = T::fused(t57, t193, t78 * t194)
+                + T::fused(t70, t192, T::fused(-t52, t188, t63 * t190));
+            let t196 = t54 * (t181 + t195);
+            let t197 = T::fused(t49, t194, T::fused(t47, t193, t48 * t196))
+                + T::fused(t68, t192, T::fused(t42, t188, t61 * t190));
+            let t198 = t50 * (t179 - t197);
+            let t199 = T::fused(t30, t198, t196);
+            (
+                t10,
+                t16,
+                t27,
+                t30,
+                t34,
+                t35,
+                t37,
+                t40,
+                t41,
+                t42,
+                t46,
+                t47,
+                t48,
+                t49,
+                t50,
+                t52,
+                t54,
+                t57,
+                t59,
+                t60,
+                t61,
+                t63,
+                t66,
+                t67,
+                t68,
+                t70,
+                t78,
+                t90,
+                t94,
+                t98,
+                t110,
+                t138,
+                t139,
+                t141,
+                t144,
+                t145,
+                t147,
+                t148,
+                t149,
+                t154,
+                t155,
+                t156,
+                t158,
+                t161,
+                t162,
+                t164,
+                t165,
+                t167,
+                t168,
+                t169,
+                t170,
+                t171,
+                t172,
+                t174,
+                t175,
+                t177,
+                t178,
+                t186,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t200,
+            t203,
+            t224,
+            t225,
+            t227,
+            t229,
+            t237,
+            t238,
+            t241,
+            t245,
+            t248,
+            t250,
+            t251,
+            t255,
+            t256,
+            t267,
+            t268,
+            t269,
+            t270,
+            t272,
+            t274,
+            t279,
+            t280,
+            t281,
+            t283,
+            t284,
+            t285,
+            t287,
+            t288,
+            t289,
+            t290,
+            t291,
+            t292,
+            t293,
+            t294,
+        ) = {
+            let t200 = T::fused(t40, t198, t194);
+            let t201 = T::fused(t34, t199, t41 * t200);
+            let t202 = t188 + t201;
+            let t203 = k(74.76635514018692) * t162;
+            let t204 = t175 * t203;
+            let t205 = k(1.0) / T::fused(k(2.0), t204, t201 + t202);
+            let t206 = T::fused(-t59, t155, t60 * t156);
+            let t207 = t145 - t206;
+            let t208 = k(0.2) * t165;
+            let t209 = T::fused(k(0.2) * (t171 - t170), t169, t208 * t174);
+            let t210 = row6 + t209;
+            let t211 = T::fused(-t59, t199, t60 * t200);
+            let t212 = t190 + t211;
+            let t213 = t208 * t203;
+            let t214 = T::fused(k(2.0), t213, t211 + t212);
+            let t215 = t205 * t214;
+            let t216 = T::fused(t215, t178, row15 - (t209 + t210 + (t206 - t207)));
+            let t217 = T::fused(-t37, t30, t16 * t40);
+            let t218 = t50 * t217;
+            let t219 = T::fused(t48, t218, t37);
+            let t220 = t54 * t219;
+            let t221 = T::fused(
+                t46,
+                T::fused(t47, t218, t57 * t220),
+                t40 * T::fused(t78, t220, -T::fused(-t49, t218, t16)),
+            );
+            let t222 = T::fused(
+                -t90,
+                T::fused(-t42, t218, t52 * t220),
+                t94 * T::fused(t63, t220, -T::fused(-t61, t218, k(1.0))),
+            );
+            let t223 = T::fused(t98, T::fused(t68, t218, t70 * t220), t222);
+            let t224 = t138 * (t223 + (t223 + t221));
+            let t225 = t90 * t224;
+            let t226 = k(2.0) * t225;
+            let t227 = t94 * t224;
+            let t228 = k(2.0) * t227;
+            let t229 = t98 * t224;
+            let t230 = k(2.0) * t229;
+            let t231 = t46 * t224;
+            let t232 = t40 * t224;
+            let t233 = T::fused(t57, t231, t78 * t232)
+                + T::fused(t70, t230, T::fused(-t52, t226, t63 * t228));
+            let t234 = t54 * (t219 + t233);
+            let t235 = T::fused(t49, t232, T::fused(t47, t231, t48 * t234))
+                + T::fused(t68, t230, T::fused(t42, t226, t61 * t228));
+            let t236 = t50 * (t217 + t235);
+            let t237 = T::fused(-t30, t236, t234);
+            let t238 = T::fused(-t40, t236, t232);
+            let t239 = T::fused(-t59, t237, t60 * t238);
+            let t240 = t228 + t239;
+            let t241 = k(74.76635514018692) * t165;
+            let t242 = t208 * t241;
+            let t243 = k(1.0)
+                / T::fused(t214, t215, -T::fused(k(2.0), t242, -(t239 + t240)));
+            let t244 = T::fused(-t66, t155, t67 * t156);
+            let t245 = t148 + t244;
+            let t246 = k(0.2) * t172;
+            let t247 = T::fused(
+                k(0.2) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t164)),
+                t169,
+                t246 * t174,
+            );
+            let t248 = row7 - t247;
+            let t249 = T::fused(-t66, t199, t67 * t200);
+            let t250 = t192 + t249;
+            let t251 = t246 * t203;
+            let t252 = T::fused(k(2.0), t251, t249 + t250);
+            let t253 = t205 * t252;
+            let t254 = T::fused(-t66, t237, t67 * t238);
+            let t255 = t230 + t254;
+            let t256 = t246 * t241;
+            let t257 = T::fused(t214, t253, -T::fused(k(2.0), t256, -(t254 + t255)));
+            let t258 = t243 * t257;
+            let t259 = T::fused(
+                t258,
+                t216,
+                -T::fused(t253, t178, -(row16 + (t247 - t248 + (t244 + t245)))),
+            );
+            let t260 = T::fused(-t35, t30, t27 * t40);
+            let t261 = t50 * t260;
+            let t262 = T::fused(t48, t261, t35);
+            let t263 = t54 * t262;
+            let t264 = T::fused(
+                t46,
+                T::fused(t47, t261, t57 * t263),
+                t40 * T::fused(t78, t263, -T::fused(-t49, t261, t27)),
+            );
+            let t265 = T::fused(
+                -t90,
+                T::fused(-t42, t261, t52 * t263),
+                t94 * T::fused(t61, t261, t63 * t263),
+            );
+            let t266 = T::fused(
+                t98,
+                T::fused(t70, t263, -T::fused(-t68, t261, k(1.0))),
+                t265,
+            );
+            let t267 = t138 * (t266 + (t266 + t264));
+            let t268 = t90 * t267;
+            let t269 = k(2.0) * t268;
+            let t270 = t94 * t267;
+            let t271 = k(2.0) * t270;
+            let t272 = t98 * t267;
+            let t273 = k(2.0) * t272;
+            let t274 = t46 * t267;
+            let t275 = t40 * t267;
+            let t276 = T::fused(t57, t274, t78 * t275)
+                + T::fused(t70, t273, T::fused(-t52, t269, t63 * t271));
+            let t277 = t54 * (t262 + t276);
+            let t278 = T::fused(t49, t275, T::fused(t47, t274, t48 * t277))
+                + T::fused(t68, t273, T::fused(t42, t269, t61 * t271));
+            let t279 = t50 * (t260 + t278);
+            let t280 = T::fused(-t30, t279, t277);
+            let t281 = T::fused(-t40, t279, t275);
+            let t282 = T::fused(-t66, t280, t67 * t281);
+            let t283 = t273 + t282;
+            let t284 = k(74.76635514018692) * t172;
+            let t285 = t246 * t284;
+            let t286 = T::fused(
+                t257,
+                t258,
+                -T::fused(t252, t253, -T::fused(k(2.0), t285, -(t282 + t283))),
+            );
+            let t287 = t259 / t286;
+            let t288 = T::fused(-t243, t216, t258 * t287);
+            let t289 = T::fused(t253, t287, -T::fused(t205, t178, t215 * t288));
+            let t290 = T::fused(
+                t226 + T::fused(t34, t237, t41 * t238),
+                t288,
+                -T::fused(t202, t289, t158),
+            );
+            let t291 = T::fused(
+                t271 + T::fused(-t59, t280, t60 * t281),
+                t287,
+                -T::fused(t240, t288, T::fused(-t212, t289, t207)),
+            );
+            let t292 = T::fused(
+                T::fused(-t46, t236, t231),
+                t288,
+                -T::fused(T::fused(t46, t198, t193), t289, -T::fused(t46, t154, t149)),
+            );
+            let t293 = T::fused(
+                t175 * t284,
+                t287,
+                -T::fused(t175 * t241, t288, -T::fused(-t204, t289, t177)),
+            );
+            let t294 = T::fused(
+                t208 * t284,
+                t287,
+                -T::fused(t242, t288, T::fused(t213, t289, t210)),
+            );
+            (
+                t200,
+                t203,
+                t224,
+                t225,
+                t227,
+                t229,
+                t237,
+                t238,
+                t241,
+                t245,
+                t248,
+                t250,
+                t251,
+                t255,
+                t256,
+                t267,
+                t268,
+                t269,
+                t270,
+                t272,
+                t274,
+                t279,
+                t280,
+                t281,
+                t283,
+                t284,
+                t285,
+                t287,
+                t288,
+                t289,
+                t290,
+                t291,
+                t292,
+                t293,
+                t294,
+            )
+        };
+        *out = [
+            T::fused(t268, t287, -T::fused(t225, t288, -T::fused(t187, t289, t141))),
+            T::fused(-t270, t287, T::fused(t227, t288, T::fused(-t189, t289, t144))),
+            T::fused(t272, t287, -T::fused(t229, t288, -T::fused(t191, t289, t147))),
+            t110,
+            -t10,
+            T::fused(t267, t287, -T::fused(t224, t288, -T::fused(t186, t289, t139))),
+            T::fused(t269 + T::fused(t34, t280, t41 * t281), t287, -t290),
+            -t291,
+            T::fused(t283, t287, -T::fused(t255, t288, -T::fused(t250, t289, t245))),
+            T::fused(-T::fused(-t46, t279, t274), t287, t292),
+            T::fused(-t280, t287, T::fused(t237, t288, -T::fused(t199, t289, t155))),
+            T::fused(t281, t287, -T::fused(t238, t288, -T::fused(t200, t289, t156))),
+            t293,
+            -t294,
+            T::fused(t285, t287, -T::fused(t256, t288, -T::fused(-t251, t289, t248))),
+            T::fused(t161 * t168, row8, t167 * t168 * row9),
+            -t169,
+            T::fused(t284, t287, -T::fused(t241, t288, T::fused(t203, t289, t174))),
         ];
     }
 }

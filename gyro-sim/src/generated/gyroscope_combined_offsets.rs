@@ -12,7 +12,7 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 785 operations by relative Euler parameters; 805 operations by rotations of the bodies
-//! * project: 772 operations by rotations of the bodies; 783 operations by relative Euler parameters
+//! * project: 656 operations by rotations of the bodies; 707 operations by relative Euler parameters
 //! * joint_accelerations: 138 operations by normal form; 366 operations by recursion
 //! * joint_accelerations_at: 176 operations by normal form; 404 operations by recursion; 1 more compared
 //! * corrected_accelerations: 321 operations by normal form in the bodies' frames; 421 operations by normal form in the global frame; 5 more compared
@@ -31,7 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 456 | 5 | 785 | 6 of 18 | 6.3e7 | 789 |
 //! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 | 6241 | 376 |
-//! | project | (δr, δπ') that changes the rows as given | 322 | 445 | 5 | 772 | 0 of 18 | 1.7e7 | 773 |
+//! | project | (δr, δπ') that changes the rows as given | 267 | 383 | 6 | 656 | 0 of 18 | 1.5e7 | 657 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -3173,7 +3173,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeCombinedOffsets<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 772 operations (322 ±, 445 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 656 operations (267 ±, 383 ×, 6 ÷).
     fn project(
         &self,
         _t: T,
@@ -3209,388 +3209,299 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeCombinedOffsets<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let (
-            t8,
-            t15,
-            t16,
-            t31,
-            t32,
-            t42,
-            t43,
-            t56,
-            t68,
-            t73,
-            t76,
-            t78,
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
+        let t6 = k(2.0) * (t1 + t0);
+        let t7 = outer_ring_e0 * outer_ring_e1;
+        let t8 = outer_ring_e2 * outer_ring_e3;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = outer_ring_e0 * outer_ring_e2;
+        let t11 = outer_ring_e1 * outer_ring_e3;
+        let t12 = k(2.0) * (t11 - t10);
+        let t13 = T::fused(t12, t9, -T::fused(t4, t2, t6 * t5));
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t14);
+        let t16 = k(2.0) * t15;
+        let t17 = inner_ring_e0 * inner_ring_e3;
+        let t18 = inner_ring_e1 * inner_ring_e2;
+        let t19 = t18 - t17;
+        let t20 = k(2.0) * t19;
+        let t21 = inner_ring_e0 * inner_ring_e1;
+        let t22 = inner_ring_e2 * inner_ring_e3;
+        let t23 = t22 + t21;
+        let t24 = k(2.0) * t23;
+        let t25 = T::fused(t9, t24, T::fused(t5, t16, t2 * t20));
+        let t26 = rotor_e0 * rotor_e0;
+        let t27 = k(0.5) - T::fused(rotor_e1, rotor_e1, t26);
+        let t28 = k(2.0) * t27;
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = t30 + t29;
+        let t32 = k(2.0) * t31;
+        let t33 = rotor_e0 * rotor_e2;
+        let t34 = rotor_e1 * rotor_e3;
+        let t35 = t34 - t33;
+        let t36 = k(2.0) * t35;
+        let t37 = T::fused(t9, t36, -T::fused(t2, t28, t5 * t32));
+        let t38 = k(5e-6) * t37;
+        let t39 = inner_ring_e0 * inner_ring_e2;
+        let t40 = inner_ring_e1 * inner_ring_e3;
+        let t41 = t40 - t39;
+        let t42 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t14);
+        let t43 = rotor_e0 * rotor_e1;
+        let t44 = rotor_e2 * rotor_e3;
+        let t45 = t44 + t43;
+        let t46 = k(0.5) - T::fused(rotor_e3, rotor_e3, t26);
+        let t47 = T::fused(k(0.0003), t46, T::fused(k(0.0002), t35, k(0.0004) * t45));
+        let t48 = t47
+            - T::fused(k(6e-5), t42, T::fused(k(0.00025), t41, k(0.0001) * t23));
+        let t49 = t18 + t17;
+        let t50 = t22 - t21;
+        let t51 = k(0.5) - T::fused(rotor_e2, rotor_e2, t26);
+        let t52 = t44 - t43;
+        let t53 = T::fused(k(0.0003), t52, T::fused(-k(0.0002), t31, k(0.0004) * t51));
+        let t54 = t53
+            - T::fused(k(6e-5), t50, T::fused(-k(0.00025), t49, k(0.0001) * t15));
+        let t55 = T::fused(-t5, t48, t9 * t54);
+        let t56 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t14);
+        let t57 = t40 + t39;
+        let t58 = t30 - t29;
+        let t59 = t34 + t33;
+        let t60 = T::fused(k(0.0003), t59, -T::fused(-k(0.0002), t27, k(0.0004) * t58));
+        let t61 = t60
+            - T::fused(k(6e-5), t57, -T::fused(-k(0.00025), t56, k(0.0001) * t19));
+        let t62 = T::fused(t2, t48, t9 * t61);
+        let t63 = T::fused(t2, t54, t5 * t61);
+        let t64 = T::fused(
+            t37,
+            t38,
+            k(0.08) * T::fused(t63, t63, T::fused(t55, t55, t62 * t62)),
+        );
+        let t65 = k(7e-6) + (t64 + T::fused(t13, k(1e-6) * t13, t25 * (k(1e-6) * t25)));
+        let t66 = T::fused(t36, t36, T::fused(t28, t28, t32 * t32));
+        let t67 = k(5e-6) * t66;
+        let t68 = T::fused(t36, t53, t32 * t47);
+        let t69 = T::fused(-t28, t47, t36 * t60);
+        let t70 = T::fused(t32, t60, t28 * t53);
+        let t71 = T::fused(
+            -t67,
+            t37,
+            k(0.08) * T::fused(t70, t63, -T::fused(t68, t55, t69 * t62)),
+        );
+        let t72 = t71 - t38;
+        let t73 = T::fused(
+            t66,
+            t67,
+            k(0.08) * T::fused(t70, t70, T::fused(t68, t68, t69 * t69)),
+        );
+        let t74 = k(1.0) / (k(5e-6) + t73);
+        let t75 = t74 * t72;
+        let t76 = k(2.0) * t57;
+        let t77 = k(2.0) * t50;
+        let t78 = k(2.0) * t42;
+        let t79 = T::fused(t24, t78, T::fused(-t20, t76, t16 * t77));
+        let t80 = k(1e-6) * t79;
+        let t81 = T::fused(t78, t36, -T::fused(-t76, t28, t77 * t32));
+        let t82 = k(5e-6) * t81;
+        let t83 = T::fused(-t77, t48, t78 * t54);
+        let t84 = T::fused(-t76, t48, t78 * t61);
+        let t85 = T::fused(-t76, t54, t77 * t61);
+        let t86 = T::fused(
             t82,
-            t84,
-            t100,
-            t129,
-            t147,
-            t186,
-            t188,
-            t189,
-            t190,
-            t191,
-            t192,
-            t193,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = outer_ring_e0 * outer_ring_e0;
-            let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-            let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-            let t3 = outer_ring_e0 * outer_ring_e2;
-            let t4 = outer_ring_e1 * outer_ring_e3;
-            let t5 = k(2.0) * (t4 - t3);
-            let t6 = k(2.0) * (t4 + t3);
-            let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-            let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
-            let t9 = rotor_e0 * rotor_e3;
-            let t10 = rotor_e1 * rotor_e2;
-            let t11 = t10 - t9;
-            let t12 = rotor_e0 * rotor_e2;
-            let t13 = rotor_e1 * rotor_e3;
-            let t14 = t13 + t12;
-            let t15 = T::fused(k(0.0003), t11, k(0.0004) * t14);
-            let t16 = k(0.08) * t15;
-            let t17 = k(7996.001999000499) * t15;
-            let t18 = t17 * t16;
-            let t19 = inner_ring_e0 * inner_ring_e3;
-            let t20 = inner_ring_e1 * inner_ring_e2;
-            let t21 = t20 - t19;
-            let t22 = inner_ring_e0 * inner_ring_e2;
-            let t23 = inner_ring_e1 * inner_ring_e3;
-            let t24 = t23 + t22;
-            let t25 = T::fused(k(6e-5), t21, k(0.0001) * t24);
-            let t26 = rotor_e0 * rotor_e0;
-            let t27 = k(0.5) - T::fused(rotor_e2, rotor_e2, t26);
-            let t28 = rotor_e0 * rotor_e1;
-            let t29 = rotor_e2 * rotor_e3;
-            let t30 = t29 - t28;
-            let t31 = T::fused(-k(0.0003), t27, k(0.0004) * t30);
-            let t32 = k(0.08) * t31;
-            let t33 = t17 * t32;
-            let t34 = inner_ring_e0 * inner_ring_e0;
-            let t35 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t34);
-            let t36 = inner_ring_e0 * inner_ring_e1;
-            let t37 = inner_ring_e2 * inner_ring_e3;
-            let t38 = t37 - t36;
-            let t39 = T::fused(-k(6e-5), t35, k(0.0001) * t38);
-            let t40 = t29 + t28;
-            let t41 = k(0.5) - T::fused(rotor_e3, rotor_e3, t26);
-            let t42 = T::fused(-k(0.0003), t40, k(0.0004) * t41);
-            let t43 = k(0.08) * t42;
-            let t44 = t43 * t17;
-            let t45 = t37 + t36;
-            let t46 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t34);
-            let t47 = T::fused(-k(6e-5), t45, k(0.0001) * t46);
-            let t48 = T::fused(t47, t44, T::fused(t25, t18, t39 * t33));
-            let t49 = k(7996.001999000499) * t31;
-            let t50 = t49 * t32;
-            let t51 = t43 * t49;
-            let t52 = T::fused(t47, t51, T::fused(t25, t33, t39 * t50));
-            let t53 = k(7996.001999000499) * t42 * t43;
-            let t54 = T::fused(t47, t53, T::fused(t25, t44, t39 * t51));
-            let t55 = k(0.5) - T::fused(rotor_e1, rotor_e1, t26);
-            let t56 = T::fused(-k(0.0003), t55, k(0.0002) * t14);
-            let t57 = T::fused(-k(0.08), t56, k(1.2793603198400799e-5) * t15);
-            let t58 = k(2.0) * t11;
-            let t59 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t34);
-            let t60 = k(2.0) * t59;
-            let t61 = k(2.0) * t27;
-            let t62 = t20 + t19;
-            let t63 = k(2.0) * t62;
-            let t64 = k(2.0) * t40;
-            let t65 = t23 - t22;
-            let t66 = k(2.0) * t65;
-            let t67 = T::fused(t66, t64, -T::fused(t60, t58, t63 * t61));
-            let t68 = T::fused(k(0.0004), t55, k(0.0002) * t11);
-            let t69 = T::fused(-k(0.08), t68, k(9.595202398800599e-6) * t15);
-            let t70 = k(2.0) * t14;
-            let t71 = k(2.0) * t30;
-            let t72 = k(2.0) * t41;
-            let t73 = T::fused(t66, t72, -T::fused(-t60, t70, t63 * t71));
-            let t74 = T::fused(t67, t57, t73 * t69);
-            let t75 = t10 + t9;
-            let t76 = T::fused(k(0.0003), t75, k(0.0002) * t30);
-            let t77 = T::fused(-k(0.08), t76, k(1.2793603198400799e-5) * t31);
-            let t78 = T::fused(k(0.0004), t75, k(0.0002) * t27);
-            let t79 = T::fused(k(0.08), t78, k(9.595202398800599e-6) * t31);
-            let t80 = T::fused(t67, t77, t73 * t79);
-            let t81 = t13 - t12;
-            let t82 = T::fused(-k(0.0003), t81, k(0.0002) * t41);
-            let t83 = T::fused(-k(0.08), t82, k(1.2793603198400799e-5) * t42);
-            let t84 = T::fused(-k(0.0004), t81, k(0.0002) * t40);
-            let t85 = T::fused(k(0.08), t84, k(9.595202398800599e-6) * t42);
-            let t86 = T::fused(t67, t83, t73 * t85);
-            let t87 = T::fused(
-                k(2.0),
-                T::fused(t47, t86, T::fused(t25, t74, t39 * t80)),
-                T::fused(t47, t54, T::fused(t25, t48, t39 * t52)),
-            );
-            let t88 = T::fused(
-                -k(5.002599744127936e-6),
-                t67,
-                k(2.400191904047976e-9) * t73,
-            );
-            let t89 = T::fused(
-                -k(2.400191904047976e-9),
-                t67,
-                k(5.003999856071964e-6) * t73,
-            );
-            let t90 = T::fused(k(0.0001), t59, k(0.00025) * t21);
-            let t91 = T::fused(k(0.0001), t62, k(0.00025) * t35);
-            let t92 = T::fused(-k(0.0001), t65, k(0.00025) * t45);
-            let t93 = T::fused(t92, t44, T::fused(-t90, t18, t91 * t33));
-            let t94 = T::fused(t92, t51, T::fused(-t90, t33, t91 * t50));
-            let t95 = T::fused(t92, t53, T::fused(-t90, t44, t91 * t51));
-            let t96 = k(2.0) * t38;
-            let t97 = k(2.0) * t24;
-            let t98 = k(2.0) * t46;
-            let t99 = T::fused(t98, t64, -T::fused(-t96, t61, t97 * t58));
-            let t100 = T::fused(t98, t72, T::fused(t96, t71, t97 * t70));
-            let t101 = T::fused(t99, t57, t100 * t69);
-            let t102 = T::fused(t99, t77, t100 * t79);
-            let t103 = T::fused(t99, t83, t100 * t85);
-            let t104 = T::fused(t92, t86, T::fused(-t90, t74, t91 * t80))
-                + T::fused(t47, t103, T::fused(t25, t101, t39 * t102));
-            let t105 = k(3e-10) - T::fused(-t99, t88, t100 * t89)
-                + (t104 + T::fused(t47, t95, T::fused(t25, t93, t39 * t94)));
-            let t106 = T::fused(
-                k(2.0),
-                T::fused(t92, t103, T::fused(-t90, t101, t91 * t102)),
-                T::fused(t92, t95, T::fused(-t90, t93, t91 * t94)),
-            );
-            let t107 = T::fused(
-                -t99,
-                T::fused(-k(5.002599744127936e-6), t99, k(2.400191904047976e-9) * t100),
-                t100
-                    * T::fused(
-                        -k(2.400191904047976e-9),
-                        t99,
-                        k(5.003999856071964e-6) * t100,
-                    ),
-            );
-            let t108 = k(1.0) / (k(1e-6) + (k(1.45e-9) + t107 - t106));
-            let t109 = t108 * t105;
-            let t110 = T::fused(
-                t105,
-                t109,
-                -(k(1e-6) + (k(2.72e-10) + T::fused(-t67, t88, t73 * t89) - t87)),
-            );
-            let t111 = outer_ring_e0 * outer_ring_e3;
-            let t112 = outer_ring_e1 * outer_ring_e2;
-            let t113 = k(2.0) * (t112 - t111);
-            let t114 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-            let t115 = outer_ring_e0 * outer_ring_e1;
-            let t116 = outer_ring_e2 * outer_ring_e3;
-            let t117 = k(2.0) * (t116 + t115);
-            let t118 = T::fused(t117, t66, -T::fused(t113, t60, t114 * t63));
-            let t119 = T::fused(-k(6e-5), t59, k(0.00025) * t24);
-            let t120 = T::fused(k(6e-5), t62, k(0.00025) * t38);
-            let t121 = T::fused(-k(6e-5), t65, k(0.00025) * t46);
-            let t122 = T::fused(t121, t44, T::fused(t119, t18, t120 * t33));
-            let t123 = T::fused(t121, t51, T::fused(t119, t33, t120 * t50));
-            let t124 = T::fused(t121, t53, T::fused(t119, t44, t120 * t51));
-            let t125 = k(2.0) * t35;
-            let t126 = k(2.0) * t21;
-            let t127 = k(2.0) * t45;
-            let t128 = T::fused(t127, t64, T::fused(t125, t61, t126 * t58));
-            let t129 = T::fused(t127, t72, -T::fused(-t125, t71, t126 * t70));
-            let t130 = T::fused(t128, t57, t129 * t69);
-            let t131 = T::fused(t128, t77, t129 * t79);
-            let t132 = T::fused(t128, t83, t129 * t85);
-            let t133 = T::fused(t121, t86, T::fused(t119, t74, t120 * t80))
-                - T::fused(t47, t132, T::fused(t25, t130, t39 * t131));
-            let t134 = k(5e-10) - T::fused(-t128, t88, t129 * t89)
-                - (t133 + T::fused(t47, t124, T::fused(t25, t122, t39 * t123)));
-            let t135 = T::fused(t92, t132, T::fused(-t90, t130, t91 * t131))
-                - T::fused(t121, t103, T::fused(t119, t101, t120 * t102));
-            let t136 = T::fused(
-                -k(5.002599744127936e-6),
-                t128,
-                k(2.400191904047976e-9) * t129,
-            );
-            let t137 = T::fused(
-                -k(2.400191904047976e-9),
-                t128,
-                k(5.003999856071964e-6) * t129,
-            );
-            let t138 = k(1.2e-10) - T::fused(-t99, t136, t100 * t137)
-                + (t135 - T::fused(t121, t95, T::fused(t119, t93, t120 * t94)));
-            let t139 = T::fused(t138, t109, t134);
-            let t140 = T::fused(t117, t127, T::fused(t114, t125, t113 * t126));
-            let t141 = T::fused(t118, t110, t140 * t139);
-            let t142 = T::fused(
-                k(2.0),
-                T::fused(t121, t132, T::fused(t119, t130, t120 * t131)),
-                -T::fused(t121, t124, T::fused(t119, t122, t120 * t123)),
-            );
-            let t143 = T::fused(
-                t138,
-                t108 * t138,
-                -(k(2e-6) + (k(1.322e-9) + T::fused(-t128, t136, t129 * t137) + t142)),
-            );
-            let t144 = T::fused(t118, t139, t140 * t143);
-            let t145 = k(1.0) / T::fused(-t129, t99, t128 * t100);
-            let t146 = T::fused(t99 * t145, row13, t128 * t145 * row14);
-            let t147 = T::fused(t100 * t145, row13, t129 * t145 * row14);
-            let t148 = T::fused(
-                -k(5.002599744127936e-6),
-                t146,
-                k(2.400191904047976e-9) * t147,
-            ) + T::fused(row12, t83, -T::fused(row10, t57, row11 * t77));
-            let t149 = T::fused(
-                -k(2.400191904047976e-9),
-                t146,
-                k(5.003999856071964e-6) * t147,
-            ) - T::fused(row12, t85, -T::fused(row10, t69, row11 * t79));
-            let t150 = T::fused(
-                k(0.08),
-                row10,
-                T::fused(row12, t44, -T::fused(row10, t18, row11 * t33)),
-            );
-            let t151 = T::fused(t57, t146, t69 * t147) + t150;
-            let t152 = T::fused(
-                k(0.08),
-                row11,
-                T::fused(row12, t51, -T::fused(row10, t33, row11 * t50)),
-            );
-            let t153 = T::fused(t77, t146, t79 * t147) + t152;
-            let t154 = T::fused(
-                k(0.08),
-                row12,
-                -T::fused(row12, t53, -T::fused(row10, t44, row11 * t51)),
-            );
-            let t155 = T::fused(t83, t146, t85 * t147) - t154;
-            let t156 = T::fused(t47, t155, T::fused(t25, t151, t39 * t153))
-                - T::fused(-t67, t148, t73 * t149);
-            let t157 = T::fused(t92, t155, T::fused(-t90, t151, t91 * t153))
-                - T::fused(-t99, t148, t100 * t149);
-            let t158 = t108 * t157;
-            let t159 = t101 + T::fused(k(0.08), t90, t93);
-            let t160 = t108 * t159;
-            let t161 = T::fused(t105, t160, t74 + T::fused(-k(0.08), t25, t48));
-            let t162 = t102 + T::fused(-k(0.08), t91, t94);
-            let t163 = t108 * t162;
-            let t164 = T::fused(t105, t163, t80 + T::fused(-k(0.08), t39, t52));
-            let t165 = t103 + T::fused(-k(0.08), t92, t95);
-            let t166 = t108 * t165;
-            let t167 = T::fused(t105, t166, t86 + T::fused(-k(0.08), t47, t54));
-            let t168 = k(2.0) * (t112 + t111);
-            let t169 = T::fused(t5, t127, -T::fused(t2, t126, t168 * t125));
-            let t170 = T::fused(t5, t66, T::fused(t2, t60, t168 * t63));
-            let t171 = k(1.0) / T::fused(-t169, t118, t170 * t140);
-            let t172 = T::fused(-(t118 * t171), row8, t170 * t171 * row9);
-            let t173 = T::fused(-(t140 * t171), row8, t169 * t171 * row9);
-            let t174 = T::fused(t110, t172, t139 * t173)
-                + T::fused(row7, t167, -T::fused(row5, t161, row6 * t164));
-            let t175 = T::fused(t121, t155, T::fused(t119, t151, t120 * t153))
-                + T::fused(-t128, t148, t129 * t149);
-            let t176 = T::fused(t138, t160, t130 - T::fused(-k(0.08), t119, t122));
-            let t177 = T::fused(t138, t163, t131 - T::fused(-k(0.08), t120, t123));
-            let t178 = T::fused(t138, t166, t132 - T::fused(-k(0.08), t121, t124));
-            let t179 = T::fused(t139, t172, t143 * t173)
-                + T::fused(row7, t178, -T::fused(row5, t176, row6 * t177));
-            let t180 = T::fused(
-                t118,
-                t174 + T::fused(t105, t158, t156),
-                t140 * (t179 + T::fused(t138, t158, -t175)),
-            );
-            let t181 = T::fused(
-                row0,
-                T::fused(t118, t161, t140 * t176),
-                row1 * T::fused(t118, t164, t140 * t177),
-            );
-            let t182 = T::fused(
-                t118,
-                T::fused(t170, t110, t169 * t139),
-                t140 * T::fused(t170, t139, t169 * t143),
-            );
-            let t183 = k(2.0) * (t116 - t115);
-            let t184 = T::fused(t1, t66, -T::fused(-t6, t60, t183 * t63));
-            let t185 = T::fused(t1, t127, -T::fused(-t183, t125, t6 * t126));
-            let t186 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-            let t187 = T::fused(t8, t182, t186 * T::fused(t184, t141, t185 * t144))
-                - T::fused(row2, T::fused(t118, t167, t140 * t178), -t181);
-            let t188 = (t187 - t180) / (k(1e-6) - T::fused(t118, t141, t140 * t144));
-            let t189 = row0 + row5;
-            let t190 = row1 + row6;
-            let t191 = row2 + row7;
-            let t192 = t172 - T::fused(t184, t186, T::fused(t170, t8, t118 * t188));
-            let t193 = t173 - T::fused(t185, t186, T::fused(t169, t8, t140 * t188));
-            let t194 = T::fused(t105, t192, t138 * t193)
-                + T::fused(t191, t165, -T::fused(t189, t159, t190 * t162));
-            let t195 = t108 * (t157 + t194);
-            let t196 = row10
-                + (t189 + T::fused(t90, t195, T::fused(-t25, t192, t119 * t193)));
-            let t197 = row11
-                + (t190 - T::fused(t91, t195, -T::fused(-t39, t192, t120 * t193)));
-            let t198 = row12
-                + (t191 + T::fused(t92, t195, -T::fused(-t47, t192, t121 * t193)));
-            let t199 = t146 + T::fused(t99, t195, T::fused(t67, t192, t128 * t193));
-            (
-                t8,
-                t15,
-                t16,
-                t31,
-                t32,
-                t42,
-                t43,
-                t56,
-                t68,
-                t73,
-                t76,
-                t78,
-                t82,
-                t84,
-                t100,
-                t129,
-                t147,
-                t186,
-                t188,
-                t189,
-                t190,
-                t191,
-                t192,
-                t193,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t200, t202) = {
-            let t200 = t147 + T::fused(t100, t195, T::fused(t73, t192, t129 * t193));
-            let t201 = T::fused(k(1.6e-9), t199, k(1.2e-9) * t200)
-                + T::fused(t43, t198, -T::fused(t16, t196, t32 * t197));
-            let t202 = k(99950.02498750624) * t201;
-            (t200, t202)
-        };
+            t37,
+            k(0.08) * T::fused(t85, t63, T::fused(t83, t55, t84 * t62)),
+        );
+        let t87 = T::fused(
+            k(6e-6),
+            T::fused(t9, t78, -T::fused(-t5, t77, t2 * t76)),
+            T::fused(t25, t80, t86),
+        );
+        let t88 = T::fused(
+            -t81,
+            t67,
+            k(0.08) * T::fused(t70, t85, -T::fused(t68, t83, t69 * t84)),
+        );
+        let t89 = t88 - t82;
+        let t90 = t74 * t89;
+        let t91 = T::fused(t90, t72, -t87);
+        let t92 = T::fused(
+            t81,
+            t82,
+            k(0.08) * T::fused(t85, t85, T::fused(t83, t83, t84 * t84)),
+        );
+        let t93 = k(1.0) / T::fused(t89, t90, -(k(6e-6) + T::fused(t79, t80, t92)));
+        let t94 = t93 * t91;
+        let t95 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
+        let t96 = k(2.0) * (t11 + t10);
+        let t97 = k(1.0) / T::fused(-t4, t95, t96 * t12);
+        let t98 = t4 * t97;
+        let t99 = t96 * t97;
+        let t100 = t12 * t97;
+        let t101 = t95 * t97;
+        let t102 = T::fused(
+            row3,
+            T::fused(t4, t98, t96 * t99),
+            row4 * T::fused(t4, t100, t96 * t101),
+        );
+        let t103 = k(2.0) * (t8 - t7);
+        let t104 = T::fused(
+            row3,
+            T::fused(-t6, t98, t103 * t99),
+            row4 * T::fused(-t6, t100, t103 * t101),
+        );
+        let t105 = T::fused(
+            row3,
+            T::fused(t12, t98, t95 * t99),
+            row4 * T::fused(t12, t100, t95 * t101),
+        );
+        let t106 = k(1e-6) * T::fused(t12, t105, -T::fused(-t4, t102, t6 * t104));
+        let t107 = k(2.0) * t56;
+        let t108 = k(2.0) * t49;
+        let t109 = k(2.0) * t41;
+        let t110 = T::fused(t9, t109, -T::fused(t2, t107, t5 * t108));
+        let t111 = T::fused(t12, t24, -T::fused(t4, t20, t6 * t16));
+        let t112 = T::fused(t12, t109, T::fused(t4, t107, t6 * t108));
+        let t113 = k(1.0) / T::fused(-t111, t110, t112 * t25);
+        let t114 = t110 * t113;
+        let t115 = t25 * t113;
+        let t116 = t112 * t113;
+        let t117 = t111 * t113;
+        let t118 = T::fused(
+            -row8,
+            T::fused(-t107, t114, t20 * t115),
+            row9 * T::fused(-t107, t116, t20 * t117),
+        );
+        let t119 = t118 + t102;
+        let t120 = T::fused(
+            -row8,
+            T::fused(-t108, t114, t16 * t115),
+            row9 * T::fused(-t108, t116, t16 * t117),
+        );
+        let t121 = t120 - t104;
+        let t122 = T::fused(
+            -row8,
+            T::fused(t109, t114, t24 * t115),
+            row9 * T::fused(t109, t116, t24 * t117),
+        );
+        let t123 = t122 - t105;
+        let t124 = k(1e-6) * T::fused(t24, t123, T::fused(t20, t119, t16 * t121));
+        let t125 = k(2.0) * t51;
+        let t126 = k(2.0) * t58;
+        let t127 = k(2.0) * t45;
+        let t128 = T::fused(t78, t127, -T::fused(-t77, t125, t76 * t126));
+        let t129 = k(2.0) * t52;
+        let t130 = k(2.0) * t59;
+        let t131 = k(2.0) * t46;
+        let t132 = T::fused(t24, t131, -T::fused(-t16, t129, t20 * t130));
+        let t133 = T::fused(t78, t131, T::fused(t77, t129, t76 * t130));
+        let t134 = T::fused(t24, t127, T::fused(t16, t125, t20 * t126));
+        let t135 = k(1.0) / T::fused(-t132, t128, t134 * t133);
+        let t136 = t134 * t135;
+        let t137 = t132 * t135;
+        let t138 = T::fused(-t126, t136, t130 * t137);
+        let t139 = T::fused(t127, t136, t131 * t137);
+        let t140 = t128 * t135;
+        let t141 = t133 * t135;
+        let t142 = T::fused(-t126, t140, t130 * t141);
+        let t143 = T::fused(t127, t140, t131 * t141);
+        let t144 = T::fused(
+            -row14,
+            T::fused(-t138, t47, t139 * t60),
+            T::fused(-row13, T::fused(-t142, t47, t143 * t60), row11),
+        );
+        let t145 = row1 + row6;
+        let t146 = t145 - T::fused(t119, t48, t123 * t61) + t144;
+        let t147 = k(0.08) * t146;
+        let t148 = T::fused(t125, t136, t129 * t137);
+        let t149 = T::fused(t125, t140, t129 * t141);
+        let t150 = T::fused(
+            row14,
+            T::fused(-t148, t60, t138 * t53),
+            T::fused(row13, T::fused(-t149, t60, t142 * t53), row12),
+        );
+        let t151 = row2 + row7;
+        let t152 = t151 - T::fused(t119, t54, t121 * t61) + t150;
+        let t153 = k(0.08) * t152;
+        let t154 = t119 - T::fused(row13, t142, row14 * t138);
+        let t155 = t121 + T::fused(row13, t149, row14 * t148);
+        let t156 = t123 + T::fused(row13, t143, row14 * t139);
+        let t157 = k(5e-6) * T::fused(t36, t156, -T::fused(t28, t154, t32 * t155));
+        let t158 = T::fused(-t28, t157, k(5e-6) * t154);
+        let t159 = t158 - T::fused(t48, t147, t54 * t153)
+            + T::fused(t20, t124, k(1e-6) * t119);
+        let t160 = T::fused(
+            -row14,
+            T::fused(-t139, t53, t148 * t47),
+            T::fused(-row13, T::fused(-t143, t53, t149 * t47), row10),
+        );
+        let t161 = row0 + row5;
+        let t162 = t161 + T::fused(-t121, t48, t123 * t54) + t160;
+        let t163 = k(0.08) * t162;
+        let t164 = T::fused(-t32, t157, k(5e-6) * t155);
+        let t165 = t164 - T::fused(t48, t163, t61 * t153)
+            + T::fused(t16, t124, k(1e-6) * t121);
+        let t166 = T::fused(
+            t2,
+            t159 + T::fused(t4, t106, k(1e-6) * t102),
+            t5 * (t165 - T::fused(-t6, t106, k(1e-6) * t104)),
+        );
+        let t167 = T::fused(t36, t157, k(5e-6) * t156);
+        let t168 = t167 - T::fused(-t54, t163, t61 * t147)
+            + T::fused(t24, t124, k(1e-6) * t123);
+        let t169 = T::fused(t36, t167, -T::fused(t28, t158, t32 * t164))
+            + T::fused(t153, t70, -T::fused(-t163, t68, t147 * t69));
+        let t170 = T::fused(
+            t169,
+            t75,
+            T::fused(t9, t168 - T::fused(t12, t106, k(1e-6) * t105), t166),
+        );
+        let t171 = T::fused(
+            t169,
+            t90,
+            T::fused(t78, t168, T::fused(-t76, t159, t77 * t165)),
+        );
+        let t172 = T::fused(t171, t94, -t170)
+            / T::fused(t91, t94, -T::fused(t72, t75, -t65));
+        let t173 = t2 * t172;
+        let t174 = t102 + t173;
+        let t175 = t5 * t172;
+        let t176 = t104 - t175;
+        let t177 = t9 * t172;
+        let t178 = t105 - t177;
+        let t179 = T::fused(-t171, t93, t94 * t172);
+        let t180 = t76 * t179;
+        let t181 = t180 + (t119 + t173);
+        let t182 = t77 * t179;
+        let t183 = t182 - (t121 + t175);
+        let t184 = t78 * t179;
+        let t185 = t184 - (t123 + t177);
+        let t186 = T::fused(t90, t179, -T::fused(-t169, t74, t75 * t172));
+        let t187 = T::fused(t28, t186, t180 + (t154 + t173));
+        let t188 = T::fused(t32, t186, -(t182 - (t155 + t175)));
+        let t189 = T::fused(t36, t186, t184 - (t156 + t177));
         *out = [
             row0,
             row1,
             row2,
-            t8,
-            t188,
-            -t186,
-            t189,
-            t190,
-            t191,
-            -t192,
-            -t193,
-            t195,
-            t196 - T::fused(t68, t200, T::fused(-t15, t202, t56 * t199)),
-            t197 + T::fused(t78, t200, -T::fused(-t31, t202, t76 * t199)),
-            t198 - T::fused(t84, t200, -T::fused(-t42, t202, t82 * t199)),
-            -t202,
-            -t199,
-            t200,
+            T::fused(t12, t178, -T::fused(-t4, t174, t6 * t176)),
+            T::fused(t9, t178, T::fused(-t2, t174, t5 * t176)),
+            -T::fused(t95, t178, T::fused(t96, t174, t103 * t176)),
+            t161,
+            t145,
+            t151,
+            T::fused(t109, t185, -T::fused(-t107, t181, t108 * t183)),
+            T::fused(t24, t185, T::fused(-t20, t181, t16 * t183)),
+            -T::fused(t78, t185, T::fused(t76, t181, t77 * t183)),
+            -T::fused(t68, t186, T::fused(t83, t179, -T::fused(t55, t172, t162))),
+            T::fused(t69, t186, T::fused(t84, t179, T::fused(-t62, t172, t146))),
+            T::fused(-t70, t186, T::fused(t85, t179, T::fused(-t63, t172, t152))),
+            T::fused(t36, t189, T::fused(t28, t187, t32 * t188)),
+            T::fused(t127, t189, -T::fused(t126, t187, t125 * t188)),
+            T::fused(-t131, t189, T::fused(-t130, t187, t129 * t188)),
         ];
     }
 }

@@ -13,9 +13,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 436 operations by relative Euler parameters; 456 operations by rotations of the bodies
+//! * project: 387 operations by relative Euler parameters; 398 operations by rotations of the bodies
 //! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
 //! * joint_accelerations_at: 40 operations by normal form; 59 operations by recursion; 1 more compared
 //! * corrected_accelerations: 150 operations by normal form in the bodies' frames; 152 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 59 operations by derivatives of the balance, from its leaves, normal form; 59 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -30,6 +32,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 172 | 259 | 5 | 436 | 7 of 18 | 505202 | 440 |
 //! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 | 3819 | 304 |
+//! | project | (δr, δπ') that changes the rows as given | 147 | 235 | 5 | 387 | 1 of 18 | 413586 | 388 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -44,13 +47,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 93 | 1 | 150 | 6 of 18 | 2540 | 151 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 715 | 134 |
 //! | corrected_solution | both | 88 | 143 | 1 | 232 | 6 of 33 | 22234 | 233 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 14 | 44 | 1 | 59 | 28 of 42 | 178 | 59 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -61,6 +65,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2632,6 +2637,263 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFast<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFast<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 387 operations (147 ±, 235 ×, 5 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
+        let t9 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t10 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t11 = t10 * t9;
+        let t12 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t13 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t12;
+        let t15 = t14 - t11;
+        let t16 = k(2.0) * t15;
+        let t17 = t14 + t11;
+        let t18 = k(2.0) * t17;
+        let t19 = t10 * t10;
+        let t20 = k(0.5) - T::fused(t12, t12, t19);
+        let t21 = k(2.0) * t20;
+        let t22 = k(0.5) - T::fused(t13, t13, t19);
+        let t23 = k(2.0) * t22;
+        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
+        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
+        let t26 = k(5e-6) * t25;
+        let t27 = T::fused(t10, t12, t9 * t13);
+        let t28 = k(2.0) * t27;
+        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
+        let t30 = k(5e-6) * t29;
+        let t31 = T::fused(-t10, t13, t9 * t12);
+        let t32 = k(2.0) * t31;
+        let t33 = k(0.08) * row10;
+        let t34 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
+        let t35 = k(0.00025) * t34;
+        let t36 = k(0.08) * row11;
+        let t37 = inner_ring_e0 * inner_ring_e0;
+        let t38 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t37);
+        let t39 = k(0.00025) * t38;
+        let t40 = k(0.08) * row12;
+        let t41 = inner_ring_e0 * inner_ring_e1;
+        let t42 = inner_ring_e2 * inner_ring_e3;
+        let t43 = t42 + t41;
+        let t44 = k(0.00025) * t43;
+        let t45 = T::fused(t44, t40, -T::fused(-t35, t33, t39 * t36))
+            + T::fused(t16, t26, t21 * t30);
+        let t46 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
+        let t47 = k(1.0) / t46;
+        let t48 = t47 * t45;
+        let t49 = k(1e-5) * t27;
+        let t50 = k(1e-5) * t31;
+        let t51 = T::fused(-t16, t49, t21 * t50);
+        let t52 = k(2e-5) * t34;
+        let t53 = t47 * t52;
+        let t54 = t51 * t53;
+        let t55 = k(2e-5) * t38;
+        let t56 = t47 * t55;
+        let t57 = t51 * t56;
+        let t58 = k(2e-5) * t43;
+        let t59 = t47 * t58;
+        let t60 = t51 * t59;
+        let t61 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t62 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t63 = t62 * t61;
+        let t64 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t65 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t66 = t65 * t64;
+        let t67 = k(2.0) * (t66 - t63);
+        let t68 = k(2.0) * (t66 + t63);
+        let t69 = t62 * t62;
+        let t70 = k(2.0) * (k(0.5) - T::fused(t64, t64, t69));
+        let t71 = k(2.0) * (k(0.5) - T::fused(t65, t65, t69));
+        let t72 = k(1.0) / T::fused(-t68, t67, t71 * t70);
+        let t73 = T::fused(row8, t67 * t72, row9 * (t71 * t72));
+        let t74 = t47 * t51;
+        let t75 = T::fused(t51, t74, -(k(1e-6) + T::fused(t28, t49, t32 * t50)));
+        let t76 = T::fused(row8, t70 * t72, row9 * (t68 * t72));
+        let t77 = k(1e-5) * t22;
+        let t78 = k(1e-5) * t17;
+        let t79 = T::fused(t16, t77, t21 * t78);
+        let t80 = T::fused(t79, t74, -T::fused(-t23, t49, t18 * t50));
+        let t81 = T::fused(-t75, t73, t80 * t76)
+            + T::fused(row7, t60, -T::fused(-row5, t54, row6 * t57));
+        let t82 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t83 = k(0.00025) * t82;
+        let t84 = t42 - t41;
+        let t85 = k(0.00025) * t84;
+        let t86 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t37);
+        let t87 = k(0.00025) * t86;
+        let t88 = T::fused(t87, t40, -T::fused(t83, t33, t85 * t36))
+            - T::fused(t23, t26, t18 * t30);
+        let t89 = T::fused(-t79, t53, k(2e-5) * t82);
+        let t90 = T::fused(t79, t56, k(2e-5) * t84);
+        let t91 = T::fused(t79, t59, k(2e-5) * t86);
+        let t92 = T::fused(
+            t79,
+            t47 * t79,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t23, t77, t18 * t78))),
+        );
+        let t93 = T::fused(-t80, t73, t92 * t76)
+            + T::fused(row7, t91, -T::fused(row5, t89, row6 * t90));
+        let t94 = T::fused(
+            -t67,
+            t81 + T::fused(t51, t48, -T::fused(-t28, t26, t32 * t30)),
+            t70 * (t93 + T::fused(t79, t48, t88)),
+        );
+        let t95 = T::fused(
+            row0,
+            T::fused(t67, t54, t70 * t89),
+            row1 * T::fused(-t67, t57, t70 * t90),
+        );
+        let t96 = T::fused(
+            -t67,
+            T::fused(-t71, t75, t68 * t80),
+            t70 * T::fused(-t71, t80, t68 * t92),
+        );
+        let t97 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+        let t98 = T::fused(-t67, t75, t70 * t80);
+        let t99 = k(2.0) * T::fused(t62, t64, t65 * t61);
+        let t100 = T::fused(-t67, t80, t70 * t92);
+        let t101 = k(2.0) * T::fused(-t62, t65, t64 * t61);
+        let t102 = T::fused(-t96, t8, T::fused(t99, t98, t101 * t100) * t97)
+            + T::fused(row2, T::fused(-t67, t60, t70 * t91), -t95);
+        let t103 = (t102 + t94) / (k(1e-6) - T::fused(-t67, t98, t70 * t100));
+        let t104 = row0 + row5;
+        let t105 = row1 + row6;
+        let t106 = row2 + row7;
+        let t107 = t73 - T::fused(t99, t97, -T::fused(-t71, t8, t67 * t103));
+        let t108 = t76 + T::fused(t101, t97, T::fused(-t68, t8, t70 * t103));
+        let t109 = T::fused(t106, t58, -T::fused(-t104, t52, t105 * t55))
+            + T::fused(-t51, t107, t79 * t108);
+        let t110 = t47 * (t45 + t109);
+        *out = [
+            row0,
+            row1,
+            row2,
+            t8,
+            t103,
+            -t97,
+            t104,
+            t105,
+            t106,
+            t107,
+            -t108,
+            -t110,
+            row10 + (t104 - T::fused(-t83, t108, t35 * t110)),
+            row11 + (t105 + T::fused(t85, t108, t39 * t110)),
+            row12 + (t106 - T::fused(t87, t108, t44 * t110)),
+            k(0.0),
+            t25 - T::fused(t16, t110, -T::fused(t28, t107, t23 * t108)),
+            T::fused(t21, t110, -T::fused(-t32, t107, t18 * t108)) - t29,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFast<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
@@ -3412,6 +3674,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeFast<T> {
             t61,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeFast<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 36]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 59 operations (14 ±, 44 ×, 1 ÷) and 2 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.cos();
+        let t1 = t0 * t0;
+        let t2 = k(1.0) / T::fused(k(3.000625), t1, k(1.0));
+        let t3 = k(500000.0) * t2;
+        let t4 = k(4.9937578027465666) * u2;
+        let t5 = t1 * t2;
+        let t6 = k(0.166631951676734) - t5;
+        let t7 = x1.sin();
+        let t8 = T::fused(
+            -(t7 * t6),
+            t4,
+            u0 * T::fused(t1, t5 - k(0.333263903353468), t6),
+        );
+        let t9 = k(1.2017503125e-5) * (u1 * t8) * t3;
+        let t10 = k(2.0025e-6) * t0;
+        let t11 = u1 * t7 * t10 * t3;
+        let t12 = u0 * t7;
+        let t13 = t12 - t4;
+        let t14 = t13 * t10 * t3;
+        let t15 = k(1e-5) * u1;
+        let t16 = t0 * t15;
+        let t17 = t16 * t3;
+        let t18 = k(1.2503907471084714) * u2;
+        let t19 = T::fused(
+            -k(7.9975e-6),
+            u0 * T::fused(t7, t18, u0 * (k(0.5) - t1)),
+            k(0.0001) * t7,
+        );
+        let t20 = t0 * (k(1e-5) * u0);
+        let t21 = T::fused(
+            t7,
+            t9,
+            k(100000.0) * (t15 * T::fused(-k(1.00125), t5 * t13, t12)),
+        );
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t9,
+            k(0.0),
+            t11,
+            t14,
+            -t17,
+            k(0.0),
+            k(166631.95167673402) * t19,
+            k(0.0),
+            k(1.3326390335346803) * (t0 * (t12 + t18)),
+            k(0.0),
+            k(166631.95167673402) * t20,
+            k(0.0),
+            t21,
+            k(0.0),
+            -T::fused(t7, t11, k(100000.0) * t16),
+            -T::fused(t7, t14, k(100000.0) * t20),
+            t7 * t17,
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeFast<T> {
     type Outputs = [T; 0];

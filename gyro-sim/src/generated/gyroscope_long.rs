@@ -14,9 +14,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 347 operations by relative Euler parameters; 398 operations by rotations of the bodies
+//! * project: 284 operations by relative Euler parameters; 312 operations by rotations of the bodies
 //! * joint_accelerations: 19 operations by normal form; 29 operations by recursion
 //! * joint_accelerations_at: 39 operations by normal form; 49 operations by recursion; 1 more compared
 //! * corrected_accelerations: 80 operations by normal form in the bodies' frames; 80 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 55 operations by normal form of that; 56 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -31,6 +33,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 138 | 204 | 5 | 347 | 10 of 18 | 293426 | 351 |
 //! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 | 3583 | 283 |
+//! | project | (δr, δπ') that changes the rows as given | 107 | 172 | 5 | 284 | 1 of 18 | 196446 | 285 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 | 48 | 48 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -45,13 +48,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 30 | 49 | 1 | 80 | 9 of 18 | 1010 | 81 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 37 | 59 | 0 | 96 | 0 of 15 | 571 | 96 |
 //! | corrected_solution | both | 45 | 75 | 1 | 121 | 18 of 33 | 6790 | 122 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 15 | 39 | 1 | 55 | 28 of 42 | 151 | 55 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -62,6 +66,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -2502,6 +2507,213 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeLong<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeLong<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 284 operations (107 ±, 172 ×, 5 ÷).
+    fn project(
+        &self,
+        _t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
+        let t9 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t10 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t11 = t10 * t9;
+        let t12 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t13 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t12;
+        let t15 = t14 - t11;
+        let t16 = k(2.0) * t15;
+        let t17 = t14 + t11;
+        let t18 = k(2.0) * t17;
+        let t19 = t10 * t10;
+        let t20 = k(0.5) - T::fused(t12, t12, t19);
+        let t21 = k(2.0) * t20;
+        let t22 = k(0.5) - T::fused(t13, t13, t19);
+        let t23 = k(2.0) * t22;
+        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
+        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
+        let t26 = k(5e-6) * t25;
+        let t27 = T::fused(t10, t12, t9 * t13);
+        let t28 = k(2.0) * t27;
+        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
+        let t30 = k(5e-6) * t29;
+        let t31 = T::fused(-t10, t13, t9 * t12);
+        let t32 = k(2.0) * t31;
+        let t33 = T::fused(t16, t26, t21 * t30);
+        let t34 = k(1.0)
+            / (k(1e-6) + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
+        let t35 = t34 * t33;
+        let t36 = k(1e-5) * t27;
+        let t37 = k(1e-5) * t31;
+        let t38 = T::fused(-t16, t36, t21 * t37);
+        let t39 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t40 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t41 = t40 * t39;
+        let t42 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t43 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t44 = t43 * t42;
+        let t45 = k(2.0) * (t44 - t41);
+        let t46 = k(2.0) * (t44 + t41);
+        let t47 = t40 * t40;
+        let t48 = k(2.0) * (k(0.5) - T::fused(t42, t42, t47));
+        let t49 = k(2.0) * (k(0.5) - T::fused(t43, t43, t47));
+        let t50 = k(1.0) / T::fused(-t46, t45, t49 * t48);
+        let t51 = T::fused(row8, t45 * t50, row9 * (t49 * t50));
+        let t52 = t34 * t38;
+        let t53 = T::fused(t38, t52, -(k(1e-6) + T::fused(t28, t36, t32 * t37)));
+        let t54 = T::fused(row8, t48 * t50, row9 * (t46 * t50));
+        let t55 = k(1e-5) * t22;
+        let t56 = k(1e-5) * t17;
+        let t57 = T::fused(t16, t55, t21 * t56);
+        let t58 = T::fused(t57, t52, -T::fused(-t23, t36, t18 * t37));
+        let t59 = T::fused(-t53, t51, t58 * t54)
+            + T::fused(t38, t35, -T::fused(-t28, t26, t32 * t30));
+        let t60 = T::fused(t57, t34 * t57, -(k(2e-6) + T::fused(t23, t55, t18 * t56)));
+        let t61 = T::fused(-t58, t51, t60 * t54)
+            + T::fused(t57, t35, -T::fused(t23, t26, t18 * t30));
+        let t62 = T::fused(
+            -t45,
+            T::fused(-t49, t53, t46 * t58),
+            t48 * T::fused(-t49, t58, t46 * t60),
+        );
+        let t63 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+        let t64 = T::fused(-t45, t53, t48 * t58);
+        let t65 = k(2.0) * T::fused(t40, t42, t43 * t39);
+        let t66 = T::fused(-t45, t58, t48 * t60);
+        let t67 = k(2.0) * T::fused(-t40, t43, t42 * t39);
+        let t68 = T::fused(-t62, t8, T::fused(t65, t64, t67 * t66) * t63)
+            + T::fused(-t45, t59, t48 * t61);
+        let t69 = t68 / (k(1e-6) - T::fused(-t45, t64, t48 * t66));
+        let t70 = row0 + row5;
+        let t71 = row1 + row6;
+        let t72 = row2 + row7;
+        let t73 = t51 - T::fused(t65, t63, -T::fused(-t49, t8, t45 * t69));
+        let t74 = t54 + T::fused(t67, t63, T::fused(-t46, t8, t48 * t69));
+        let t75 = t34 * (t33 + T::fused(-t38, t73, t57 * t74));
+        *out = [
+            row0,
+            row1,
+            row2,
+            t8,
+            t69,
+            -t63,
+            t70,
+            t71,
+            t72,
+            t73,
+            -t74,
+            -t75,
+            row10 + t70,
+            row11 + t71,
+            row12 + t72,
+            k(0.0),
+            t25 - T::fused(t16, t75, -T::fused(t28, t73, t23 * t74)),
+            T::fused(t21, t75, -T::fused(-t32, t73, t18 * t74)) - t29,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeLong<T> {
     type Joints = [T; 6];
     type Rates = [T; 3];
@@ -3142,6 +3354,96 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeLong<T> {
             t31,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeLong<T> {
+    type Jacobian = [T; 36];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 36]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 55 operations (15 ±, 39 ×, 1 ÷) and 2 functions.
+    fn joint_jacobian(
+        &self,
+        _t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x1 = x[1];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let t0 = x1.sin();
+        let t1 = u2 * t0;
+        let t2 = x1.cos();
+        let t3 = t2 * t2;
+        let t4 = k(3.0) * t3;
+        let t5 = k(1.0) / (k(1.0) + t4);
+        let t6 = t3 * t5;
+        let t7 = k(1.0) - t3;
+        let t8 = T::fused(-k(6.0), t6 * t7, k(1.0));
+        let t9 = T::fused(-k(2.0), t3, t8);
+        let t10 = u1 * t5
+            * T::fused(-k(30.0), (k(0.16666666666666666) - t6) * t1, u0 * t9);
+        let t11 = t2 * t5;
+        let t12 = u1 * t11;
+        let t13 = k(5.0) * u2;
+        let t14 = u0 * t0;
+        let t15 = k(5.0) * t12;
+        let t16 = k(1.6666666666666667) * u0;
+        let t17 = t5 * t13;
+        let t18 = u1 * T::fused(-t9, t17, t14 * T::fused(-t5, t4 - t8, k(1.0)));
+        let t19 = T::fused(t5, t7, k(1.0));
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t10,
+            k(0.0),
+            t0 * t12,
+            (t14 - t13) * t11,
+            -t15,
+            k(0.0),
+            -(T::fused(k(0.8), u0 * (k(0.5) - t3), t1) * t16),
+            k(0.0),
+            k(1.3333333333333333) * (t2 * T::fused(k(1.25), u2, t14)),
+            k(0.0),
+            t2 * t16,
+            k(0.0),
+            t18,
+            k(0.0),
+            -(u1 * t2 * t19),
+            -(t2 * T::fused(-t0, t17, u0 * t19)),
+            t0 * t15,
+        ];
+        *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeLong<T> {
     type Outputs = [T; 0];

@@ -11,7 +11,7 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 838 operations by relative Euler parameters; 858 operations by rotations of the bodies
-//! * project: 798 operations by rotations of the bodies; 824 operations by relative Euler parameters
+//! * project: 740 operations by rotations of the bodies; 801 operations by relative Euler parameters
 //! * joint_accelerations: 191 operations by normal form; 441 operations by recursion
 //! * joint_accelerations_at: 229 operations by normal form; 479 operations by recursion; 1 more compared
 //! * corrected_accelerations: 366 operations by normal form in the bodies' frames; 458 operations by normal form in the global frame; 5 more compared
@@ -30,7 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 22 | 0 | 29 | 8 of 18 | 32 | 29 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 336 | 496 | 6 | 838 | 6 of 18 | 6.5e7 | 842 |
 //! | multipliers | λ, the accelerations being known | 150 | 239 | 3 | 392 | 0 of 15 | 6505 | 392 |
-//! | project | (δr, δπ') that changes the rows as given | 326 | 466 | 6 | 798 | 0 of 18 | 2.0e7 | 799 |
+//! | project | (δr, δπ') that changes the rows as given | 302 | 432 | 6 | 740 | 0 of 18 | 3.6e7 | 741 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 23 | 37 | 0 | 60 | 0 of 2 | 60 | 60 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -3270,7 +3270,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 798 operations (326 ±, 466 ×, 6 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 740 operations (302 ±, 432 ×, 6 ÷).
     fn project(
         &self,
         _t: T,
@@ -3306,361 +3306,335 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let (
-            t8,
-            t15,
-            t19,
-            t34,
-            t45,
-            t60,
-            t66,
-            t71,
-            t73,
-            t77,
-            t79,
-            t184,
-            t186,
-            t187,
-            t188,
-            t189,
-            t190,
-            t191,
-            t193,
-            t194,
-            t195,
-            t196,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = outer_ring_e0 * outer_ring_e0;
-            let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-            let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-            let t3 = outer_ring_e0 * outer_ring_e2;
-            let t4 = outer_ring_e1 * outer_ring_e3;
-            let t5 = k(2.0) * (t4 - t3);
-            let t6 = k(2.0) * (t4 + t3);
-            let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-            let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
-            let t9 = rotor_e0 * rotor_e3;
-            let t10 = rotor_e1 * rotor_e2;
-            let t11 = k(2.0) * (t10 - t9);
-            let t12 = rotor_e0 * rotor_e2;
-            let t13 = rotor_e1 * rotor_e3;
-            let t14 = k(2.0) * (t13 + t12);
-            let t15 = T::fused(-t11, self.imbalance_z, t14 * self.imbalance_y);
-            let t16 = k(0.08) * t15;
-            let t17 = self.imbalance_y * self.imbalance_y;
-            let t18 = self.imbalance_z * self.imbalance_z;
-            let t19 = k(1.0) / T::fused(k(0.08), t18 + t17, k(1e-5));
-            let t20 = t19 * t16;
-            let t21 = t16 * t20;
-            let t22 = inner_ring_e0 * inner_ring_e3;
-            let t23 = inner_ring_e1 * inner_ring_e2;
-            let t24 = k(2.0) * (t23 - t22);
-            let t25 = inner_ring_e0 * inner_ring_e2;
-            let t26 = inner_ring_e1 * inner_ring_e3;
-            let t27 = k(2.0) * (t26 + t25);
-            let t28 = T::fused(-t24, self.offset_z, t27 * self.offset_y);
-            let t29 = rotor_e0 * rotor_e0;
-            let t30 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t29));
-            let t31 = rotor_e0 * rotor_e1;
-            let t32 = rotor_e2 * rotor_e3;
-            let t33 = k(2.0) * (t32 - t31);
-            let t34 = T::fused(t30, self.imbalance_z, t33 * self.imbalance_y);
-            let t35 = k(0.08) * t34;
-            let t36 = t35 * t20;
-            let t37 = inner_ring_e0 * inner_ring_e0;
-            let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t37));
-            let t39 = inner_ring_e0 * inner_ring_e1;
-            let t40 = inner_ring_e2 * inner_ring_e3;
-            let t41 = k(2.0) * (t40 - t39);
-            let t42 = T::fused(t38, self.offset_z, t41 * self.offset_y);
-            let t43 = k(2.0) * (t32 + t31);
-            let t44 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t29));
-            let t45 = T::fused(t43, self.imbalance_z, t44 * self.imbalance_y);
-            let t46 = k(0.08) * t45;
-            let t47 = t46 * t20;
-            let t48 = k(2.0) * (t40 + t39);
-            let t49 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t37));
-            let t50 = T::fused(t48, self.offset_z, t49 * self.offset_y);
-            let t51 = T::fused(t50, t47, T::fused(t28, t21, t42 * t36));
-            let t52 = t19 * t35;
-            let t53 = t35 * t52;
-            let t54 = t46 * t52;
-            let t55 = T::fused(t50, t54, T::fused(t28, t36, t42 * t53));
-            let t56 = t19 * t46;
-            let t57 = t46 * t56;
-            let t58 = T::fused(t50, t57, T::fused(t28, t47, t42 * t54));
-            let t59 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t29));
-            let t60 = t59 * self.imbalance_z;
-            let t61 = T::fused(k(0.08), t60, self.product_xy * t20);
-            let t62 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t37));
-            let t63 = k(2.0) * (t23 + t22);
-            let t64 = k(2.0) * (t26 - t25);
-            let t65 = T::fused(t64, t43, -T::fused(t62, t11, t63 * t30));
-            let t66 = t59 * self.imbalance_y;
-            let t67 = T::fused(-k(0.08), t66, self.product_xz * t20);
-            let t68 = T::fused(t64, t44, -T::fused(-t62, t14, t63 * t33));
-            let t69 = T::fused(-t65, t61, t68 * t67);
-            let t70 = k(2.0) * (t10 + t9);
-            let t71 = t70 * self.imbalance_z;
-            let t72 = T::fused(-k(0.08), t71, self.product_xy * t52);
-            let t73 = t70 * self.imbalance_y;
-            let t74 = T::fused(k(0.08), t73, self.product_xz * t52);
-            let t75 = T::fused(-t65, t72, t68 * t74);
-            let t76 = k(2.0) * (t13 - t12);
-            let t77 = t76 * self.imbalance_z;
-            let t78 = T::fused(k(0.08), t77, self.product_xy * t56);
-            let t79 = t76 * self.imbalance_y;
-            let t80 = T::fused(-k(0.08), t79, self.product_xz * t56);
-            let t81 = T::fused(-t65, t78, t68 * t80);
-            let t82 = T::fused(
-                k(2.0),
-                T::fused(t50, t81, T::fused(t28, t69, t42 * t75)),
-                T::fused(t50, t58, T::fused(t28, t51, t42 * t55)),
+        let t0 = outer_ring_e0 * outer_ring_e3;
+        let t1 = outer_ring_e1 * outer_ring_e2;
+        let t2 = k(2.0) * (t1 - t0);
+        let t3 = outer_ring_e0 * outer_ring_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
+        let t6 = k(2.0) * (t1 + t0);
+        let t7 = outer_ring_e0 * outer_ring_e1;
+        let t8 = outer_ring_e2 * outer_ring_e3;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = outer_ring_e0 * outer_ring_e2;
+        let t11 = outer_ring_e1 * outer_ring_e3;
+        let t12 = k(2.0) * (t11 - t10);
+        let t13 = T::fused(t12, t9, -T::fused(t4, t2, t6 * t5));
+        let t14 = inner_ring_e0 * inner_ring_e0;
+        let t15 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t14));
+        let t16 = inner_ring_e0 * inner_ring_e3;
+        let t17 = inner_ring_e1 * inner_ring_e2;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = inner_ring_e0 * inner_ring_e1;
+        let t20 = inner_ring_e2 * inner_ring_e3;
+        let t21 = k(2.0) * (t20 + t19);
+        let t22 = T::fused(t9, t21, T::fused(t5, t15, t2 * t18));
+        let t23 = rotor_e0 * rotor_e3;
+        let t24 = rotor_e1 * rotor_e2;
+        let t25 = k(2.0) * (t24 - t23);
+        let t26 = rotor_e0 * rotor_e0;
+        let t27 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t26));
+        let t28 = rotor_e0 * rotor_e1;
+        let t29 = rotor_e2 * rotor_e3;
+        let t30 = k(2.0) * (t29 + t28);
+        let t31 = T::fused(t9, t30, T::fused(t2, t25, t5 * t27));
+        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t26));
+        let t33 = k(2.0) * (t24 + t23);
+        let t34 = rotor_e0 * rotor_e2;
+        let t35 = rotor_e1 * rotor_e3;
+        let t36 = k(2.0) * (t35 - t34);
+        let t37 = T::fused(t9, t36, -T::fused(t2, t32, t5 * t33));
+        let t38 = k(5e-6) * t37;
+        let t39 = k(2.0) * (t35 + t34);
+        let t40 = k(2.0) * (t29 - t28);
+        let t41 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t26));
+        let t42 = T::fused(t9, t41, T::fused(-t2, t39, t5 * t40));
+        let t43 = T::fused(
+            -t37,
+            T::fused(self.product_xz, t42, -T::fused(self.product_xy, t31, t38)),
+            t31 * (self.product_xy * t37),
+        );
+        let t44 = inner_ring_e0 * inner_ring_e2;
+        let t45 = inner_ring_e1 * inner_ring_e3;
+        let t46 = k(2.0) * (t45 - t44);
+        let t47 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t14));
+        let t48 = T::fused(-t30, self.imbalance_y, t41 * self.imbalance_z);
+        let t49 = t48
+            - T::fused(
+                t47,
+                self.offset_z,
+                -T::fused(t46, self.offset_x, t21 * self.offset_y),
             );
-            let t83 = self.product_xy * t19;
-            let t84 = T::fused(-self.product_xy, t83, T::fused(k(0.08), t18, k(5e-6)));
-            let t85 = T::fused(
-                self.product_xz,
-                t83,
-                k(0.08) * (self.imbalance_y * self.imbalance_z),
+        let t50 = k(2.0) * (t17 + t16);
+        let t51 = k(2.0) * (t20 - t19);
+        let t52 = T::fused(-t27, self.imbalance_y, t40 * self.imbalance_z);
+        let t53 = t52
+            - T::fused(
+                t51,
+                self.offset_z,
+                -T::fused(-t50, self.offset_x, t15 * self.offset_y),
             );
-            let t86 = T::fused(t84, t65, t85 * t68);
-            let t87 = T::fused(
-                -self.product_xz,
-                self.product_xz * t19,
-                T::fused(k(0.08), t17, k(5e-6)),
+        let t54 = T::fused(-t5, t49, t9 * t53);
+        let t55 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t14));
+        let t56 = k(2.0) * (t45 + t44);
+        let t57 = T::fused(t25, self.imbalance_y, t39 * self.imbalance_z);
+        let t58 = t57
+            - T::fused(
+                t56,
+                self.offset_z,
+                T::fused(-t55, self.offset_x, t18 * self.offset_y),
             );
-            let t88 = T::fused(t85, t65, t87 * t68);
-            let t89 = self.offset_y * self.offset_y;
-            let t90 = self.offset_z * self.offset_z;
-            let t91 = T::fused(k(0.08), t90 + t89, T::fused(t65, t86, t68 * t88)) - t82;
-            let t92 = T::fused(t62, self.offset_y, t24 * self.offset_x);
-            let t93 = T::fused(t63, self.offset_y, t38 * self.offset_x);
-            let t94 = T::fused(-t64, self.offset_y, t48 * self.offset_x);
-            let t95 = T::fused(t94, t47, T::fused(-t92, t21, t93 * t36));
-            let t96 = T::fused(t94, t54, T::fused(-t92, t36, t93 * t53));
-            let t97 = T::fused(t94, t57, T::fused(-t92, t47, t93 * t54));
-            let t98 = T::fused(t49, t43, -T::fused(-t41, t30, t27 * t11));
-            let t99 = T::fused(t49, t44, T::fused(t41, t33, t27 * t14));
-            let t100 = T::fused(-t98, t61, t99 * t67);
-            let t101 = T::fused(-t98, t72, t99 * t74);
-            let t102 = T::fused(-t98, t78, t99 * t80);
-            let t103 = T::fused(t94, t81, T::fused(-t92, t69, t93 * t75))
-                + T::fused(t50, t102, T::fused(t28, t100, t42 * t101));
-            let t104 = T::fused(
-                k(0.08),
-                self.offset_x * self.offset_z,
-                T::fused(t98, t86, t99 * t88),
-            ) - (t103 + T::fused(t50, t97, T::fused(t28, t95, t42 * t96)));
-            let t105 = T::fused(
-                k(2.0),
-                T::fused(t94, t102, T::fused(-t92, t100, t93 * t101)),
-                T::fused(t94, t97, T::fused(-t92, t95, t93 * t96)),
-            );
-            let t106 = T::fused(
-                t98,
-                T::fused(t84, t98, t85 * t99),
-                t99 * T::fused(t85, t98, t87 * t99),
-            );
-            let t107 = self.offset_x * self.offset_x;
-            let t108 = k(1.0) / (k(1e-6) + (T::fused(k(0.08), t89 + t107, t106) - t105));
-            let t109 = t108 * t104;
-            let t110 = T::fused(t104, t109, -(k(1e-6) + t91));
-            let t111 = outer_ring_e0 * outer_ring_e3;
-            let t112 = outer_ring_e1 * outer_ring_e2;
-            let t113 = k(2.0) * (t112 - t111);
-            let t114 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-            let t115 = outer_ring_e0 * outer_ring_e1;
-            let t116 = outer_ring_e2 * outer_ring_e3;
-            let t117 = k(2.0) * (t116 + t115);
-            let t118 = T::fused(t117, t64, -T::fused(t113, t62, t114 * t63));
-            let t119 = T::fused(t62, self.offset_z, t27 * self.offset_x);
-            let t120 = T::fused(-t63, self.offset_z, t41 * self.offset_x);
-            let t121 = T::fused(t64, self.offset_z, t49 * self.offset_x);
-            let t122 = T::fused(t121, t47, T::fused(t119, t21, t120 * t36));
-            let t123 = T::fused(t121, t54, T::fused(t119, t36, t120 * t53));
-            let t124 = T::fused(t121, t57, T::fused(t119, t47, t120 * t54));
-            let t125 = T::fused(t48, t43, T::fused(t38, t30, t24 * t11));
-            let t126 = T::fused(t48, t44, -T::fused(-t38, t33, t24 * t14));
-            let t127 = T::fused(-t125, t61, t126 * t67);
-            let t128 = T::fused(-t125, t72, t126 * t74);
-            let t129 = T::fused(-t125, t78, t126 * t80);
-            let t130 = T::fused(t121, t81, T::fused(t119, t69, t120 * t75))
-                - T::fused(t50, t129, T::fused(t28, t127, t42 * t128));
-            let t131 = T::fused(
-                k(0.08),
-                self.offset_x * self.offset_y,
-                -T::fused(t125, t86, t126 * t88),
-            ) - (t130 + T::fused(t50, t124, T::fused(t28, t122, t42 * t123)));
-            let t132 = T::fused(t94, t129, T::fused(-t92, t127, t93 * t128))
-                - T::fused(t121, t102, T::fused(t119, t100, t120 * t101));
-            let t133 = T::fused(t84, t125, t85 * t126);
-            let t134 = T::fused(t85, t125, t87 * t126);
-            let t135 = T::fused(
-                k(0.08),
-                self.offset_y * self.offset_z,
-                T::fused(t98, t133, t99 * t134),
-            ) - (t132 - T::fused(t121, t97, T::fused(t119, t95, t120 * t96)));
-            let t136 = T::fused(t135, t109, t131);
-            let t137 = T::fused(t117, t48, T::fused(t114, t38, t113 * t24));
-            let t138 = T::fused(t118, t110, t137 * t136);
-            let t139 = T::fused(
-                k(2.0),
-                T::fused(t121, t129, T::fused(t119, t127, t120 * t128)),
-                -T::fused(t121, t124, T::fused(t119, t122, t120 * t123)),
-            );
-            let t140 = T::fused(k(0.08), t90 + t107, T::fused(t125, t133, t126 * t134))
-                + t139;
-            let t141 = T::fused(t135, t108 * t135, -(k(2e-6) + t140));
-            let t142 = T::fused(t118, t136, t137 * t141);
-            let t143 = k(1.0) / T::fused(-t126, t98, t125 * t99);
-            let t144 = T::fused(t98 * t143, row13, t125 * t143 * row14);
-            let t145 = T::fused(t99 * t143, row13, t126 * t143 * row14);
-            let t146 = T::fused(t84, t144, t85 * t145)
-                + T::fused(row12, t78, -T::fused(row10, t61, row11 * t72));
-            let t147 = T::fused(t85, t144, t87 * t145)
-                - T::fused(row12, t80, -T::fused(row10, t67, row11 * t74));
-            let t148 = T::fused(
-                k(0.08),
-                row10,
-                T::fused(row12, t47, -T::fused(row10, t21, row11 * t36)),
-            );
-            let t149 = T::fused(-t61, t144, t67 * t145) + t148;
-            let t150 = T::fused(
-                k(0.08),
-                row11,
-                T::fused(row12, t54, -T::fused(row10, t36, row11 * t53)),
-            );
-            let t151 = T::fused(-t72, t144, t74 * t145) + t150;
-            let t152 = T::fused(
-                k(0.08),
-                row12,
-                -T::fused(row12, t57, -T::fused(row10, t47, row11 * t54)),
-            );
-            let t153 = T::fused(-t78, t144, t80 * t145) - t152;
-            let t154 = T::fused(t50, t153, T::fused(t28, t149, t42 * t151))
-                - T::fused(t65, t146, t68 * t147);
-            let t155 = T::fused(t94, t153, T::fused(-t92, t149, t93 * t151))
-                - T::fused(t98, t146, t99 * t147);
-            let t156 = t108 * t155;
-            let t157 = t100 + T::fused(k(0.08), t92, t95);
-            let t158 = t108 * t157;
-            let t159 = T::fused(t104, t158, -(t69 + T::fused(-k(0.08), t28, t51)));
-            let t160 = t101 + T::fused(-k(0.08), t93, t96);
-            let t161 = t108 * t160;
-            let t162 = T::fused(t104, t161, -(t75 + T::fused(-k(0.08), t42, t55)));
-            let t163 = t102 + T::fused(-k(0.08), t94, t97);
-            let t164 = t108 * t163;
-            let t165 = T::fused(t104, t164, -(t81 + T::fused(-k(0.08), t50, t58)));
-            let t166 = k(2.0) * (t112 + t111);
-            let t167 = T::fused(t5, t48, -T::fused(t2, t24, t166 * t38));
-            let t168 = T::fused(t5, t64, T::fused(t2, t62, t166 * t63));
-            let t169 = k(1.0) / T::fused(-t167, t118, t168 * t137);
-            let t170 = T::fused(-(t118 * t169), row8, t168 * t169 * row9);
-            let t171 = T::fused(-(t137 * t169), row8, t167 * t169 * row9);
-            let t172 = T::fused(t110, t170, t136 * t171)
-                - T::fused(row7, t165, -T::fused(row5, t159, row6 * t162));
-            let t173 = T::fused(t121, t153, T::fused(t119, t149, t120 * t151))
-                + T::fused(t125, t146, t126 * t147);
-            let t174 = T::fused(t135, t158, -(t127 - T::fused(-k(0.08), t119, t122)));
-            let t175 = T::fused(t135, t161, -(t128 - T::fused(-k(0.08), t120, t123)));
-            let t176 = T::fused(t135, t164, -(t129 - T::fused(-k(0.08), t121, t124)));
-            let t177 = T::fused(t136, t170, t141 * t171)
-                - T::fused(row7, t176, -T::fused(row5, t174, row6 * t175));
-            let t178 = T::fused(
-                t118,
-                t172 - T::fused(t104, t156, -t154),
-                t137 * (t177 - T::fused(t135, t156, t173)),
-            );
-            let t179 = T::fused(
-                row0,
-                T::fused(t118, t159, t137 * t174),
-                row1 * T::fused(t118, t162, t137 * t175),
-            );
-            let t180 = T::fused(
-                t118,
-                T::fused(t168, t110, t167 * t136),
-                t137 * T::fused(t168, t136, t167 * t141),
-            );
-            let t181 = k(2.0) * (t116 - t115);
-            let t182 = T::fused(t1, t64, -T::fused(-t6, t62, t181 * t63));
-            let t183 = T::fused(t1, t48, -T::fused(-t181, t38, t6 * t24));
-            let t184 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-            let t185 = T::fused(t8, t180, t184 * T::fused(t182, t138, t183 * t142))
-                + T::fused(row2, T::fused(t118, t165, t137 * t176), -t179);
-            let t186 = (t185 - t178) / (k(1e-6) - T::fused(t118, t138, t137 * t142));
-            let t187 = row0 + row5;
-            let t188 = row1 + row6;
-            let t189 = row2 + row7;
-            let t190 = t170 - T::fused(t182, t184, T::fused(t168, t8, t118 * t186));
-            let t191 = t171 - T::fused(t183, t184, T::fused(t167, t8, t137 * t186));
-            let t192 = T::fused(t104, t190, t135 * t191)
-                - T::fused(t189, t163, -T::fused(t187, t157, t188 * t160));
-            let t193 = t108 * (t155 - t192);
-            let t194 = row10
-                + (t187 + T::fused(t92, t193, T::fused(-t28, t190, t119 * t191)));
-            let t195 = row11
-                + (t188 - T::fused(t93, t193, -T::fused(-t42, t190, t120 * t191)));
-            let t196 = row12
-                + (t189 + T::fused(t94, t193, -T::fused(-t50, t190, t121 * t191)));
-            let t197 = t144 + T::fused(t98, t193, T::fused(t65, t190, t125 * t191));
-            let t198 = t145 + T::fused(t99, t193, T::fused(t68, t190, t126 * t191));
-            let t199 = T::fused(-self.product_xy, t197, self.product_xz * t198)
-                + T::fused(t46, t196, -T::fused(t16, t194, t35 * t195));
-            (
-                t8,
-                t15,
-                t19,
-                t34,
-                t45,
-                t60,
-                t66,
-                t71,
-                t73,
-                t77,
-                t79,
-                t184,
-                t186,
-                t187,
-                t188,
-                t189,
-                t190,
-                t191,
-                t193,
-                t194,
-                t195,
-                t196,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t200,) = {
-            let t200 = t19 * t199;
-            (t200,)
-        };
+        let t59 = T::fused(t2, t49, t9 * t58);
+        let t60 = T::fused(t2, t53, t5 * t58);
+        let t61 = T::fused(
+            k(0.08),
+            T::fused(t60, t60, T::fused(t54, t54, t59 * t59)),
+            -T::fused(t42, self.product_xz * t37, -t43),
+        );
+        let t62 = k(7e-6) + (t61 + T::fused(t13, k(1e-6) * t13, t22 * (k(1e-6) * t22)));
+        let t63 = T::fused(t36, t36, T::fused(t32, t32, t33 * t33));
+        let t64 = T::fused(t36, t30, -T::fused(t32, t25, t33 * t27));
+        let t65 = T::fused(t36, t41, -T::fused(-t32, t39, t33 * t40));
+        let t66 = T::fused(
+            self.product_xz,
+            t65,
+            -T::fused(k(5e-6), t63, self.product_xy * t64),
+        );
+        let t67 = self.product_xy * t63;
+        let t68 = self.product_xz * t63;
+        let t69 = T::fused(t36, t52, t33 * t48);
+        let t70 = T::fused(-t32, t48, t36 * t57);
+        let t71 = T::fused(t33, t57, t32 * t52);
+        let t72 = T::fused(
+            k(0.08),
+            T::fused(t71, t60, -T::fused(t69, t54, t70 * t59)),
+            T::fused(t68, t42, -T::fused(-t66, t37, t67 * t31)),
+        );
+        let t73 = t72 - t38;
+        let t74 = T::fused(
+            k(0.08),
+            T::fused(t71, t71, T::fused(t69, t69, t70 * t70)),
+            -T::fused(t68, t65, -T::fused(-t63, t66, t67 * t64)),
+        );
+        let t75 = k(1.0) / (k(5e-6) + t74);
+        let t76 = t75 * t73;
+        let t77 = T::fused(t21, t47, T::fused(-t18, t56, t15 * t51));
+        let t78 = k(1e-6) * t77;
+        let t79 = T::fused(t47, t30, -T::fused(-t51, t27, t56 * t25));
+        let t80 = T::fused(t47, t36, -T::fused(-t56, t32, t51 * t33));
+        let t81 = k(5e-6) * t80;
+        let t82 = T::fused(t47, t41, T::fused(t51, t40, t56 * t39));
+        let t83 = T::fused(self.product_xz, t82, -T::fused(self.product_xy, t79, t81));
+        let t84 = self.product_xy * t80;
+        let t85 = self.product_xz * t80;
+        let t86 = T::fused(-t51, t49, t47 * t53);
+        let t87 = T::fused(-t56, t49, t47 * t58);
+        let t88 = T::fused(-t56, t53, t51 * t58);
+        let t89 = T::fused(
+            k(0.08),
+            T::fused(t88, t60, T::fused(t86, t54, t87 * t59)),
+            -T::fused(t85, t42, -T::fused(-t83, t37, t84 * t31)),
+        );
+        let t90 = T::fused(
+            k(6e-6),
+            T::fused(t9, t47, -T::fused(-t5, t51, t2 * t56)),
+            T::fused(t22, t78, t89),
+        );
+        let t91 = T::fused(
+            k(0.08),
+            T::fused(t71, t88, -T::fused(t69, t86, t70 * t87)),
+            T::fused(t82, t68, -T::fused(-t80, t66, t79 * t67)),
+        );
+        let t92 = t91 - t81;
+        let t93 = t75 * t92;
+        let t94 = T::fused(t93, t73, -t90);
+        let t95 = T::fused(
+            k(0.08),
+            T::fused(t88, t88, T::fused(t86, t86, t87 * t87)),
+            -T::fused(t82, t85, -T::fused(-t80, t83, t79 * t84)),
+        );
+        let t96 = k(1.0) / T::fused(t92, t93, -(k(6e-6) + T::fused(t77, t78, t95)));
+        let t97 = t96 * t94;
+        let t98 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
+        let t99 = k(2.0) * (t11 + t10);
+        let t100 = k(1.0) / T::fused(-t4, t98, t99 * t12);
+        let t101 = t4 * t100;
+        let t102 = t99 * t100;
+        let t103 = t12 * t100;
+        let t104 = t98 * t100;
+        let t105 = T::fused(
+            row3,
+            T::fused(t4, t101, t99 * t102),
+            row4 * T::fused(t4, t103, t99 * t104),
+        );
+        let t106 = k(2.0) * (t8 - t7);
+        let t107 = T::fused(
+            row3,
+            T::fused(-t6, t101, t106 * t102),
+            row4 * T::fused(-t6, t103, t106 * t104),
+        );
+        let t108 = T::fused(
+            row3,
+            T::fused(t12, t101, t98 * t102),
+            row4 * T::fused(t12, t103, t98 * t104),
+        );
+        let t109 = k(1e-6) * T::fused(t12, t108, -T::fused(-t4, t105, t6 * t107));
+        let t110 = T::fused(t9, t46, -T::fused(t2, t55, t5 * t50));
+        let t111 = T::fused(t12, t21, -T::fused(t4, t18, t6 * t15));
+        let t112 = T::fused(t12, t46, T::fused(t4, t55, t6 * t50));
+        let t113 = k(1.0) / T::fused(-t111, t110, t112 * t22);
+        let t114 = t110 * t113;
+        let t115 = t22 * t113;
+        let t116 = t112 * t113;
+        let t117 = t111 * t113;
+        let t118 = T::fused(
+            -row8,
+            T::fused(-t55, t114, t18 * t115),
+            row9 * T::fused(-t55, t116, t18 * t117),
+        );
+        let t119 = t118 + t105;
+        let t120 = T::fused(
+            -row8,
+            T::fused(-t50, t114, t15 * t115),
+            row9 * T::fused(-t50, t116, t15 * t117),
+        );
+        let t121 = t120 - t107;
+        let t122 = T::fused(
+            -row8,
+            T::fused(t46, t114, t21 * t115),
+            row9 * T::fused(t46, t116, t21 * t117),
+        );
+        let t123 = t122 - t108;
+        let t124 = k(1e-6) * T::fused(t21, t123, T::fused(t18, t119, t15 * t121));
+        let t125 = T::fused(t21, t41, -T::fused(-t15, t40, t18 * t39));
+        let t126 = T::fused(t21, t30, T::fused(t15, t27, t18 * t25));
+        let t127 = k(1.0) / T::fused(-t125, t79, t126 * t82);
+        let t128 = t126 * t127;
+        let t129 = t125 * t127;
+        let t130 = T::fused(-t25, t128, t39 * t129);
+        let t131 = T::fused(t30, t128, t41 * t129);
+        let t132 = t79 * t127;
+        let t133 = t82 * t127;
+        let t134 = T::fused(-t25, t132, t39 * t133);
+        let t135 = T::fused(t30, t132, t41 * t133);
+        let t136 = T::fused(
+            row14,
+            T::fused(-t130, t48, t131 * t57),
+            T::fused(row13, T::fused(-t134, t48, t135 * t57), row11),
+        );
+        let t137 = row1 + row6;
+        let t138 = t137 + T::fused(t119, t49, t123 * t58) + t136;
+        let t139 = k(0.08) * t138;
+        let t140 = T::fused(t27, t128, t40 * t129);
+        let t141 = T::fused(t27, t132, t40 * t133);
+        let t142 = T::fused(
+            -row14,
+            T::fused(-t140, t57, t130 * t52),
+            T::fused(-row13, T::fused(-t141, t57, t134 * t52), row12),
+        );
+        let t143 = row2 + row7;
+        let t144 = t143 + T::fused(t119, t53, t121 * t58) + t142;
+        let t145 = k(0.08) * t144;
+        let t146 = t119 - T::fused(row13, t134, row14 * t130);
+        let t147 = t121 + T::fused(row13, t141, row14 * t140);
+        let t148 = t123 + T::fused(row13, t135, row14 * t131);
+        let t149 = T::fused(t36, t148, -T::fused(t32, t146, t33 * t147));
+        let t150 = T::fused(
+            k(5e-6),
+            t149,
+            self.product_xy * T::fused(t30, t148, T::fused(t25, t146, t27 * t147)),
+        );
+        let t151 = T::fused(
+            self.product_xz,
+            T::fused(t41, t148, T::fused(-t39, t146, t40 * t147)),
+            -t150,
+        );
+        let t152 = self.product_xy * t149;
+        let t153 = self.product_xz * t149;
+        let t154 = T::fused(
+            k(5e-6),
+            t146,
+            T::fused(t39, t153, T::fused(t32, t151, t25 * t152)),
+        );
+        let t155 = t154 + T::fused(t49, t139, t53 * t145)
+            + T::fused(t18, t124, k(1e-6) * t119);
+        let t156 = T::fused(
+            row14,
+            T::fused(-t131, t52, t140 * t48),
+            T::fused(row13, T::fused(-t135, t52, t141 * t48), row10),
+        );
+        let t157 = row0 + row5;
+        let t158 = t157 - T::fused(-t121, t49, t123 * t53) + t156;
+        let t159 = k(0.08) * t158;
+        let t160 = T::fused(
+            k(5e-6),
+            t147,
+            -T::fused(t40, t153, -T::fused(t33, t151, t27 * t152)),
+        );
+        let t161 = t160 + T::fused(t49, t159, t58 * t145)
+            + T::fused(t15, t124, k(1e-6) * t121);
+        let t162 = T::fused(
+            t2,
+            t155 + T::fused(t4, t109, k(1e-6) * t105),
+            t5 * (t161 - T::fused(-t6, t109, k(1e-6) * t107)),
+        );
+        let t163 = T::fused(
+            k(5e-6),
+            t148,
+            -T::fused(t41, t153, -T::fused(-t36, t151, t30 * t152)),
+        );
+        let t164 = t163 + T::fused(-t53, t159, t58 * t139)
+            + T::fused(t21, t124, k(1e-6) * t123);
+        let t165 = T::fused(t36, t163, -T::fused(t32, t154, t33 * t160))
+            - T::fused(t145, t71, -T::fused(-t159, t69, t139 * t70));
+        let t166 = T::fused(
+            t165,
+            t76,
+            T::fused(t9, t164 - T::fused(t12, t109, k(1e-6) * t108), t162),
+        );
+        let t167 = T::fused(
+            t165,
+            t93,
+            T::fused(t47, t164, T::fused(-t56, t155, t51 * t161)),
+        );
+        let t168 = T::fused(t167, t97, -t166)
+            / T::fused(t94, t97, -T::fused(t73, t76, -t62));
+        let t169 = t2 * t168;
+        let t170 = t105 + t169;
+        let t171 = t5 * t168;
+        let t172 = t107 - t171;
+        let t173 = t9 * t168;
+        let t174 = t108 - t173;
+        let t175 = T::fused(-t167, t96, t97 * t168);
+        let t176 = t56 * t175;
+        let t177 = t176 + (t119 + t169);
+        let t178 = t51 * t175;
+        let t179 = t178 - (t121 + t171);
+        let t180 = t47 * t175;
+        let t181 = t180 - (t123 + t173);
+        let t182 = T::fused(t93, t175, -T::fused(-t165, t75, t76 * t168));
+        let t183 = T::fused(t32, t182, t176 + (t146 + t169));
+        let t184 = T::fused(t33, t182, -(t178 - (t147 + t171)));
+        let t185 = T::fused(t36, t182, t180 - (t148 + t173));
         *out = [
             row0,
             row1,
             row2,
-            t8,
-            t186,
-            -t184,
-            t187,
-            t188,
-            t189,
-            -t190,
-            -t191,
-            t193,
-            t194 - T::fused(t66, t198, T::fused(-t15, t200, t60 * t197)),
-            t195 + T::fused(t73, t198, T::fused(t34, t200, t71 * t197)),
-            t196 + T::fused(t79, t198, T::fused(-t45, t200, t77 * t197)),
-            -t200,
-            -t197,
-            t198,
+            T::fused(t12, t174, -T::fused(-t4, t170, t6 * t172)),
+            T::fused(t9, t174, T::fused(-t2, t170, t5 * t172)),
+            -T::fused(t98, t174, T::fused(t99, t170, t106 * t172)),
+            t157,
+            t137,
+            t143,
+            T::fused(t46, t181, -T::fused(-t55, t177, t50 * t179)),
+            T::fused(t21, t181, T::fused(-t18, t177, t15 * t179)),
+            -T::fused(t47, t181, T::fused(t56, t177, t51 * t179)),
+            T::fused(t69, t182, T::fused(t86, t175, T::fused(-t54, t168, t158))),
+            -T::fused(t70, t182, T::fused(t87, t175, -T::fused(t59, t168, t138))),
+            T::fused(t71, t182, -T::fused(t88, t175, -T::fused(t60, t168, t144))),
+            T::fused(t36, t185, T::fused(t32, t183, t33 * t184)),
+            T::fused(t30, t185, -T::fused(t25, t183, t27 * t184)),
+            T::fused(-t41, t185, T::fused(-t39, t183, t40 * t184)),
         ];
     }
 }

@@ -2945,17 +2945,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t3 = u0 * t2;
         let t4 = self.rotor_offset * self.rotor_mass;
         let t5 = self.rotor_offset * t4;
-        let t6 = self.ring_axial_inertia - (self.ring_diametral_inertia - t5);
-        let t7 = T::fused(-k(200000.0), t6 * t3, u2) * t1
-            / T::fused(k(5e-6) + t6, t0 * t0, k(2.0) * self.ring_diametral_inertia);
+        let t6 = self.ring_diametral_inertia - (self.ring_axial_inertia + t5);
+        let t7 = T::fused(k(200000.0), t6 * t3, u2) * t1
+            / T::fused(k(5e-6) - t6, t0 * t0, k(2.0) * self.ring_diametral_inertia);
         let t8 = T::fused(
             -u0,
-            T::fused(k(5e-6) - t6, t3, k(1e-5) * u2),
+            T::fused(k(5e-6) + t6, t3, k(1e-5) * u2),
             self.gravity * t4,
         );
         *out = [
             -t7,
-            -(t0 * t8 / (t5 + (self.ring_diametral_inertia + k(5e-6)))),
+            -(t0 * t8 / (self.ring_diametral_inertia + k(5e-6) + t5)),
             T::fused(-k(100000.0), u0 * t1, t2 * t7),
         ];
     }
@@ -3198,18 +3198,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t6 = outer_ring_wy * t5;
         let t7 = self.rotor_offset * self.rotor_mass;
         let t8 = self.rotor_offset * t7;
-        let t9 = self.ring_axial_inertia - (self.ring_diametral_inertia - t8);
+        let t9 = self.ring_diametral_inertia - (self.ring_axial_inertia + t8);
         let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(-k(200000.0), t9 * t6, t10) * t3
-            / T::fused(k(5e-6) + t9, t2 * t2, k(2.0) * self.ring_diametral_inertia);
+        let t11 = T::fused(k(200000.0), t9 * t6, t10) * t3
+            / T::fused(k(5e-6) - t9, t2 * t2, k(2.0) * self.ring_diametral_inertia);
         let t12 = T::fused(
             outer_ring_wy,
-            T::fused(k(1e-5), t10, (k(5e-6) - t9) * t6),
+            T::fused(k(1e-5), t10, (k(5e-6) + t9) * t6),
             self.gravity * t7,
         );
         *out = [
             -t11,
-            -(t2 * t12 / (t8 + (self.ring_diametral_inertia + k(5e-6)))),
+            -(t2 * t12 / (self.ring_diametral_inertia + k(5e-6) + t8)),
             T::fused(-t5, t11, k(100000.0) * (outer_ring_wy * t3)),
         ];
     }
@@ -3269,20 +3269,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t8 = outer_ring_wy * t7;
         let t9 = self.rotor_offset * self.rotor_mass;
         let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_axial_inertia - (self.ring_diametral_inertia - t10);
+        let t11 = self.ring_diametral_inertia - (self.ring_axial_inertia + t10);
         let t12 = inner_ring_wx - rotor_wx;
-        let t13 = T::fused(-k(200000.0), t11 * t8, t12) * t5
-            / T::fused(k(5e-6) + t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
+        let t13 = T::fused(k(200000.0), t11 * t8, t12) * t5
+            / T::fused(k(5e-6) - t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
         let t14 = outer_ring_wx * outer_ring_wy;
         let t15 = t7 * t13;
         let t16 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t15));
         let t17 = T::fused(inner_ring_wx, t4, -T::fused(t3, t13, t0 * t7));
         let t18 = T::fused(
             outer_ring_wy,
-            T::fused(k(1e-5), t12, (k(5e-6) - t11) * t8),
+            T::fused(k(1e-5), t12, (k(5e-6) + t11) * t8),
             self.gravity * t9,
         );
-        let t19 = t14 - t3 * t18 / (t10 + (self.ring_diametral_inertia + k(5e-6)));
+        let t19 = t14 - t3 * t18 / (self.ring_diametral_inertia + k(5e-6) + t10);
         let t20 = self.rotor_offset * t19;
         let t21 = T::fused(
             inner_ring_e2,
@@ -3570,20 +3570,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t8 = outer_ring_wy * t7;
         let t9 = self.rotor_offset * self.rotor_mass;
         let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_axial_inertia - (self.ring_diametral_inertia - t10);
+        let t11 = self.ring_diametral_inertia - (self.ring_axial_inertia + t10);
         let t12 = inner_ring_wx - rotor_wx;
-        let t13 = T::fused(-k(200000.0), t11 * t8, t12) * t5
-            / T::fused(k(5e-6) + t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
+        let t13 = T::fused(k(200000.0), t11 * t8, t12) * t5
+            / T::fused(k(5e-6) - t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
         let t14 = outer_ring_wx * outer_ring_wy;
         let t15 = t7 * t13;
         let t16 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t15));
         let t17 = T::fused(inner_ring_wx, t4, -T::fused(t3, t13, t0 * t7));
         let t18 = T::fused(
             outer_ring_wy,
-            T::fused(k(1e-5), t12, (k(5e-6) - t11) * t8),
+            T::fused(k(1e-5), t12, (k(5e-6) + t11) * t8),
             self.gravity * t9,
         );
-        let t19 = t14 - t3 * t18 / (t10 + (self.ring_diametral_inertia + k(5e-6)));
+        let t19 = t14 - t3 * t18 / (self.ring_diametral_inertia + k(5e-6) + t10);
         let t20 = self.rotor_offset * t19;
         let t21 = T::fused(
             inner_ring_e2,
@@ -3762,32 +3762,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeParameters<T> {
         let t2 = u0 * t0;
         let t3 = self.rotor_offset * self.rotor_mass;
         let t4 = self.rotor_offset * t3;
-        let t5 = self.ring_axial_inertia - (self.ring_diametral_inertia - t4);
-        let t6 = T::fused(-k(200000.0), t5 * t2, u2);
+        let t5 = self.ring_diametral_inertia - (self.ring_axial_inertia + t4);
+        let t6 = T::fused(k(200000.0), t5 * t2, u2);
         let t7 = x1.cos();
         let t8 = u0 * t7;
         let t9 = u1 * t7;
         let t10 = k(1e-5) * t9;
-        let t11 = k(5e-6) + t5;
+        let t11 = k(5e-6) - t5;
         let t12 = k(1.0) / T::fused(t11, t7 * t7, k(2.0) * self.ring_diametral_inertia);
         let t13 = t6 * t10;
         let t14 = T::fused(
-            -t12,
-            T::fused(t6, t1, t10 * (k(200000.0) * (t5 * t8))),
+            t12,
+            T::fused(-t6, t1, t10 * (k(200000.0) * (t5 * t8))),
             t13 * (t12 * t12 * (t11 * (k(2.0) * (t0 * t7)))),
         );
         let t15 = t12 * (t10 * (k(200000.0) * (t0 * t5)));
         let t16 = k(1e-5) * t7;
         let t17 = t12 * (t6 * t16);
         let t18 = t12 * t10;
-        let t19 = k(5e-6) - t5;
+        let t19 = k(5e-6) + t5;
         let t20 = T::fused(t19, t2, k(1e-5) * u2);
         let t21 = T::fused(
             t7,
             u0 * (t19 * t8),
             t0 * T::fused(-u0, t20, self.gravity * t3),
         );
-        let t22 = k(1.0) / (t4 + (self.ring_diametral_inertia + k(5e-6)));
+        let t22 = k(1.0) / (self.ring_diametral_inertia + k(5e-6) + t4);
         let t23 = T::fused(k(100000.0), u0 * t1, T::fused(t0, t14, t7 * (t12 * t13)));
         *dfdx = [
             k(0.0),
@@ -3811,7 +3811,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeParameters<T> {
             k(0.0),
             -t14,
             k(0.0),
-            t15,
+            -t15,
             -t17,
             -t18,
             k(0.0),
@@ -3823,7 +3823,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeParameters<T> {
             k(0.0),
             t23,
             k(0.0),
-            -T::fused(t0, t15, t9),
+            T::fused(t0, t15, -t9),
             T::fused(-k(100000.0), u0 * t16, t0 * t17),
             t0 * t18,
         ];

@@ -12,9 +12,11 @@
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 485 operations by relative Euler parameters; 486 operations by rotations of the bodies
+//! * project: 403 operations by relative Euler parameters; 406 operations by rotations of the bodies
 //! * joint_accelerations: 68 operations by normal form; 84 operations by recursion
 //! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 1 more compared
 //! * corrected_accelerations: 486 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * joint_jacobian: 1406 operations by derivatives of u̇, from its roots; 1406 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -29,6 +31,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 288 | 5 | 485 | 7 of 18 | 514002 | 489 |
 //! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 | 3929 | 312 |
+//! | project | (δr, δπ') that changes the rows as given | 151 | 247 | 5 | 403 | 1 of 18 | 418426 | 404 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 | 1141 | 332 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 56 | 65 | 0 | 121 | 0 of 9 | 227 | 121 |
@@ -43,13 +46,14 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 | 497223 | 490 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 | 771 | 142 |
 //! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 | 4.1e6 | 590 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 528 | 876 | 2 | 1406 | 29 of 56 | 8.8e6 | 1406 |
 //!
 //! # Proof
 //!
 //! Equal to the textbook's at a random point modulo a prime of 521 bits:
 //! * phi: Φ of eqs. (7) to (12)
 //! * phi_q, phi_pi, nu, gamma, velocity_residual: the derivatives of Φ by dual numbers
-//! * applied_force, accelerations, multipliers: eq. (17)
+//! * applied_force, accelerations, multipliers, project: eq. (17)
 //! * derivative: eqs. (14) and (16)
 //! * energy, read_joints: their definitions
 //! * chart_vectors, newton_step: Newton's step for Φ = 0
@@ -60,6 +64,7 @@
 //! * joint_accelerations_at, corrected_accelerations: eq. (17) on the constraints
 //! * corrected_derivative: eqs. (14) and (16) on the constraints
 //! * corrected_multipliers, corrected_solution: eq. (17) on the constraints
+//! * joint_jacobian: the derivatives of `joint_derivative` by dual numbers
 //!
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
@@ -3049,6 +3054,286 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRollingBase<T> {
         ];
     }
 }
+impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRollingBase<T> {
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 403 operations (151 ±, 247 ×, 5 ÷) and 3 functions.
+    fn project(
+        &self,
+        t: T,
+        y: &Self::State,
+        rows: &Self::Rows,
+        out: &mut Self::Velocities,
+    ) {
+        let k = T::constant;
+        let outer_ring_e0 = y[3];
+        let outer_ring_e1 = y[4];
+        let outer_ring_e2 = y[5];
+        let outer_ring_e3 = y[6];
+        let inner_ring_e0 = y[10];
+        let inner_ring_e1 = y[11];
+        let inner_ring_e2 = y[12];
+        let inner_ring_e3 = y[13];
+        let rotor_e0 = y[17];
+        let rotor_e1 = y[18];
+        let rotor_e2 = y[19];
+        let rotor_e3 = y[20];
+        let row0 = rows[0];
+        let row1 = rows[1];
+        let row2 = rows[2];
+        let row3 = rows[3];
+        let row4 = rows[4];
+        let row5 = rows[5];
+        let row6 = rows[6];
+        let row7 = rows[7];
+        let row8 = rows[8];
+        let row9 = rows[9];
+        let row10 = rows[10];
+        let row11 = rows[11];
+        let row12 = rows[12];
+        let row13 = rows[13];
+        let row14 = rows[14];
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(0.5) * (k(125.66370614359172) * t).sin();
+        let t2 = t1.cos();
+        let t3 = t1.sin();
+        let t4 = T::fused(
+            t2,
+            k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0)),
+            t3
+                * (k(2.0)
+                    * T::fused(
+                        -outer_ring_e0,
+                        outer_ring_e1,
+                        outer_ring_e2 * outer_ring_e3,
+                    )),
+        );
+        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+        let t6 = outer_ring_e0 * outer_ring_e2;
+        let t7 = outer_ring_e1 * outer_ring_e3;
+        let t8 = T::fused(
+            -t2,
+            k(2.0) * (t7 - t6),
+            t3
+                * (k(2.0)
+                    * T::fused(
+                        outer_ring_e0,
+                        outer_ring_e3,
+                        outer_ring_e1 * outer_ring_e2,
+                    )),
+        );
+        let t9 = k(2.0) * (t7 + t6);
+        let t10 = k(1.0) / T::fused(t5, t4, t9 * t8);
+        let t11 = T::fused(-(t5 * t10), row3, t8 * t10 * row4);
+        let t12 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t13 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t12;
+        let t15 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t16 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t17 = t16 * t15;
+        let t18 = t17 - t14;
+        let t19 = k(2.0) * t18;
+        let t20 = t17 + t14;
+        let t21 = k(2.0) * t20;
+        let t22 = t13 * t13;
+        let t23 = k(0.5) - T::fused(t15, t15, t22);
+        let t24 = k(2.0) * t23;
+        let t25 = k(0.5) - T::fused(t16, t16, t22);
+        let t26 = k(2.0) * t25;
+        let t27 = k(1.0) / T::fused(-t21, t19, t26 * t24);
+        let t28 = T::fused(row13, t19 * t27, row14 * (t26 * t27));
+        let t29 = k(5e-6) * t28;
+        let t30 = T::fused(t13, t15, t12 * t16);
+        let t31 = k(2.0) * t30;
+        let t32 = T::fused(row13, t24 * t27, row14 * (t21 * t27));
+        let t33 = k(5e-6) * t32;
+        let t34 = T::fused(-t13, t16, t12 * t15);
+        let t35 = k(2.0) * t34;
+        let t36 = k(0.08) * row10;
+        let t37 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
+        let t38 = k(0.00025) * t37;
+        let t39 = k(0.08) * row11;
+        let t40 = inner_ring_e0 * inner_ring_e0;
+        let t41 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t40);
+        let t42 = k(0.00025) * t41;
+        let t43 = k(0.08) * row12;
+        let t44 = inner_ring_e0 * inner_ring_e1;
+        let t45 = inner_ring_e2 * inner_ring_e3;
+        let t46 = t45 + t44;
+        let t47 = k(0.00025) * t46;
+        let t48 = T::fused(t47, t43, -T::fused(-t38, t36, t42 * t39))
+            + T::fused(t19, t29, t24 * t33);
+        let t49 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t19, k(1e-5) * t18, t24 * (k(1e-5) * t23)));
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * t48;
+        let t52 = k(1e-5) * t30;
+        let t53 = k(1e-5) * t34;
+        let t54 = T::fused(-t19, t52, t24 * t53);
+        let t55 = k(2e-5) * t37;
+        let t56 = t50 * t55;
+        let t57 = t54 * t56;
+        let t58 = k(2e-5) * t41;
+        let t59 = t50 * t58;
+        let t60 = t54 * t59;
+        let t61 = k(2e-5) * t46;
+        let t62 = t50 * t61;
+        let t63 = t54 * t62;
+        let t64 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t65 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t66 = t65 * t64;
+        let t67 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t68 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t69 = t68 * t67;
+        let t70 = k(2.0) * (t69 - t66);
+        let t71 = k(2.0) * (t69 + t66);
+        let t72 = t65 * t65;
+        let t73 = k(2.0) * (k(0.5) - T::fused(t67, t67, t72));
+        let t74 = k(2.0) * (k(0.5) - T::fused(t68, t68, t72));
+        let t75 = k(1.0) / T::fused(-t71, t70, t74 * t73);
+        let t76 = T::fused(row8, t70 * t75, row9 * (t74 * t75));
+        let t77 = t50 * t54;
+        let t78 = T::fused(t54, t77, -(k(1e-6) + T::fused(t31, t52, t35 * t53)));
+        let t79 = T::fused(row8, t73 * t75, row9 * (t71 * t75));
+        let t80 = k(1e-5) * t25;
+        let t81 = k(1e-5) * t20;
+        let t82 = T::fused(t19, t80, t24 * t81);
+        let t83 = T::fused(t82, t77, -T::fused(-t26, t52, t21 * t53));
+        let t84 = T::fused(-t78, t76, t83 * t79)
+            + T::fused(row7, t63, -T::fused(-row5, t57, row6 * t60));
+        let t85 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
+        let t86 = k(0.00025) * t85;
+        let t87 = t45 - t44;
+        let t88 = k(0.00025) * t87;
+        let t89 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t40);
+        let t90 = k(0.00025) * t89;
+        let t91 = T::fused(t90, t43, -T::fused(t86, t36, t88 * t39))
+            - T::fused(t26, t29, t21 * t33);
+        let t92 = T::fused(-t82, t56, k(2e-5) * t85);
+        let t93 = T::fused(t82, t59, k(2e-5) * t87);
+        let t94 = T::fused(t82, t62, k(2e-5) * t89);
+        let t95 = T::fused(
+            t82,
+            t50 * t82,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t26, t80, t21 * t81))),
+        );
+        let t96 = T::fused(-t83, t76, t95 * t79)
+            + T::fused(row7, t94, -T::fused(row5, t92, row6 * t93));
+        let t97 = T::fused(
+            -t70,
+            t84 + T::fused(t54, t51, -T::fused(-t31, t29, t35 * t33)),
+            t73 * (t96 + T::fused(t82, t51, t91)),
+        );
+        let t98 = T::fused(
+            row0,
+            T::fused(t70, t57, t73 * t92),
+            row1 * T::fused(-t70, t60, t73 * t93),
+        );
+        let t99 = T::fused(
+            -t70,
+            T::fused(-t74, t78, t71 * t83),
+            t73 * T::fused(-t74, t83, t71 * t95),
+        );
+        let t100 = T::fused(t9 * t10, row3, t4 * t10 * row4);
+        let t101 = T::fused(-t70, t78, t73 * t83);
+        let t102 = k(2.0) * T::fused(t65, t67, t68 * t64);
+        let t103 = T::fused(-t70, t83, t73 * t95);
+        let t104 = k(2.0) * T::fused(-t65, t68, t67 * t64);
+        let t105 = T::fused(t99, t11, T::fused(t102, t101, t104 * t103) * t100)
+            - T::fused(row2, T::fused(-t70, t63, t73 * t94), -t98);
+        let t106 = (t105 - t97) / (k(1e-6) - T::fused(-t70, t101, t73 * t103));
+        let t107 = row0 + row5;
+        let t108 = row1 + row6;
+        let t109 = row2 + row7;
+        let t110 = t76 + T::fused(t102, t100, -T::fused(t74, t11, t70 * t106));
+        let t111 = t79 - T::fused(t104, t100, T::fused(t71, t11, t73 * t106));
+        let t112 = T::fused(t109, t61, -T::fused(-t107, t55, t108 * t58))
+            + T::fused(-t54, t110, t82 * t111);
+        let t113 = t50 * (t48 + t112);
+        *out = [
+            row0,
+            row1,
+            row2,
+            t11,
+            -t106,
+            t100,
+            t107,
+            t108,
+            t109,
+            t110,
+            -t111,
+            -t113,
+            row10 + (t107 - T::fused(-t86, t111, t38 * t113)),
+            row11 + (t108 + T::fused(t88, t111, t42 * t113)),
+            row12 + (t109 - T::fused(t90, t111, t47 * t113)),
+            k(0.0),
+            t28 - T::fused(t19, t113, -T::fused(t31, t110, t26 * t111)),
+            T::fused(t24, t113, -T::fused(-t35, t110, t21 * t111)) - t32,
+        ];
+    }
+}
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
     type Joints = [T; 7];
     type Rates = [T; 3];
@@ -4485,6 +4770,1201 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeRollingBase<T> {
             t175,
         ];
     }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRollingBase<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 49]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1406 operations (528 ±, 876 ×, 2 ÷) and 18 functions.
+    fn joint_jacobian(
+        &self,
+        t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let (
+            t0,
+            t5,
+            t7,
+            t9,
+            t12,
+            t13,
+            t18,
+            t19,
+            t20,
+            t21,
+            t22,
+            t28,
+            t29,
+            t38,
+            t39,
+            t40,
+            t41,
+            t42,
+            t47,
+            t48,
+            t49,
+            t52,
+            t54,
+            t55,
+            t58,
+            t59,
+            t60,
+            t63,
+            t66,
+            t67,
+            t73,
+            t74,
+            t75,
+            t77,
+            t82,
+            t83,
+            t84,
+            t85,
+            t86,
+            t88,
+            t90,
+            t91,
+            t92,
+            t93,
+            t95,
+            t96,
+            t97,
+            t99,
+            t100,
+            t101,
+            t103,
+            t104,
+            t105,
+            t106,
+            t107,
+            t108,
+            t109,
+            t110,
+            t113,
+            t114,
+            t115,
+            t116,
+            t117,
+            t118,
+            t120,
+            t121,
+            t122,
+            t123,
+            t125,
+            t126,
+            t128,
+            t130,
+            t133,
+            t134,
+            t135,
+            t136,
+            t137,
+            t138,
+            t139,
+            t141,
+            t142,
+            t143,
+            t144,
+            t146,
+            t147,
+            t149,
+            t151,
+            t154,
+            t155,
+            t157,
+            t158,
+            t159,
+            t162,
+            t163,
+            t164,
+            t165,
+            t166,
+            t167,
+            t169,
+            t170,
+            t171,
+            t172,
+            t173,
+            t174,
+            t175,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
+            t181,
+            t184,
+            t185,
+            t186,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = x1.cos();
+            let t1 = t0 * t0;
+            let t2 = k(1.0) / T::fused(k(6.00125e-6), t1, k(2e-6));
+            let t3 = k(0.047383970729630014) * t2;
+            let t4 = t0 * t3;
+            let t5 = k(0.00211041832206494) * t4;
+            let t6 = k(125.66370614359172) * t;
+            let t7 = t6.sin();
+            let t8 = k(0.5) * t7;
+            let t9 = t8.sin();
+            let t10 = k(4.2261126899350424e-5) * t4;
+            let t11 = u1 * t10;
+            let t12 = x0.sin();
+            let t13 = t6.cos();
+            let t14 = t13 * t12;
+            let t15 = t2 * t14;
+            let t16 = t0 * t15;
+            let t17 = T::fused(-k(62.83185307179586), t11, k(0.01578643223954243) * t16);
+            let t18 = T::fused(t0, t17, k(0.007895683520871487) * t15);
+            let t19 = x1.sin();
+            let t20 = t19 * t4;
+            let t21 = x0.cos();
+            let t22 = t13 * t21;
+            let t23 = t0 * t22;
+            let t24 = T::fused(
+                k(0.01578643223954243),
+                t23,
+                k(0.0006283185307179586) * u2,
+            );
+            let t25 = u0 * t19;
+            let t26 = T::fused(k(0.0006283185307179586), t25, t24);
+            let t27 = T::fused(t0, t26, k(0.007895683520871487) * t22);
+            let t28 = t2 * t27;
+            let t29 = T::fused(
+                -t12,
+                T::fused(t9, t5, T::fused(t13, t18, t7 * t20)),
+                t21 * (t13 * t28),
+            );
+            let t30 = T::fused(
+                -k(62.83185307179586),
+                T::fused(k(0.07947812389108382), u2, -t23),
+                t25,
+            );
+            let t31 = t7 * t21;
+            let t32 = T::fused(
+                -k(0.00211041832206494),
+                T::fused(-t9, t21, k(0.020025) * (u1 * t30)),
+                t19 * t31,
+            );
+            let t33 = t2 * t2;
+            let t34 = T::fused(k(0.047383970729630014), t0 * t32, t27 * t14);
+            let t35 = T::fused(
+                -t32,
+                t3,
+                T::fused(-t26, t15, k(2.0) * (t0 * (k(6.00125e-6) * (t34 * t33)))),
+            );
+            let t36 = k(0.0006283185307179586) * t16;
+            let t37 = t36 - t11;
+            let t38 = T::fused(
+                t19,
+                T::fused(-t22, t17, t35),
+                t0 * T::fused(u0, t37, t31 * t4),
+            );
+            let t39 = t19 * t37;
+            let t40 = t30 * t10;
+            let t41 = T::fused(k(4.9937578027465666), t11, t36);
+            let t42 = T::fused(t9, t19, k(473.8397072963001) * t7);
+            let t43 = k(166631.95167673402) * t22;
+            let t44 = t19 * t43;
+            let t45 = k(0.01578643223954243) * t44;
+            let t46 = k(1.2503907471084714) - t1;
+            let t47 = T::fused(k(0.0005024977449416874), u0 * t46, t19 * t24);
+            let t48 = T::fused(t0, t45, k(166631.95167673402) * t47);
+            let t49 = T::fused(t21, k(16.6631951676734) * t42, t12 * (t13 * t48));
+            let t50 = k(0.6663195167673401) * t0;
+            let t51 = u0 * t50;
+            let t52 = k(16.6631951676734) * t12;
+            let t53 = T::fused(k(2.500781494216943), u2, t25);
+            let t54 = t8.cos();
+            let t55 = T::fused(-k(0.0399875), u0 * t53, t54);
+            let t56 = k(83.73217995279107) * t22;
+            let t57 = t0 * (u0 * t56);
+            let t58 = T::fused(
+                t0,
+                T::fused(-u0, t51, T::fused(-t9, t52, t24 * t43)),
+                t19 * T::fused(-k(16.6631951676734), t55, t57 - T::fused(t22, t45, -t57)),
+            );
+            let t59 = T::fused(-t19, t51, T::fused(-t53, t50, t46 * t56));
+            let t60 = T::fused(
+                -k(2.500781494216943),
+                t51,
+                k(0.0006283185307179586) * t44,
+            );
+            let t61 = u0 * t0;
+            let t62 = t19 * t2;
+            let t63 = T::fused(k(62.83185307179586), t61, t27 * t62);
+            let t64 = k(0.047383970729630014) * t62;
+            let t65 = t0 * t64;
+            let t66 = T::fused(k(7895.6835208714865), t0, t19 * t65);
+            let t67 = u1 * t19;
+            let t68 = k(4.2261126899350424e-5) * t65;
+            let t69 = u1 * t68;
+            let t70 = t14 * t62;
+            let t71 = t0 * t70;
+            let t72 = T::fused(-k(62.83185307179586), t69, k(0.01578643223954243) * t71);
+            let t73 = T::fused(
+                k(62.83185307179586),
+                t67,
+                T::fused(t0, t72, k(0.007895683520871487) * t70),
+            );
+            let t74 = k(0.00211041832206494) * t65;
+            let t75 = T::fused(
+                -t21,
+                t13 * t63,
+                t12 * T::fused(t7, t66, T::fused(t13, t73, t9 * t74)),
+            );
+            let t76 = T::fused(-k(62.83185307179586), t14, u1);
+            let t77 = T::fused(-k(0.00012665147955292222), u0 * t76, t31);
+            let t78 = T::fused(
+                -t26,
+                t70,
+                k(2.0) * (t0 * (k(6.00125e-6) * (t33 * (t19 * t34)))),
+            );
+            let t79 = k(62.83185307179586) * t22;
+            let t80 = k(0.0006283185307179586) * t71;
+            let t81 = t80 - t69;
+            let t82 = t2 * t34;
+            let t83 = T::fused(
+                t19,
+                T::fused(
+                    -k(7895.6835208714865),
+                    t77,
+                    T::fused(-t22, t72, T::fused(-t32, t64, t78)),
+                ),
+                t0 * T::fused(u1, t79, T::fused(u0, t81, T::fused(t31, t65, t82))),
+            );
+            let t84 = T::fused(-t0, t76, t19 * t81);
+            let t85 = t61 + T::fused(-t19, t79, t30 * t68);
+            let t86 = T::fused(k(4.9937578027465666), t69, t80);
+            let t87 = k(0.5) * x0;
+            let t88 = t87.cos();
+            let t89 = k(0.25) * t7;
+            let t90 = t89.sin();
+            let t91 = t90 * t88;
+            let t92 = t89.cos();
+            let t93 = t92 * t88;
+            let t94 = t93 * t91;
+            let t95 = t87.sin();
+            let t96 = t90 * t95;
+            let t97 = t92 * t95;
+            let t98 = t97 * t96;
+            let t99 = k(2.0) * (t98 + t94);
+            let t100 = k(62.83185307179586) * t13;
+            let t101 = t100 * t9;
+            let t102 = t93 * t93;
+            let t103 = k(2.0) * (k(0.5) - T::fused(t97, t97, t102));
+            let t104 = t100 * t54;
+            let t105 = T::fused(-t101, t99, t104 * t103);
+            let t106 = k(2.0) * (t98 - t94);
+            let t107 = k(2.0) * (k(0.5) - T::fused(t96, t96, t102));
+            let t108 = T::fused(t9, t106, t54 * t107);
+            let t109 = k(2.0) * (k(0.5) - T::fused(t91, t91, t102));
+            let t110 = k(2.0) * T::fused(t93, t96, t91 * t97);
+            let t111 = t93 * t97;
+            let t112 = t91 * t96;
+            let t113 = k(2.0) * (t112 - t111);
+            let t114 = T::fused(-t9, t110, t54 * t113);
+            let t115 = k(2.0) * (t112 + t111);
+            let t116 = k(1.0) / T::fused(-t109, t108, t115 * t114);
+            let t117 = t109 * t116;
+            let t118 = t117 * t105;
+            let t119 = k(0.5) * x1;
+            let t120 = t119.sin();
+            let t121 = t119.cos();
+            let t122 = T::fused(t97, t120, t91 * t121);
+            let t123 = T::fused(-t96, t120, t93 * t121);
+            let t124 = t123 * t123;
+            let t125 = k(2.0) * (k(0.5) - T::fused(t122, t122, t124));
+            let t126 = T::fused(t93, t120, t96 * t121);
+            let t127 = t123 * t126;
+            let t128 = T::fused(-t91, t120, t97 * t121);
+            let t129 = t122 * t128;
+            let t130 = k(2.0) * (t129 + t127);
+            let t131 = t123 * t128;
+            let t132 = t122 * t126;
+            let t133 = k(2.0) * (t132 - t131);
+            let t134 = T::fused(t113, t133, T::fused(t109, t125, t110 * t130));
+            let t135 = t115 * t116;
+            let t136 = t135 * t105;
+            let t137 = T::fused(t107, t133, -T::fused(-t115, t125, t106 * t130));
+            let t138 = T::fused(t134, t118, t137 * t136);
+            let t139 = k(1e-6) * t138;
+            let t140 = k(0.5) * x2;
+            let t141 = t140.sin();
+            let t142 = t140.cos();
+            let t143 = T::fused(t123, t141, t122 * t142);
+            let t144 = T::fused(-t122, t141, t123 * t142);
+            let t145 = t144 * t144;
+            let t146 = k(2.0) * (k(0.5) - T::fused(t143, t143, t145));
+            let t147 = T::fused(-t128, t141, t126 * t142);
+            let t148 = t144 * t147;
+            let t149 = T::fused(t126, t141, t128 * t142);
+            let t150 = t143 * t149;
+            let t151 = k(2.0) * (t150 + t148);
+            let t152 = t144 * t149;
+            let t153 = t143 * t147;
+            let t154 = k(2.0) * (t153 - t152);
+            let t155 = T::fused(t133, t154, T::fused(t125, t146, t130 * t151));
+            let t156 = t129 - t127;
+            let t157 = k(2.0) * t156;
+            let t158 = k(0.5) - T::fused(t128, t128, t124);
+            let t159 = k(2.0) * t158;
+            let t160 = t123 * t122;
+            let t161 = t128 * t126;
+            let t162 = t161 + t160;
+            let t163 = k(2.0) * t162;
+            let t164 = T::fused(t113, t163, -T::fused(t109, t157, t110 * t159));
+            let t165 = T::fused(t107, t163, T::fused(-t115, t157, t106 * t159));
+            let t166 = T::fused(t164, t118, t165 * t136);
+            let t167 = T::fused(t163, t154, -T::fused(t157, t146, t159 * t151));
+            let t168 = t132 + t131;
+            let t169 = k(2.0) * t168;
+            let t170 = t161 - t160;
+            let t171 = k(2.0) * t170;
+            let t172 = k(0.5) - T::fused(t126, t126, t124);
+            let t173 = k(2.0) * t172;
+            let t174 = T::fused(t113, t173, -T::fused(-t109, t169, t110 * t171));
+            let t175 = T::fused(t107, t173, T::fused(t115, t169, t106 * t171));
+            let t176 = T::fused(t174, t118, t175 * t136);
+            let t177 = T::fused(t173, t154, -T::fused(-t169, t146, t171 * t151));
+            let t178 = k(1e-5) * T::fused(t155, t138, T::fused(t167, t166, t177 * t176));
+            let t179 = t178 + t139;
+            let t180 = k(2.0) * (t150 - t148);
+            let t181 = k(2.0) * (k(0.5) - T::fused(t149, t149, t145));
+            let t182 = t144 * t143;
+            let t183 = t149 * t147;
+            let t184 = k(2.0) * (t183 + t182);
+            let t185 = T::fused(t133, t184, -T::fused(t125, t180, t130 * t181));
+            let t186 = T::fused(t163, t184, T::fused(t157, t180, t159 * t181));
+            let t187 = T::fused(t173, t184, T::fused(-t169, t180, t171 * t181));
+            let t188 = k(5e-6) * T::fused(t185, t138, T::fused(t186, t166, t187 * t176));
+            let t189 = x2.cos();
+            let t190 = k(2.0) * (t153 + t152);
+            let t191 = k(2.0) * (t183 - t182);
+            let t192 = k(2.0) * (k(0.5) - T::fused(t147, t147, t145));
+            let t193 = T::fused(t133, t192, -T::fused(-t125, t190, t130 * t191));
+            let t194 = T::fused(t163, t192, T::fused(-t157, t190, t159 * t191));
+            let t195 = T::fused(t173, t192, T::fused(t169, t190, t171 * t191));
+            let t196 = k(5e-6) * T::fused(t193, t138, T::fused(t194, t166, t195 * t176));
+            let t197 = x2.sin();
+            let t198 = k(0.00025) * t168;
+            let t199 = k(0.00025) * t156;
+            (
+                t0,
+                t5,
+                t7,
+                t9,
+                t12,
+                t13,
+                t18,
+                t19,
+                t20,
+                t21,
+                t22,
+                t28,
+                t29,
+                t38,
+                t39,
+                t40,
+                t41,
+                t42,
+                t47,
+                t48,
+                t49,
+                t52,
+                t54,
+                t55,
+                t58,
+                t59,
+                t60,
+                t63,
+                t66,
+                t67,
+                t73,
+                t74,
+                t75,
+                t77,
+                t82,
+                t83,
+                t84,
+                t85,
+                t86,
+                t88,
+                t90,
+                t91,
+                t92,
+                t93,
+                t95,
+                t96,
+                t97,
+                t99,
+                t100,
+                t101,
+                t103,
+                t104,
+                t105,
+                t106,
+                t107,
+                t108,
+                t109,
+                t110,
+                t113,
+                t114,
+                t115,
+                t116,
+                t117,
+                t118,
+                t120,
+                t121,
+                t122,
+                t123,
+                t125,
+                t126,
+                t128,
+                t130,
+                t133,
+                t134,
+                t135,
+                t136,
+                t137,
+                t138,
+                t139,
+                t141,
+                t142,
+                t143,
+                t144,
+                t146,
+                t147,
+                t149,
+                t151,
+                t154,
+                t155,
+                t157,
+                t158,
+                t159,
+                t162,
+                t163,
+                t164,
+                t165,
+                t166,
+                t167,
+                t169,
+                t170,
+                t171,
+                t172,
+                t173,
+                t174,
+                t175,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
+                t181,
+                t184,
+                t185,
+                t186,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (
+            t208,
+            t209,
+            t211,
+            t212,
+            t215,
+            t216,
+            t217,
+            t219,
+            t220,
+            t221,
+            t226,
+            t230,
+            t259,
+            t267,
+            t272,
+            t323,
+            t328,
+            t339,
+            t341,
+            t343,
+            t357,
+            t358,
+            t359,
+            t360,
+            t364,
+            t365,
+            t369,
+            t371,
+            t375,
+            t376,
+            t377,
+            t378,
+            t379,
+            t381,
+            t383,
+            t384,
+            t385,
+            t389,
+            t396,
+            t397,
+            t398,
+            t399,
+        ) = {
+            let t200 = k(0.08) * T::fused(t198, t166, t199 * t176);
+            let t201 = k(0.00025) * t170;
+            let t202 = k(0.00025) * t158;
+            let t203 = k(0.08) * T::fused(-t201, t166, t202 * t176);
+            let t204 = k(0.00025) * t172;
+            let t205 = k(0.00025) * t162;
+            let t206 = k(0.08) * T::fused(-t204, t166, t205 * t176);
+            let t207 = T::fused(
+                -k(2e-6),
+                t166,
+                T::fused(-t198, t200, T::fused(t201, t203, t204 * t206)),
+            );
+            let t208 = T::fused(-t189, t188, T::fused(-t197, t196, t207));
+            let t209 = T::fused(-t19, t179, t0 * t208);
+            let t210 = k(2.0) * t95;
+            let t211 = t88 * t210;
+            let t212 = t100 * t211;
+            let t213 = k(7895.6835208714865) * t7;
+            let t214 = T::fused(u0, t212, t213 * t21);
+            let t215 = u1 + t212;
+            let t216 = T::fused(-t95, t210, k(1.0));
+            let t217 = t100 * t216;
+            let t218 = k(2.0) * t120;
+            let t219 = t121 * t218;
+            let t220 = T::fused(-t120, t218, k(1.0));
+            let t221 = T::fused(-t219, t217, u0 * t220);
+            let t222 = t19 * t82;
+            let t223 = T::fused(-u1, t221, T::fused(t0, t214, t222));
+            let t224 = T::fused(
+                k(100000.0),
+                T::fused(
+                    k(0.07895683520871487),
+                    t0 * t77,
+                    k(0.0006283185307179586) * (t22 * t67),
+                ),
+                t222,
+            );
+            let t225 = k(1e-5) * (t224 - t223);
+            let t226 = k(2.0) * t141;
+            let t227 = t142 * t226;
+            let t228 = T::fused(-t141, t226, k(1.0));
+            let t229 = T::fused(-t227, t221, t228 * t215);
+            let t230 = T::fused(t220, t217, u0 * t219);
+            let t231 = u2 + t230;
+            let t232 = T::fused(u1, t230, T::fused(-t19, t214, t0 * t82));
+            let t233 = u0 * t217;
+            let t234 = T::fused(t213, t12, -t233);
+            let t235 = T::fused(
+                k(166631.95167673402),
+                T::fused(-k(0.0001), T::fused(-t0, t55, t12 * t42), t22 * t47),
+                t234,
+            );
+            let t236 = T::fused(
+                -t231,
+                t229,
+                T::fused(-u2, t229, T::fused(t189, t232, t197 * t235)),
+            );
+            let t237 = k(5e-6) * t236;
+            let t238 = T::fused(t228, t221, t227 * t215);
+            let t239 = T::fused(
+                t231,
+                t238,
+                T::fused(u2, t238, T::fused(-t197, t232, t189 * t235)),
+            );
+            let t240 = k(5e-6) * t239;
+            let t241 = T::fused(
+                -k(1e-6),
+                T::fused(t221, t215, t223),
+                T::fused(t240, t193, -T::fused(-t225, t155, t237 * t185)),
+            );
+            let t242 = k(0.000125) * t221;
+            let t243 = k(0.000125) * t215;
+            let t244 = T::fused(t221, t242, t215 * t243);
+            let t245 = t242 * t230;
+            let t246 = t243 * t230;
+            let t247 = T::fused(-t232, t198, t235 * t199)
+                - T::fused(t169, t246, T::fused(t125, t244, t157 * t245));
+            let t248 = k(0.08) * t247;
+            let t249 = T::fused(t232, t201, t235 * t202)
+                + T::fused(t171, t246, -T::fused(t130, t244, t159 * t245));
+            let t250 = T::fused(k(0.08), t249, k(0.8));
+            let t251 = T::fused(t232, t204, t235 * t205)
+                + T::fused(t173, t246, -T::fused(-t133, t244, t163 * t245));
+            let t252 = k(0.08) * t251;
+            let t253 = T::fused(t204, t252, T::fused(-t198, t248, t201 * t250))
+                - T::fused(t240, t194, -T::fused(-t225, t167, t237 * t186));
+            let t254 = T::fused(k(2e-6), t232, t253);
+            let t255 = T::fused(t205, t252, T::fused(t199, t248, t202 * t250))
+                + T::fused(t240, t195, -T::fused(-t225, t177, t237 * t187));
+            let t256 = T::fused(k(1e-6), T::fused(-t221, t230, t235), t255);
+            let t257 = T::fused(
+                -k(2e-6),
+                t214,
+                T::fused(t256, t174, -T::fused(-t241, t134, t254 * t164)),
+            );
+            let t258 = T::fused(
+                k(1e-6),
+                t233 + t234,
+                T::fused(t256, t175, -T::fused(-t241, t137, t254 * t165)),
+            );
+            let t259 = T::fused(t257, t117, t258 * t135);
+            let t260 = t101 * t259;
+            let t261 = t256 * t136;
+            let t262 = t254 * t136;
+            let t263 = t241 * t136;
+            let t264 = t258 * t105;
+            let t265 = t257 * t105;
+            let t266 = t116 * t116 * T::fused(t115, t264, t109 * t265);
+            let t267 = t109 * t266;
+            let t268 = T::fused(
+                t9,
+                t267,
+                -T::fused(t130, t263, T::fused(-t171, t261, t159 * t262)),
+            );
+            let t269 = k(2.0) * (t268 + t260);
+            let t270 = T::fused(
+                t125,
+                t263,
+                T::fused(t157, t262, T::fused(t116, t264, t169 * t261)),
+            );
+            let t271 = T::fused(t114, t266, -t270);
+            let t272 = t115 * t266;
+            let t273 = t256 * t118;
+            let t274 = t254 * t118;
+            let t275 = t241 * t118;
+            let t276 = T::fused(
+                t133,
+                t275,
+                -T::fused(t163, t274, -T::fused(-t54, t272, t173 * t273)),
+            );
+            let t277 = k(2.0) * (t276 - t271);
+            let t278 = T::fused(
+                t130,
+                t275,
+                T::fused(t159, t274, -T::fused(-t9, t272, t171 * t273)),
+            );
+            let t279 = k(2.0) * t278;
+            let t280 = T::fused(
+                t157,
+                t274,
+                T::fused(t169, t273, T::fused(t116, t265, t108 * t266)),
+            );
+            let t281 = T::fused(t125, t275, t280);
+            let t282 = t91 * (k(2.0) * t281);
+            let t283 = t282
+                + (t282 - T::fused(t97, t279, T::fused(-t93, t269, t96 * t277)));
+            let t284 = t240 * t176;
+            let t285 = t237 * t176;
+            let t286 = T::fused(
+                t181,
+                t285,
+                -T::fused(t191, t284, -T::fused(-t106, t261, t110 * t273)),
+            );
+            let t287 = t225 * t176;
+            let t288 = T::fused(
+                k(2.0),
+                T::fused(t246, t203, -T::fused(t151, t287, t286)),
+                k(0.00025) * T::fused(-t250, t166, t232 * t203),
+            );
+            let t289 = t240 * t166;
+            let t290 = T::fused(
+                t192,
+                t289,
+                -T::fused(t245, t206, T::fused(t107, t262, t113 * t274)),
+            );
+            let t291 = t237 * t166;
+            let t292 = t225 * t166;
+            let t293 = T::fused(
+                k(0.00025),
+                T::fused(t252, t176, t235 * t206),
+                k(2.0) * T::fused(t154, t292, -T::fused(t184, t291, -t290)),
+            );
+            let t294 = t293 + t288;
+            let t295 = T::fused(
+                t191,
+                t289,
+                -T::fused(t245, t203, -T::fused(-t106, t262, t110 * t274)),
+            );
+            let t296 = T::fused(
+                -k(0.00025),
+                T::fused(t250, t176, t235 * t203),
+                k(2.0) * T::fused(t151, t292, T::fused(t181, t291, -t295)),
+            );
+            let t297 = t128 * t296;
+            let t298 = T::fused(
+                t180,
+                t285,
+                T::fused(t190, t284, T::fused(t115, t261, t109 * t273)),
+            );
+            let t299 = T::fused(
+                k(2.0),
+                T::fused(t246, t200, -T::fused(t146, t287, t298)),
+                k(0.00025) * T::fused(-t248, t166, t232 * t200),
+            );
+            let t300 = t240 * t138;
+            let t301 = T::fused(
+                t192,
+                t300,
+                T::fused(t113, t275, T::fused(t107, t263, t244 * t206)),
+            );
+            let t302 = t237 * t138;
+            let t303 = t225 * t138;
+            let t304 = k(2.0) * T::fused(t154, t303, -T::fused(t184, t302, -t301));
+            let t305 = t304 + t299;
+            let t306 = T::fused(
+                t190,
+                t289,
+                T::fused(t245, t200, -T::fused(t115, t262, t109 * t274)),
+            );
+            let t307 = T::fused(
+                -k(0.00025),
+                T::fused(t248, t176, t235 * t200),
+                k(2.0) * T::fused(t146, t292, T::fused(t180, t291, t306)),
+            );
+            let t308 = T::fused(
+                t191,
+                t300,
+                -T::fused(t110, t275, -T::fused(t106, t263, t244 * t203)),
+            );
+            let t309 = k(2.0) * T::fused(t151, t303, T::fused(t181, t302, -t308));
+            let t310 = t309 - t307;
+            let t311 = T::fused(
+                t122,
+                t310,
+                -T::fused(t123, t305, -(t297 + T::fused(t126, t294, t297))),
+            );
+            let t312 = T::fused(t130, t300, -T::fused(t171, t284, t159 * t289));
+            let t313 = T::fused(t133, t302, T::fused(t173, t285, t163 * t291));
+            let t314 = k(2.0) * (t313 + t312);
+            let t315 = T::fused(t130, t302, -T::fused(t171, t285, t159 * t291));
+            let t316 = t149 * (k(2.0) * t315);
+            let t317 = T::fused(t125, t300, -T::fused(-t169, t284, t157 * t289));
+            let t318 = T::fused(t133, t303, T::fused(t173, t287, t163 * t292));
+            let t319 = k(2.0) * (t318 - t317);
+            let t320 = T::fused(t125, t302, -T::fused(-t169, t285, t157 * t291));
+            let t321 = T::fused(t130, t303, -T::fused(t171, t287, t159 * t292));
+            let t322 = k(2.0) * (t321 + t320);
+            let t323 = T::fused(
+                t143,
+                t322,
+                -T::fused(t144, t319, t316 + T::fused(t147, t314, t316)),
+            );
+            let t324 = T::fused(t133, t300, T::fused(t173, t284, t163 * t289));
+            let t325 = k(2.0) * (t318 + t317);
+            let t326 = T::fused(
+                t143,
+                t325,
+                -T::fused(k(2.0), t147 * (k(2.0) * t324), t149 * t314),
+            );
+            let t327 = k(2.0) * (t321 - t320);
+            let t328 = T::fused(t144, t327, t326);
+            let t329 = T::fused(t141, t328, -T::fused(t142, t323, t311));
+            let t330 = t293 - t288;
+            let t331 = t304 - t299;
+            let t332 = T::fused(
+                t190,
+                t300,
+                T::fused(t109, t275, -T::fused(-t115, t263, t244 * t200)),
+            );
+            let t333 = k(2.0) * T::fused(t146, t303, T::fused(t180, t302, t332));
+            let t334 = t122 * t333;
+            let t335 = t334
+                + (t334 - T::fused(t128, t310, T::fused(t123, t330, t126 * t331)));
+            let t336 = k(2.0) * (t313 - t312);
+            let t337 = T::fused(t125, t303, -T::fused(-t169, t287, t157 * t292));
+            let t338 = t144 * (k(2.0) * (t337 + (t315 + t324)));
+            let t339 = t338
+                + (t338 - T::fused(t147, t327, -T::fused(t143, t336, t149 * t319)));
+            let t340 = t143 * (k(2.0) * t337);
+            let t341 = t340
+                + (t340 - T::fused(t149, t322, T::fused(-t144, t336, t147 * t325)));
+            let t342 = T::fused(t142, t341, -T::fused(t141, t339, -t335));
+            let t343 = T::fused(t121, t342, -T::fused(t120, t329, -t283));
+            let t344 = k(2.0) * (t276 + t271);
+            let t345 = t104 * t259;
+            let t346 = T::fused(
+                t54,
+                t267,
+                T::fused(t133, t263, -T::fused(-t173, t261, t163 * t262)),
+            );
+            let t347 = t93 * (k(2.0) * (t281 + (t346 + t345)));
+            let t348 = t347
+                + (t347 - T::fused(t96, t279, -T::fused(t91, t269, t97 * t344)));
+            let t349 = T::fused(
+                t184,
+                t285,
+                -T::fused(t192, t284, T::fused(t107, t261, t113 * t273)),
+            );
+            let t350 = T::fused(
+                k(2.0),
+                T::fused(t246, t206, T::fused(t154, t287, -t349)),
+                k(0.00025) * T::fused(-t252, t166, t232 * t206),
+            );
+            let t351 = t309 + t307;
+            let t352 = T::fused(
+                t123,
+                t351,
+                T::fused(t122, t331, T::fused(-k(2.0), t126 * t350, t128 * t294)),
+            );
+            let t353 = T::fused(t142, t328, T::fused(t141, t323, t352));
+            let t354 = t123 * (t333 - (t296 - t350));
+            let t355 = t354
+                + (t354 - T::fused(t126, t351, -T::fused(-t122, t330, t128 * t305)));
+            let t356 = T::fused(t141, t341, T::fused(t142, t339, t355));
+            let t357 = T::fused(t121, t356, -T::fused(t120, t353, -t348));
+            let t358 = T::fused(t0, t179, T::fused(t19, t208, k(2e-6) * t118));
+            let t359 = T::fused(u2, t188, t231 * t188);
+            let t360 = T::fused(u2, t196, t231 * t196);
+            let t361 = T::fused(-t125, t200, T::fused(-t130, t203, t133 * t206));
+            let t362 = T::fused(-t169, t200, T::fused(t171, t203, t173 * t206));
+            let t363 = T::fused(
+                t227,
+                t360,
+                T::fused(k(0.000125), T::fused(t215, t361, t230 * t362), t243 * t361),
+            );
+            let t364 = T::fused(-t221, t139, T::fused(t228, t359, t363));
+            let t365 = T::fused(-u0, t358, t364);
+            let t366 = t100 * t365;
+            let t367 = k(2.0) * (t268 - t260);
+            let t368 = T::fused(
+                t93,
+                t344,
+                -T::fused(-k(2.0), t97 * (k(2.0) * t345), t96 * t367),
+            );
+            let t369 = T::fused(
+                t120,
+                t342,
+                T::fused(t121, t329, -T::fused(t91, t279, -t368)),
+            );
+            let t370 = T::fused(
+                t91,
+                t277,
+                T::fused(-k(2.0), t96 * (k(2.0) * t346), t97 * t367),
+            );
+            let t371 = T::fused(
+                t120,
+                t356,
+                T::fused(t121, t353, T::fused(t93, t279, t370)),
+            );
+            let t372 = T::fused(t157, t200, T::fused(t159, t203, t163 * t206));
+            let t373 = k(1e-6) * t176;
+            let t374 = T::fused(
+                k(0.000125),
+                T::fused(-t221, t361, t230 * t372),
+                T::fused(-t242, t361, t230 * t373),
+            );
+            let t375 = T::fused(
+                -u1,
+                t179,
+                T::fused(t215, t139, T::fused(t227, t359, T::fused(-t228, t360, t374))),
+            );
+            let t376 = t229 * t188;
+            let t377 = t238 * t196;
+            let t378 = t377 + t376;
+            let t379 = T::fused(
+                -u1,
+                t208,
+                T::fused(t242, t372, T::fused(-t243, t362, t221 * t373)) - t378,
+            );
+            let t380 = T::fused(
+                t189,
+                t196,
+                T::fused(t199, t200, T::fused(t202, t203, T::fused(t205, t206, t373))),
+            );
+            let t381 = T::fused(-t197, t188, t380);
+            let t382 = k(1e-6) * t136;
+            let t383 = t382 + t381;
+            let t384 = t382 - t383;
+            let t385 = T::fused(t219, t375, T::fused(-t220, t379, u0 * t384));
+            let t386 = t100 * t385;
+            let t387 = T::fused(
+                k(2.0),
+                T::fused(-t88, t366, t95 * t386),
+                T::fused(t210, t386, -T::fused(-t92, t369, t90 * t371)),
+            );
+            let t388 = T::fused(
+                t95,
+                T::fused(t210, t366, -T::fused(t90, t343, t92 * t357)),
+                t88 * t387,
+            );
+            let t389 = T::fused(
+                -k(0.5),
+                t388,
+                T::fused(t12, t213 * t358, t21 * (t213 * t383)),
+            );
+            let t390 = T::fused(
+                t93,
+                t356,
+                T::fused(t91, t342, T::fused(-t96, t353, t97 * t329)),
+            );
+            let t391 = T::fused(-t217, t375, u0 * t379);
+            let t392 = T::fused(
+                t96,
+                t356,
+                -T::fused(t97, t342, -T::fused(t93, t353, t91 * t329)),
+            );
+            let t393 = T::fused(u0, t375, t217 * t379);
+            let t394 = T::fused(
+                k(2.0),
+                T::fused(-t121, t391, t120 * t393),
+                T::fused(t218, t393, t392),
+            );
+            let t395 = T::fused(
+                k(0.5),
+                T::fused(t120, T::fused(t218, t391, t390), t121 * t394),
+                t19 * T::fused(-t82, t208, t214 * t179),
+            );
+            let t396 = T::fused(
+                -t38,
+                t209,
+                T::fused(t0, T::fused(t82, t179, t214 * t208), -t395),
+            );
+            let t397 = T::fused(
+                -t189,
+                T::fused(t232, t196, t235 * t188),
+                t197 * T::fused(-t235, t196, t232 * t188),
+            );
+            let t398 = T::fused(-t221, t359, t215 * t360);
+            let t399 = T::fused(
+                t123,
+                t339,
+                -T::fused(t126, t328, T::fused(t128, t323, t226 * t398)),
+            );
+            (
+                t208,
+                t209,
+                t211,
+                t212,
+                t215,
+                t216,
+                t217,
+                t219,
+                t220,
+                t221,
+                t226,
+                t230,
+                t259,
+                t267,
+                t272,
+                t323,
+                t328,
+                t339,
+                t341,
+                t343,
+                t357,
+                t358,
+                t359,
+                t360,
+                t364,
+                t365,
+                t369,
+                t371,
+                t375,
+                t376,
+                t377,
+                t378,
+                t379,
+                t381,
+                t383,
+                t384,
+                t385,
+                t389,
+                t396,
+                t397,
+                t398,
+                t399,
+            )
+        };
+        let (t402, t403, t404, t405, t407, t409, t411, t418) = {
+            let t400 = T::fused(t215, t359, t221 * t360);
+            let t401 = T::fused(
+                -t126,
+                t323,
+                T::fused(k(2.0), T::fused(-t142, t398, t141 * t400), t226 * t400),
+            );
+            let t402 = T::fused(
+                -t141,
+                T::fused(t122, t341, t399),
+                t142
+                    * T::fused(
+                        t123,
+                        t341,
+                        -T::fused(t122, t339, -T::fused(t128, t328, t401)),
+                    ),
+            );
+            let t403 = T::fused(
+                -t212,
+                t358,
+                T::fused(-t220, t375, T::fused(-t219, t379, t217 * t384)),
+            );
+            let t404 = T::fused(
+                -t85,
+                t178,
+                T::fused(-t40, t209, T::fused(t221, t179, T::fused(t230, t208, t364))),
+            );
+            let t405 = T::fused(
+                t86,
+                t178,
+                T::fused(t60, t381, T::fused(t41, t209, t376 + (t377 + t378))),
+            );
+            let t406 = T::fused(
+                -t13,
+                T::fused(k(0.5), t54 * (t21 * t5), t21 * t20),
+                t7 * T::fused(t21, t18, t12 * t28),
+            );
+            let t407 = k(125.66370614359172) * t406;
+            let t408 = T::fused(
+                k(0.5),
+                T::fused(t9, k(16.6631951676734) * t0, t54 * (t19 * t52)),
+                k(7895.6835208714865) * t12,
+            );
+            let t409 = k(125.66370614359172) * T::fused(t13, t408, t7 * (t21 * t48));
+            let t410 = T::fused(
+                -t7,
+                T::fused(t12, t63, t21 * t73),
+                t13 * T::fused(t21, t66, k(0.5) * (t54 * (t21 * t74))),
+            );
+            let t411 = k(125.66370614359172) * t410;
+            let t412 = t103 * t259;
+            let t413 = t99 * t259;
+            let t414 = T::fused(
+                -t9,
+                T::fused(t107, t267, -T::fused(-t100, t412, t113 * t272)),
+                t54 * T::fused(t106, t267, T::fused(-t100, t413, t110 * t272)),
+            );
+            let t415 = T::fused(
+                t90,
+                T::fused(t95, t369, t88 * t357),
+                t92 * T::fused(-t88, t343, t95 * t371),
+            );
+            let t416 = T::fused(
+                k(7895.6835208714865),
+                T::fused(-t21, t358, t12 * t383),
+                T::fused(k(0.5), t414, k(0.25) * t415),
+            );
+            let t417 = T::fused(
+                t211,
+                t365,
+                T::fused(t216, t385, -T::fused(-t54, t412, t9 * t413)),
+            );
+            let t418 = T::fused(
+                t407,
+                t209,
+                k(125.66370614359172)
+                    * T::fused(-t13, t416, t7 * (k(62.83185307179586) * t417)),
+            );
+            (t402, t403, t404, t405, t407, t409, t411, t418)
+        };
+        *dfdx = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            k(1.0),
+            k(0.0),
+            -t29,
+            -t38,
+            k(0.0),
+            -t39,
+            t40,
+            -t41,
+            k(0.0),
+            t49,
+            -t58,
+            k(0.0),
+            -t59,
+            k(0.0),
+            -t60,
+            k(0.0),
+            -t75,
+            t83,
+            k(0.0),
+            t84,
+            -t85,
+            t86,
+            k(0.0),
+            T::fused(t75, t178, T::fused(t49, t381, -T::fused(t29, t209, t389))),
+            -T::fused(t83, t178, T::fused(t58, t381, -t396)),
+            T::fused(k(0.5), t402, -t397),
+            -T::fused(t84, t178, T::fused(t59, t381, T::fused(t39, t209, t403))),
+            -t404,
+            -t405,
+            k(0.0),
+        ];
+        *dfdt = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t407,
+            t409,
+            t411,
+            T::fused(-t411, t178, T::fused(t409, t381, t418)),
+        ];
+    }
+    fn joint_input_jacobian(
+        &self,
+        _t: T,
+        _x: &Self::Joints,
+        _out: &mut Self::InputJacobian,
+    ) {}
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ports for GyroscopeRollingBase<T> {
     type Outputs = [T; 0];

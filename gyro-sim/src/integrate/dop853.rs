@@ -237,20 +237,21 @@ impl<O: Ode<Scalar: Real>> Embedded<O> for Dop853<O::State, O::Scalar> {
             (-0.422_682_321_323_791_97, &k[8]), (-0.152_160_949_662_516_1, &k[9]),
             (0.201_365_400_804_030_34, &k[10]), (0.022_651_792_198_360_825, &k[11]),
         ], i);
-        let (mut five, mut three, mut index) = (O::Scalar::constant(0.0), O::Scalar::constant(0.0), 0);
+        let zero = O::Scalar::constant(0.0);
+        let (mut five, mut three, mut n, mut worst) = (zero, zero, 0.0, (zero, 0));
         for (i, weight) in weights.as_ref().iter().enumerate() {
-            let (e5, e3) = ((fifth(i) / *weight).abs(), (third(i) / *weight).abs());
+            let (e5, e3) = (fifth(i) / *weight, third(i) / *weight);
             if !(e5.is_finite() && e3.is_finite()) {
                 return (O::Scalar::constant(f64::INFINITY), i);
             }
-            if e5 > five {
-                (five, index) = (e5, i);
-            }
-            if e3 > three {
-                three = e3;
+            (five, three) = (O::Scalar::fused(e5, e5, five), O::Scalar::fused(e3, e3, three));
+            n += 1.0;
+            if e5.abs() > worst.0 {
+                worst = (e5.abs(), i);
             }
         }
-        let size = (five * five + three * three * O::Scalar::constant(0.01)).sqrt();
-        if size > O::Scalar::constant(0.0) { (h * five * (five / size), index) } else { (size, index) }
+        let both = (five + three * O::Scalar::constant(0.01)) * O::Scalar::constant(n);
+        let size = if both > zero { h * (five / both.sqrt()) } else { zero };
+        (size, worst.1)
     }
 }

@@ -24,9 +24,8 @@ pub(super) fn factorise<T: Real>(matrix: &mut [T], pivots: &mut [T]) -> T {
         let (above, below) = matrix.split_at_mut((column + 1) * n);
         let pivot_row = &above[column * n..];
         let pivot = pivot_row[column];
-        if !(pivot.abs() >= smallest) {
-            smallest = pivot.abs();
-        }
+        // What is not a number counts as smallest.
+        smallest = if pivot.abs() >= smallest { smallest } else { pivot.abs() };
         let inverse = T::constant(1.0) / pivot;
         for row in below.chunks_exact_mut(n) {
             let factor = row[column] * inverse;

@@ -3,7 +3,7 @@
 //!
 //! Each step takes one Jacobian, one factorisation of `I/(γh) − ∂f/∂y` and six solves, and iterates nothing.
 
-use super::{Embedded, Method, Work, combine, lu, sum_at, worst};
+use super::{Embedded, Method, Work, combine, lu, size, sum_at};
 use crate::{Differentiable, Real, Scalar, Storage};
 
 /// Work space of the method.
@@ -183,6 +183,6 @@ impl<O: Differentiable<Scalar: Real>> Embedded<O> for Rodas4<O::State, O::Jacobi
 
     fn error(&self, _: O::Scalar, weights: &O::State) -> (O::Scalar, usize) {
         let error = self.u[5].as_ref();
-        worst(weights, |i| error[i])
+        size(weights, |i| error[i])
     }
 }

@@ -1,7 +1,7 @@
 //! The pair of orders 5 and 4 of Ch. Tsitouras, *Runge–Kutta pairs of order 5(4) satisfying only the first column simplifying
 //! assumption*, Computers & Mathematics with Applications 62 (2011), 770–775, with its interpolant of order 4.
 
-use super::{Embedded, Method, Work, combine, rate, sum_at, worst};
+use super::{Embedded, Method, Work, combine, rate, size, sum_at};
 use crate::{Ode, Real, Scalar};
 
 /// Work space of the method.
@@ -120,7 +120,7 @@ impl<O: Ode<Scalar: Real>> Embedded<O> for Tsit5<O::State> {
     #[inline(always)]
     fn error(&self, h: O::Scalar, weights: &O::State) -> (O::Scalar, usize) {
         let k = &self.k;
-        worst(weights, |i| h * sum_at([
+        size(weights, |i| h * sum_at([
             (-0.001_780_011_052_225_771_4, &k[0]), (-0.000_816_434_459_656_746_9, &k[1]), (0.007_880_878_010_261_995, &k[2]),
             (-0.144_711_007_173_262_9, &k[3]), (0.582_357_165_452_555_2, &k[4]), (-0.458_082_105_929_186_95, &k[5]),
             (1.0 / 66.0, &k[6]),

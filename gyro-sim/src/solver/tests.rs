@@ -113,7 +113,7 @@ fn errors_follow_the_tolerance() {
             ("dop853", adaptive(Dop853::new(&y), tolerance)),
             ("rodas4", adaptive(Rodas4::new(&CHIRP, &y), tolerance)),
         ] {
-            assert!(error < 10.0 * tolerance, "{name}: {error:e} at {tolerance:e} in {steps} steps");
+            assert!(error < 30.0 * tolerance, "{name}: {error:e} at {tolerance:e} in {steps} steps");
             assert!(
                 error > 1e-4 * tolerance,
                 "{name} tries too hard: {error:e} at {tolerance:e} in {steps} steps"
@@ -149,11 +149,9 @@ impl Differentiable for Stiff {
     }
 }
 
-fn run<O: Ode<Scalar = f64>, M: Embedded<O>>(
-    system: &O,
-    method: M,
-    control: Control,
-) -> (Solver<O::State, f64, M, Uncorrected>, Result<(), Error>) {
+type Run<S, M> = (Solver<S, f64, M, Uncorrected>, Result<(), Error>);
+
+fn run<O: Ode<Scalar = f64>, M: Embedded<O>>(system: &O, method: M, control: Control) -> Run<O::State, M> {
     let mut solver = Solver::new(method, Uncorrected, 0.0, &system.start()).with_control(control);
     let outcome = solver.advance_to(system, 2.0);
     (solver, outcome)
@@ -201,6 +199,8 @@ fn what_cannot_be_done_is_an_error_that_says_why() {
     let wide = Control { smallest_step: 1.0, first_step: 1.5, ..control };
     assert!(matches!(outcome(wide), Err(Error::StepTooShort { .. })), "{:?}", outcome(wide));
     assert_eq!(outcome(control.with_tolerance(1.0)), Ok(()));
+    let mut solver = Solver::new(Dop853::new(&[0.0; 2]), Uncorrected, 0.0, &CHIRP.start());
+    assert!(matches!(solver.advance_to(&CHIRP, f64::NAN), Err(Error::NoEnd { .. })));
 }
 
 /// ẏ = y², infinite at t = 1.

@@ -11,7 +11,7 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 1949 operations by rotations of the bodies; 1963 operations by relative Euler parameters
-//! * project: 1136 operations by rotations of the bodies; 1141 operations by relative Euler parameters
+//! * project: 991 operations by rotations of the bodies; 996 operations by relative Euler parameters
 //! * joint_accelerations: 492 operations by normal form; 633 operations by recursion
 //! * joint_accelerations_at: 878 operations by normal form; 980 operations by recursion on the bodies' spins; 1 more compared
 //! * corrected_accelerations: 1949 operations by elimination in maximal coordinates; 1060 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
@@ -30,7 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 214 | 287 | 0 | 501 | 0 of 12 | 14843 | 501 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 840 | 1105 | 4 | 1949 | 0 of 12 | 2.4e8 | 1951 |
 //! | multipliers | λ, the accelerations being known | 400 | 556 | 2 | 958 | 0 of 10 | 185543 | 958 |
-//! | project | (δr, δπ') that changes the rows as given | 469 | 663 | 4 | 1136 | 0 of 12 | 1.4e8 | 1137 |
+//! | project | (δr, δπ') that changes the rows as given | 405 | 582 | 4 | 991 | 0 of 12 | 2.0e8 | 993 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 420 | 577 | 1 | 998 | 0 of 16 | 139475 | 998 |
 //! | energy | T and V | 119 | 163 | 0 | 282 | 0 of 2 | 4354 | 282 |
 //! | read_joints | joint coordinates and rates | 145 | 197 | 0 | 342 | 0 of 5 | 1798 | 342 |
@@ -8052,7 +8052,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Carried<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Carried<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 1136 operations (469 ±, 663 ×, 4 ÷) and 6 functions.
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 991 operations (405 ±, 582 ×, 4 ÷) and 6 functions.
     fn project(
         &self,
         t: T,
@@ -8086,80 +8086,77 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Carried<T> {
         let row8 = rows[8];
         let row9 = rows[9];
         let (
-            t3,
-            t6,
-            t7,
+            t9,
             t10,
+            t11,
             t12,
-            t13,
+            t15,
             t17,
+            t18,
+            t19,
             t20,
             t21,
+            t23,
+            t24,
             t26,
+            t27,
             t28,
             t30,
+            t31,
             t32,
-            t33,
-            t34,
-            t35,
+            t36,
+            t37,
             t38,
             t39,
-            t44,
-            t45,
+            t40,
+            t41,
+            t42,
             t46,
-            t48,
             t49,
-            t50,
-            t52,
             t53,
-            t54,
-            t99,
-            t101,
-            t102,
-            t104,
-            t105,
-            t107,
-            t108,
-            t109,
-            t111,
-            t118,
-            t119,
-            t122,
-            t123,
-            t125,
-            t126,
-            t127,
-            t128,
-            t129,
-            t131,
-            t132,
-            t134,
-            t135,
-            t136,
-            t137,
+            t58,
+            t60,
+            t62,
+            t64,
+            t65,
+            t66,
+            t70,
+            t72,
+            t74,
+            t79,
+            t80,
+            t81,
+            t82,
+            t83,
+            t84,
+            t85,
+            t86,
+            t87,
+            t88,
+            t89,
+            t90,
+            t91,
             t139,
-            t140,
+            t141,
+            t142,
+            t143,
             t144,
             t145,
             t146,
             t147,
             t148,
-            t155,
-            t156,
-            t161,
-            t162,
-            t163,
-            t167,
-            t169,
-            t173,
+            t149,
+            t150,
+            t181,
+            t182,
             t183,
             t184,
             t185,
             t186,
+            t187,
             t188,
             t189,
             t190,
-            t191,
             t192,
             t193,
             t194,
@@ -8169,382 +8166,405 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Carried<T> {
             t198,
             t199,
         ) = {
-            let t0 = slider_e0 * slider_e3;
-            let t1 = slider_e1 * slider_e2;
-            let t2 = t1 - t0;
-            let t3 = k(2.0) * t2;
-            let t4 = arm_e0 * arm_e3;
-            let t5 = arm_e1 * arm_e2;
-            let t6 = t5 - t4;
-            let t7 = k(2.0) * t6;
-            let t8 = slider_e0 * slider_e0;
-            let t9 = k(0.5) - T::fused(slider_e2, slider_e2, t8);
-            let t10 = k(2.0) * t9;
-            let t11 = arm_e0 * arm_e0;
-            let t12 = k(0.5) - T::fused(arm_e2, arm_e2, t11);
-            let t13 = k(2.0) * t12;
-            let t14 = slider_e0 * slider_e1;
-            let t15 = slider_e2 * slider_e3;
-            let t16 = t15 + t14;
-            let t17 = k(2.0) * t16;
-            let t18 = arm_e0 * arm_e1;
-            let t19 = arm_e2 * arm_e3;
-            let t20 = t19 + t18;
-            let t21 = k(2.0) * t20;
-            let t22 = T::fused(t21, t17, T::fused(t7, t3, t13 * t10));
-            let t23 = slider_e0 * slider_e2;
-            let t24 = slider_e1 * slider_e3;
-            let t25 = t24 + t23;
-            let t26 = k(2.0) * t25;
-            let t27 = t15 - t14;
-            let t28 = k(2.0) * t27;
-            let t29 = k(0.5) - T::fused(slider_e3, slider_e3, t8);
-            let t30 = k(2.0) * t29;
-            let t31 = T::fused(t21, t30, T::fused(-t7, t26, t13 * t28));
-            let t32 = k(0.5) - T::fused(arm_e1, arm_e1, t11);
-            let t33 = k(2.0) * t32;
-            let t34 = t5 + t4;
-            let t35 = k(2.0) * t34;
-            let t36 = arm_e0 * arm_e2;
-            let t37 = arm_e1 * arm_e3;
-            let t38 = t37 - t36;
-            let t39 = k(2.0) * t38;
-            let t40 = T::fused(t39, t17, -T::fused(t33, t3, t35 * t10));
-            let t41 = T::fused(t39, t30, -T::fused(-t33, t26, t35 * t28));
+            let t0 = arm_e0 * arm_e0;
+            let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
+            let t2 = arm_e0 * arm_e3;
+            let t3 = arm_e1 * arm_e2;
+            let t4 = t3 - t2;
+            let t5 = arm_e0 * arm_e2;
+            let t6 = arm_e1 * arm_e3;
+            let t7 = t6 + t5;
+            let t8 = k(1.3333333333333333) * t7;
+            let t9 = t8
+                + T::fused(-k(0.6666666666666666), t1, k(1.3333333333333333) * t4);
+            let t10 = k(2.0) * t4;
+            let t11 = t3 + t2;
+            let t12 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
+            let t13 = arm_e0 * arm_e1;
+            let t14 = arm_e2 * arm_e3;
+            let t15 = t14 - t13;
+            let t16 = k(1.3333333333333333) * t15;
+            let t17 = t16
+                - T::fused(-k(0.6666666666666666), t11, k(1.3333333333333333) * t12);
+            let t18 = k(2.0) * t12;
+            let t19 = t6 - t5;
+            let t20 = t14 + t13;
+            let t21 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
+            let t22 = k(1.3333333333333333) * t21;
+            let t23 = t22
+                - T::fused(k(0.6666666666666666), t19, k(1.3333333333333333) * t20);
+            let t24 = k(2.0) * t20;
+            let t25 = T::fused(t24, t23, T::fused(-t10, t9, t18 * t17));
+            let t26 = k(2.0) * t7;
+            let t27 = k(2.0) * t15;
+            let t28 = k(2.0) * t21;
+            let t29 = T::fused(t28, t23, T::fused(t26, t9, t27 * t17));
+            let t30 = k(2.0) * t1;
+            let t31 = k(2.0) * t11;
+            let t32 = k(2.0) * t19;
+            let t33 = T::fused(t32, t23, -T::fused(-t30, t9, t31 * t17));
+            let t34 = T::fused(
+                -t33,
+                T::fused(k(0.02), t25, k(0.03) * t29),
+                t25 * T::fused(k(0.01), t29, T::fused(-k(0.02), t33, k(0.05) * t25)),
+            );
+            let t35 = T::fused(
+                t29,
+                T::fused(k(0.1), t29, T::fused(-k(0.03), t33, k(0.01) * t25)),
+                t34,
+            );
+            let t36 = T::fused(k(0.4), t11, k(0.2) * t12);
+            let t37 = T::fused(-k(0.4), t19, k(0.2) * t20);
+            let t38 = T::fused(-t23, t36, t17 * t37);
+            let t39 = T::fused(k(0.4), t1, k(0.2) * t4);
+            let t40 = T::fused(t9, t37, t23 * t39);
+            let t41 = T::fused(t17, t39, t9 * t36);
             let t42 = T::fused(
-                k(0.8944271909999159),
-                T::fused(k(0.7453559924999299), t22, k(0.29814239699997197) * t31),
-                k(0.4472135954999579)
-                    * T::fused(k(0.7453559924999299), t40, k(0.29814239699997197) * t41),
+                k(1.5),
+                T::fused(t41, t41, T::fused(t38, t38, t40 * t40)),
+                -t35,
             );
-            let t43 = k(0.5) - T::fused(slider_e1, slider_e1, t8);
-            let t44 = k(2.0) * t43;
-            let t45 = t37 + t36;
+            let t43 = slider_e0 * slider_e3;
+            let t44 = slider_e1 * slider_e2;
+            let t45 = t44 - t43;
             let t46 = k(2.0) * t45;
-            let t47 = t1 + t0;
-            let t48 = k(2.0) * t47;
-            let t49 = t19 - t18;
-            let t50 = k(2.0) * t49;
-            let t51 = t24 - t23;
-            let t52 = k(2.0) * t51;
-            let t53 = k(0.5) - T::fused(arm_e3, arm_e3, t11);
-            let t54 = k(2.0) * t53;
-            let t55 = T::fused(t54, t52, -T::fused(-t46, t44, t50 * t48));
-            let t56 = k(0.6666666666666666)
-                * T::fused(t54, t17, T::fused(-t46, t3, t50 * t10));
-            let t57 = T::fused(t21, t52, -T::fused(t7, t44, t13 * t48));
-            let t58 = k(0.6666666666666666) * t22;
-            let t59 = T::fused(k(0.3333333333333333), t57, t58);
-            let t60 = T::fused(t39, t52, T::fused(t33, t44, t35 * t48));
-            let t61 = k(0.6666666666666666) * t40;
-            let t62 = T::fused(k(0.3333333333333333), t60, t61);
-            let t63 = T::fused(
-                k(0.7453559924999299),
-                T::fused(k(0.3333333333333333), t55, t56),
-                T::fused(-k(0.29814239699997197), t59, k(0.5962847939999439) * t62),
+            let t47 = slider_e0 * slider_e0;
+            let t48 = k(0.5) - T::fused(slider_e2, slider_e2, t47);
+            let t49 = k(2.0) * t48;
+            let t50 = slider_e0 * slider_e1;
+            let t51 = slider_e2 * slider_e3;
+            let t52 = t51 + t50;
+            let t53 = k(2.0) * t52;
+            let t54 = T::fused(t53, t23, T::fused(-t46, t9, t49 * t17));
+            let t55 = slider_e0 * slider_e2;
+            let t56 = slider_e1 * slider_e3;
+            let t57 = t56 + t55;
+            let t58 = k(2.0) * t57;
+            let t59 = t51 - t50;
+            let t60 = k(2.0) * t59;
+            let t61 = k(0.5) - T::fused(slider_e3, slider_e3, t47);
+            let t62 = k(2.0) * t61;
+            let t63 = T::fused(t62, t23, T::fused(t58, t9, t60 * t17));
+            let t64 = k(2.0) * (k(0.5) - T::fused(slider_e1, slider_e1, t47));
+            let t65 = k(2.0) * (t44 + t43);
+            let t66 = k(2.0) * (t56 - t55);
+            let t67 = T::fused(t66, t23, -T::fused(-t64, t9, t65 * t17));
+            let t68 = T::fused(
+                -t67,
+                T::fused(-k(0.001), t54, k(0.002) * t63),
+                t54 * T::fused(k(0.003), t63, T::fused(k(0.001), t67, k(0.01) * t54)),
             );
-            let t64 = t31 + t57;
-            let t65 = t41 + t60;
-            let t66 = T::fused(k(0.5962847939999439), t64, k(0.29814239699997197) * t65);
-            let t67 = T::fused(k(0.8944271909999159), t59, k(0.4472135954999579) * t62);
-            let t68 = T::fused(t54, t30, T::fused(t46, t26, t50 * t28));
             let t69 = T::fused(
-                k(0.49690399499995325),
-                t68 + t55,
-                T::fused(-k(0.1987615979999813), t64, k(0.3975231959999626) * t65),
+                t63,
+                T::fused(k(0.005), t63, T::fused(-k(0.002), t67, k(0.003) * t54)),
+                t68,
             );
-            let t70 = T::fused(-t66, t63, t69 * t67);
-            let t71 = T::fused(
-                k(0.8944271909999159),
-                T::fused(-k(0.7453559924999299), t57, k(0.5962847939999439) * t31),
-                k(0.4472135954999579)
-                    * T::fused(-k(0.7453559924999299), t60, k(0.5962847939999439) * t41),
+            let t70 = T::fused(-k(0.1), t45, k(0.2) * t57);
+            let t71 = arm_rx - (slider_rx - t70);
+            let t72 = T::fused(k(0.1), t48, k(0.2) * t59);
+            let t73 = arm_ry - (slider_ry - t72);
+            let t74 = T::fused(k(0.1), t52, k(0.2) * t61);
+            let t75 = arm_rz - (slider_rz + t74);
+            let t76 = T::fused(t32, t75, T::fused(-t30, t71, t31 * t73));
+            let t77 = T::fused(t24, t75, -T::fused(-t10, t71, t18 * t73));
+            let t78 = T::fused(t28, t75, -T::fused(t26, t71, t27 * t73));
+            let t79 = t74 + T::fused(t28, t78, T::fused(t32, t76, t24 * t77));
+            let t80 = t72 + T::fused(t27, t78, T::fused(-t31, t76, t18 * t77));
+            let t81 = t38 - T::fused(-t79, t17, t80 * t23);
+            let t82 = t70 + T::fused(t26, t78, -T::fused(-t30, t76, t10 * t77));
+            let t83 = t40 - T::fused(-t79, t9, t82 * t23);
+            let t84 = t41 - T::fused(-t80, t9, t82 * t17);
+            let t85 = T::fused(
+                k(0.6),
+                T::fused(t84, t84, T::fused(t81, t81, t83 * t83)),
+                t69,
             );
-            let t72 = T::fused(k(0.3333333333333333), t31, -t58);
-            let t73 = T::fused(k(0.3333333333333333), t41, -t61);
-            let t74 = T::fused(
-                k(0.7453559924999299),
-                T::fused(k(0.3333333333333333), t68, -t56),
-                T::fused(-k(0.29814239699997197), t72, k(0.5962847939999439) * t73),
-            );
-            let t75 = T::fused(k(0.8944271909999159), t72, k(0.4472135954999579) * t73);
-            let t76 = T::fused(-t74, t67, t75 * t63);
-            let t77 = T::fused(
-                k(0.8944271909999159),
-                T::fused(k(0.29814239699997197), t57, k(0.5962847939999439) * t22),
-                k(0.4472135954999579)
-                    * T::fused(k(0.29814239699997197), t60, k(0.5962847939999439) * t40),
-            );
-            let t78 = T::fused(-t69, t75, t66 * t74);
-            let t79 = k(1.0) / T::fused(t78, t77, T::fused(t70, t42, t76 * t71));
-            let t80 = t70 * t79;
-            let t81 = t76 * t79;
-            let t82 = t78 * t79;
-            let t83 = T::fused(t30, t82, -T::fused(t52, t80, t17 * t81));
-            let t84 = T::fused(k(0.1), t9, k(0.2) * t27);
-            let t85 = T::fused(t28, t82, -T::fused(-t48, t80, t10 * t81));
-            let t86 = T::fused(k(0.1), t16, k(0.2) * t29);
-            let t87 = t79 * T::fused(-t67, t71, t66 * t77);
-            let t88 = t79 * T::fused(-t75, t77, t67 * t42);
-            let t89 = t79 * T::fused(-t66, t42, t75 * t71);
-            let t90 = T::fused(t30, t89, -T::fused(t52, t87, t17 * t88));
-            let t91 = T::fused(t28, t89, -T::fused(-t48, t87, t10 * t88));
-            let t92 = T::fused(
-                T::fused(-k(0.8944271909999159), t32, k(1.7888543819998317) * t6),
-                row5,
-                T::fused(
-                    k(1.4907119849998598),
-                    t45,
-                    T::fused(k(1.1925695879998879), t32, k(0.5962847939999439) * t6),
-                ) * row6,
-            );
-            let t93 = t79 * T::fused(-t69, t77, t63 * t71);
-            let t94 = t79 * T::fused(-t63, t42, t74 * t77);
-            let t95 = t79 * T::fused(-t74, t71, t69 * t42);
-            let t96 = T::fused(t30, t95, -T::fused(t52, t93, t17 * t94));
-            let t97 = T::fused(t28, t95, -T::fused(-t48, t93, t10 * t94));
-            let t98 = T::fused(
-                -row8,
-                T::fused(-t84, t90, t86 * t91),
-                T::fused(row7, T::fused(-t84, t96, t86 * t97), -t92),
-            );
-            let t99 = T::fused(-row9, T::fused(-t84, t83, t86 * t85), t98);
-            let t100 = k(1.3333333333333333) * t45;
-            let t101 = t100
-                - T::fused(k(1.3333333333333333), t32, k(0.6666666666666666) * t6);
-            let t102 = k(0.6) * t101;
-            let t103 = k(1.3333333333333333) * t49;
-            let t104 = t103
-                + T::fused(k(1.3333333333333333), t34, k(0.6666666666666666) * t12);
-            let t105 = k(0.6) * t104;
-            let t106 = k(1.3333333333333333) * t53;
-            let t107 = t106
-                + T::fused(-k(1.3333333333333333), t38, k(0.6666666666666666) * t20);
-            let t108 = k(0.6) * t107;
-            let t109 = k(1.0) / T::fused(t107, t108, T::fused(t101, t102, t104 * t105));
-            let t110 = t102 * t109;
-            let t111 = t102 * t110;
-            let t112 = T::fused(t26, t82, T::fused(-t44, t80, t3 * t81));
-            let t113 = T::fused(-k(0.1), t2, k(0.2) * t25);
-            let t114 = T::fused(t26, t89, T::fused(-t44, t87, t3 * t88));
-            let t115 = T::fused(
-                -T::fused(-k(0.8944271909999159), t34, k(1.7888543819998317) * t12),
-                row5,
-                T::fused(
-                    k(1.4907119849998598),
-                    t49,
-                    -T::fused(k(1.1925695879998879), t34, k(0.5962847939999439) * t12),
-                ) * row6,
-            );
-            let t116 = T::fused(t26, t95, T::fused(-t44, t93, t3 * t94));
-            let t117 = T::fused(
-                -row8,
-                T::fused(-t86, t114, t113 * t90),
-                T::fused(row7, T::fused(-t86, t116, t113 * t96), -t115),
-            );
-            let t118 = T::fused(-row9, T::fused(-t86, t112, t113 * t83), t117);
-            let t119 = t105 * t110;
+            let t86 = t8
+                - T::fused(k(1.3333333333333333), t1, k(0.6666666666666666) * t4);
+            let t87 = t16
+                + T::fused(k(1.3333333333333333), t11, k(0.6666666666666666) * t12);
+            let t88 = t22
+                + T::fused(-k(1.3333333333333333), t19, k(0.6666666666666666) * t20);
+            let t89 = k(0.6) * T::fused(t88, t84, -T::fused(-t86, t81, t87 * t83));
+            let t90 = k(1.6666666666666667)
+                / T::fused(t88, t88, T::fused(t86, t86, t87 * t87));
+            let t91 = t90 * t89;
+            let t92 = k(0.5) * (k(6.0) * t).sin();
+            let t93 = t92.sin();
+            let t94 = k(0.4472135954999579) * t93;
+            let t95 = t92.cos();
+            let t96 = T::fused(k(0.2), t95, k(0.8));
+            let t97 = k(0.7) * T::fused(k(4.0), t, k(0.2)).sin();
+            let t98 = t97.sin();
+            let t99 = T::fused(-k(0.4), t95, k(0.4));
+            let t100 = t97.cos();
+            let t101 = t100 * t99;
+            let t102 = T::fused(-t98, t96, t101);
+            let t103 = t98 * t99;
+            let t104 = T::fused(t100, t96, t103);
+            let t105 = k(0.6666666666666666)
+                * T::fused(t104, t32, T::fused(-t94, t30, t102 * t31));
+            let t106 = T::fused(t104, t24, T::fused(-t102, t18, t94 * t10));
+            let t107 = T::fused(k(0.3333333333333333), t106, -t105);
+            let t108 = k(0.8944271909999159) * t93;
+            let t109 = T::fused(k(0.8), t95, k(0.2));
+            let t110 = T::fused(t100, t109, -t103);
+            let t111 = T::fused(t98, t109, t101);
+            let t112 = k(0.6666666666666666)
+                * T::fused(t111, t32, T::fused(t108, t30, t110 * t31));
+            let t113 = T::fused(t111, t24, -T::fused(t110, t18, t108 * t10));
+            let t114 = T::fused(k(0.3333333333333333), t113, -t112);
+            let t115 = T::fused(t98, t94, t100 * t108);
+            let t116 = T::fused(-t100, t94, t98 * t108);
+            let t117 = k(0.6666666666666666)
+                * T::fused(t116, t32, T::fused(-t95, t30, t115 * t31));
+            let t118 = T::fused(t116, t24, T::fused(-t115, t18, t95 * t10));
+            let t119 = T::fused(k(0.3333333333333333), t118, -t117);
             let t120 = T::fused(
-                -T::fused(k(0.8944271909999159), t38, k(1.7888543819998317) * t20),
+                -k(0.6666666666666666),
+                t107,
+                T::fused(k(0.3333333333333333), t114, k(0.6666666666666666) * t119),
+            );
+            let t121 = T::fused(-t104, t28, T::fused(t102, t27, t94 * t26));
+            let t122 = T::fused(-k(0.3333333333333333), t121, t105);
+            let t123 = T::fused(t111, t28, T::fused(-t110, t27, t108 * t26));
+            let t124 = T::fused(k(0.3333333333333333), t123, t112);
+            let t125 = T::fused(-t116, t28, T::fused(t115, t27, t95 * t26));
+            let t126 = T::fused(-k(0.3333333333333333), t125, t117);
+            let t127 = T::fused(
+                -k(0.6666666666666666),
+                t122,
+                T::fused(k(0.3333333333333333), t124, k(0.6666666666666666) * t126),
+            );
+            let t128 = T::fused(
+                k(0.3333333333333333),
+                t107,
+                k(0.6666666666666666) * (t119 - t114),
+            );
+            let t129 = T::fused(
+                k(0.3333333333333333),
+                t122,
+                k(0.6666666666666666) * (t126 - t124),
+            );
+            let t130 = k(0.6666666666666666) * (t129 - t128);
+            let t131 = t121 - t106;
+            let t132 = t123 + t113;
+            let t133 = t125 - t118;
+            let t134 = T::fused(
+                -k(0.4444444444444444),
+                t131,
+                T::fused(-k(0.2222222222222222), t132, k(0.4444444444444444) * t133),
+            );
+            let t135 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.2222222222222222),
+                    t131,
+                    k(0.4444444444444444) * (t133 + t132),
+                );
+            let t136 = T::fused(-k(0.3333333333333333), t128, t135);
+            let t137 = T::fused(k(0.3333333333333333), t129, -t135);
+            let t138 = k(1.0) / T::fused(t120, t137, T::fused(-t134, t130, t127 * t136));
+            let t139 = t138 * (k(0.6666666666666666) * (t127 - t120));
+            let t140 = k(0.6666666666666666) * t134;
+            let t141 = t138 * T::fused(-k(0.3333333333333333), t120, t140);
+            let t142 = t138 * T::fused(k(0.3333333333333333), t127, -t140);
+            let t143 = T::fused(t28, t142, -T::fused(-t32, t139, t24 * t141));
+            let t144 = T::fused(t27, t142, -T::fused(t31, t139, t18 * t141));
+            let t145 = t130 * t138;
+            let t146 = t136 * t138;
+            let t147 = t137 * t138;
+            let t148 = T::fused(t28, t147, -T::fused(-t32, t145, t24 * t146));
+            let t149 = T::fused(t27, t147, -T::fused(t31, t145, t18 * t146));
+            let t150 = T::fused(
+                -row4,
+                T::fused(-t36, t143, t37 * t144),
+                T::fused(-row3, T::fused(-t36, t148, t37 * t149), row0),
+            );
+            let t151 = T::fused(t24, t53, T::fused(t10, t46, t18 * t49));
+            let t152 = T::fused(t24, t62, T::fused(-t10, t58, t18 * t60));
+            let t153 = T::fused(t32, t53, -T::fused(t30, t46, t31 * t49));
+            let t154 = T::fused(t32, t62, -T::fused(-t30, t58, t31 * t60));
+            let t155 = T::fused(
+                k(0.8944271909999159),
+                T::fused(k(0.7453559924999299), t151, k(0.29814239699997197) * t152),
+                k(0.4472135954999579)
+                    * T::fused(
+                        k(0.7453559924999299),
+                        t153,
+                        k(0.29814239699997197) * t154,
+                    ),
+            );
+            let t156 = T::fused(t28, t66, -T::fused(-t26, t64, t27 * t65));
+            let t157 = k(0.6666666666666666)
+                * T::fused(t28, t53, T::fused(-t26, t46, t27 * t49));
+            let t158 = T::fused(t24, t66, -T::fused(t10, t64, t18 * t65));
+            let t159 = k(0.6666666666666666) * t151;
+            let t160 = T::fused(k(0.3333333333333333), t158, t159);
+            let t161 = T::fused(t32, t66, T::fused(t30, t64, t31 * t65));
+            let t162 = k(0.6666666666666666) * t153;
+            let t163 = T::fused(k(0.3333333333333333), t161, t162);
+            let t164 = T::fused(
+                k(0.7453559924999299),
+                T::fused(k(0.3333333333333333), t156, t157),
+                T::fused(-k(0.29814239699997197), t160, k(0.5962847939999439) * t163),
+            );
+            let t165 = t152 + t158;
+            let t166 = t154 + t161;
+            let t167 = T::fused(
+                k(0.5962847939999439),
+                t165,
+                k(0.29814239699997197) * t166,
+            );
+            let t168 = T::fused(
+                k(0.8944271909999159),
+                t160,
+                k(0.4472135954999579) * t163,
+            );
+            let t169 = T::fused(t28, t62, T::fused(t26, t58, t27 * t60));
+            let t170 = T::fused(
+                k(0.49690399499995325),
+                t169 + t156,
+                T::fused(-k(0.1987615979999813), t165, k(0.3975231959999626) * t166),
+            );
+            let t171 = T::fused(-t167, t164, t170 * t168);
+            let t172 = T::fused(
+                k(0.8944271909999159),
+                T::fused(-k(0.7453559924999299), t158, k(0.5962847939999439) * t152),
+                k(0.4472135954999579)
+                    * T::fused(
+                        -k(0.7453559924999299),
+                        t161,
+                        k(0.5962847939999439) * t154,
+                    ),
+            );
+            let t173 = T::fused(k(0.3333333333333333), t152, -t159);
+            let t174 = T::fused(k(0.3333333333333333), t154, -t162);
+            let t175 = T::fused(
+                k(0.7453559924999299),
+                T::fused(k(0.3333333333333333), t169, -t157),
+                T::fused(-k(0.29814239699997197), t173, k(0.5962847939999439) * t174),
+            );
+            let t176 = T::fused(
+                k(0.8944271909999159),
+                t173,
+                k(0.4472135954999579) * t174,
+            );
+            let t177 = T::fused(-t175, t168, t176 * t164);
+            let t178 = T::fused(
+                k(0.8944271909999159),
+                T::fused(k(0.29814239699997197), t158, k(0.5962847939999439) * t151),
+                k(0.4472135954999579)
+                    * T::fused(
+                        k(0.29814239699997197),
+                        t161,
+                        k(0.5962847939999439) * t153,
+                    ),
+            );
+            let t179 = T::fused(-t170, t176, t167 * t175);
+            let t180 = k(1.0) / T::fused(t179, t178, T::fused(t171, t155, t177 * t172));
+            let t181 = t171 * t180;
+            let t182 = t177 * t180;
+            let t183 = t179 * t180;
+            let t184 = T::fused(t62, t183, -T::fused(t66, t181, t53 * t182));
+            let t185 = T::fused(t60, t183, -T::fused(-t65, t181, t49 * t182));
+            let t186 = t180 * T::fused(-t168, t172, t167 * t178);
+            let t187 = t180 * T::fused(-t176, t178, t168 * t155);
+            let t188 = t180 * T::fused(-t167, t155, t176 * t172);
+            let t189 = T::fused(t62, t188, -T::fused(t66, t186, t53 * t187));
+            let t190 = T::fused(t60, t188, -T::fused(-t65, t186, t49 * t187));
+            let t191 = T::fused(
+                T::fused(-k(0.8944271909999159), t1, k(1.7888543819998317) * t4),
                 row5,
                 T::fused(
                     k(1.4907119849998598),
-                    t53,
-                    -T::fused(-k(1.1925695879998879), t38, k(0.5962847939999439) * t20),
+                    t7,
+                    T::fused(k(1.1925695879998879), t1, k(0.5962847939999439) * t4),
                 ) * row6,
             );
-            let t121 = T::fused(
+            let t192 = t180 * T::fused(-t170, t178, t164 * t172);
+            let t193 = t180 * T::fused(-t164, t155, t175 * t178);
+            let t194 = t180 * T::fused(-t175, t172, t170 * t155);
+            let t195 = T::fused(t62, t194, -T::fused(t66, t192, t53 * t193));
+            let t196 = T::fused(t60, t194, -T::fused(-t65, t192, t49 * t193));
+            let t197 = T::fused(
                 -row8,
-                T::fused(-t113, t91, t84 * t114),
-                T::fused(row7, T::fused(-t113, t97, t84 * t116), -t120),
+                T::fused(-t72, t189, t74 * t190),
+                T::fused(row7, T::fused(-t72, t195, t74 * t196), -t191),
             );
-            let t122 = T::fused(-row9, T::fused(-t113, t85, t84 * t112), t121);
-            let t123 = t108 * t110;
-            let t124 = T::fused(
-                -k(0.6),
-                t99,
-                T::fused(t123, t122, T::fused(t111, t99, t119 * t118)),
-            );
-            let t125 = T::fused(k(0.4), t34, k(0.2) * t12);
-            let t126 = t106
-                - T::fused(k(0.6666666666666666), t38, k(1.3333333333333333) * t20);
-            let t127 = T::fused(-k(0.4), t38, k(0.2) * t20);
-            let t128 = t103
-                - T::fused(-k(0.6666666666666666), t34, k(1.3333333333333333) * t12);
-            let t129 = T::fused(-t126, t125, t128 * t127);
-            let t130 = t105 * t109;
-            let t131 = t105 * t130;
-            let t132 = t108 * t130;
-            let t133 = T::fused(
-                -k(0.6),
-                t118,
-                T::fused(t132, t122, T::fused(t119, t99, t131 * t118)),
-            );
-            let t134 = t100
-                + T::fused(-k(0.6666666666666666), t32, k(1.3333333333333333) * t6);
-            let t135 = T::fused(k(0.4), t32, k(0.2) * t6);
-            let t136 = T::fused(t134, t127, t126 * t135);
-            let t137 = t108 * (t108 * t109);
-            let t138 = T::fused(
-                -k(0.6),
-                t122,
-                T::fused(t137, t122, T::fused(t123, t99, t132 * t118)),
-            );
-            let t139 = T::fused(t128, t135, t134 * t125);
-            let t140 = T::fused(row9, t112, T::fused(-row7, t116, row8 * t114));
-            let t141 = T::fused(k(0.002), t2, k(0.004) * t25);
-            let t142 = T::fused(k(0.006), t25, -T::fused(-k(0.002), t43, k(0.02) * t2));
-            let t143 = T::fused(k(0.01), t25, -T::fused(k(0.004), t43, k(0.006) * t2));
-            let t144 = k(0.02) + T::fused(t26, t143, -T::fused(t44, t141, t3 * t142));
-            let t145 = T::fused(row9, t85, T::fused(-row7, t97, row8 * t91));
-            let t146 = T::fused(t28, t143, T::fused(t48, t141, t10 * t142));
-            let t147 = T::fused(row9, t83, T::fused(-row7, t96, row8 * t90));
-            let t148 = T::fused(t30, t143, T::fused(-t52, t141, t17 * t142));
-            let t149 = arm_rx - (slider_rx - t113);
-            let t150 = arm_ry - (slider_ry - t84);
-            let t151 = arm_rz - (slider_rz + t86);
-            let t152 = T::fused(t39, t151, T::fused(-t33, t149, t35 * t150));
-            let t153 = T::fused(t21, t151, -T::fused(-t7, t149, t13 * t150));
-            let t154 = T::fused(t54, t151, -T::fused(t46, t149, t50 * t150));
-            let t155 = t86 + T::fused(t54, t154, T::fused(t39, t152, t21 * t153));
-            let t156 = t84 + T::fused(t50, t154, T::fused(-t35, t152, t13 * t153));
-            let t157 = T::fused(-t155, t133, t156 * t138)
-                + T::fused(t148, t147, T::fused(t144, t140, t146 * t145));
-            let t158 = T::fused(-k(0.002), t9, k(0.004) * t27);
-            let t159 = T::fused(k(0.006), t27, T::fused(-k(0.002), t47, k(0.02) * t9));
-            let t160 = T::fused(k(0.01), t27, T::fused(k(0.004), t47, k(0.006) * t9));
-            let t161 = k(0.02) + T::fused(t28, t160, T::fused(t48, t158, t10 * t159));
-            let t162 = T::fused(t30, t160, T::fused(-t52, t158, t17 * t159));
-            let t163 = t113 + T::fused(t46, t154, -T::fused(-t33, t152, t7 * t153));
-            let t164 = T::fused(-t155, t124, t163 * t138)
-                - T::fused(t162, t147, T::fused(t146, t140, t161 * t145));
-            let t165 = T::fused(
-                -t52,
-                T::fused(-k(0.002), t16, k(0.004) * t29),
-                t17 * T::fused(k(0.006), t29, T::fused(k(0.002), t51, k(0.02) * t16)),
-            );
-            let t166 = T::fused(
-                t30,
-                T::fused(k(0.01), t29, T::fused(-k(0.004), t51, k(0.006) * t16)),
-                t165,
-            );
-            let t167 = k(0.02) + t166;
-            let t168 = T::fused(-t156, t124, t163 * t133)
-                + T::fused(t167, t147, T::fused(t148, t140, t162 * t145));
-            let t169 = T::fused(t126, t168, -T::fused(-t134, t157, t128 * t164))
-                + T::fused(t139, t138, -T::fused(-t129, t124, t136 * t133));
-            let t170 = k(0.5) * (k(6.0) * t).sin();
-            let t171 = t170.sin();
-            let t172 = k(0.4472135954999579) * t171;
-            let t173 = t170.cos();
-            let t174 = T::fused(k(0.2), t173, k(0.8));
-            let t175 = k(0.7) * T::fused(k(4.0), t, k(0.2)).sin();
-            let t176 = t175.sin();
-            let t177 = T::fused(-k(0.4), t173, k(0.4));
-            let t178 = t175.cos();
-            let t179 = t178 * t177;
-            let t180 = T::fused(-t176, t174, t179);
-            let t181 = t176 * t177;
-            let t182 = T::fused(t178, t174, t181);
-            let t183 = k(0.6666666666666666)
-                * T::fused(t182, t39, T::fused(-t172, t33, t180 * t35));
-            let t184 = T::fused(t182, t21, T::fused(-t180, t13, t172 * t7));
-            let t185 = T::fused(k(0.3333333333333333), t184, -t183);
-            let t186 = k(0.8944271909999159) * t171;
-            let t187 = T::fused(k(0.8), t173, k(0.2));
-            let t188 = T::fused(t178, t187, -t181);
-            let t189 = T::fused(t176, t187, t179);
-            let t190 = k(0.6666666666666666)
-                * T::fused(t189, t39, T::fused(t186, t33, t188 * t35));
-            let t191 = T::fused(t189, t21, -T::fused(t188, t13, t186 * t7));
-            let t192 = T::fused(k(0.3333333333333333), t191, -t190);
-            let t193 = T::fused(t176, t172, t178 * t186);
-            let t194 = T::fused(-t178, t172, t176 * t186);
-            let t195 = k(0.6666666666666666)
-                * T::fused(t194, t39, T::fused(-t173, t33, t193 * t35));
-            let t196 = T::fused(t194, t21, T::fused(-t193, t13, t173 * t7));
-            let t197 = T::fused(k(0.3333333333333333), t196, -t195);
-            let t198 = T::fused(
-                -k(0.6666666666666666),
-                t185,
-                T::fused(k(0.3333333333333333), t192, k(0.6666666666666666) * t197),
-            );
-            let t199 = T::fused(-t182, t54, T::fused(t180, t50, t172 * t46));
+            let t198 = T::fused(row3, t149, row4 * t144);
+            let t199 = T::fused(row3, t148, row4 * t143);
             (
-                t3,
-                t6,
-                t7,
+                t9,
                 t10,
+                t11,
                 t12,
-                t13,
+                t15,
                 t17,
+                t18,
+                t19,
                 t20,
                 t21,
+                t23,
+                t24,
                 t26,
+                t27,
                 t28,
                 t30,
+                t31,
                 t32,
-                t33,
-                t34,
-                t35,
+                t36,
+                t37,
                 t38,
                 t39,
-                t44,
-                t45,
+                t40,
+                t41,
+                t42,
                 t46,
-                t48,
                 t49,
-                t50,
-                t52,
                 t53,
-                t54,
-                t99,
-                t101,
-                t102,
-                t104,
-                t105,
-                t107,
-                t108,
-                t109,
-                t111,
-                t118,
-                t119,
-                t122,
-                t123,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
-                t131,
-                t132,
-                t134,
-                t135,
-                t136,
-                t137,
+                t58,
+                t60,
+                t62,
+                t64,
+                t65,
+                t66,
+                t70,
+                t72,
+                t74,
+                t79,
+                t80,
+                t81,
+                t82,
+                t83,
+                t84,
+                t85,
+                t86,
+                t87,
+                t88,
+                t89,
+                t90,
+                t91,
                 t139,
-                t140,
+                t141,
+                t142,
+                t143,
                 t144,
                 t145,
                 t146,
                 t147,
                 t148,
-                t155,
-                t156,
-                t161,
-                t162,
-                t163,
-                t167,
-                t169,
-                t173,
+                t149,
+                t150,
+                t181,
+                t182,
                 t183,
                 t184,
                 t185,
                 t186,
+                t187,
                 t188,
                 t189,
                 t190,
-                t191,
                 t192,
                 t193,
                 t194,
@@ -8556,223 +8576,187 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Carried<T> {
             )
         };
         let (
-            t292,
-            t293,
-            t294,
-            t295,
-            t296,
-            t297,
-            t298,
-            t299,
-            t300,
-            t301,
-            t302,
-            t303,
-            t304,
+            t200,
+            t204,
+            t211,
+            t214,
+            t217,
+            t244,
+            t246,
+            t248,
+            t250,
+            t251,
+            t252,
+            t253,
+            t254,
         ) = {
-            let t200 = T::fused(-k(0.3333333333333333), t199, t183);
-            let t201 = T::fused(t189, t54, T::fused(-t188, t50, t186 * t46));
-            let t202 = T::fused(k(0.3333333333333333), t201, t190);
-            let t203 = T::fused(-t194, t54, T::fused(t193, t50, t173 * t46));
-            let t204 = T::fused(-k(0.3333333333333333), t203, t195);
-            let t205 = T::fused(
-                -k(0.6666666666666666),
-                t200,
-                T::fused(k(0.3333333333333333), t202, k(0.6666666666666666) * t204),
+            let t200 = T::fused(-t79, t198, t80 * t199) + t150
+                - T::fused(-row9, T::fused(-t72, t184, t74 * t185), t197);
+            let t201 = k(0.6) * t200;
+            let t202 = T::fused(t26, t142, T::fused(t30, t139, t10 * t141));
+            let t203 = T::fused(t26, t147, T::fused(t30, t145, t10 * t146));
+            let t204 = T::fused(
+                row4,
+                T::fused(t37, t202, t39 * t143),
+                T::fused(row3, T::fused(t37, t203, t39 * t148), row1),
             );
-            let t206 = T::fused(
-                k(0.3333333333333333),
-                t185,
-                k(0.6666666666666666) * (t197 - t192),
-            );
+            let t205 = T::fused(t58, t183, T::fused(-t64, t181, t46 * t182));
+            let t206 = T::fused(t58, t188, T::fused(-t64, t186, t46 * t187));
             let t207 = T::fused(
-                k(0.3333333333333333),
-                t200,
-                k(0.6666666666666666) * (t204 - t202),
+                -T::fused(-k(0.8944271909999159), t11, k(1.7888543819998317) * t12),
+                row5,
+                T::fused(
+                    k(1.4907119849998598),
+                    t15,
+                    -T::fused(k(1.1925695879998879), t11, k(0.5962847939999439) * t12),
+                ) * row6,
             );
-            let t208 = k(0.6666666666666666) * (t207 - t206);
-            let t209 = t199 - t184;
-            let t210 = t201 + t191;
-            let t211 = t203 - t196;
-            let t212 = T::fused(
-                -k(0.4444444444444444),
-                t209,
-                T::fused(-k(0.2222222222222222), t210, k(0.4444444444444444) * t211),
+            let t208 = T::fused(t58, t194, T::fused(-t64, t192, t46 * t193));
+            let t209 = T::fused(
+                -row8,
+                T::fused(-t74, t206, t70 * t189),
+                T::fused(row7, T::fused(-t74, t208, t70 * t195), -t207),
             );
-            let t213 = k(0.6666666666666666)
-                * T::fused(
-                    k(0.2222222222222222),
-                    t209,
-                    k(0.4444444444444444) * (t211 + t210),
-                );
-            let t214 = T::fused(-k(0.3333333333333333), t206, t213);
-            let t215 = T::fused(k(0.3333333333333333), t207, -t213);
-            let t216 = k(1.0) / T::fused(t198, t215, T::fused(-t212, t208, t205 * t214));
-            let t217 = t216 * (k(0.6666666666666666) * (t205 - t198));
-            let t218 = k(0.6666666666666666) * t212;
-            let t219 = t216 * T::fused(-k(0.3333333333333333), t198, t218);
-            let t220 = t216 * T::fused(k(0.3333333333333333), t205, -t218);
-            let t221 = T::fused(t54, t220, -T::fused(-t39, t217, t21 * t219));
-            let t222 = T::fused(t50, t220, -T::fused(t35, t217, t13 * t219));
-            let t223 = t208 * t216;
-            let t224 = t214 * t216;
-            let t225 = t215 * t216;
-            let t226 = T::fused(t54, t225, -T::fused(-t39, t223, t21 * t224));
-            let t227 = T::fused(t50, t225, -T::fused(t35, t223, t13 * t224));
-            let t228 = T::fused(
-                -row4,
-                T::fused(-t125, t221, t127 * t222),
-                T::fused(-row3, T::fused(-t125, t226, t127 * t227), row0),
+            let t210 = T::fused(row3, t203, row4 * t202);
+            let t211 = T::fused(-t79, t210, t82 * t199) - t204
+                + T::fused(-row9, T::fused(-t74, t205, t70 * t184), t209);
+            let t212 = k(0.6) * t211;
+            let t213 = T::fused(
+                t38,
+                T::fused(k(1.5), t150, t201),
+                t40 * T::fused(-k(1.5), t204, t212),
             );
-            let t229 = T::fused(
-                -k(2.1),
-                t129,
-                T::fused(t123, t139, -T::fused(-t111, t129, t119 * t136)),
-            );
-            let t230 = t119 * t155;
-            let t231 = t156 * t123;
-            let t232 = t231 - t230;
-            let t233 = k(0.6) * t155;
-            let t234 = T::fused(-t111, t155, t163 * t123);
-            let t235 = t234 + t233;
-            let t236 = k(0.6) * t156;
-            let t237 = T::fused(-t156, t111, t163 * t119);
-            let t238 = t237 + t236;
-            let t239 = T::fused(t126, t238, -T::fused(-t134, t232, t128 * t235)) + t229;
-            let t240 = T::fused(t46, t220, T::fused(t33, t217, t7 * t219));
-            let t241 = T::fused(t46, t225, T::fused(t33, t223, t7 * t224));
-            let t242 = T::fused(
+            let t214 = T::fused(
                 row4,
-                T::fused(t127, t240, t135 * t221),
-                T::fused(row3, T::fused(t127, t241, t135 * t226), row1),
+                T::fused(t39, t144, t36 * t202),
+                T::fused(row3, T::fused(t39, t149, t36 * t203), row2),
             );
+            let t215 = T::fused(
+                -T::fused(k(0.8944271909999159), t19, k(1.7888543819998317) * t20),
+                row5,
+                T::fused(
+                    k(1.4907119849998598),
+                    t21,
+                    -T::fused(-k(1.1925695879998879), t19, k(0.5962847939999439) * t20),
+                ) * row6,
+            );
+            let t216 = T::fused(
+                -row8,
+                T::fused(-t70, t190, t72 * t206),
+                T::fused(row7, T::fused(-t70, t196, t72 * t208), -t215),
+            );
+            let t217 = T::fused(-t80, t210, t82 * t198) - t214
+                - T::fused(-row9, T::fused(-t70, t185, t72 * t205), t216);
+            let t218 = k(0.6) * t217;
+            let t219 = T::fused(t24, t199, T::fused(-t10, t210, t18 * t198));
+            let t220 = T::fused(t28, t199, T::fused(t26, t210, t27 * t198));
+            let t221 = T::fused(k(0.02), t219, k(0.03) * t220);
+            let t222 = T::fused(t32, t199, -T::fused(-t30, t210, t31 * t198));
+            let t223 = T::fused(k(0.01), t220, T::fused(-k(0.02), t222, k(0.05) * t219));
+            let t224 = T::fused(k(0.1), t220, T::fused(-k(0.03), t222, k(0.01) * t219));
+            let t225 = T::fused(
+                k(0.3),
+                t210,
+                -T::fused(t26, t224, -T::fused(t30, t221, t10 * t223)),
+            );
+            let t226 = t210 - T::fused(row9, t205, T::fused(-row7, t208, row8 * t206));
+            let t227 = t198 - T::fused(row9, t185, T::fused(-row7, t196, row8 * t190));
+            let t228 = t199 - T::fused(row9, t184, T::fused(-row7, t195, row8 * t189));
+            let t229 = T::fused(t53, t228, T::fused(-t46, t226, t49 * t227));
+            let t230 = T::fused(t62, t228, T::fused(t58, t226, t60 * t227));
+            let t231 = T::fused(-k(0.001), t229, k(0.002) * t230);
+            let t232 = T::fused(t66, t228, -T::fused(-t64, t226, t65 * t227));
+            let t233 = T::fused(
+                k(0.003),
+                t230,
+                T::fused(k(0.001), t232, k(0.01) * t229),
+            );
+            let t234 = T::fused(
+                k(0.005),
+                t230,
+                T::fused(-k(0.002), t232, k(0.003) * t229),
+            );
+            let t235 = T::fused(
+                k(0.02),
+                t226,
+                T::fused(t58, t234, -T::fused(t64, t231, t46 * t233)),
+            );
+            let t236 = T::fused(
+                k(0.3),
+                t198,
+                -T::fused(t27, t224, T::fused(t31, t221, t18 * t223)),
+            );
+            let t237 = T::fused(
+                k(0.02),
+                t227,
+                T::fused(t60, t234, T::fused(t65, t231, t49 * t233)),
+            );
+            let t238 = T::fused(
+                -t9,
+                T::fused(t79, t212, t80 * t218) - t235 - t225,
+                t17 * (T::fused(-t79, t201, t82 * t218) + t237 + t236),
+            );
+            let t239 = T::fused(
+                k(0.3),
+                t199,
+                -T::fused(t28, t224, T::fused(-t32, t221, t24 * t223)),
+            );
+            let t240 = T::fused(
+                k(0.02),
+                t228,
+                T::fused(t62, t234, T::fused(-t66, t231, t53 * t233)),
+            );
+            let t241 = T::fused(
+                t23,
+                T::fused(t80, t201, t82 * t212) + t240 + t239,
+                t238,
+            );
+            let t242 = T::fused(t88, t218, -T::fused(-t86, t201, t87 * t212));
             let t243 = T::fused(
-                k(2.1),
-                t136,
-                T::fused(t132, t139, -T::fused(-t119, t129, t131 * t136)),
+                t242,
+                t91,
+                t241 - T::fused(t41, T::fused(-k(1.5), t214, t218), t213),
             );
-            let t244 = T::fused(-t131, t155, t156 * t132);
-            let t245 = t233 + t244;
-            let t246 = t163 * t132;
-            let t247 = t246 - t230;
-            let t248 = k(0.6) * t163;
-            let t249 = T::fused(-t156, t119, t163 * t131);
-            let t250 = t249 - t248;
-            let t251 = T::fused(t126, t250, -T::fused(-t134, t245, t128 * t247)) + t243;
-            let t252 = T::fused(
-                row4,
-                T::fused(t135, t222, t125 * t240),
-                T::fused(row3, T::fused(t135, t227, t125 * t241), row2),
-            );
-            let t253 = T::fused(
-                -k(2.1),
-                t139,
-                T::fused(t139, t137, -T::fused(-t123, t129, t132 * t136)),
-            );
-            let t254 = T::fused(-t155, t132, t156 * t137);
-            let t255 = t236 - t254;
-            let t256 = T::fused(-t155, t123, t163 * t137);
-            let t257 = t248 - t256;
-            let t258 = t246 - t231;
-            let t259 = T::fused(t126, t258, T::fused(-t134, t255, t128 * t257)) + t253;
-            let t260 = T::fused(row3, t241, row4 * t240);
-            let t261 = T::fused(-k(0.04), t6, k(0.06) * t45);
-            let t262 = T::fused(k(0.02), t45, -T::fused(k(0.04), t32, k(0.1) * t6));
-            let t263 = T::fused(k(0.2), t45, -T::fused(k(0.06), t32, k(0.02) * t6));
-            let t264 = t155 * t155;
-            let t265 = t156 * t156;
-            let t266 = T::fused(k(0.6), t265 + t264, t144)
-                - T::fused(-t155, t244, t156 * t254);
-            let t267 = t266
-                + (k(0.3) - T::fused(t46, t263, -T::fused(t33, t261, t7 * t262)));
-            let t268 = T::fused(k(0.6), t163 * t156, -t146)
-                - T::fused(-t155, t247, t156 * t256);
-            let t269 = t268 + T::fused(t50, t263, T::fused(t35, t261, t13 * t262));
-            let t270 = T::fused(k(0.6), t163 * t155, -t148)
-                + T::fused(-t249, t155, t156 * t258);
-            let t271 = t270 + T::fused(t54, t263, T::fused(-t39, t261, t21 * t262));
-            let t272 = T::fused(t126, t271, T::fused(-t134, t267, t128 * t269))
-                - T::fused(t139, t255, T::fused(-t129, t232, t136 * t245));
-            let t273 = T::fused(row3, t227, row4 * t222);
-            let t274 = T::fused(k(0.04), t12, k(0.06) * t49);
-            let t275 = T::fused(k(0.02), t49, T::fused(k(0.04), t34, k(0.1) * t12));
-            let t276 = T::fused(k(0.2), t49, T::fused(k(0.06), t34, k(0.02) * t12));
-            let t277 = t163 * t163;
-            let t278 = T::fused(k(0.6), t277 + t264, t161)
-                - T::fused(-t155, t234, t163 * t256);
-            let t279 = t278
-                + (k(0.3) - T::fused(t50, t276, T::fused(t35, t274, t13 * t275)));
-            let t280 = T::fused(k(0.6), t156 * t155, -t162)
-                - T::fused(-t237, t155, t163 * t258);
-            let t281 = t280 + T::fused(t54, t276, T::fused(-t39, t274, t21 * t275));
-            let t282 = T::fused(t126, t281, -T::fused(-t134, t269, t128 * t279))
-                + T::fused(t139, t257, T::fused(-t129, t235, t136 * t247));
-            let t283 = T::fused(row3, t226, row4 * t221);
-            let t284 = T::fused(
-                -t39,
-                T::fused(k(0.04), t20, k(0.06) * t53),
-                t21 * T::fused(k(0.02), t53, T::fused(-k(0.04), t38, k(0.1) * t20)),
-            );
-            let t285 = T::fused(
-                t54,
-                T::fused(k(0.2), t53, T::fused(-k(0.06), t38, k(0.02) * t20)),
-                t284,
-            );
-            let t286 = T::fused(k(0.6), t277 + t265, t167)
-                - T::fused(-t156, t237, t163 * t249);
-            let t287 = T::fused(
-                t286 + (k(0.3) - t285),
-                t126,
-                -T::fused(t271, t134, t281 * t128),
-            );
-            let t288 = t287 - T::fused(t258, t139, -T::fused(-t238, t129, t250 * t136));
-            let t289 = T::fused(t288, t283, -T::fused(t272, t260, t282 * t273))
-                - T::fused(t259, t252, -T::fused(t239, t228, t251 * t242));
-            let t290 = T::fused(t126, t288, -T::fused(t134, t272, t128 * t282))
-                - T::fused(t139, t259, -T::fused(-t129, t239, t136 * t251));
-            let t291 = (t289 - t169) / t290;
-            let t292 = T::fused(t129, t291, t228);
-            let t293 = T::fused(-t136, t291, t242);
-            let t294 = T::fused(-t139, t291, t252);
-            let t295 = T::fused(-t134, t291, t260);
-            let t296 = T::fused(-t128, t291, t273);
-            let t297 = T::fused(-t126, t291, t283);
-            let t298 = t99 - (t292 + T::fused(-t155, t296, t156 * t297));
-            let t299 = t118 - (t293 - T::fused(-t155, t295, t163 * t297));
-            let t300 = t122 + (t294 - T::fused(-t156, t295, t163 * t296));
-            let t301 = t109 * T::fused(t108, t300, T::fused(t102, t298, t105 * t299));
-            let t302 = t140 - t295;
-            let t303 = t145 - t296;
-            let t304 = t147 - t297;
+            let t244 = t243 / T::fused(t89, t91, -(k(0.32) + (t85 + t42)));
+            let t245 = t9 * t244;
+            let t246 = t210 + t245;
+            let t247 = t17 * t244;
+            let t248 = t198 + t247;
+            let t249 = t23 * t244;
+            let t250 = t199 + t249;
+            let t251 = T::fused(-t242, t90, t91 * t244);
+            let t252 = t226 + t245;
+            let t253 = t227 + t247;
+            let t254 = t228 + t249;
             (
-                t292,
-                t293,
-                t294,
-                t295,
-                t296,
-                t297,
-                t298,
-                t299,
-                t300,
-                t301,
-                t302,
-                t303,
-                t304,
+                t200,
+                t204,
+                t211,
+                t214,
+                t217,
+                t244,
+                t246,
+                t248,
+                t250,
+                t251,
+                t252,
+                t253,
+                t254,
             )
         };
         *out = [
-            t292,
-            t293,
-            t294,
-            T::fused(-t39, t297, T::fused(-t33, t295, t35 * t296)),
-            -T::fused(t21, t297, T::fused(-t7, t295, t13 * t296)),
-            T::fused(t54, t297, T::fused(t46, t295, t50 * t296)),
-            T::fused(t101, t301, -t298),
-            T::fused(t104, t301, -t299),
-            T::fused(-t107, t301, t300),
-            T::fused(t52, t304, -T::fused(-t44, t302, t48 * t303)),
-            T::fused(t17, t304, T::fused(-t3, t302, t10 * t303)),
-            -T::fused(t30, t304, T::fused(t26, t302, t28 * t303)),
+            T::fused(-t38, t244, t150),
+            T::fused(t40, t244, t204),
+            T::fused(t41, t244, t214),
+            T::fused(-t32, t250, T::fused(-t30, t246, t31 * t248)),
+            -T::fused(t24, t250, T::fused(-t10, t246, t18 * t248)),
+            T::fused(t28, t250, T::fused(t26, t246, t27 * t248)),
+            T::fused(t86, t251, T::fused(-t81, t244, t200)),
+            T::fused(t87, t251, -T::fused(-t83, t244, t211)),
+            -T::fused(t88, t251, T::fused(-t84, t244, t217)),
+            T::fused(-t66, t254, T::fused(-t64, t252, t65 * t253)),
+            -T::fused(t53, t254, T::fused(-t46, t252, t49 * t253)),
+            T::fused(t62, t254, T::fused(t58, t252, t60 * t253)),
         ];
     }
 }

@@ -11,7 +11,7 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 1779 operations by rotations of the bodies; 1784 operations by relative Euler parameters
-//! * project: 1238 operations by rotations of the bodies; 1243 operations by relative Euler parameters
+//! * project: 1016 operations by rotations of the bodies; 1021 operations by relative Euler parameters
 //! * joint_accelerations: 217 operations by normal form; 1232 operations by recursion
 //! * joint_accelerations_at: 634 operations by normal form; 1649 operations by recursion; 1 more compared
 //! * corrected_accelerations: 914 operations by normal form in the bodies' frames; 1017 operations by normal form in the global frame; 5 more compared
@@ -30,7 +30,7 @@
 //! | applied_force | (f, n' − w̃'J'w') | 247 | 313 | 0 | 560 | 0 of 12 | 19989 | 560 |
 //! | accelerations | (s̈, ẇ'), eq. (17) | 796 | 977 | 6 | 1779 | 0 of 12 | 1.2e10 | 1782 |
 //! | multipliers | λ, the accelerations being known | 399 | 506 | 2 | 907 | 0 of 8 | 211178 | 907 |
-//! | project | (δr, δπ') that changes the rows as given | 533 | 699 | 6 | 1238 | 0 of 12 | 1.2e10 | 1239 |
+//! | project | (δr, δπ') that changes the rows as given | 429 | 581 | 6 | 1016 | 0 of 12 | 6.8e8 | 1017 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 123 | 176 | 0 | 299 | 0 of 16 | 1134 | 299 |
 //! | energy | T and V | 124 | 168 | 0 | 292 | 0 of 2 | 3071 | 292 |
 //! | read_joints | joint coordinates and rates | 175 | 216 | 0 | 391 | 0 of 10 | 2367 | 391 |
@@ -5564,7 +5564,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for CarriedBlock<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 1238 operations (533 ±, 699 ×, 6 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 1016 operations (429 ±, 581 ×, 6 ÷).
     fn project(
         &self,
         _t: T,
@@ -5596,100 +5596,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for CarriedBlock<T> {
         let row6 = rows[6];
         let row7 = rows[7];
         let (
-            t2,
-            t5,
-            t6,
             t10,
-            t13,
-            t14,
-            t18,
+            t11,
+            t12,
             t20,
             t21,
-            t24,
-            t26,
+            t22,
+            t28,
+            t29,
             t30,
-            t35,
+            t32,
+            t33,
+            t34,
             t36,
             t37,
             t38,
-            t39,
-            t40,
+            t42,
+            t43,
             t44,
             t45,
             t46,
             t47,
-            t48,
-            t49,
+            t52,
             t55,
-            t57,
             t59,
+            t64,
+            t66,
+            t68,
+            t71,
+            t73,
+            t75,
+            t79,
+            t81,
             t83,
-            t85,
-            t86,
-            t87,
             t88,
+            t89,
+            t90,
+            t91,
+            t92,
+            t93,
             t95,
             t96,
             t97,
-            t98,
-            t99,
-            t100,
-            t101,
-            t102,
-            t103,
             t104,
-            t108,
-            t109,
+            t105,
+            t106,
+            t110,
+            t111,
             t113,
-            t114,
             t115,
+            t117,
             t119,
-            t120,
             t122,
             t123,
             t124,
+            t125,
+            t126,
             t128,
-            t130,
             t131,
+            t134,
             t135,
             t136,
-            t137,
-            t139,
+            t138,
             t140,
-            t144,
-            t145,
-            t146,
-            t150,
-            t151,
-            t152,
-            t153,
-            t157,
+            t147,
             t158,
             t159,
+            t160,
+            t161,
             t162,
             t163,
+            t164,
             t165,
+            t166,
             t167,
-            t169,
-            t170,
-            t173,
-            t174,
-            t175,
-            t176,
-            t178,
-            t179,
-            t181,
-            t182,
-            t183,
-            t184,
+            t168,
             t185,
-            t186,
-            t187,
             t188,
-            t189,
-            t190,
-            t191,
-            t192,
             t194,
             t195,
             t196,
@@ -5697,394 +5680,420 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = block_e0 * block_e0;
-            let t1 = k(0.5) - T::fused(block_e1, block_e1, t0);
-            let t2 = k(2.0) * t1;
-            let t3 = arm_e0 * arm_e2;
-            let t4 = arm_e1 * arm_e3;
-            let t5 = t4 + t3;
-            let t6 = k(2.0) * t5;
-            let t7 = block_e0 * block_e3;
-            let t8 = block_e1 * block_e2;
+            let t0 = arm_e0 * arm_e0;
+            let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
+            let t2 = k(1.3333333333333333) * t1;
+            let t3 = arm_e0 * arm_e3;
+            let t4 = arm_e1 * arm_e2;
+            let t5 = t4 - t3;
+            let t6 = k(0.6666666666666666) * t5;
+            let t7 = arm_e0 * arm_e2;
+            let t8 = arm_e1 * arm_e3;
             let t9 = t8 + t7;
-            let t10 = k(2.0) * t9;
-            let t11 = arm_e0 * arm_e1;
-            let t12 = arm_e2 * arm_e3;
-            let t13 = t12 - t11;
-            let t14 = k(2.0) * t13;
-            let t15 = block_e0 * block_e2;
-            let t16 = block_e1 * block_e3;
-            let t17 = t16 - t15;
-            let t18 = k(2.0) * t17;
-            let t19 = arm_e0 * arm_e0;
-            let t20 = k(0.5) - T::fused(arm_e3, arm_e3, t19);
-            let t21 = k(2.0) * t20;
-            let t22 = k(0.6666666666666666)
-                * T::fused(t21, t18, -T::fused(-t6, t2, t14 * t10));
-            let t23 = k(0.5) - T::fused(block_e2, block_e2, t0);
-            let t24 = k(2.0) * t23;
-            let t25 = t8 - t7;
-            let t26 = k(2.0) * t25;
-            let t27 = block_e0 * block_e1;
-            let t28 = block_e2 * block_e3;
-            let t29 = t28 + t27;
-            let t30 = k(2.0) * t29;
-            let t31 = T::fused(t21, t30, -T::fused(-t14, t24, t6 * t26));
-            let t32 = T::fused(k(0.3333333333333333), t31, -t22);
-            let t33 = arm_e0 * arm_e3;
-            let t34 = arm_e1 * arm_e2;
-            let t35 = t34 - t33;
-            let t36 = k(2.0) * t35;
-            let t37 = k(0.5) - T::fused(arm_e2, arm_e2, t19);
-            let t38 = k(2.0) * t37;
-            let t39 = t12 + t11;
-            let t40 = k(2.0) * t39;
-            let t41 = k(0.6666666666666666)
-                * T::fused(t40, t18, -T::fused(t36, t2, t38 * t10));
-            let t42 = T::fused(t40, t30, T::fused(t38, t24, t36 * t26));
-            let t43 = T::fused(k(0.3333333333333333), t42, -t41);
-            let t44 = k(0.5) - T::fused(arm_e1, arm_e1, t19);
-            let t45 = k(2.0) * t44;
-            let t46 = t34 + t33;
-            let t47 = k(2.0) * t46;
-            let t48 = t4 - t3;
-            let t49 = k(2.0) * t48;
-            let t50 = k(0.6666666666666666)
-                * T::fused(t49, t18, T::fused(t45, t2, t47 * t10));
-            let t51 = T::fused(t49, t30, -T::fused(t45, t26, t47 * t24));
-            let t52 = T::fused(k(0.3333333333333333), t51, -t50);
-            let t53 = T::fused(
-                k(0.6666666666666666),
-                t32,
-                T::fused(k(0.3333333333333333), t43, k(0.6666666666666666) * t52),
+            let t10 = k(1.3333333333333333) * t9;
+            let t11 = t10 - (t6 + t2);
+            let t12 = k(2.0) * t5;
+            let t13 = t4 + t3;
+            let t14 = k(1.3333333333333333) * t13;
+            let t15 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
+            let t16 = k(0.6666666666666666) * t15;
+            let t17 = arm_e0 * arm_e1;
+            let t18 = arm_e2 * arm_e3;
+            let t19 = t18 - t17;
+            let t20 = k(1.3333333333333333) * t19;
+            let t21 = t20 + (t16 + t14);
+            let t22 = k(2.0) * t15;
+            let t23 = t8 - t7;
+            let t24 = k(1.3333333333333333) * t23;
+            let t25 = t18 + t17;
+            let t26 = k(0.6666666666666666) * t25;
+            let t27 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
+            let t28 = k(1.3333333333333333) * t27;
+            let t29 = t28 + (t26 - t24);
+            let t30 = k(2.0) * t25;
+            let t31 = T::fused(t30, t29, T::fused(-t12, t11, t22 * t21));
+            let t32 = k(2.0) * t9;
+            let t33 = k(2.0) * t19;
+            let t34 = k(2.0) * t27;
+            let t35 = T::fused(t34, t29, T::fused(t32, t11, t33 * t21));
+            let t36 = k(2.0) * t1;
+            let t37 = k(2.0) * t13;
+            let t38 = k(2.0) * t23;
+            let t39 = T::fused(t38, t29, -T::fused(-t36, t11, t37 * t21));
+            let t40 = T::fused(
+                -t39,
+                T::fused(k(0.02), t31, k(0.03) * t35),
+                t31 * T::fused(k(0.01), t35, T::fused(-k(0.02), t39, k(0.05) * t31)),
             );
-            let t54 = k(0.5) - T::fused(block_e3, block_e3, t0);
+            let t41 = T::fused(
+                t35,
+                T::fused(k(0.1), t35, T::fused(-k(0.03), t39, k(0.01) * t31)),
+                t40,
+            );
+            let t42 = T::fused(k(0.4), t13, k(0.2) * t15);
+            let t43 = T::fused(-k(0.4), t23, k(0.2) * t25);
+            let t44 = T::fused(-t29, t42, t21 * t43);
+            let t45 = T::fused(k(0.4), t1, k(0.2) * t5);
+            let t46 = T::fused(t11, t43, t29 * t45);
+            let t47 = T::fused(t21, t45, t11 * t42);
+            let t48 = T::fused(
+                k(1.5),
+                T::fused(t47, t47, T::fused(t44, t44, t46 * t46)),
+                -t41,
+            );
+            let t49 = block_e0 * block_e3;
+            let t50 = block_e1 * block_e2;
+            let t51 = t50 - t49;
+            let t52 = k(2.0) * t51;
+            let t53 = block_e0 * block_e0;
+            let t54 = k(0.5) - T::fused(block_e2, block_e2, t53);
             let t55 = k(2.0) * t54;
-            let t56 = t28 - t27;
-            let t57 = k(2.0) * t56;
-            let t58 = t16 + t15;
+            let t56 = block_e0 * block_e1;
+            let t57 = block_e2 * block_e3;
+            let t58 = t57 + t56;
             let t59 = k(2.0) * t58;
-            let t60 = T::fused(t21, t55, T::fused(t14, t57, t6 * t59));
-            let t61 = T::fused(k(0.3333333333333333), t60, t22);
-            let t62 = T::fused(t40, t55, -T::fused(-t38, t57, t36 * t59));
-            let t63 = T::fused(k(0.3333333333333333), t62, t41);
-            let t64 = T::fused(t49, t55, -T::fused(-t45, t59, t47 * t57));
-            let t65 = T::fused(k(0.3333333333333333), t64, t50);
-            let t66 = T::fused(
-                k(0.6666666666666666),
-                t61,
-                T::fused(k(0.3333333333333333), t63, k(0.6666666666666666) * t65),
+            let t60 = T::fused(t59, t29, T::fused(-t52, t11, t55 * t21));
+            let t61 = block_e0 * block_e2;
+            let t62 = block_e1 * block_e3;
+            let t63 = t62 + t61;
+            let t64 = k(2.0) * t63;
+            let t65 = t57 - t56;
+            let t66 = k(2.0) * t65;
+            let t67 = k(0.5) - T::fused(block_e3, block_e3, t53);
+            let t68 = k(2.0) * t67;
+            let t69 = T::fused(t68, t29, T::fused(t64, t11, t66 * t21));
+            let t70 = k(0.5) - T::fused(block_e1, block_e1, t53);
+            let t71 = k(2.0) * t70;
+            let t72 = t50 + t49;
+            let t73 = k(2.0) * t72;
+            let t74 = t62 - t61;
+            let t75 = k(2.0) * t74;
+            let t76 = T::fused(t75, t29, -T::fused(-t71, t11, t73 * t21));
+            let t77 = T::fused(
+                -t76,
+                T::fused(-k(0.001), t60, k(0.002) * t69),
+                t60 * T::fused(k(0.003), t69, T::fused(k(0.001), t76, k(0.01) * t60)),
             );
-            let t67 = T::fused(
-                -k(0.3333333333333333),
-                t32,
-                k(0.6666666666666666) * (t52 - t43),
+            let t78 = T::fused(
+                t69,
+                T::fused(k(0.005), t69, T::fused(-k(0.002), t76, k(0.003) * t60)),
+                t77,
             );
-            let t68 = T::fused(
-                -k(0.3333333333333333),
-                t61,
-                k(0.6666666666666666) * (t65 - t63),
-            );
-            let t69 = k(0.6666666666666666) * (t68 - t67);
-            let t70 = t60 + t31;
-            let t71 = t62 + t42;
-            let t72 = t64 + t51;
-            let t73 = T::fused(
-                k(0.4444444444444444),
-                t70,
-                T::fused(k(0.2222222222222222), t71, k(0.4444444444444444) * t72),
-            );
-            let t74 = k(0.6666666666666666)
-                * T::fused(
-                    -k(0.2222222222222222),
-                    t70,
-                    k(0.4444444444444444) * (t72 - t71),
-                );
-            let t75 = T::fused(k(0.3333333333333333), t67, t74);
-            let t76 = T::fused(k(0.3333333333333333), t68, t74);
-            let t77 = k(1.0) / T::fused(t53, t76, -T::fused(-t73, t69, t66 * t75));
-            let t78 = t77 * (k(0.6666666666666666) * (t66 - t53));
-            let t79 = k(0.6666666666666666) * t73;
-            let t80 = t77 * T::fused(k(0.3333333333333333), t53, t79);
-            let t81 = t77 * T::fused(k(0.3333333333333333), t66, t79);
-            let t82 = T::fused(t55, t81, T::fused(t18, t78, t30 * t80));
-            let t83 = T::fused(k(0.2), t56, T::fused(-k(0.06), t9, k(0.1) * t23));
-            let t84 = T::fused(t57, t81, T::fused(-t10, t78, t24 * t80));
-            let t85 = T::fused(k(0.2), t54, T::fused(k(0.06), t17, k(0.1) * t29));
-            let t86 = k(1.3333333333333333) * t35;
-            let t87 = T::fused(-k(0.6666666666666666), t44, t86);
-            let t88 = k(1.3333333333333333) * t5;
-            let t89 = t69 * t77;
-            let t90 = t75 * t77;
-            let t91 = t76 * t77;
-            let t92 = T::fused(t55, t91, T::fused(t18, t89, t30 * t90));
-            let t93 = T::fused(t57, t91, T::fused(-t10, t89, t24 * t90));
+            let t79 = T::fused(k(0.2), t63, -T::fused(-k(0.06), t70, k(0.1) * t51));
+            let t80 = arm_rx - (block_rx - t79);
+            let t81 = T::fused(k(0.2), t65, T::fused(-k(0.06), t72, k(0.1) * t54));
+            let t82 = arm_ry - (block_ry - t81);
+            let t83 = T::fused(k(0.2), t67, T::fused(k(0.06), t74, k(0.1) * t58));
+            let t84 = arm_rz - (block_rz + t83);
+            let t85 = T::fused(t38, t84, T::fused(-t36, t80, t37 * t82));
+            let t86 = T::fused(t30, t84, -T::fused(-t12, t80, t22 * t82));
+            let t87 = T::fused(t34, t84, -T::fused(t32, t80, t33 * t82));
+            let t88 = t83 + T::fused(t34, t87, T::fused(t38, t85, t30 * t86));
+            let t89 = t81 + T::fused(t33, t87, T::fused(-t37, t85, t22 * t86));
+            let t90 = t44 - T::fused(-t88, t21, t89 * t29);
+            let t91 = t79 + T::fused(t32, t87, -T::fused(-t36, t85, t12 * t86));
+            let t92 = t46 - T::fused(-t88, t11, t91 * t29);
+            let t93 = t47 - T::fused(-t89, t11, t91 * t21);
             let t94 = T::fused(
-                -(t88 + t87),
-                row5,
-                row6 * T::fused(-t83, t92, t85 * t93),
+                k(0.6),
+                T::fused(t93, t93, T::fused(t90, t90, t92 * t92)),
+                t78,
             );
-            let t95 = T::fused(row7, T::fused(-t83, t82, t85 * t84), t94);
+            let t95 = T::fused(
+                k(1.3333333333333333),
+                t63,
+                T::fused(-k(0.6666666666666666), t70, k(1.3333333333333333) * t51),
+            );
             let t96 = T::fused(
                 k(1.3333333333333333),
-                t54,
-                -T::fused(k(0.6666666666666666), t17, k(1.3333333333333333) * t29),
+                t65,
+                -T::fused(-k(0.6666666666666666), t72, k(1.3333333333333333) * t54),
             );
             let t97 = T::fused(
                 k(1.3333333333333333),
-                t56,
-                -T::fused(-k(0.6666666666666666), t9, k(1.3333333333333333) * t23),
+                t67,
+                -T::fused(k(0.6666666666666666), t74, k(1.3333333333333333) * t58),
             );
-            let t98 = T::fused(-t83, t96, t85 * t97);
-            let t99 = k(0.6666666666666666) * t5;
-            let t100 = T::fused(k(1.3333333333333333), t44 + t35, -t99);
-            let t101 = k(1.3333333333333333) * t44;
-            let t102 = k(0.6666666666666666) * t35;
-            let t103 = t102 - t101 - t88;
-            let t104 = k(0.6) * t103;
-            let t105 = k(1.3333333333333333) * t13;
-            let t106 = k(1.3333333333333333) * t46;
-            let t107 = k(0.6666666666666666) * t37;
-            let t108 = t107 - t106 + t105;
-            let t109 = k(0.6) * t108;
-            let t110 = k(1.3333333333333333) * t20;
-            let t111 = k(1.3333333333333333) * t48;
-            let t112 = k(0.6666666666666666) * t39;
-            let t113 = t112 + t111 + t110;
-            let t114 = k(0.6) * t113;
-            let t115 = k(1.0) / T::fused(t113, t114, T::fused(t103, t104, t108 * t109));
-            let t116 = t104 * t115;
-            let t117 = t104 * t116;
-            let t118 = t109 * t116;
-            let t119 = k(0.6666666666666666) * t13;
-            let t120 = T::fused(k(1.3333333333333333), t46 + t37, t119);
-            let t121 = t114 * t116;
-            let t122 = k(0.6666666666666666) * t20;
-            let t123 = T::fused(k(1.3333333333333333), t48 - t39, -t122);
-            let t124 = T::fused(
+            let t98 = T::fused(t59, t97, T::fused(-t52, t95, t55 * t96));
+            let t99 = T::fused(t68, t97, T::fused(t64, t95, t66 * t96));
+            let t100 = T::fused(-k(0.001), t98, k(0.002) * t99);
+            let t101 = T::fused(t75, t97, -T::fused(-t71, t95, t73 * t96));
+            let t102 = T::fused(k(0.003), t99, T::fused(k(0.001), t101, k(0.01) * t98));
+            let t103 = T::fused(
+                k(0.005),
+                t99,
+                T::fused(-k(0.002), t101, k(0.003) * t98),
+            );
+            let t104 = T::fused(-t81, t97, t83 * t96);
+            let t105 = T::fused(-t83, t95, t79 * t97);
+            let t106 = T::fused(-t79, t96, t81 * t95);
+            let t107 = T::fused(
                 k(0.6),
-                t100,
-                T::fused(t123, t121, -T::fused(t100, t117, t120 * t118)),
+                T::fused(t106, t93, -T::fused(-t104, t90, t105 * t92)),
+                T::fused(t103, t69, T::fused(-t100, t76, t102 * t60)),
             );
-            let t125 = t109 * t115;
-            let t126 = t109 * t125;
-            let t127 = t114 * t125;
-            let t128 = T::fused(
+            let t108 = T::fused(
+                k(0.02),
+                T::fused(t97, t29, T::fused(t95, t11, t96 * t21)),
+                t107,
+            );
+            let t109 = T::fused(
                 k(0.6),
-                t120,
-                T::fused(t123, t127, -T::fused(t100, t118, t120 * t126)),
+                T::fused(t106, t106, T::fused(t104, t104, t105 * t105)),
+                T::fused(t99, t103, T::fused(-t101, t100, t98 * t102)),
             );
-            let t129 = t114 * (t114 * t115);
+            let t110 = k(1.0) / (k(0.02) + t109);
+            let t111 = t110 * t108;
+            let t112 = k(0.6666666666666666) * t9;
+            let t113 = T::fused(k(1.3333333333333333), t1 + t5, -t112);
+            let t114 = k(0.6666666666666666) * t19;
+            let t115 = T::fused(k(1.3333333333333333), t13 + t15, t114);
+            let t116 = k(0.6666666666666666) * t27;
+            let t117 = T::fused(k(1.3333333333333333), t23 - t25, -t116);
+            let t118 = k(0.6)
+                * T::fused(t117, t106, -T::fused(-t113, t104, t115 * t105));
+            let t119 = t110 * t118;
+            let t120 = T::fused(
+                -k(0.6),
+                T::fused(t117, t93, T::fused(t113, t90, t115 * t92)),
+                t119 * t108,
+            );
+            let t121 = T::fused(
+                -k(0.6),
+                T::fused(t117, t117, T::fused(t113, t113, t115 * t115)),
+                t118 * t119,
+            );
+            let t122 = k(1.0) / t121;
+            let t123 = t122 * t120;
+            let t124 = t6 - t2 - t10;
+            let t125 = t16 - t14 + t20;
+            let t126 = t26 + t24 + t28;
+            let t127 = k(0.6) * T::fused(t126, t106, T::fused(-t124, t104, t125 * t105));
+            let t128 = t110 * t127;
+            let t129 = T::fused(
+                -k(0.6),
+                T::fused(t126, t93, -T::fused(t124, t90, t125 * t92)),
+                t128 * t108,
+            );
             let t130 = T::fused(
                 -k(0.6),
-                t123,
-                T::fused(t123, t129, -T::fused(t100, t121, t120 * t127)),
+                T::fused(t126, t117, -T::fused(t124, t113, t125 * t115)),
+                t119 * t127,
             );
-            let t131 = k(1.0) / T::fused(t123, t130, -T::fused(t100, t124, t120 * t128));
-            let t132 = t124 * t131;
-            let t133 = T::fused(-t124, t132, t117);
-            let t134 = T::fused(-t128, t132, t118);
-            let t135 = T::fused(
-                k(1.3333333333333333),
-                t58,
-                T::fused(-k(0.6666666666666666), t1, k(1.3333333333333333) * t25),
+            let t131 = t122 * t130;
+            let t132 = T::fused(t131, t120, -t129);
+            let t133 = T::fused(
+                -k(0.6),
+                T::fused(t126, t126, T::fused(t124, t124, t125 * t125)),
+                t127 * t128,
             );
-            let t136 = T::fused(k(0.2), t58, -T::fused(-k(0.06), t1, k(0.1) * t25));
-            let t137 = T::fused(-t85, t135, t136 * t96);
-            let t138 = T::fused(-t130, t132, t121);
-            let t139 = T::fused(-t136, t97, t83 * t135);
-            let t140 = T::fused(
-                k(0.6),
-                t98,
-                T::fused(t139, t138, T::fused(-t98, t133, t137 * t134)),
+            let t134 = k(1.0) / T::fused(t130, t131, -t133);
+            let t135 = t134 * t132;
+            let t136 = T::fused(
+                t132,
+                t135,
+                -T::fused(t120, t123, -T::fused(t108, t111, -(k(0.32) + (t94 + t48)))),
             );
-            let t141 = t128 * t131;
-            let t142 = T::fused(-t128, t141, t126);
-            let t143 = T::fused(-t130, t141, t127);
+            let t137 = k(1.3333333333333333) * t15;
+            let t138 = T::fused(-k(0.6666666666666666), t13, t137);
+            let t139 = k(1.3333333333333333) * t5;
+            let t140 = T::fused(-k(0.6666666666666666), t1, t139);
+            let t141 = T::fused(
+                -k(0.8944271909999159),
+                t138,
+                k(0.4472135954999579) * t140,
+            );
+            let t142 = t13 - t19;
+            let t143 = t1 + t9;
             let t144 = T::fused(
-                -k(0.6),
-                t137,
-                T::fused(t139, t143, T::fused(-t98, t134, t137 * t142)),
+                -k(1.1925695879998879),
+                t142,
+                k(0.5962847939999439) * t143,
             );
-            let t145 = T::fused(-t130, t130 * t131, t129);
-            let t146 = T::fused(
-                -k(0.6),
-                t139,
-                T::fused(t139, t145, T::fused(-t98, t138, t137 * t143)),
+            let t145 = k(0.6666666666666666) * t144;
+            let t146 = k(1.3333333333333333) * t25;
+            let t147 = T::fused(k(0.6666666666666666), t23, t146);
+            let t148 = T::fused(
+                -k(0.7453559924999299),
+                t147,
+                T::fused(k(0.29814239699997197), t138, k(0.5962847939999439) * t140),
             );
-            let t147 = T::fused(k(0.002), t25, k(0.004) * t58);
-            let t148 = T::fused(k(0.006), t58, -T::fused(-k(0.002), t1, k(0.02) * t25));
-            let t149 = T::fused(k(0.01), t58, -T::fused(k(0.004), t1, k(0.006) * t25));
-            let t150 = k(0.02) + T::fused(t59, t149, -T::fused(t2, t147, t26 * t148));
-            let t151 = T::fused(t57, t149, T::fused(t10, t147, t24 * t148));
-            let t152 = T::fused(t55, t149, T::fused(-t18, t147, t30 * t148));
-            let t153 = T::fused(t96, t152, T::fused(t135, t150, t97 * t151));
-            let t154 = T::fused(-k(0.002), t23, k(0.004) * t56);
-            let t155 = T::fused(k(0.006), t56, T::fused(-k(0.002), t9, k(0.02) * t23));
-            let t156 = T::fused(k(0.01), t56, T::fused(k(0.004), t9, k(0.006) * t23));
-            let t157 = k(0.02) + T::fused(t57, t156, T::fused(t10, t154, t24 * t155));
-            let t158 = T::fused(t55, t156, T::fused(-t18, t154, t30 * t155));
-            let t159 = T::fused(t96, t158, T::fused(t135, t151, t97 * t157));
-            let t160 = T::fused(
-                -t18,
-                T::fused(-k(0.002), t29, k(0.004) * t54),
-                t30 * T::fused(k(0.006), t54, T::fused(k(0.002), t17, k(0.02) * t29)),
+            let t149 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.9938079899999065),
+                    t23 + t27,
+                    T::fused(k(0.3975231959999626), t142, k(0.7950463919999252) * t143),
+                );
+            let t150 = T::fused(-k(0.3333333333333333), t148, t149);
+            let t151 = t114 - t137;
+            let t152 = t112 + t139;
+            let t153 = T::fused(
+                k(0.8944271909999159),
+                t151,
+                k(0.4472135954999579) * t152,
             );
-            let t161 = T::fused(
-                t55,
-                T::fused(k(0.01), t54, T::fused(-k(0.004), t17, k(0.006) * t29)),
-                t160,
+            let t154 = T::fused(
+                k(0.7453559924999299),
+                t116 - t146,
+                T::fused(-k(0.29814239699997197), t151, k(0.5962847939999439) * t152),
             );
-            let t162 = k(0.02) + t161;
-            let t163 = T::fused(t162, t96, T::fused(t152, t135, t158 * t97));
-            let t164 = T::fused(t96, t163, T::fused(t135, t153, t97 * t159))
-                - T::fused(t139, t146, T::fused(-t98, t140, t137 * t144));
-            let t165 = k(1.0) / t164;
-            let t166 = t140 * t165;
-            let t167 = T::fused(t140, t166, t133);
-            let t168 = T::fused(t59, t81, -T::fused(-t2, t78, t26 * t80));
-            let t169 = k(1.3333333333333333) * t37;
-            let t170 = T::fused(-k(0.6666666666666666), t46, t169);
-            let t171 = T::fused(t59, t91, -T::fused(-t2, t89, t26 * t90));
-            let t172 = T::fused(
-                -(t105 - t170),
-                row5,
-                row6 * T::fused(-t85, t171, t136 * t92),
+            let t155 = k(0.6666666666666666) * (t154 + t148);
+            let t156 = T::fused(k(0.3333333333333333), t154, t149);
+            let t157 = k(1.0)
+                / T::fused(t141, t156, -T::fused(-t153, t150, t144 * t155));
+            let t158 = t157 * T::fused(-k(0.3333333333333333), t141, t145);
+            let t159 = t157 * (k(0.6666666666666666) * (t153 + t141));
+            let t160 = t157 * T::fused(k(0.3333333333333333), t153, t145);
+            let t161 = T::fused(t34, t160, -T::fused(-t38, t158, t30 * t159));
+            let t162 = T::fused(t33, t160, -T::fused(t37, t158, t22 * t159));
+            let t163 = t150 * t157;
+            let t164 = t155 * t157;
+            let t165 = t156 * t157;
+            let t166 = T::fused(t34, t165, -T::fused(-t38, t163, t30 * t164));
+            let t167 = T::fused(t33, t165, -T::fused(t37, t163, t22 * t164));
+            let t168 = T::fused(
+                -row4,
+                T::fused(-t42, t161, t43 * t162),
+                T::fused(-row3, T::fused(-t42, t166, t43 * t167), row0),
             );
-            let t173 = T::fused(row7, T::fused(-t85, t168, t136 * t82), t172);
-            let t174 = T::fused(t144, t166, t134);
-            let t175 = k(1.3333333333333333) * t39;
-            let t176 = T::fused(k(0.6666666666666666), t48, t175);
-            let t177 = T::fused(
-                -(t110 - t176),
-                row5,
-                row6 * T::fused(-t136, t93, t83 * t171),
+            let t169 = k(0.6666666666666666)
+                * T::fused(t34, t75, -T::fused(-t32, t71, t33 * t73));
+            let t170 = T::fused(t34, t59, -T::fused(-t33, t55, t32 * t52));
+            let t171 = T::fused(k(0.3333333333333333), t170, -t169);
+            let t172 = k(0.6666666666666666)
+                * T::fused(t30, t75, -T::fused(t12, t71, t22 * t73));
+            let t173 = T::fused(t30, t59, T::fused(t22, t55, t12 * t52));
+            let t174 = T::fused(k(0.3333333333333333), t173, -t172);
+            let t175 = k(0.6666666666666666)
+                * T::fused(t38, t75, T::fused(t36, t71, t37 * t73));
+            let t176 = T::fused(t38, t59, -T::fused(t36, t52, t37 * t55));
+            let t177 = T::fused(k(0.3333333333333333), t176, -t175);
+            let t178 = T::fused(
+                k(0.6666666666666666),
+                t171,
+                T::fused(k(0.3333333333333333), t174, k(0.6666666666666666) * t177),
             );
-            let t178 = T::fused(row7, T::fused(-t136, t84, t83 * t168), t177);
-            let t179 = T::fused(t146, t166, t138);
-            let t180 = T::fused(
-                k(0.6),
-                t95,
-                T::fused(t179, t178, T::fused(-t167, t95, t174 * t173)),
+            let t179 = T::fused(t34, t68, T::fused(t33, t66, t32 * t64));
+            let t180 = T::fused(k(0.3333333333333333), t179, t169);
+            let t181 = T::fused(t30, t68, -T::fused(-t22, t66, t12 * t64));
+            let t182 = T::fused(k(0.3333333333333333), t181, t172);
+            let t183 = T::fused(t38, t68, -T::fused(-t36, t64, t37 * t66));
+            let t184 = T::fused(k(0.3333333333333333), t183, t175);
+            let t185 = T::fused(
+                k(0.6666666666666666),
+                t180,
+                T::fused(k(0.3333333333333333), t182, k(0.6666666666666666) * t184),
             );
-            let t181 = T::fused(row6, t171, row7 * t168);
-            let t182 = t153 * t166;
-            let t183 = T::fused(row6, t93, row7 * t84);
-            let t184 = t159 * t166;
-            let t185 = T::fused(row6, t92, row7 * t82);
-            let t186 = t163 * t166;
-            let t187 = T::fused(t186, t185, T::fused(t182, t181, t184 * t183)) - t180;
-            let t188 = T::fused(k(0.4), t46, k(0.2) * t37);
-            let t189 = t110 + (t112 - t111);
-            let t190 = T::fused(-k(0.4), t48, k(0.2) * t39);
-            let t191 = t105 + (t107 + t106);
-            let t192 = T::fused(-t189, t188, t191 * t190);
-            let t193 = t144 * t165;
-            let t194 = T::fused(t144, t193, t142);
-            let t195 = T::fused(t146, t193, t143);
-            let t196 = T::fused(
-                -k(0.6),
-                t173,
-                T::fused(t195, t178, T::fused(-t174, t95, t194 * t173)),
+            let t186 = T::fused(
+                -k(0.3333333333333333),
+                t171,
+                k(0.6666666666666666) * (t177 - t174),
             );
-            let t197 = t153 * t193;
-            let t198 = t159 * t193;
-            let t199 = t163 * t193;
+            let t187 = T::fused(
+                -k(0.3333333333333333),
+                t180,
+                k(0.6666666666666666) * (t184 - t182),
+            );
+            let t188 = k(0.6666666666666666) * (t187 - t186);
+            let t189 = t179 + t170;
+            let t190 = t181 + t173;
+            let t191 = t183 + t176;
+            let t192 = T::fused(
+                k(0.4444444444444444),
+                t189,
+                T::fused(k(0.2222222222222222), t190, k(0.4444444444444444) * t191),
+            );
+            let t193 = k(0.6666666666666666)
+                * T::fused(
+                    -k(0.2222222222222222),
+                    t189,
+                    k(0.4444444444444444) * (t191 - t190),
+                );
+            let t194 = T::fused(k(0.3333333333333333), t186, t193);
+            let t195 = T::fused(k(0.3333333333333333), t187, t193);
+            let t196 = k(1.0)
+                / T::fused(t178, t195, -T::fused(-t192, t188, t185 * t194));
+            let t197 = t196 * (k(0.6666666666666666) * (t185 - t178));
+            let t198 = k(0.6666666666666666) * t192;
+            let t199 = t196 * T::fused(k(0.3333333333333333), t178, t198);
             (
-                t2,
-                t5,
-                t6,
                 t10,
-                t13,
-                t14,
-                t18,
+                t11,
+                t12,
                 t20,
                 t21,
-                t24,
-                t26,
+                t22,
+                t28,
+                t29,
                 t30,
-                t35,
+                t32,
+                t33,
+                t34,
                 t36,
                 t37,
                 t38,
-                t39,
-                t40,
+                t42,
+                t43,
                 t44,
                 t45,
                 t46,
                 t47,
-                t48,
-                t49,
+                t52,
                 t55,
-                t57,
                 t59,
+                t64,
+                t66,
+                t68,
+                t71,
+                t73,
+                t75,
+                t79,
+                t81,
                 t83,
-                t85,
-                t86,
-                t87,
                 t88,
+                t89,
+                t90,
+                t91,
+                t92,
+                t93,
                 t95,
                 t96,
                 t97,
-                t98,
-                t99,
-                t100,
-                t101,
-                t102,
-                t103,
                 t104,
-                t108,
-                t109,
+                t105,
+                t106,
+                t110,
+                t111,
                 t113,
-                t114,
                 t115,
+                t117,
                 t119,
-                t120,
                 t122,
                 t123,
                 t124,
+                t125,
+                t126,
                 t128,
-                t130,
                 t131,
+                t134,
                 t135,
                 t136,
-                t137,
-                t139,
+                t138,
                 t140,
-                t144,
-                t145,
-                t146,
-                t150,
-                t151,
-                t152,
-                t153,
-                t157,
+                t147,
                 t158,
                 t159,
+                t160,
+                t161,
                 t162,
                 t163,
+                t164,
                 t165,
+                t166,
                 t167,
-                t169,
-                t170,
-                t173,
-                t174,
-                t175,
-                t176,
-                t178,
-                t179,
-                t181,
-                t182,
-                t183,
-                t184,
+                t168,
                 t185,
-                t186,
-                t187,
                 t188,
-                t189,
-                t190,
-                t191,
-                t192,
                 t194,
                 t195,
                 t196,
@@ -6093,302 +6102,189 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for CarriedBlock<T> {
                 t199,
             )
         };
-        let (
-            t328,
-            t329,
-            t330,
-            t331,
-            t332,
-            t333,
-            t346,
-            t347,
-            t348,
-            t349,
-            t350,
-            t351,
-            t352,
-        ) = {
-            let t200 = T::fused(t199, t185, T::fused(t197, t181, t198 * t183)) - t196;
-            let t201 = t88 - (t102 + t101);
-            let t202 = T::fused(k(0.4), t44, k(0.2) * t35);
-            let t203 = T::fused(t201, t190, t189 * t202);
-            let t204 = t146 * t165;
-            let t205 = T::fused(t146, t204, t145);
-            let t206 = T::fused(
-                -k(0.6),
-                t178,
-                T::fused(t205, t178, T::fused(-t179, t95, t195 * t173)),
+        let (t215, t223, t255, t257, t259, t261, t265, t266, t267, t268, t269, t270) = {
+            let t200 = t196 * T::fused(k(0.3333333333333333), t185, t198);
+            let t201 = T::fused(t68, t200, T::fused(t75, t197, t59 * t199));
+            let t202 = T::fused(t66, t200, T::fused(-t73, t197, t55 * t199));
+            let t203 = t188 * t196;
+            let t204 = t194 * t196;
+            let t205 = t195 * t196;
+            let t206 = T::fused(t68, t205, T::fused(t75, t203, t59 * t204));
+            let t207 = T::fused(t66, t205, T::fused(-t73, t203, t55 * t204));
+            let t208 = T::fused(
+                -(t10 + t140),
+                row5,
+                row6 * T::fused(-t81, t206, t83 * t207),
             );
-            let t207 = t153 * t204;
-            let t208 = t159 * t204;
-            let t209 = t163 * t204;
-            let t210 = T::fused(t209, t185, T::fused(t207, t181, t208 * t183)) - t206;
-            let t211 = T::fused(t191, t202, t201 * t188);
-            let t212 = t153 * t165;
-            let t213 = T::fused(-t153, t212, t150);
-            let t214 = T::fused(-t159, t212, t151);
-            let t215 = T::fused(-t163, t212, t152);
-            let t216 = T::fused(t215, t185, T::fused(t213, t181, t214 * t183))
-                + T::fused(t207, t178, T::fused(-t182, t95, t197 * t173));
-            let t217 = arm_rx - (block_rx - t136);
-            let t218 = arm_ry - (block_ry - t83);
-            let t219 = arm_rz - (block_rz + t85);
-            let t220 = T::fused(t49, t219, T::fused(-t45, t217, t47 * t218));
-            let t221 = T::fused(t40, t219, -T::fused(-t36, t217, t38 * t218));
-            let t222 = T::fused(t21, t219, -T::fused(t6, t217, t14 * t218));
-            let t223 = t85 + T::fused(t21, t222, T::fused(t49, t220, t40 * t221));
-            let t224 = t83 + T::fused(t14, t222, T::fused(-t47, t220, t38 * t221));
-            let t225 = t159 * t165;
-            let t226 = T::fused(-t159, t225, t157);
-            let t227 = T::fused(-t163, t225, t158);
-            let t228 = T::fused(t227, t185, T::fused(t214, t181, t226 * t183))
-                + T::fused(t208, t178, T::fused(-t184, t95, t198 * t173));
-            let t229 = t136 + T::fused(t6, t222, -T::fused(-t45, t220, t36 * t221));
-            let t230 = T::fused(
-                -t201,
-                T::fused(-t223, t200, t224 * t210) + t216,
-                t191 * (T::fused(t223, t187, t229 * t210) - t228),
+            let t209 = T::fused(row3, t167, row4 * t162);
+            let t210 = T::fused(row3, t166, row4 * t161);
+            let t211 = T::fused(-t88, t209, t89 * t210) + t168
+                - T::fused(row7, T::fused(-t81, t201, t83 * t202), t208);
+            let t212 = k(0.6) * t211;
+            let t213 = T::fused(t32, t160, T::fused(t36, t158, t12 * t159));
+            let t214 = T::fused(t32, t165, T::fused(t36, t163, t12 * t164));
+            let t215 = T::fused(
+                row4,
+                T::fused(t43, t213, t45 * t161),
+                T::fused(row3, T::fused(t43, t214, t45 * t166), row1),
             );
-            let t231 = T::fused(-t163, t163 * t165, t162);
-            let t232 = T::fused(t231, t185, T::fused(t215, t181, t227 * t183))
-                + T::fused(t209, t178, T::fused(-t186, t95, t199 * t173));
-            let t233 = T::fused(t189, T::fused(t224, t187, t229 * t200) + t232, -t230)
-                + T::fused(t211, t210, -T::fused(t192, t187, t203 * t200));
-            let t234 = T::fused(
-                -k(0.8944271909999159),
-                t170,
-                k(0.4472135954999579) * t87,
+            let t216 = T::fused(t64, t200, -T::fused(-t71, t197, t52 * t199));
+            let t217 = T::fused(t64, t205, -T::fused(-t71, t203, t52 * t204));
+            let t218 = T::fused(
+                -(t20 - t138),
+                row5,
+                row6 * T::fused(-t83, t217, t79 * t206),
             );
-            let t235 = t46 - t13;
-            let t236 = t44 + t5;
-            let t237 = T::fused(
-                -k(1.1925695879998879),
-                t235,
-                k(0.5962847939999439) * t236,
+            let t219 = T::fused(row3, t214, row4 * t213);
+            let t220 = T::fused(-t88, t219, t91 * t210) - t215
+                + T::fused(row7, T::fused(-t83, t216, t79 * t201), t218);
+            let t221 = k(0.6) * t220;
+            let t222 = T::fused(
+                t44,
+                T::fused(k(1.5), t168, t212),
+                t46 * T::fused(-k(1.5), t215, t221),
             );
-            let t238 = k(0.6666666666666666) * t237;
-            let t239 = T::fused(
-                -k(0.7453559924999299),
-                t176,
-                T::fused(k(0.29814239699997197), t170, k(0.5962847939999439) * t87),
+            let t223 = T::fused(
+                row4,
+                T::fused(t45, t162, t42 * t213),
+                T::fused(row3, T::fused(t45, t167, t42 * t214), row2),
             );
-            let t240 = k(0.6666666666666666)
-                * T::fused(
-                    k(0.9938079899999065),
-                    t48 + t20,
-                    T::fused(k(0.3975231959999626), t235, k(0.7950463919999252) * t236),
-                );
-            let t241 = T::fused(-k(0.3333333333333333), t239, t240);
-            let t242 = t119 - t169;
-            let t243 = t99 + t86;
+            let t224 = T::fused(
+                -(t28 - t147),
+                row5,
+                row6 * T::fused(-t79, t207, t81 * t217),
+            );
+            let t225 = T::fused(-t89, t219, t91 * t209) - t223
+                - T::fused(row7, T::fused(-t79, t202, t81 * t216), t224);
+            let t226 = k(0.6) * t225;
+            let t227 = T::fused(t30, t210, T::fused(-t12, t219, t22 * t209));
+            let t228 = T::fused(t34, t210, T::fused(t32, t219, t33 * t209));
+            let t229 = T::fused(k(0.02), t227, k(0.03) * t228);
+            let t230 = T::fused(t38, t210, -T::fused(-t36, t219, t37 * t209));
+            let t231 = T::fused(k(0.01), t228, T::fused(-k(0.02), t230, k(0.05) * t227));
+            let t232 = T::fused(k(0.1), t228, T::fused(-k(0.03), t230, k(0.01) * t227));
+            let t233 = T::fused(
+                k(0.3),
+                t219,
+                -T::fused(t32, t232, -T::fused(t36, t229, t12 * t231)),
+            );
+            let t234 = T::fused(row6, t217, row7 * t216) + t219;
+            let t235 = T::fused(row6, t207, row7 * t202) + t209;
+            let t236 = T::fused(row6, t206, row7 * t201) + t210;
+            let t237 = T::fused(t59, t236, T::fused(-t52, t234, t55 * t235));
+            let t238 = T::fused(t68, t236, T::fused(t64, t234, t66 * t235));
+            let t239 = T::fused(-k(0.001), t237, k(0.002) * t238);
+            let t240 = T::fused(t75, t236, -T::fused(-t71, t234, t73 * t235));
+            let t241 = T::fused(
+                k(0.003),
+                t238,
+                T::fused(k(0.001), t240, k(0.01) * t237),
+            );
+            let t242 = T::fused(
+                k(0.005),
+                t238,
+                T::fused(-k(0.002), t240, k(0.003) * t237),
+            );
+            let t243 = T::fused(
+                k(0.02),
+                t234,
+                T::fused(t64, t242, -T::fused(t71, t239, t52 * t241)),
+            );
             let t244 = T::fused(
-                k(0.8944271909999159),
-                t242,
-                k(0.4472135954999579) * t243,
+                k(0.3),
+                t209,
+                -T::fused(t33, t232, T::fused(t37, t229, t22 * t231)),
             );
             let t245 = T::fused(
-                k(0.7453559924999299),
-                t122 - t175,
-                T::fused(-k(0.29814239699997197), t242, k(0.5962847939999439) * t243),
+                k(0.02),
+                t235,
+                T::fused(t66, t242, T::fused(t73, t239, t55 * t241)),
             );
-            let t246 = k(0.6666666666666666) * (t245 + t239);
-            let t247 = T::fused(k(0.3333333333333333), t245, t240);
-            let t248 = k(1.0)
-                / T::fused(t234, t247, -T::fused(-t244, t241, t237 * t246));
-            let t249 = t248 * T::fused(-k(0.3333333333333333), t234, t238);
-            let t250 = t248 * (k(0.6666666666666666) * (t244 + t234));
-            let t251 = t248 * T::fused(k(0.3333333333333333), t244, t238);
-            let t252 = T::fused(t21, t251, -T::fused(-t49, t249, t40 * t250));
-            let t253 = T::fused(t14, t251, -T::fused(t47, t249, t38 * t250));
-            let t254 = t241 * t248;
-            let t255 = t246 * t248;
-            let t256 = t247 * t248;
-            let t257 = T::fused(t21, t256, -T::fused(-t49, t254, t40 * t255));
-            let t258 = T::fused(t14, t256, -T::fused(t47, t254, t38 * t255));
-            let t259 = T::fused(
-                -row4,
-                T::fused(-t188, t252, t190 * t253),
-                T::fused(-row3, T::fused(-t188, t257, t190 * t258), row0),
+            let t246 = T::fused(
+                t11,
+                t243 - T::fused(t88, t221, t89 * t226) + t233,
+                t21 * (t245 + T::fused(-t88, t212, t91 * t226) + t244),
             );
-            let t260 = T::fused(
-                k(2.1),
-                t192,
-                T::fused(t179, t211, -T::fused(t167, t192, t174 * t203)),
+            let t247 = T::fused(
+                k(0.3),
+                t210,
+                -T::fused(t34, t232, T::fused(-t38, t229, t30 * t231)),
             );
-            let t261 = t174 * t223;
-            let t262 = t224 * t179;
-            let t263 = t182 - (t262 - t261);
-            let t264 = k(0.6) * t223;
-            let t265 = T::fused(t167, t223, t229 * t179);
-            let t266 = t184 + (t265 - t264);
-            let t267 = k(0.6) * t224;
-            let t268 = T::fused(t224, t167, t229 * t174);
-            let t269 = t186 - (t268 - t267);
-            let t270 = T::fused(t189, t269, T::fused(t201, t263, t191 * t266)) - t260;
-            let t271 = T::fused(t6, t251, T::fused(t45, t249, t36 * t250));
-            let t272 = T::fused(t6, t256, T::fused(t45, t254, t36 * t255));
-            let t273 = T::fused(
-                row4,
-                T::fused(t190, t271, t202 * t252),
-                T::fused(row3, T::fused(t190, t272, t202 * t257), row1),
+            let t248 = T::fused(
+                k(0.02),
+                t236,
+                T::fused(t68, t242, T::fused(-t75, t239, t59 * t241)),
             );
-            let t274 = T::fused(
-                k(2.1),
-                t203,
-                T::fused(t195, t211, -T::fused(t174, t192, t194 * t203)),
+            let t249 = T::fused(
+                t29,
+                t248 + T::fused(t89, t212, t91 * t221) + t247,
+                t246,
             );
-            let t275 = T::fused(-t194, t223, t224 * t195);
-            let t276 = t197 - (t264 + t275);
-            let t277 = t229 * t195;
-            let t278 = t277 + t261;
-            let t279 = t198 + t278;
-            let t280 = k(0.6) * t229;
-            let t281 = T::fused(t224, t174, t229 * t194);
-            let t282 = t199 - (t281 - t280);
-            let t283 = T::fused(t189, t282, T::fused(t201, t276, t191 * t279)) - t274;
-            let t284 = T::fused(
-                row4,
-                T::fused(t202, t253, t188 * t271),
-                T::fused(row3, T::fused(t202, t258, t188 * t272), row2),
+            let t250 = T::fused(t97, t248, T::fused(t95, t243, t96 * t245))
+                - T::fused(t106, t226, -T::fused(-t104, t212, t105 * t221));
+            let t251 = T::fused(
+                t250,
+                t111,
+                -(t249 - T::fused(t47, T::fused(-k(1.5), t223, t226), t222)),
             );
-            let t285 = T::fused(
-                -k(2.1),
-                t211,
-                T::fused(t211, t205, -T::fused(t179, t192, t195 * t203)),
+            let t252 = T::fused(
+                t250,
+                t119,
+                T::fused(t117, t226, T::fused(t113, t212, t115 * t221)),
             );
-            let t286 = T::fused(-t223, t195, t224 * t205);
-            let t287 = t207 + (t267 - t286);
-            let t288 = T::fused(t223, t179, t229 * t205);
-            let t289 = t208 - (t280 - t288);
-            let t290 = t277 + t262;
-            let t291 = t209 - t290;
-            let t292 = T::fused(t189, t291, T::fused(t201, t287, t191 * t289)) - t285;
-            let t293 = T::fused(row3, t272, row4 * t271);
-            let t294 = T::fused(-k(0.04), t35, k(0.06) * t5);
-            let t295 = T::fused(k(0.02), t5, -T::fused(k(0.04), t44, k(0.1) * t35));
-            let t296 = T::fused(k(0.2), t5, -T::fused(k(0.06), t44, k(0.02) * t35));
-            let t297 = t223 * t223;
-            let t298 = t224 * t224;
-            let t299 = T::fused(
-                k(2.0),
-                T::fused(-t223, t197, t224 * t207),
-                -T::fused(-t223, t275, t224 * t286),
+            let t253 = T::fused(
+                t250,
+                t128,
+                T::fused(t126, t226, -T::fused(t124, t212, t125 * t221)),
             );
-            let t300 = t299 + T::fused(k(0.6), t298 + t297, t213)
-                + (k(0.3) - T::fused(t6, t296, -T::fused(t45, t294, t36 * t295)));
-            let t301 = T::fused(t223, t182, t229 * t207)
-                - T::fused(-t198, t223, t224 * t208);
-            let t302 = t301 - T::fused(-t223, t278, t224 * t288)
-                + T::fused(k(0.6), t229 * t224, -t214);
-            let t303 = t302 + T::fused(t14, t296, T::fused(t47, t294, t38 * t295));
-            let t304 = T::fused(t224, t182, t229 * t197)
-                + T::fused(-t199, t223, t224 * t209);
-            let t305 = t304 - T::fused(-t281, t223, t224 * t290)
-                - T::fused(k(0.6), t229 * t223, -t215);
-            let t306 = t305 - T::fused(t21, t296, T::fused(-t49, t294, t40 * t295));
-            let t307 = T::fused(t189, t306, -T::fused(-t201, t300, t191 * t303))
-                + T::fused(t211, t287, -T::fused(t192, t263, t203 * t276));
-            let t308 = T::fused(row3, t258, row4 * t253);
-            let t309 = T::fused(k(0.04), t37, k(0.06) * t13);
-            let t310 = T::fused(k(0.02), t13, T::fused(k(0.04), t46, k(0.1) * t37));
-            let t311 = T::fused(k(0.2), t13, T::fused(k(0.06), t46, k(0.02) * t37));
-            let t312 = t229 * t229;
-            let t313 = T::fused(
-                k(2.0),
-                T::fused(t184, t223, t229 * t208),
-                T::fused(t223, t265, t229 * t288),
+            let t254 = T::fused(t252, t131, -t253);
+            let t255 = T::fused(t254, t135, -T::fused(t252, t123, -t251)) / t136;
+            let t256 = t11 * t255;
+            let t257 = t219 - t256;
+            let t258 = t21 * t255;
+            let t259 = t209 - t258;
+            let t260 = t29 * t255;
+            let t261 = t210 - t260;
+            let t262 = T::fused(-t254, t134, t135 * t255);
+            let t263 = T::fused(t131, t262, -T::fused(-t252, t122, t123 * t255));
+            let t264 = T::fused(
+                t119,
+                t263,
+                -T::fused(t128, t262, -T::fused(-t250, t110, t111 * t255)),
             );
-            let t314 = t313 - T::fused(k(0.6), t312 + t297, t226)
-                - (k(0.3) - T::fused(t14, t311, T::fused(t47, t309, t38 * t310)));
-            let t315 = T::fused(t224, t184, t229 * t198)
-                - T::fused(t186, t223, t229 * t209);
-            let t316 = t315 + T::fused(t268, t223, t229 * t290)
-                - T::fused(k(0.6), t224 * t223, -t227);
-            let t317 = t316 - T::fused(t21, t311, T::fused(-t49, t309, t40 * t310));
-            let t318 = T::fused(t189, t317, -T::fused(t201, t303, t191 * t314))
-                + T::fused(t211, t289, -T::fused(t192, t266, t203 * t279));
-            let t319 = T::fused(row3, t257, row4 * t252);
-            let t320 = T::fused(
-                -t49,
-                T::fused(k(0.04), t39, k(0.06) * t20),
-                t40 * T::fused(k(0.02), t20, T::fused(-k(0.04), t48, k(0.1) * t39)),
+            let t265 = T::fused(
+                t104,
+                t264,
+                -T::fused(t113, t263, T::fused(t124, t262, T::fused(t90, t255, t211))),
             );
-            let t321 = T::fused(
-                t21,
-                T::fused(k(0.2), t20, T::fused(-k(0.06), t48, k(0.02) * t39)),
-                t320,
+            let t266 = T::fused(
+                t105,
+                t264,
+                T::fused(t115, t263, T::fused(t125, t262, T::fused(t92, t255, t220))),
             );
-            let t322 = T::fused(
-                k(2.0),
-                T::fused(t186, t224, t199 * t229),
-                -T::fused(t224, t268, t229 * t281),
+            let t267 = T::fused(
+                t106,
+                t264,
+                -T::fused(t117, t263, -T::fused(t126, t262, -T::fused(t93, t255, t225))),
             );
-            let t323 = T::fused(
-                t322 + T::fused(k(0.6), t312 + t298, t231) + (k(0.3) - t321),
-                t189,
-                T::fused(t306, t201, t317 * t191),
-            );
-            let t324 = t323 + T::fused(t291, t211, -T::fused(t269, t192, t282 * t203));
-            let t325 = T::fused(t324, t319, T::fused(t307, t293, t318 * t308))
-                + T::fused(t292, t284, -T::fused(-t270, t259, t283 * t273));
-            let t326 = T::fused(t189, t324, T::fused(t201, t307, t191 * t318))
-                + T::fused(t211, t292, -T::fused(t192, t270, t203 * t283));
-            let t327 = (t325 + t233) / t326;
-            let t328 = T::fused(t192, t327, t259);
-            let t329 = T::fused(-t203, t327, t273);
-            let t330 = T::fused(-t211, t327, t284);
-            let t331 = T::fused(-t201, t327, t293);
-            let t332 = T::fused(-t191, t327, t308);
-            let t333 = T::fused(-t189, t327, t319);
-            let t334 = t95 - (t328 + T::fused(-t223, t332, t224 * t333));
-            let t335 = t173 - (t329 - T::fused(-t223, t331, t229 * t333));
-            let t336 = t178 + (t330 - T::fused(-t224, t331, t229 * t332));
-            let t337 = t181 + t331;
-            let t338 = t183 + t332;
-            let t339 = t185 + t333;
-            let t340 = T::fused(t163, t339, T::fused(t153, t337, t159 * t338))
-                - T::fused(t146, t336, T::fused(-t140, t334, t144 * t335));
-            let t341 = t165 * t340;
-            let t342 = T::fused(-t98, t341, t334);
-            let t343 = T::fused(-t137, t341, t335);
-            let t344 = T::fused(-t139, t341, t336);
-            let t345 = t131 * T::fused(t130, t344, T::fused(-t124, t342, t128 * t343));
-            let t346 = T::fused(-t100, t345, t342);
-            let t347 = T::fused(t120, t345, t343);
-            let t348 = T::fused(-t123, t345, t344);
-            let t349 = t115 * T::fused(t114, t348, T::fused(-t104, t346, t109 * t347));
-            let t350 = T::fused(-t135, t341, t337);
-            let t351 = T::fused(-t97, t341, t338);
-            let t352 = T::fused(-t96, t341, t339);
-            (
-                t328,
-                t329,
-                t330,
-                t331,
-                t332,
-                t333,
-                t346,
-                t347,
-                t348,
-                t349,
-                t350,
-                t351,
-                t352,
-            )
+            let t268 = T::fused(t95, t264, t234 - t256);
+            let t269 = T::fused(t96, t264, t235 - t258);
+            let t270 = T::fused(t97, t264, t236 - t260);
+            (t215, t223, t255, t257, t259, t261, t265, t266, t267, t268, t269, t270)
         };
         *out = [
-            t328,
-            t329,
-            t330,
-            T::fused(-t49, t333, T::fused(-t45, t331, t47 * t332)),
-            -T::fused(t40, t333, T::fused(-t36, t331, t38 * t332)),
-            T::fused(t21, t333, T::fused(t6, t331, t14 * t332)),
-            -T::fused(t103, t349, t346),
-            T::fused(t108, t349, -t347),
-            T::fused(-t113, t349, t348),
-            T::fused(-t18, t352, T::fused(-t2, t350, t10 * t351)),
-            -T::fused(t30, t352, T::fused(-t26, t350, t24 * t351)),
-            T::fused(t55, t352, T::fused(t59, t350, t57 * t351)),
+            T::fused(t44, t255, t168),
+            T::fused(-t46, t255, t215),
+            T::fused(-t47, t255, t223),
+            T::fused(-t38, t261, T::fused(-t36, t257, t37 * t259)),
+            -T::fused(t30, t261, T::fused(-t12, t257, t22 * t259)),
+            T::fused(t34, t261, T::fused(t32, t257, t33 * t259)),
+            -t265,
+            -t266,
+            t267,
+            T::fused(-t75, t270, T::fused(-t71, t268, t73 * t269)),
+            -T::fused(t59, t270, T::fused(-t52, t268, t55 * t269)),
+            T::fused(t68, t270, T::fused(t64, t268, t66 * t269)),
         ];
     }
 }

@@ -106,7 +106,15 @@ impl Curve {
         };
         let when = Some(When::Steps(1));
         let budget = Some(budget);
-        Approach { integrator: self.integrator, tolerance, coordinates, correction, when, budget }
+        Approach {
+            integrator: self.integrator,
+            tolerance,
+            coordinates,
+            correction,
+            when,
+            budget,
+            examine: false,
+        }
     }
 }
 

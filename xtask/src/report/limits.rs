@@ -286,6 +286,7 @@ pub(crate) fn find(
         correction: Correction::Partition,
         when: Some(When::Steps(1)),
         budget: Some(200_000),
+        examine: false,
     };
     let plan = |t_end: f64, step: f64, approach| Plan {
         settings: Settings { t_end, step, correct_every: None, sample_every: t_end / SAMPLES },

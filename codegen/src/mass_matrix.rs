@@ -1,0 +1,171 @@
+//! The solve of eq. (17) for small trees through their reduced mass matrix `Bᵀ M B`, in the global frame: with few rates it is shorter than to
+//! eliminate body by body.
+
+use crate::dynamics::Dynamics;
+use crate::freedom::{Freedom, Twist};
+use crate::graph::{ExprId, Graph};
+use crate::ldl::Elimination;
+use crate::linear::{Mat3, UNIT3, Vec3};
+use crate::null_space::minus_applied_force;
+use crate::system::System;
+use std::collections::BTreeMap;
+
+/// A body alone. What its inertia has in all directions alike need not be turned.
+#[derive(Debug)]
+struct Body {
+    mass: ExprId,
+    even: ExprId,
+    /// The rest, in the body's frame.
+    rest: Mat3,
+    /// From the body's frame to the global one.
+    a: Mat3,
+}
+
+/// A tree with all that is needed for any right-hand side.
+#[derive(Debug)]
+pub struct ReducedTree {
+    /// In the global frame, root first.
+    freedoms: Vec<Freedom>,
+    /// Of each slot.
+    bodies: Vec<Body>,
+    /// Of each slot how it moves at unit rates of those free twists that move it.
+    columns: Vec<Vec<(usize, Twist)>>,
+    /// Lower triangle.
+    matrix: BTreeMap<(usize, usize), ExprId>,
+    n_rates: usize,
+}
+
+impl ReducedTree {
+    /// `own` are the same freedoms with rotations in the bodies' own frames.
+    pub fn new(system: &mut System, freedoms: Vec<Freedom>, own: &[Freedom]) -> Self {
+        let bodies: Vec<_> = (0..system.slots.len()).map(|slot| Body::of(system, slot)).collect();
+        let graph = &mut system.graph;
+        let mut columns: Vec<Vec<(usize, Twist)>> = vec![Vec::new(); bodies.len()];
+        let mut axes = Vec::new();
+        for (freedom, own) in freedoms.iter().zip(own) {
+            let carried = freedom.parent.map_or_else(Vec::new, |parent| {
+                let of_parent = columns[parent.slot].iter();
+                of_parent.map(|(rate, twist)| (*rate, parent.twist(graph, twist))).collect()
+            });
+            let first = axes.len();
+            let free = freedom.free.iter().enumerate().map(|(k, twist)| (first + k, *twist));
+            columns[freedom.slot] = carried.into_iter().chain(free).collect();
+            axes.extend(own.free.iter().map(|twist| twist.rho));
+        }
+        let mut tree = Self { freedoms, bodies, columns, matrix: BTreeMap::new(), n_rates: axes.len() };
+        tree.matrix = tree.mass_matrix(graph, &axes);
+        tree
+    }
+
+    /// `axes` are the rotations of the free twists in the frames of their own bodies.
+    fn mass_matrix(&self, graph: &mut Graph, axes: &[Vec3]) -> BTreeMap<(usize, usize), ExprId> {
+        // What is even in all bodies takes one product of each pair of axes.
+        let (mut matrix, mut even) = (BTreeMap::new(), BTreeMap::<_, (ExprId, ExprId)>::new());
+        for (body, columns) in self.bodies.iter().zip(&self.columns) {
+            let own: Vec<_> =
+                columns.iter().map(|(_, twist)| graph.transposed_vec(&body.a, &twist.rho)).collect();
+            for (place, (row, twist)) in columns.iter().enumerate() {
+                let turned = graph.mat_vec(&body.rest, &own[place]);
+                for (other, (column, against)) in columns.iter().enumerate().take(place + 1) {
+                    let (linear, angular) =
+                        (graph.dot(&against.t, &twist.t), graph.dot(&own[other], &turned));
+                    let linear = graph.mul(body.mass, linear);
+                    let sum = graph.add(linear, angular);
+                    let entry = matrix.entry((*row, *column)).or_insert(Graph::ZERO);
+                    *entry = graph.add(*entry, sum);
+                    let (inertia, cosine) = even.entry((*row, *column)).or_insert((Graph::ZERO, Graph::ZERO));
+                    *inertia = graph.add(*inertia, body.even);
+                    *cosine = if row == column {
+                        graph.dot(&axes[*row], &axes[*row])
+                    } else {
+                        graph.dot(&twist.rho, &against.rho)
+                    };
+                }
+            }
+        }
+        for (place, (inertia, cosine)) in even {
+            let product = graph.mul(inertia, cosine);
+            let entry = matrix.entry(place).or_insert(Graph::ZERO);
+            *entry = graph.add(*entry, product);
+        }
+        matrix.retain(|_, entry| *entry != Graph::ZERO);
+        matrix
+    }
+
+    /// The accelerations of eq. (17).
+    pub fn accelerations(&self, system: &mut System, dynamics: &Dynamics) -> Vec<Twist> {
+        let bias: Vec<_> =
+            (0..self.bodies.len()).map(|slot| minus_applied_force(system, dynamics, slot)).collect();
+        let forced: Vec<_> = self.freedoms.iter().map(|freedom| freedom.bias).collect();
+        self.respond(&mut system.graph, &bias, &forced)
+    }
+
+    /// The smallest motions that change the rows as given.
+    pub fn project(&self, graph: &mut Graph, changes: &[ExprId]) -> Vec<Twist> {
+        let forced: Vec<_> = self.freedoms.iter().map(|freedom| freedom.forced_by(graph, changes)).collect();
+        self.respond(graph, &vec![Twist::ZERO; self.bodies.len()], &forced)
+    }
+
+    /// How each mass centre moves under minus these wrenches, and what is forced upon each joint, root first.
+    fn respond(&self, graph: &mut Graph, bias: &[Twist], forced: &[Twist]) -> Vec<Twist> {
+        let mut motions = vec![Twist::ZERO; self.bodies.len()];
+        for (freedom, forced) in self.freedoms.iter().zip(forced) {
+            let carried = freedom.parent.map(|parent| parent.twist(graph, &motions[parent.slot]));
+            motions[freedom.slot] = carried.map_or(*forced, |carried| carried.plus(graph, forced));
+        }
+        let mut taken: Vec<_> = (self.bodies.iter().zip(&motions).zip(bias))
+            .map(|((body, motion), bias)| body.taken(graph, motion, bias))
+            .collect();
+        let mut rhs = vec![Graph::ZERO; self.n_rates];
+        let mut last = self.n_rates;
+        for freedom in self.freedoms.iter().rev() {
+            let wrench = taken[freedom.slot];
+            let first = last - freedom.free.len();
+            for (rhs, twist) in rhs[first..last].iter_mut().zip(&freedom.free) {
+                let resisted = twist.dot(graph, &wrench);
+                *rhs = graph.neg(resisted);
+            }
+            last = first;
+            if let Some(parent) = freedom.parent {
+                let carried = parent.wrench(graph, &wrench);
+                taken[parent.slot] = taken[parent.slot].plus(graph, &carried);
+            }
+        }
+        let mut elimination = Elimination::new(self.matrix.clone(), rhs);
+        (0..self.n_rates).rev().for_each(|rate| elimination.pivot(graph, rate));
+        let rates = elimination.substitute_back(graph);
+        for (motion, columns) in motions.iter_mut().zip(&self.columns) {
+            for (rate, twist) in columns {
+                let own = twist.scaled(graph, rates[*rate]);
+                *motion = motion.plus(graph, &own);
+            }
+        }
+        let in_own_frame = motions
+            .iter()
+            .zip(&self.bodies)
+            .map(|(motion, body)| Twist { t: motion.t, rho: graph.transposed_vec(&body.a, &motion.rho) });
+        in_own_frame.collect()
+    }
+}
+
+impl Body {
+    fn of(system: &mut System, slot: usize) -> Self {
+        let (mass, inertia, a) =
+            (system.mass(slot), system.inertia(slot), system.poses[system.slots[slot]].a);
+        let often = |k: &usize| (0..3).filter(|&l| inertia[l][l] == inertia[*k][*k]).count();
+        let most = (0..3).rev().max_by_key(often).expect("three moments");
+        let even = inertia[most][most];
+        let evenly = UNIT3.map(|row| system.graph.scale_vec(even, &row));
+        Self { mass, even, rest: system.graph.sub_mat(&inertia, &evenly), a }
+    }
+
+    /// What a motion takes, and a wrench with a torque in the body's frame; in the global frame.
+    fn taken(&self, graph: &mut Graph, motion: &Twist, bias: &Twist) -> Twist {
+        let own = graph.transposed_vec(&self.a, &motion.rho);
+        let torque = graph.mat_vec(&self.rest, &own);
+        let torque = graph.add_vec(&torque, &bias.rho);
+        let (torque, even) = (graph.mat_vec(&self.a, &torque), graph.scale_vec(self.even, &motion.rho));
+        let force = graph.scale_vec(self.mass, &motion.t);
+        Twist { t: graph.add_vec(&force, &bias.t), rho: graph.add_vec(&torque, &even) }
+    }
+}

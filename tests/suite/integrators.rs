@@ -1,0 +1,169 @@
+//! Every integrator with every correction on the paper's scene: orders, long runs, single precision.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
+
+use gyro_reference::Gyroscope as Reference;
+use gyro_sim::generated::gyroscope::Gyroscope;
+use gyro_sim::integrate::Method;
+use gyro_sim::{
+    ByDuals, ClosedForm, Control, Corrected, Correction, Dop853, Dual, JointForm, JointSpace, Kutta4,
+    MassWeighted, Ode, Partitioning, Real, Rodas4, Solver, Tsit5, Uncorrected, When,
+};
+use std::sync::LazyLock;
+
+type State = <Gyroscope<f64> as Ode>::State;
+
+/// Samples of a second.
+const SAMPLES: u32 = 10;
+
+/// α and β at each sample.
+static EXPECTED: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| {
+    let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
+    Reference::paper().solve(&times).iter().map(|sample| [sample.alpha, sample.beta]).collect()
+});
+
+/// max(|eα|, |eβ|) of joint coordinates at a sample.
+fn error<T: Real>(sample: u32, x: &[T]) -> f64 {
+    let error = |k: usize| (x[k].to_f64() - EXPECTED[sample as usize][k]).abs();
+    error(0).max(error(1))
+}
+
+/// The same of a maximal state.
+fn error_at<T: Real>(sample: u32, gyroscope: &Gyroscope<T>, y: &<Gyroscope<T> as Ode>::State) -> f64 {
+    let mut x = gyroscope.joint_start();
+    gyroscope.to_joints(T::constant(1.0), y, &mut x);
+    error(sample, &x)
+}
+
+/// Errors between these are neither too coarse for an order to show nor rounding.
+const FITTED: std::ops::RangeInclusive<f64> = 1e-11..=1e-7;
+
+/// The slope of log error against log step by least squares.
+fn order(errors: &[(u32, f64)]) -> f64 {
+    let points: Vec<[f64; 2]> = errors
+        .iter()
+        .filter(|(_, e)| FITTED.contains(e))
+        .map(|(n, e)| [-f64::from(*n).ln(), e.ln()])
+        .collect();
+    assert!(points.len() >= 3, "{errors:?}");
+    let n = points.len() as f64;
+    let mean = |k: usize| points.iter().map(|p| p[k]).sum::<f64>() / n;
+    let means = [mean(0), mean(1)];
+    let sum = |a: usize, b: usize| points.iter().map(|p| (p[a] - means[a]) * (p[b] - means[b])).sum::<f64>();
+    sum(0, 1) / sum(0, 0)
+}
+
+/// Orders of a method in maximal coordinates with each correction after every step.
+fn orders<O, M>(system: &O, method: impl Fn(&State) -> M, steps: &[u32]) -> [f64; 3]
+where
+    O: Ode<Scalar = f64, State = State>,
+    M: Method<O>,
+    Partitioning<Gyroscope<f64>>: Correction<O>,
+    ClosedForm<Gyroscope<f64>>: Correction<O>,
+    MassWeighted<Gyroscope<f64>>: Correction<O>,
+{
+    fn run<O, M, C>(system: &O, method: M, correction: C, n: u32) -> (u32, f64)
+    where
+        O: Ode<Scalar = f64, State = State>,
+        M: Method<O>,
+        C: Correction<O>,
+    {
+        let gyroscope = Gyroscope::default();
+        let mut solver = Solver::new(method, correction, 0.0, &gyroscope.start());
+        let mut worst: f64 = 0.0;
+        for sample in 1..=SAMPLES {
+            solver.advance(system, 1.0 / f64::from(n), n / SAMPLES).unwrap();
+            worst = worst.max(error_at(sample, &gyroscope, solver.state()));
+        }
+        (n, worst)
+    }
+    let (gyroscope, y) = (Gyroscope::<f64>::default(), Gyroscope::<f64>::default().start());
+    let by = |run: &dyn Fn(u32) -> (u32, f64)| order(&steps.iter().map(|n| run(*n)).collect::<Vec<_>>());
+    [
+        by(&|n| run(system, method(&y), Partitioning::new(&gyroscope, 0.0, &y), n)),
+        by(&|n| run(system, method(&y), ClosedForm::new(&gyroscope), n)),
+        by(&|n| run(system, method(&y), MassWeighted::new(&gyroscope), n)),
+    ]
+}
+
+fn assert_orders(name: &str, expected: f64, orders: [f64; 3]) {
+    println!("{name}: orders {orders:.2?} with partition, closed form, mass-weighted projection");
+    assert!(orders.iter().all(|order| (order - expected).abs() <= 0.5), "{name}: {orders:?} for {expected}");
+}
+
+#[test]
+fn integrators_keep_their_orders_through_corrections() {
+    let gyroscope = Gyroscope::<f64>::default();
+    let corrected = Corrected(&gyroscope);
+    assert_orders("rk4", 4.0, orders(&corrected, Kutta4::new, &[1500, 2000, 3000, 4000, 6000]));
+    assert_orders(
+        "tsit5",
+        5.0,
+        orders(&corrected, Tsit5::new, &[400, 600, 800, 1000, 1200, 1400, 1600, 1800]),
+    );
+    assert_orders("dop853", 8.0, orders(&corrected, Dop853::new, &[110, 140, 180, 220, 260]));
+    let (duals, zeros) = (Gyroscope::<Dual<f64, 4>>::default(), vec![0.0; 39 * 39]);
+    let system = ByDuals::new(Exact(&gyroscope), Exact(&duals), &zeros);
+    assert_orders("rodas4", 4.0, orders(&system, |y| Rodas4::new(&system, y), &[1500, 2000, 3000, 4000]));
+}
+
+/// A mechanism as a system.
+struct Exact<'a, M>(&'a M);
+
+impl<M: gyro_sim::Mechanism> Ode for Exact<'_, M> {
+    type Scalar = M::Scalar;
+    type State = M::State;
+
+    fn start(&self) -> M::State {
+        self.0.start()
+    }
+    fn derivative(&self, t: M::Scalar, y: &M::State, dy: &mut M::State) {
+        self.0.derivative(t, y, dy);
+    }
+}
+
+impl<M: gyro_sim::Mechanism> gyro_sim::Maximal for Exact<'_, M> {
+    type Mechanism = M;
+
+    fn mechanism(&self) -> &M {
+        self.0
+    }
+}
+
+#[test]
+fn single_precision_reaches_a_millionth() {
+    let gyroscope = Gyroscope::<f32>::default();
+    let best = |errors: &[f64]| errors.iter().copied().fold(f64::INFINITY, f64::min);
+    let steps = [100_u32, 200, 400, 800, 1600];
+    let (x, y) = (gyroscope.joint_start(), gyroscope.start());
+    let joint = steps.map(|n| {
+        let mut solver = Solver::new(Dop853::new(&x), Uncorrected, 0.0, &x);
+        solver.advance(&JointForm(&gyroscope), 1.0 / n as f32, n).unwrap();
+        error(SAMPLES, solver.state())
+    });
+    let maximal = steps.map(|n| {
+        let mut solver = Solver::new(Dop853::new(&y), ClosedForm::new(&gyroscope), 0.0, &y);
+        solver.advance(&Corrected(&gyroscope), 1.0 / n as f32, n).unwrap();
+        error_at(SAMPLES, &gyroscope, solver.state())
+    });
+    println!("f32, dop853: joint {joint:?}, maximal {maximal:?}");
+    assert!(best(&joint) <= 1e-6 && best(&maximal) <= 5e-6, "{joint:?} {maximal:?}");
+}
+
+#[test]
+fn corrections_wait_for_their_moment() {
+    let gyroscope = Gyroscope::<f64>::default();
+    let y = gyroscope.start();
+    let run = |when| {
+        let control = Control { when, ..Control::default() };
+        let correction = MassWeighted::new(&gyroscope);
+        let mut solver = Solver::new(Kutta4::new(&y), correction, 0.0, &y).with_control(control);
+        solver.advance(&Corrected(&gyroscope), 1e-3, 1000).unwrap();
+        (solver.statistics().corrections, error_at(SAMPLES, &gyroscope, solver.state()))
+    };
+    let [every, fifth, violated] = [When::Steps(1), When::Steps(5), When::Violation(1e-8)].map(run);
+    println!("corrections and errors: {every:?}, {fifth:?}, {violated:?}");
+    assert_eq!((every.0, fifth.0), (1000, 200));
+    assert!(violated.0 > 0 && violated.0 < 1000, "{violated:?}");
+    assert!([every, fifth, violated].iter().all(|(_, error)| *error < 1e-5));
+}
