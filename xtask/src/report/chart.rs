@@ -127,62 +127,110 @@ impl Decades {
 const FEW: [f64; 3] = [1.0, 2.0, 5.0];
 const MANY: [f64; 9] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 6.0, 8.0];
 
+/// Where everything goes.
+#[derive(Clone, Copy)]
+struct Layout {
+    n_columns: usize,
+    n_rows: usize,
+    plot: (f64, f64),
+}
+
+impl Layout {
+    fn of(chart: &Chart) -> Self {
+        let n_panels = chart.panels.len();
+        let scale = if n_panels == 1 { LARGE } else { 1.0 };
+        let n_columns = chart.n_columns.clamp(1, n_panels.max(1));
+        let plot = (PLOT_WIDTH * scale, PLOT_HEIGHT * scale.sqrt());
+        Self { n_columns, n_rows: n_panels.div_ceil(n_columns), plot }
+    }
+
+    fn panels_width(self) -> f64 {
+        self.n_columns as f64 * (self.plot.0 + GAP)
+    }
+
+    fn cell_height(self) -> f64 {
+        PANEL_TITLE + self.plot.1 + TICKS
+    }
+
+    /// Below the panels.
+    fn below(self) -> f64 {
+        TITLE + self.n_rows as f64 * self.cell_height()
+    }
+
+    /// Where a panel has its upper left corner.
+    fn origin(self, index: usize) -> (f64, f64) {
+        let (row, column) = (index / self.n_columns, index % self.n_columns);
+        let top = TITLE + row as f64 * self.cell_height() + PANEL_TITLE;
+        (LEFT + column as f64 * (self.plot.0 + GAP), top)
+    }
+}
+
+/// SVG as it is written.
+struct Canvas(String);
+
+impl Canvas {
+    fn new((width, height): (f64, f64)) -> Self {
+        Self(format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
+             font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
+        ))
+    }
+
+    fn text(&mut self, (x, y): (f64, f64), attributes: &str, words: &str) {
+        let _ = writeln!(self.0, "<text x=\"{x:.1}\" y=\"{y:.1}\"{attributes}>{}</text>", escaped(words));
+    }
+}
+
+/// Attributes of text.
+const BOLD: &str = " font-weight=\"bold\"";
+const HEADING: &str = " font-size=\"15\" font-weight=\"bold\"";
+const CENTRED: &str = " text-anchor=\"middle\"";
+const TICK_BELOW: &str = " text-anchor=\"middle\" font-size=\"11\"";
+const TICK_BESIDE: &str = " text-anchor=\"end\" font-size=\"11\"";
+
 impl Chart {
     /// The SVG text.
     pub(crate) fn svg(&self) -> String {
-        let scale = if self.panels.len() == 1 { LARGE } else { 1.0 };
-        let (plot_w, plot_h) = (PLOT_WIDTH * scale, PLOT_HEIGHT * scale.sqrt());
-        let n_columns = self.n_columns.clamp(1, self.panels.len().max(1));
-        let n_rows = self.panels.len().div_ceil(n_columns);
-        let cell_h = PANEL_TITLE + plot_h + TICKS;
-        let width = LEFT + n_columns as f64 * (plot_w + GAP) + 8.0;
-        let entries = self.legend_rows(width - LEFT);
-        let height = TITLE + n_rows as f64 * cell_h + LABEL + entries.len() as f64 * LEGEND_ROW + 12.0;
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" viewBox=\"0 0 {width:.0} {height:.0}\" \
-             font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n"
-        );
-        let _ = writeln!(
-            svg,
-            "<text x=\"{LEFT}\" y=\"20\" font-size=\"15\" font-weight=\"bold\">{}</text>",
-            escaped(&self.title)
-        );
+        let layout = Layout::of(self);
+        let entries = self.legend_rows(layout.panels_width());
+        let legend = LABEL + entries.len() as f64 * LEGEND_ROW + 12.0;
+        let mut canvas = Canvas::new((LEFT + layout.panels_width() + 8.0, layout.below() + legend));
+        canvas.text((LEFT, 20.0), HEADING, &self.title);
+        self.draw_panels(layout, &mut canvas);
+        self.draw_labels(layout, &mut canvas);
+        for (row, entries) in entries.iter().enumerate() {
+            draw_legend(entries, layout.below() + LABEL + row as f64 * LEGEND_ROW + 12.0, &mut canvas);
+        }
+        canvas.0 + "</svg>\n"
+    }
+
+    fn draw_panels(&self, layout: Layout, canvas: &mut Canvas) {
         let points = || self.panels.iter().flat_map(|p| &p.lines).flat_map(|l| &l.points);
         let x = Decades::of(points().map(|p| p.0), self.x.limits);
         let y = Decades::of(points().map(|p| p.1), self.y.limits);
         for (index, panel) in self.panels.iter().enumerate() {
-            let (row, column) = (index / n_columns, index % n_columns);
-            let origin = (LEFT + column as f64 * (plot_w + GAP), TITLE + row as f64 * cell_h + PANEL_TITLE);
-            let frame = Frame { x, y, origin, size: (plot_w, plot_h) };
-            let is_lowest = index + n_columns >= self.panels.len();
-            frame.draw(panel, (column == 0, is_lowest), &mut svg);
-        }
-        let middle = LEFT + 0.5 * n_columns as f64 * (plot_w + GAP);
-        let below = TITLE + n_rows as f64 * cell_h;
-        let _ = writeln!(
-            svg,
-            "<text x=\"{middle:.0}\" y=\"{:.0}\" text-anchor=\"middle\">{}</text>",
-            below + 14.0,
-            escaped(&self.x.label)
-        );
-        let half = TITLE + 0.5 * n_rows as f64 * cell_h;
-        let _ = writeln!(
-            svg,
-            "<text x=\"14\" y=\"{half:.0}\" text-anchor=\"middle\" transform=\"rotate(-90 14 {half:.0})\">{}</text>",
-            escaped(&self.y.label)
-        );
-        for (row, entries) in entries.iter().enumerate() {
-            let y = below + LABEL + row as f64 * LEGEND_ROW + 12.0;
-            let mut x = LEFT;
-            for (name, style) in entries {
-                style.draw(&[(x, y - 4.0), (x + 13.0, y - 4.0), (x + 26.0, y - 4.0)], &mut svg);
-                let _ = writeln!(svg, "<text x=\"{:.0}\" y=\"{y:.0}\">{}</text>", x + 32.0, escaped(name));
-                x += entry_width(name);
+            let frame = Frame { x, y, origin: layout.origin(index), size: layout.plot };
+            frame.draw_grid(canvas);
+            if index % layout.n_columns == 0 {
+                frame.label_y(canvas);
             }
+            if index + layout.n_columns >= self.panels.len() {
+                frame.label_x(canvas);
+            }
+            frame.draw(panel, canvas);
         }
-        svg + "</svg>\n"
     }
 
+    /// Quantities and units of both axes.
+    fn draw_labels(&self, layout: Layout, canvas: &mut Canvas) {
+        let (middle, below) = (LEFT + 0.5 * (layout.panels_width() - GAP), layout.below());
+        canvas.text((middle, below + 14.0), CENTRED, &self.x.label);
+        let half = 0.5 * (TITLE + below);
+        let turned = format!("{CENTRED} transform=\"rotate(-90 14 {half:.1})\"");
+        canvas.text((14.0, half), &turned, &self.y.label);
+    }
+
+    /// The legend in rows that fit.
     fn legend_rows(&self, width: f64) -> Vec<Vec<&(String, Style)>> {
         let mut rows: Vec<Vec<&(String, Style)>> = Vec::new();
         let mut left = 0.0;
@@ -198,6 +246,16 @@ impl Chart {
             }
         }
         rows
+    }
+}
+
+fn draw_legend(entries: &[&(String, Style)], y: f64, canvas: &mut Canvas) {
+    let mut x = LEFT;
+    for (name, style) in entries {
+        style.draw_line(&[(x, y - 4.0), (x + 26.0, y - 4.0)], canvas);
+        style.draw_markers(&[(x + 13.0, y - 4.0)], canvas);
+        canvas.text((x + 32.0, y), "", name);
+        x += entry_width(name);
     }
 }
 
@@ -218,55 +276,43 @@ impl Frame {
         (self.origin.0 + self.x.part(x) * self.size.0, self.origin.1 + (1.0 - self.y.part(y)) * self.size.1)
     }
 
-    fn draw(&self, panel: &Panel, (has_y_labels, has_x_labels): (bool, bool), svg: &mut String) {
+    fn draw_grid(&self, canvas: &mut Canvas) {
         let ((left, top), (width, height)) = (self.origin, self.size);
-        let _ = writeln!(
-            svg,
-            "<text x=\"{left:.0}\" y=\"{:.0}\" font-weight=\"bold\">{}</text>",
-            top - 7.0,
-            escaped(&panel.title)
-        );
-        let mut grid = String::new();
+        let across = self.x.ticks().into_iter().map(|(value, _)| self.at((value, 1.0)).0);
+        let mut grid: String = across.map(|x| format!("M{x:.1} {top:.1}v{height:.1}")).collect();
+        let along = self.y.ticks().into_iter().map(|(value, _)| self.at((1.0, value)).1);
+        grid.extend(along.map(|y| format!("M{left:.1} {y:.1}h{width:.1}")));
+        let _ = writeln!(canvas.0, "<path d=\"{grid}\" stroke=\"#e2e2e2\" fill=\"none\"/>");
+        let border = format!("x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\"");
+        let _ = writeln!(canvas.0, "<rect {border} fill=\"none\" stroke=\"#999\"/>");
+    }
+
+    fn label_x(&self, canvas: &mut Canvas) {
         for (value, text) in self.x.ticks() {
-            let (x, _) = self.at((value, 1.0));
-            let _ = write!(grid, "M{x:.1} {top:.1}v{height:.1}");
-            if has_x_labels {
-                let _ = writeln!(
-                    svg,
-                    "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\" font-size=\"11\">{text}</text>",
-                    top + height + 15.0
-                );
-            }
+            let at = (self.at((value, 1.0)).0, self.origin.1 + self.size.1 + 15.0);
+            canvas.text(at, TICK_BELOW, &text);
         }
+    }
+
+    fn label_y(&self, canvas: &mut Canvas) {
         for (value, text) in self.y.ticks() {
-            let (_, y) = self.at((1.0, value));
-            let _ = write!(grid, "M{left:.1} {y:.1}h{width:.1}");
-            if has_y_labels {
-                let _ = writeln!(
-                    svg,
-                    "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\" font-size=\"11\">{text}</text>",
-                    left - 5.0,
-                    y + 4.0
-                );
-            }
+            canvas.text((self.origin.0 - 5.0, self.at((1.0, value)).1 + 4.0), TICK_BESIDE, &text);
         }
-        let _ = writeln!(svg, "<path d=\"{grid}\" stroke=\"#e2e2e2\" fill=\"none\"/>");
-        let _ = writeln!(
-            svg,
-            "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"none\" stroke=\"#999\"/>"
-        );
+    }
+
+    fn draw(&self, panel: &Panel, canvas: &mut Canvas) {
+        let ((left, top), (width, height)) = (self.origin, self.size);
+        canvas.text((left, top - 7.0), BOLD, &panel.title);
+        let mut is_empty = true;
         for line in &panel.lines {
             for run in self.runs(&line.points) {
-                line.style.draw(&run, svg);
+                is_empty = false;
+                line.style.draw_line(&run, canvas);
+                line.style.draw_markers(&run, canvas);
             }
         }
-        if panel.lines.iter().all(|line| self.runs(&line.points).is_empty()) {
-            let _ = writeln!(
-                svg,
-                "<text x=\"{:.0}\" y=\"{:.0}\" text-anchor=\"middle\" fill=\"#888\">no run</text>",
-                left + 0.5 * width,
-                top + 0.5 * height
-            );
+        if is_empty {
+            canvas.text((left + 0.5 * width, top + 0.5 * height), CENTRED, "no run");
         }
     }
 
@@ -285,46 +331,35 @@ impl Frame {
 }
 
 impl Style {
-    fn draw(self, points: &[(f64, f64)], svg: &mut String) {
-        let Style { colour, stroke, marker } = self;
-        let dash = match stroke {
-            Stroke::Solid | Stroke::None => "",
+    fn draw_line(self, points: &[(f64, f64)], canvas: &mut Canvas) {
+        let dash = match self.stroke {
+            Stroke::None => return,
+            Stroke::Solid => "",
             Stroke::Dashed => " stroke-dasharray=\"7 4\"",
             Stroke::Dotted => " stroke-dasharray=\"2 3\"",
         };
-        if stroke != Stroke::None && points.len() > 1 {
+        if points.len() > 1 {
             let list: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-            let _ = writeln!(
-                svg,
-                "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.6\"{dash}/>",
-                list.join(" ")
-            );
+            let (list, colour) = (list.join(" "), self.colour);
+            let line = format!("points=\"{list}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.6\"");
+            let _ = writeln!(canvas.0, "<polyline {line}{dash}/>");
         }
-        // In the legend the marker stands in the middle.
-        let marked = if points.len() == 3 && points[0].1 == points[2].1 && points[0].0 + 26.0 == points[2].0 {
-            &points[1..2]
-        } else {
-            points
+    }
+
+    fn draw_markers(self, points: &[(f64, f64)], canvas: &mut Canvas) {
+        const ROUND: &str = "a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0";
+        let (fill, shape): (_, fn(f64, f64) -> String) = match self.marker {
+            Marker::None => return,
+            Marker::Disc => (self.colour, |x, y| format!("M{:.1} {y:.1}{ROUND}", x - 2.6)),
+            Marker::Ring => ("#fff", |x, y| format!("M{:.1} {y:.1}{ROUND}", x - 2.6)),
+            Marker::Cross => ("none", |x, y| format!("M{:.1} {:.1}l6 6m0 -6l-6 6", x - 3.0, y - 3.0)),
         };
-        let shape = |(x, y): &(f64, f64)| match marker {
-            Marker::Disc | Marker::Ring => {
-                format!("M{:.1} {y:.1}a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0 -5.2 0", x - 2.6)
-            }
-            Marker::Cross => format!("M{:.1} {:.1}l6 6m0 -6l-6 6", x - 3.0, y - 3.0),
-            Marker::None => String::new(),
-        };
-        if marker != Marker::None {
-            let path: String = marked.iter().map(shape).collect();
-            let fill = match marker {
-                Marker::Disc => colour,
-                Marker::Ring => "#fff",
-                _ => "none",
-            };
-            let _ = writeln!(
-                svg,
-                "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"1.3\"/>"
-            );
-        }
+        let path: String = points.iter().map(|(x, y)| shape(*x, *y)).collect();
+        let colour = self.colour;
+        let _ = writeln!(
+            canvas.0,
+            "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"1.3\"/>"
+        );
     }
 }
 

@@ -13,6 +13,8 @@ pub(crate) struct Goal {
     pub(crate) reached: Option<f64>,
     /// By what.
     pub(crate) by: String,
+    /// Whether a busy machine can miss it.
+    pub(crate) is_time: bool,
 }
 
 /// What a value may be.
@@ -73,6 +75,7 @@ pub(crate) fn of_the_paper(points: &[Point], t_end: f64) -> Vec<Goal> {
                 limit: Limit::AtMost(if is_joint { joint } else { maximal }),
                 reached: chosen.and_then(|point| point.outcome.as_ref().ok()).map(|outcome| outcome.ratio),
                 by: chosen.map_or(String::new(), |point| described(point, t_end)),
+                is_time: true,
             });
         }
     }
@@ -86,6 +89,7 @@ pub(crate) fn of_the_paper(points: &[Point], t_end: f64) -> Vec<Goal> {
             limit: Limit::AtMost(limit),
             reached,
             by: by.map_or(String::new(), |point| described(point, t_end)),
+            is_time: false,
         });
     }
     goals
@@ -106,7 +110,8 @@ mod tests {
 
     #[test]
     fn goals_are_met_or_not() {
-        let goal = |limit, reached| Goal { what: String::new(), limit, reached, by: String::new() };
+        let goal =
+            |limit, reached| Goal { what: String::new(), limit, reached, by: String::new(), is_time: false };
         for (limit, reached, is_met) in [
             (Limit::AtMost(0.08), Some(0.08), true),
             (Limit::AtMost(0.08), Some(0.081), false),

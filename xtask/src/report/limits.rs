@@ -213,7 +213,7 @@ const STEP: f64 = 1e-3;
 const STEPS: u64 = 4000;
 
 /// Samples of such a run: a motion that bursts may die again, having taken the scene's energy with it.
-const SAMPLES: f64 = 1000.0;
+const SAMPLES: f64 = 500.0;
 
 /// Relative width to which a limit is found.
 const WIDTH: f64 = 0.01;
@@ -254,9 +254,8 @@ pub(crate) fn search(guess: f64, mut is_stable: impl FnMut(f64) -> bool) -> Foun
         }
         (low, high) = (high, 4.0 * high);
     }
-    let stable =
-        |found: &Found, step: f64| found.trials.iter().any(|trial| trial.step == step && trial.is_stable);
-    if !stable(&found, low) || stable(&found, high) {
+    let was = |step: f64, is_stable: bool| found.trials.contains(&Trial { step, is_stable });
+    if !was(low, true) || !was(high, false) {
         return found;
     }
     while high / low > 1.0 + WIDTH {

@@ -28,6 +28,7 @@ use crate::args::ReportArgs;
 use crate::failure::Failure;
 use crate::progress::Count;
 use crate::{files, nested};
+use goals::Goal;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 use study::{Effort, Study};
@@ -44,14 +45,33 @@ pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     let twin = nested::twin()?;
     let machine = crate::performance::machine_in("release")?;
     let effort = if args.quick { Effort::quick() } else { Effort::full() };
+    let mut missed = Vec::new();
     for (index, path) in pages.iter().enumerate() {
         let progress = Count::new(format!("{} of {}", index + 1, pages.len()));
         let study = Study::new(path, &twin, &effort, &progress)?;
         write::study(&study, &machine, &folder)?;
         index::add(&study, &machine, &folder)?;
+        missed.extend(study.goals.into_iter().filter(|goal| !goal.is_met()));
         eprintln!("wrote {}", folder.join(format!("{}.md", study.lab.name)).display());
     }
-    Ok(())
+    judge(&missed, args.quick)
+}
+
+/// Says which goals were missed. A quick look fails with them, but for those of time, which a busy machine can miss.
+fn judge(missed: &[Goal], is_quick: bool) -> Result<(), Failure> {
+    let named = |goals: &mut dyn Iterator<Item = &Goal>| {
+        goals.map(|goal| format!("not met: {}", goal.row().join("; "))).collect::<Vec<_>>().join("\n")
+    };
+    let grave = named(&mut missed.iter().filter(|goal| is_quick && !goal.is_time));
+    let all = named(&mut missed.iter());
+    match (all.is_empty(), grave.is_empty()) {
+        (true, _) => Ok(()),
+        (false, true) => {
+            eprintln!("{all}");
+            Ok(())
+        }
+        (false, false) => Err(Failure::Run(grave)),
+    }
 }
 
 /// The pages to report on: those given; of all shipped ones; in quick mode the paper's scene.
@@ -73,4 +93,24 @@ fn pages(args: &ReportArgs) -> Result<Vec<PathBuf>, Failure> {
 
 fn unusable(path: &Path, error: &io::Error) -> Failure {
     Failure::Run(format!("{} cannot be used: {error}", path.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use goals::Limit;
+
+    #[test]
+    fn a_quick_look_fails_with_goals_that_no_busy_machine_can_miss() {
+        let goal = |is_time| Goal {
+            what: "error".to_owned(),
+            limit: Limit::AtMost(1.0),
+            reached: Some(2.0),
+            by: String::new(),
+            is_time,
+        };
+        assert!(judge(&[goal(false)], false).is_ok() && judge(&[goal(true)], true).is_ok());
+        let Err(Failure::Run(words)) = judge(&[goal(true), goal(false)], true) else { panic!("it passes") };
+        assert_eq!(words, "not met: error; ≤ 1; 2; ; not met");
+    }
 }

@@ -10,12 +10,14 @@ pub(crate) struct Order {
     pub(crate) n_points: usize,
 }
 
-/// The slope of log error over log step by least squares, for errors within the window; `None` with fewer than three.
+/// The slope of log error over log step by least squares, for errors within the window, at steps no shorter than that of the smallest
+/// error: shorter ones add up rounding. `None` with fewer than three.
 pub(crate) fn fit(errors: &[(f64, f64)]) -> Option<Order> {
     let (least, most) = WINDOW;
+    let shortest = errors.iter().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(h, _)| *h);
     let logs: Vec<(f64, f64)> = errors
         .iter()
-        .filter(|(h, error)| *h > 0.0 && (least..=most).contains(error))
+        .filter(|(h, error)| *h > 0.0 && *h >= shortest && (least..=most).contains(error))
         .map(|(h, error)| (h.ln(), error.ln()))
         .collect();
     if logs.len() < 3 {
@@ -43,8 +45,10 @@ mod tests {
             let error = |h: f64| 0.3 * h.powf(order);
             let mut errors: Vec<(f64, f64)> =
                 (0..60).map(|k| 10f64.powf(-0.1 * f64::from(k))).map(|h| (h, error(h))).collect();
-            // Below the window errors do not shrink any more.
-            errors.extend((0..5).map(|k| (10f64.powf(-6.0 - f64::from(k)), 3e-13)));
+            // Below some step errors do not shrink any more, and grow again.
+            errors.retain(|(_, error)| *error > 1e-12);
+            let shortest = errors.last().unwrap().0;
+            errors.extend((1..9).map(|k| (shortest * 0.5_f64.powi(k), 3e-13 * 4.0_f64.powi(k - 1))));
             let found = fit(&errors).unwrap();
             assert!((found.order - order).abs() < EXACT && found.n_points >= 4, "{order}: {found:?}");
         }

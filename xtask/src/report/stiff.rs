@@ -53,6 +53,7 @@ fn of_bearing(lab: &mut Lab, steps: f64, literature: f64, dearer: Option<f64>) -
         limit,
         reached,
         by: by.to_owned(),
+        is_time: false,
     };
     let knob = Knob::of(&lab.model);
     let spectrum = Spectrum::new(&lab.model, knob, knob.nominal()).map_err(Failure::Run)?;
@@ -83,7 +84,8 @@ fn of_bearing(lab: &mut Lab, steps: f64, literature: f64, dearer: Option<f64>) -
         let point = lab.point(&truth, &rk4, Setting::Steps(n), limits);
         let reached = point.outcome.map(|rk4| rk4.ratio / outcome.ratio).ok();
         let by = format!("rk4 at its largest stable step, {n} steps, over rodas4");
-        goals.push(goal("how much dearer RK4 is", Limit::AtLeast(factor), reached, &by));
+        let dearer = goal("how much dearer RK4 is", Limit::AtLeast(factor), reached, &by);
+        goals.push(Goal { is_time: true, ..dearer });
     }
     Ok(goals)
 }

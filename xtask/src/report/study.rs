@@ -36,12 +36,16 @@ impl Effort {
         let paper = ladders::Effort {
             per_decade: 2,
             halvings: Halvings::AndBetween,
-            longest_run: 0.25,
-            measure_for: 0.03,
+            longest_run: 0.2,
+            measure_for: 0.02,
         };
-        let other =
-            ladders::Effort { per_decade: 1, halvings: Halvings::Each, longest_run: 0.1, measure_for: 0.01 };
-        Self { runs: [paper, other], long: 100.0, per_decade: 3, is_full: true }
+        let other = ladders::Effort {
+            per_decade: 1,
+            halvings: Halvings::Each,
+            longest_run: 0.05,
+            measure_for: 0.006,
+        };
+        Self { runs: [paper, other], long: 100.0, per_decade: 2, is_full: true }
     }
 
     pub(crate) fn quick() -> Self {
@@ -108,6 +112,8 @@ impl Study {
         let mut goals = Vec::new();
         if is_paper {
             goals.extend(goals::of_the_paper(&points, lab.t_end));
+        }
+        if is_paper && effort.is_full {
             goals.extend(kept(&drifts, long));
             goals.extend(of_orders(&orders));
         }
@@ -132,7 +138,7 @@ fn points(lab: &mut Lab, truth: &Truth, effort: ladders::Effort, progress: &Coun
     let probe = Curve { integrator: Integrator::Dop853, ..curves[0] };
     let cheap = lab.point(truth, &probe, Setting::Tolerance(1e-6), (1_000_000, effort.measure_for));
     let seconds = cheap.outcome.map_or(0.0, |outcome| outcome.seconds);
-    let longest_run = (30.0 * seconds).clamp(effort.longest_run, 40.0 * effort.longest_run);
+    let longest_run = (30.0 * seconds).clamp(effort.longest_run, 20.0 * effort.longest_run);
     let effort = ladders::Effort { longest_run, ..effort };
     let mut points = Vec::new();
     for curve in &curves {
@@ -215,6 +221,7 @@ fn kept(drifts: &[Drift], long: f64) -> Vec<Goal> {
             limit: Limit::AtMost(limit),
             reached: course.and_then(|course| course.errors.as_ref()?.first().copied()),
             by: "rk4, step 1e-4 s, corrected every 5e-4 s".to_owned(),
+            is_time: false,
         }
     };
     KEPT.into_iter().map(goal).collect()
@@ -234,6 +241,7 @@ fn of_orders(orders: &[(Integrator, Treatment, Option<Order>)]) -> Vec<Goal> {
             limit: Limit::Near(expected(*integrator), 0.5),
             reached: order.map(|order| order.order),
             by: treatment.name(),
+            is_time: false,
         })
         .collect()
 }
