@@ -6,6 +6,7 @@ use crate::Real;
 ///
 /// Pivots are row numbers in the matrix's own number type, because no other buffer of the right length is at hand in a crate that
 /// allocates nothing.
+#[inline(always)]
 pub(super) fn factorise<T: Real>(matrix: &mut [T], pivots: &mut [T]) -> T {
     let n = pivots.len();
     let mut smallest = T::constant(f64::INFINITY);
@@ -43,6 +44,7 @@ pub(super) fn factorise<T: Real>(matrix: &mut [T], pivots: &mut [T]) -> T {
 }
 
 /// Solves for one right-hand side, in place.
+#[inline(always)]
 pub(super) fn solve<T: Real>(factors: &[T], pivots: &[T], x: &mut [T]) {
     let n = pivots.len();
     for (row, pivot) in pivots.iter().enumerate() {
