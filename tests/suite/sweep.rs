@@ -42,6 +42,14 @@ const SCENES: [Scene; 13] = [
 /// How far off a result may be in units of the tolerance.
 const TIMES: f64 = 10.0;
 
+/// Errors of single steps add up to no more than so many times what is allowed, but for a tolerance of one and where a mechanism may
+/// go on in two ways.
+const ADDED_UP: f64 = 30.0;
+const IN_LINE: &str = "four-bar-in-line";
+
+/// Of all runs that begin at least so many end right.
+const RIGHT: f64 = 0.75;
+
 /// Errors smaller than a hundred units in the last place are rounding.
 const ULPS: f64 = 100.0 * f64::EPSILON;
 
@@ -126,13 +134,15 @@ const REASONS: [(&str, bool); 8] = [
     ("cannot be solved for", false),
     ("the budget of", false),
     ("is stiff for this method", false),
-    ("a tolerance of", false),
+    (REFUSED, false),
 ];
+
+const REFUSED: &str = "a tolerance of";
 
 /// The reason of an error that says what, where and when.
 fn reason(words: &str, t_end: f64) -> Option<&'static str> {
     let (reason, is_somewhere) = REASONS.into_iter().find(|(reason, _)| words.contains(reason))?;
-    if words.starts_with("a tolerance of") {
+    if words.starts_with(REFUSED) {
         return Some(reason);
     }
     let t: f64 = words.strip_prefix("at t = ")?.split(' ').next()?.parse().ok()?;
@@ -149,8 +159,13 @@ fn worst(deviations: &[Vec<Deviation>; 2], allowed: impl Fn(usize, usize, f64) -
 
 impl<'a> Judge<'a> {
     fn new(scene: &'a Scene, tally: &'a mut Tally) -> Self {
+        Self::by(scene, scene.page, tally)
+    }
+
+    /// By the reference of another page.
+    fn by(scene: &'a Scene, page: &str, tally: &'a mut Tally) -> Self {
         let start = start_of(&model(scene.page));
-        let rows = expected(scene.page, &scene.settings(1.0));
+        let rows = expected(page, &scene.settings(1.0));
         Self { scene, rows, double: Stand::new(scene.page, &start), companions: HashMap::new(), tally }
     }
 
@@ -190,7 +205,12 @@ impl<'a> Judge<'a> {
             self.tally.right += 1;
             return;
         }
-        let words = format!("{what}: {ratio:.2} times what is allowed");
+        let words = format!("{what}: {ratio:.2e} times what is allowed");
+        let is_branching = self.scene.page == IN_LINE || approach.tolerance == Some(1.0);
+        if ratio > ADDED_UP && !is_branching {
+            self.tally.wrong.push(words);
+            return;
+        }
         match self.known(&samples, &deviations, settings, approach) {
             Ok(words_of_estimate) => self.tally.known.push(format!("{words}, {words_of_estimate}")),
             Err(words_of_estimate) => self.tally.wrong.push(format!("{words}, {words_of_estimate}")),
@@ -220,7 +240,8 @@ impl<'a> Judge<'a> {
             None => {
                 let is_known =
                     of(0, |e| e.position).chain(of(1, |e| e.rate)).all(|(error, most)| error <= most);
-                (is_known, format!("estimated {estimates:?}"))
+                let largest = estimates.iter().map(|e| e.position.max(e.rate)).fold(0.0, f64::max);
+                (is_known, format!("the largest estimate is {largest:.1e}"))
             }
         };
         let errors = deviations.concat().iter().map(|d| format!("{:.1e}", d.error)).collect::<Vec<_>>();
@@ -289,7 +310,7 @@ impl<'a> Judge<'a> {
             let words = outcome.err().map_or(String::new(), |failure| failure.to_string());
             if samples.len() == 1 && words.starts_with(&format!("a tolerance of {tolerance:e} cannot be met"))
             {
-                *self.tally.errors.entry("a tolerance of").or_default() += 1;
+                *self.tally.errors.entry(REFUSED).or_default() += 1;
             } else {
                 self.tally.wrong.push(format!("{}, {approach}: {words}", self.scene.page));
             }
@@ -327,5 +348,18 @@ fn every_extreme_scene_ends_right_or_in_a_reason() {
         known.len()
     );
     known.iter().for_each(|words| println!("{words}"));
+    let ended: u32 = errors.iter().filter(|(reason, _)| **reason != REFUSED).map(|(_, n)| n).sum();
+    let begun = f64::from(*right) + known.len() as f64 + f64::from(ended);
+    assert!(f64::from(*right) >= RIGHT * begun, "{right} of {begun} are right");
     assert!(wrong.is_empty(), "{} wrong:\n{}", wrong.len(), wrong.join("\n"));
+}
+
+#[test]
+fn another_answer_is_not_right() {
+    // The check must be able to fail: the verdict knows nothing of what the reference says.
+    let mut tally = Tally::default();
+    Judge::by(&SCENES[0], "gyroscope-light-rings", &mut tally).sweep::<f64>("", &[1e-7]);
+    assert!(tally.right == 0 && !tally.wrong.is_empty(), "{} right", tally.right);
+    assert_eq!(reason("at t = 0.5 s the orientation is no longer finite", 1.0), None);
+    assert_eq!(reason("at t = 2 s the budget of 3 steps is used up", 1.0), None);
 }
