@@ -79,6 +79,9 @@ const LABEL: f64 = 24.0;
 const LEGEND_ROW: f64 = 22.0;
 const CHARACTER: f64 = 7.2;
 
+/// What is drawn stays away so far from the border, in decades.
+const BORDER: f64 = 0.04;
+
 /// A range in decades, and where values are on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Decades {
@@ -94,9 +97,9 @@ impl Decades {
         if low > high {
             return Self { low: 0.0, high: 1.0 };
         }
-        // Whole decades where there are several, else what there is with a margin.
+        // Whole decades where there are several, with nothing on the border; else what there is with a margin.
         if high - low > 1.5 {
-            return Self { low: low.floor(), high: high.ceil() };
+            return Self { low: (low - BORDER).floor(), high: (high + BORDER).ceil() };
         }
         let margin = (0.08 * (high - low)).max(0.05);
         Self { low: low - margin, high: high + margin }
@@ -379,7 +382,7 @@ mod tests {
             decades.ticks().into_iter().map(|(_, text)| text).collect::<Vec<_>>()
         };
         assert_eq!(texts(&[2e-12, 3e-9]), ["1e-12", "1e-11", "1e-10", "1e-9", "1e-8"]);
-        assert_eq!(texts(&[1.0, 40.0]), ["1", "2", "5", "10", "20", "50", "100"]);
+        assert_eq!(texts(&[1.2, 40.0]), ["1", "2", "5", "10", "20", "50", "100"]);
         assert_eq!(texts(&[]).len(), 4);
     }
 

@@ -293,7 +293,8 @@ fn failures(study: &Study, page: &mut Page) {
         };
         let by: Vec<String> = Integrator::ALL.iter().filter_map(by).collect();
         // What to do about it is advice for a single run.
-        let words = words.split("; try").next().unwrap_or(&words).to_owned();
+        let words = words.split("; try").next().unwrap_or(&words);
+        let words = words.split("; the mechanism is").next().unwrap_or(words).to_owned();
         let name = format!("{}, {}, {}", who(way.engine), way.precision.name(), way.treatment.name());
         rows.push(vec![name, by.join(", "), words]);
     }
