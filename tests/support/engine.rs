@@ -112,7 +112,6 @@ impl PartialEq for Choice {
 #[derive(Clone, Copy, Debug)]
 enum Term {
     Derivative,
-    CorrectedDerivative,
     Phi,
     VelocityResidual,
     Readings,
@@ -128,7 +127,7 @@ enum Term {
 /// The traits of a mechanism with all buffers as slices.
 trait Erased<T>: Any + Debug {
     fn cloned(&self) -> Box<dyn Erased<T>>;
-    /// The start for derivatives, else zeros.
+    /// The start for [`Term::Derivative`], else zeros.
     fn buffer(&self, term: Term) -> Vec<T>;
     fn write(&self, term: Term, t: T, y: &[T], out: &mut [T]);
     fn multipliers(&self, t: T, y: &[T], accelerations: &[T], lambda: &mut [T]);
@@ -162,6 +161,7 @@ trait ErasedTree<T> {
     fn rates(&self) -> Vec<T>;
     fn jacobian_buffer(&self) -> Vec<T>;
     fn input_jacobian_buffer(&self) -> Vec<T>;
+    fn corrected_derivative(&self, t: T, y: &[T], dy: &mut [T]);
     fn joint_derivative(&self, t: T, x: &[T], dx: &mut [T]);
     fn joint_jacobian(&self, t: T, x: &[T], dfdx: &mut [T], dfdt: &mut [T]);
     fn joint_input_jacobian(&self, t: T, x: &[T], out: &mut [T]);
@@ -224,7 +224,7 @@ where
     }
     fn buffer(&self, term: Term) -> Vec<T> {
         match term {
-            Term::Derivative | Term::CorrectedDerivative => listed(self.start()),
+            Term::Derivative => listed(self.start()),
             Term::Phi => listed(self.constraints()),
             Term::VelocityResidual | Term::Nu | Term::Gamma => listed(self.rows()),
             Term::Readings => listed(self.readings()),
@@ -239,9 +239,6 @@ where
         let y = &filled(self.start(), y);
         match term {
             Term::Derivative => through(self.start(), out, |dy| self.derivative(t, y, dy)),
-            Term::CorrectedDerivative => {
-                through(self.start(), out, |dy| self.corrected_derivative(t, y, dy));
-            }
             Term::Phi => through(self.constraints(), out, |phi| self.phi(t, y, phi)),
             Term::VelocityResidual => through(self.rows(), out, |rows| self.velocity_residual(t, y, rows)),
             Term::Readings => through(self.readings(), out, |readings| self.read_joints(t, y, readings)),
@@ -347,6 +344,10 @@ impl<T: Real + 'static, M: JointJacobian<Scalar = T>> ErasedTree<T> for M {
     fn input_jacobian_buffer(&self) -> Vec<T> {
         listed(JointJacobian::input_jacobian_buffer(self))
     }
+    fn corrected_derivative(&self, t: T, y: &[T], dy: &mut [T]) {
+        let y = &filled(self.start(), y);
+        through(self.start(), dy, |dy| Mechanism::corrected_derivative(self, t, y, dy));
+    }
     fn joint_derivative(&self, t: T, x: &[T], dx: &mut [T]) {
         let buffer = JointSpace::joint_start(self);
         let x = &filled(buffer.clone(), x);
@@ -438,7 +439,10 @@ impl<T: Real + 'static> Mechanism for Engine<T> {
         self.mechanism.buffer(Term::Readings)
     }
     fn corrected_derivative(&self, t: T, y: &Vec<T>, dy: &mut Vec<T>) {
-        self.mechanism.write(Term::CorrectedDerivative, t, y, dy);
+        match (self.tree)(&*self.mechanism) {
+            Some(tree) => tree.corrected_derivative(t, y, dy),
+            None => self.derivative(t, y, dy),
+        }
     }
     fn phi(&self, t: T, y: &Vec<T>, out: &mut Vec<T>) {
         self.mechanism.write(Term::Phi, t, y, out);
