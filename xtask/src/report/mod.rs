@@ -27,7 +27,7 @@ mod write;
 use crate::args::ReportArgs;
 use crate::failure::Failure;
 use crate::progress::Count;
-use crate::{files, nested};
+use crate::{files, nested, scene};
 use goals::Goal;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -36,6 +36,8 @@ use study::{Effort, Study};
 /// Measures scenes and writes their pages and the index.
 pub(crate) fn report(args: &ReportArgs) -> Result<(), Failure> {
     let pages = pages(args)?;
+    // A mistake in the last of them is better known before anything is compiled.
+    pages.iter().try_for_each(|path| scene::read(path).map(|_| ()))?;
     let folder = args.out.clone().unwrap_or_else(|| {
         // A quick look does not replace what was measured with care.
         let root = files::root();

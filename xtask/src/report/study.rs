@@ -91,8 +91,8 @@ const LONG_RUN: f64 = 100.0;
 /// What a solution for a long run may take, s.
 const PATIENCE: f64 = 60.0;
 
-/// Steps of a long run at most.
-const MOST_STEPS: f64 = 2e6;
+/// Steps of a long run at most: of a tree, and of what is partitioned by pivoting, which is dear.
+const MOST_STEPS: [f64; 2] = [2e6, 3e5];
 
 impl Study {
     pub(crate) fn new(path: &Path, twin: &Path, effort: &Effort, progress: &Count) -> Result<Self, Failure> {
@@ -190,7 +190,7 @@ fn long_runs(
 ) -> Result<(f64, Vec<Drift>), Failure> {
     let treatments = explore::treatments(lab);
     progress.begin(&format!("{}: long runs", lab.name), treatments.len() as u64);
-    let most = MOST_STEPS * lab.model.simulation.step;
+    let most = MOST_STEPS[usize::from(!lab.has_joint_coordinates())] * lab.model.simulation.step;
     let long = (effort.long * lab.t_end).min(most).max(lab.t_end);
     let own = std::mem::replace(&mut lab.t_end, long);
     let truth = match gyro_reference::scene(&lab.name) {

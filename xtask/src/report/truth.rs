@@ -22,6 +22,8 @@ pub(crate) struct Truth {
     pub(crate) source: String,
     /// Whether it is independent of all that is judged by it.
     pub(crate) is_independent: bool,
+    /// Smaller errors are not known.
+    floor: f64,
     rows: Vec<Row>,
     /// Names of the coordinates, scalars first.
     pub(crate) names: Vec<String>,
@@ -48,15 +50,15 @@ impl Truth {
         let rows = reference.solve(&times(t_end)).iter().map(of_reference).collect();
         let source = "the reference solution of this scene (`gyro_reference::scene`): minimal coordinates, derived by hand and integrated in \
                       106 bits apart from everything else";
-        Self::new(model, source.to_owned(), true, rows)
+        Self::new(model, source.to_owned(), 0.0, rows)
     }
 
-    /// From a run.
-    pub(crate) fn of_samples(model: &Model, source: String, samples: &[Sample]) -> Self {
-        Self::new(model, source, false, samples.iter().map(of_sample).collect())
+    /// From a run whose own error is about `floor`.
+    pub(crate) fn of_samples(model: &Model, (source, floor): (String, f64), samples: &[Sample]) -> Self {
+        Self::new(model, source, floor, samples.iter().map(of_sample).collect())
     }
 
-    fn new(model: &Model, source: String, is_independent: bool, rows: Vec<Row>) -> Self {
+    fn new(model: &Model, source: String, floor: f64, rows: Vec<Row>) -> Self {
         let names = names(model);
         let ranges: Vec<f64> = (0..names.len()).map(|k| range(&rows, k)).collect();
         let kinds = columns::coordinates(model);
@@ -72,7 +74,7 @@ impl Truth {
         let judged = ranges.iter().zip(&is_judged).filter(|(_, is_judged)| **is_judged);
         let largest = judged.map(|(range, _)| *range).fold(0.0, f64::max);
         let scale = if largest > SMALL || largest == 0.0 { 1.0 } else { largest };
-        Self { source, is_independent, rows, names, is_judged, scale }
+        Self { source, is_independent: floor == 0.0, floor, rows, names, is_judged, scale }
     }
 
     /// The worst error of each coordinate over samples of a run that has ended at `t_end`; each falls on one of the times.
@@ -92,7 +94,7 @@ impl Truth {
     /// The error that is shown, from those of all coordinates.
     pub(crate) fn judge(&self, errors: &[f64]) -> f64 {
         let judged = errors.iter().zip(&self.is_judged).filter(|(_, is_judged)| **is_judged);
-        judged.map(|(error, _)| *error).fold(0.0, f64::max) / self.scale
+        judged.map(|(error, _)| *error).fold(self.floor * self.scale, f64::max) / self.scale
     }
 
     /// How errors are counted, in words.

@@ -250,7 +250,8 @@ fn stability(study: &Study, page: &mut Page) {
     let knob = study.knob.label(&study.lab.model);
     page.text(format!(
         "Fixed steps that keep a run of 4000 steps bounded, over the {knob}. The limit in theory is where |R(hλ)| = 1 at the fastest eigenvalue λ \
-         about the start, R being the method's own amplification. Rodas4 is L-stable and has no limit. Data: \
+         about the start, R being the method's own amplification: it holds for motions near the start, and where steps are too long to follow the scene \
+         something else ends a run before. Rodas4 is L-stable and has no limit. Data: \
          [{name}-stability.csv]({name}-stability.csv).",
         name = study.lab.name
     ));
