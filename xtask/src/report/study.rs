@@ -138,7 +138,7 @@ fn points(lab: &mut Lab, truth: &Truth, effort: ladders::Effort, progress: &Coun
     let probe = Curve { integrator: Integrator::Dop853, ..curves[0] };
     let cheap = lab.point(truth, &probe, Setting::Tolerance(1e-6), (1_000_000, effort.measure_for));
     let seconds = cheap.outcome.map_or(0.0, |outcome| outcome.seconds);
-    let longest_run = (10.0 * seconds).clamp(effort.longest_run, 20.0 * effort.longest_run);
+    let longest_run = (4.0 * seconds).clamp(effort.longest_run, 6.0 * effort.longest_run);
     let effort = ladders::Effort { longest_run, ..effort };
     let mut points = Vec::new();
     for curve in &curves {
