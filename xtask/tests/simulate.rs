@@ -66,19 +66,28 @@ fn json_is_one_object_and_both_engines_give_the_same() {
         [
             "chart_switches",
             "constraint_violation",
+            "coordinates",
+            "correction",
+            "corrections",
             "degrees_of_freedom",
             "energy",
             "energy_drift",
             "engine",
+            "evaluations",
+            "integrator",
+            "jacobians",
             "joints",
             "method",
             "model",
             "outputs",
             "redundant",
+            "rejected_steps",
             "run_time_s",
             "step",
             "steps",
+            "steps_limited_by_stability",
             "t",
+            "tolerance",
             "velocity_violation"
         ]
     );
@@ -91,6 +100,26 @@ fn json_is_one_object_and_both_engines_give_the_same() {
         }
     }
     assert!(folder.files().is_empty(), "--json without --out writes nothing");
+}
+
+#[test]
+fn a_run_is_judged_and_linearised() {
+    let folder = Folder::new("judged");
+    let page = model("gyroscope-parameters.toml");
+    let judged = json(&folder, &[&page, "--t-end", "0.05", "--verify"]);
+    let verdict = &judged["verdict"];
+    for joint in ["alpha", "beta", "phi"] {
+        let error = verdict["estimated_errors"][joint].as_f64().unwrap();
+        assert!(error > 0.0 && error < 1e-9, "{joint}: {verdict}");
+    }
+    assert!(!verdict["advice"].as_array().unwrap().is_empty(), "{verdict}");
+    let joint = ["--coordinates", "joint", "--integrator", "dop853", "--tolerance", "1e-9"];
+    let linear = json(&folder, &[&[&page, "--linearize", "0.05"][..], &joint].concat());
+    let linear = &linear["linearization"];
+    assert_eq!(linear["A"].as_array().unwrap().len(), 6);
+    // The nutation of the paper's scene.
+    let fastest = linear["eigenvalues"][0][1].as_f64().unwrap();
+    assert!((fastest - 144.31).abs() < 0.1, "{linear}");
 }
 
 #[test]
