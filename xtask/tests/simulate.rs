@@ -56,7 +56,9 @@ fn json_is_one_object_and_both_engines_give_the_same() {
     let folder = Folder::new("json");
     let page = model("gyroscope-parameters.toml");
     let run = |engine| {
-        json(&folder, &[&page, "--engine", engine, "--t-end", "0.05", "--set", "rotor_offset=0.0002"])
+        // Between corrections generated code takes a shorter way, with roundings and truncations of its own.
+        let scene = [&page, "--engine", engine, "--t-end", "0.05", "--set", "rotor_offset=0.0002"];
+        json(&folder, &[&scene[..], &["--method", "direct"]].concat())
     };
     let (generated, assembled) = (run("generated"), run("assembled"));
     let mut keys: Vec<&String> = assembled.as_object().unwrap().keys().collect();
