@@ -69,7 +69,14 @@ pub enum Error {
         /// The step that stability allows, s.
         step: f64,
     },
-    /// The time to go to is not finite.
+    /// A setting of the solver that is no length of a step.
+    Setting {
+        /// Its name.
+        setting: &'static str,
+        /// Its value, s.
+        value: f64,
+    },
+    /// The time to go to is not finite, or the time to interpolate at not within the last step.
     NoEnd {
         /// Time, s.
         t: f64,
@@ -110,6 +117,7 @@ impl fmt::Display for Error {
             Self::StepTooShort { t, step, index } => {
                 write!(f, "at t = {t} s element {index} of the state would need steps as short as {step:e} s")
             }
+            Self::Setting { setting, value } => write!(f, "{setting} = {value} s is no length of a step"),
             Self::NoEnd { t, t_end } => write!(f, "at t = {t} s there is no way to t = {t_end} s"),
             Self::TooManySteps { t, steps } => {
                 write!(f, "at t = {t} s the budget of {steps} steps is used up")

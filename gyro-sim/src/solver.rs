@@ -2,6 +2,7 @@
 
 use crate::integrate::{Embedded, Method, Work};
 use crate::{Correction, Error, Ode, Real, Storage, When};
+use core::cmp::Ordering;
 
 /// What a solver is to keep to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -228,10 +229,11 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         Ok(())
     }
 
-    /// Writes the state at a time within the last step, corrected like the states between steps are.
+    /// Writes the state at a time within the last step, corrected like the states between steps are; at its end and beyond it the
+    /// state as it is.
     ///
     /// # Errors
-    /// [`Error`] if the correction fails.
+    /// [`Error::NoEnd`] for a time before the last step, or once a later attempt has failed; [`Error`] if the correction fails.
     pub fn interpolate<O>(&mut self, system: &O, t: T, out: &mut S) -> Result<(), Error>
     where
         O: Ode<Scalar = T, State = S>,
@@ -239,9 +241,13 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
         C: Correction<O>,
     {
         let (start, y, h) = &self.before;
-        if t >= self.t || *h == T::constant(0.0) {
+        if t >= self.t {
             out.as_mut().copy_from_slice(self.y.as_ref());
             return Ok(());
+        }
+        // What the method holds are the slopes of its last attempt.
+        if !self.is_kept || !(*start..=self.t).contains(&t) {
+            return Err(Error::NoEnd { t: self.t.to_f64(), t_end: t.to_f64() });
         }
         if !self.is_prepared {
             self.method.prepare(system, *start, *h, y, &mut self.statistics.work);
@@ -284,8 +290,8 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
             When::Steps(steps) => self.since_correction + 1 >= steps,
             When::Violation(limit) => {
                 let violation = self.correction.violation(system, t, &self.trial).to_f64();
-                // What is not a number is corrected too, and so noticed.
-                violation > limit || violation.is_nan()
+                // What cannot be compared is corrected too, and so noticed.
+                !matches!(violation.partial_cmp(&limit), Some(Ordering::Less | Ordering::Equal))
             }
         };
         if is_due {
@@ -412,11 +418,18 @@ impl<S: Storage<T>, T: Real, M, C> Solver<S, T, M, C> {
 
     fn check_control(&self) -> Result<(), Error> {
         let smallest = 4.0 * T::EPSILON.to_f64();
-        let Control { relative, absolute, .. } = self.control;
-        if relative >= smallest && absolute > 0.0 && relative.is_finite() && absolute.is_finite() {
-            return Ok(());
+        let Control { relative, absolute, first_step, smallest_step, largest_step, .. } = self.control;
+        let is_met = relative >= smallest && absolute > 0.0 && relative.is_finite() && absolute.is_finite();
+        if !is_met {
+            return Err(Error::Tolerance { relative, absolute, smallest });
         }
-        Err(Error::Tolerance { relative, absolute, smallest })
+        let lengths = [("first_step", first_step), ("smallest_step", smallest_step)];
+        let is_wrong = |length: f64| !(length >= 0.0 && length.is_finite());
+        match lengths.into_iter().find(|(_, length)| is_wrong(*length)) {
+            Some((setting, value)) => Err(Error::Setting { setting, value }),
+            None if largest_step > 0.0 => Ok(()),
+            None => Err(Error::Setting { setting: "largest_step", value: largest_step }),
+        }
     }
 
     /// Steps shorter than this do not move the time, or are not wanted.

@@ -50,6 +50,7 @@ pub fn describe_in<M: Mechanism>(mechanism: &M, coordinates: Coordinates, error:
             "at t = {t} s {} would need steps as short as {step:e} s for this --tolerance; try a larger one",
             element(index)
         ),
+        Error::Setting { setting, value } => format!("{setting} = {value} s is no length of a step"),
         Error::NoEnd { t, t_end } => format!("at t = {t} s there is no way to t = {t_end} s"),
         Error::TooManySteps { t, steps } => format!(
             "at t = {t} s the budget of {steps} steps is used up; try a larger --tolerance, or --integrator rodas4 if the scene is \

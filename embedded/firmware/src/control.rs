@@ -109,7 +109,7 @@ fn report(error: Error) {
         | Error::TooManySteps { t, .. }
         | Error::Stiff { t, .. }
         | Error::NoEnd { t, .. } => ("the steps are too short", t),
-        Error::Tolerance { .. } => ("the tolerance cannot be met", 0.0),
+        Error::Tolerance { .. } | Error::Setting { .. } => ("the tolerance cannot be met", 0.0),
     };
     print::text(words);
     print::text(" at ms ");

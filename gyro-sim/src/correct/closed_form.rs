@@ -28,7 +28,8 @@ impl<M: JointSpace<Scalar: Real>> ClosedForm<M> {
         mechanism.to_maximal(t, &self.joints, y);
         let kept = y.as_mut().iter_mut().zip(self.before.as_ref()).skip(13 * mechanism.n_bodies());
         kept.for_each(|(element, before)| *element = *before);
-        check_finite(t, y.as_ref())
+        // Angles are continued from these: what is not finite must not stay among them.
+        check_finite(t, y.as_ref()).inspect_err(|_| self.joints = mechanism.joint_start())
     }
 }
 

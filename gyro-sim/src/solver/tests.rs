@@ -199,6 +199,12 @@ fn what_cannot_be_done_is_an_error_that_says_why() {
     let wide = Control { smallest_step: 1.0, first_step: 1.5, ..control };
     assert!(matches!(outcome(wide), Err(Error::StepTooShort { .. })), "{:?}", outcome(wide));
     assert_eq!(outcome(control.with_tolerance(1.0)), Ok(()));
+    for (first_step, smallest_step, largest_step) in
+        [(f64::NAN, 0.0, 1.0), (-0.1, 0.0, 1.0), (0.0, f64::NAN, 1.0), (0.0, 0.0, 0.0), (0.0, 0.0, f64::NAN)]
+    {
+        let outcome = outcome(Control { first_step, smallest_step, largest_step, ..control });
+        assert!(matches!(outcome, Err(Error::Setting { .. })), "{outcome:?}");
+    }
     let mut solver = Solver::new(Dop853::new(&[0.0; 2]), Uncorrected, 0.0, &CHIRP.start());
     assert!(matches!(solver.advance_to(&CHIRP, f64::NAN), Err(Error::NoEnd { .. })));
 }
@@ -234,6 +240,21 @@ fn an_error_leaves_the_motion_where_it_was() {
     let mut solver = Solver::new(Kutta4::new(&[1e200]), Uncorrected, 0.5, &[1e200]);
     assert!(solver.step(&BlowUp, 1.0).is_err());
     assert_eq!((solver.time(), solver.state()), (0.5, &[1e200]));
+}
+
+#[test]
+fn only_the_last_step_can_be_looked_into() {
+    let mut solver = Solver::new(Tsit5::new(&[0.0]), Uncorrected, 0.0, &BlowUp.start());
+    let (mut out, no_way) = ([0.0], |outcome| matches!(outcome, Err(Error::NoEnd { .. })));
+    assert!(no_way(solver.interpolate(&BlowUp, -0.1, &mut out)), "nothing has been stepped yet");
+    solver.step(&BlowUp, 0.1).unwrap();
+    solver.step(&BlowUp, 0.1).unwrap();
+    assert!(no_way(solver.interpolate(&BlowUp, 0.05, &mut out)), "the step before the last");
+    solver.interpolate(&BlowUp, 0.15, &mut out).unwrap();
+    assert!((out[0] - 1.0 / 0.85).abs() < 1e-6, "{out:?}");
+    // The attempt leaves its own slopes behind.
+    assert!(solver.step(&BlowUp, 1e300).is_err());
+    assert!(no_way(solver.interpolate(&BlowUp, 0.15, &mut out)), "{out:?}");
 }
 
 #[test]
