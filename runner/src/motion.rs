@@ -4,8 +4,8 @@ use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
 use crate::pivots;
 use gyro_sim::integrate::{Embedded, Method};
 use gyro_sim::{
-    Baumgarte, ByDuals, ClosedForm, Control, Corrected, Correction, Differentiable, Dop853, Dual, Error,
-    JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
+    Baumgarte, ByDuals, ClosedForm, Control, Coordinate, Corrected, Correction, Differentiable, Dop853, Dual,
+    Error, JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
     Partitioning, Ports, Projection, Real, Rodas4, Scalar, Solver, Statistics, Storage, Tsit5, Uncorrected,
     When,
 };
@@ -55,7 +55,9 @@ pub trait Kit<M: Partition + Ports> {
         None
     }
     /// The linearisation of the joint form about a maximal state; `None` for what has no joint form.
-    fn linearise(&self, _mechanism: &M, _t: f64, _y: &M::State) -> Option<Linear> {
+    ///
+    /// `nearest` has for each coordinate, joint after joint, the continuous angle, which the state alone does not tell.
+    fn linearise(&self, _mechanism: &M, _t: f64, _y: &M::State, _nearest: &[f64]) -> Option<Linear> {
         None
     }
 }
@@ -182,8 +184,8 @@ where
         Some(pivots::smallest(mechanism, t, y))
     }
 
-    fn linearise(&self, mechanism: &M, t: f64, y: &M::State) -> Option<Linear> {
-        let (x, time) = (joints(mechanism, y), Scalar::constant(t));
+    fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
+        let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
         let zero = M::Scalar::constant(0.0);
         let duals = JointDuals(self.0.clone(), vec![zero; square(x.as_ref())]);
         let (mut by_state, mut by_time) = (duals.1.clone(), x.clone());
@@ -229,8 +231,8 @@ where
         Some(pivots::smallest(mechanism, t, y))
     }
 
-    fn linearise(&self, mechanism: &M, t: f64, y: &M::State) -> Option<Linear> {
-        let (x, time) = (joints(mechanism, y), Scalar::constant(t));
+    fn linearise(&self, mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> Option<Linear> {
+        let (x, time) = (joints_near(mechanism, t, y, nearest), Scalar::constant(t));
         let (mut slope, mut by_time) = (x.clone(), x.clone());
         let (mut by_state, mut by_inputs) =
             (mechanism.joint_jacobian_buffer(), mechanism.input_jacobian_buffer());
@@ -280,6 +282,21 @@ where
     let mut out = arguments.clone();
     duals.joint_derivative(Dual::new(t), &arguments, &mut out);
     out.as_ref().iter().map(|number| number.slopes[0]).collect()
+}
+
+/// The joint state of a maximal one, its angles nearest to given ones: one number for each coordinate, joint after joint.
+fn joints_near<M: JointSpace>(mechanism: &M, t: f64, y: &M::State, nearest: &[f64]) -> M::Joints {
+    let mut x = mechanism.joint_start();
+    let coordinates = (0..mechanism.n_joints()).flat_map(|joint| mechanism.joint(joint).coordinates);
+    let mut place = 0;
+    for (coordinate, angle) in coordinates.zip(nearest) {
+        if let (Coordinate::Angle, Some(x)) = (coordinate, x.as_mut().get_mut(place)) {
+            *x = Scalar::constant(*angle);
+        }
+        place += if *coordinate == Coordinate::Orientation { 4 } else { 1 };
+    }
+    mechanism.to_joints(Scalar::constant(t), y, &mut x);
+    x
 }
 
 /// The joint state of a maximal one.

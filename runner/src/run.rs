@@ -7,7 +7,7 @@ use crate::{
     Approach, Coordinates, Correction, Failure, Input, Integrator, Sample, Schedule, Segment, Settings,
     Summary, Tracker, describe, describe_in,
 };
-use gyro_sim::{Error, Partition, Ports, Real, Scalar, Turns};
+use gyro_sim::{Error, JointCoordinate, Partition, Ports, Real, Scalar, Turns};
 use std::io;
 use std::time::{Duration, Instant};
 
@@ -109,8 +109,10 @@ pub fn run_by<M: Partition + Ports + 'static>(
         }
     }
     run.finish();
-    if let Some(linear) =
-        approach.examine.then(|| kit.linearise(run.mechanism, settings.t_end, &run.y)).flatten()
+    if let Some(linear) = approach
+        .examine
+        .then(|| kit.linearise(run.mechanism, settings.t_end, &run.y, &run.angles()))
+        .flatten()
     {
         tell(Event::Linear(&linear))?;
     }
@@ -250,6 +252,18 @@ impl<'a, M: Partition + Ports> Run<'a, M> {
             self.read_turns(t)?;
         }
         Ok(self.observer.sample(self.mechanism, t, &self.y, &self.turns, self.motion.chart_switches()))
+    }
+
+    /// The continuous angle of each coordinate at the last reading; zero for what is no angle.
+    fn angles(&self) -> Vec<f64> {
+        let joints = 0..self.mechanism.n_joints();
+        let all = joints
+            .flat_map(|joint| (0..self.mechanism.joint(joint).coordinates.len()).map(move |k| (joint, k)));
+        let angle = |(joint, k)| match self.turns.coordinate(self.mechanism, joint, k) {
+            Some(JointCoordinate::Angle { position, .. }) => position.to_f64(),
+            _ => 0.0,
+        };
+        all.map(angle).collect()
     }
 
     fn look_at_pivots(&mut self, kit: &dyn Kit<M>, approach: &Approach, t: f64) {

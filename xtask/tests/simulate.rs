@@ -117,6 +117,10 @@ fn a_run_is_judged_and_linearised() {
     assert!(!verdict["advice"].as_array().unwrap().is_empty(), "{verdict}");
     let joint = ["--coordinates", "joint", "--integrator", "dop853", "--tolerance", "1e-9"];
     let linear = json(&folder, &[&[&page, "--linearize", "0.05"][..], &joint].concat());
+    // The rotor has turned by five radians, more than half a turn.
+    let phi = |run: &Value| run["joints"]["phi"]["position"].as_f64().unwrap();
+    let difference = linear["linearization"]["state"][2].as_f64().unwrap() - phi(&linear);
+    assert!(difference.abs() < 1e-9 && phi(&linear) > 4.0, "{linear}");
     let linear = &linear["linearization"];
     assert_eq!(linear["A"].as_array().unwrap().len(), 6);
     // The nutation of the paper's scene.
