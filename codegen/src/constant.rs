@@ -5,7 +5,9 @@
 
 use gyro_model::{Rational, to_f64};
 use num_bigint::{BigInt, BigUint, Sign};
+use num_integer::Integer;
 use num_traits::{One, Signed, ToPrimitive, Zero};
+use std::borrow::Cow;
 use std::fmt;
 use std::hash::{Hash, Hasher};
 
@@ -69,7 +71,7 @@ impl Constant {
             return Some(self.clone());
         }
         (self.radicand == other.radicand)
-            .then(|| Self::new(&self.coefficient + &other.coefficient, self.radicand.clone()))
+            .then(|| Self::new(sum(&self.coefficient, &other.coefficient), self.radicand.clone()))
     }
 
     pub fn mul(&self, other: &Self) -> Self {
@@ -80,7 +82,7 @@ impl Constant {
         if other.is_one() {
             return self.clone();
         }
-        let coefficient = &self.coefficient * &other.coefficient;
+        let coefficient = product(&self.coefficient, &other.coefficient);
         if self.radicand.is_one() || other.radicand.is_one() {
             return Self::new(coefficient, &self.radicand * &other.radicand);
         }
@@ -90,7 +92,8 @@ impl Constant {
     /// `1 / (a √b) = √b / (a b)`; `None` for zero.
     pub fn recip(&self) -> Option<Self> {
         let square = Rational::from_integer(self.radicand.clone().into());
-        (!self.is_zero()).then(|| Self::new((&self.coefficient * square).recip(), self.radicand.clone()))
+        (!self.is_zero())
+            .then(|| Self::new(product(&self.coefficient, &square).recip(), self.radicand.clone()))
     }
 
     /// Square root of a rational that is not negative; `None` otherwise.
@@ -140,8 +143,53 @@ impl Constant {
             }
         }
         let outside = Rational::from_integer(BigInt::from_biguint(Sign::Plus, outside));
-        Self::new(&self.coefficient * outside, n)
+        Self::new(product(&self.coefficient, &outside), n)
     }
+}
+
+/// A product in lowest terms. Its factors are in lowest terms already, so there is nothing to look for but what they have in common
+/// crosswise: [`Rational`]'s own product looks three times, and half of all derivation was spent on it.
+fn product(a: &Rational, b: &Rational) -> Rational {
+    let crosswise = [common(a.numer(), b.denom()), common(b.numer(), a.denom())];
+    let without =
+        |x: &BigInt, divisor: &Option<BigInt>| divisor.as_ref().map_or_else(|| x.clone(), |d| x / d);
+    let numerator = without(a.numer(), &crosswise[0]) * without(b.numer(), &crosswise[1]);
+    let denominator = without(a.denom(), &crosswise[1]) * without(b.denom(), &crosswise[0]);
+    if numerator.is_zero() { Rational::zero() } else { Rational::new_raw(numerator, denominator) }
+}
+
+/// A sum in lowest terms, after Knuth, "The Art of Computer Programming" 2, 4.5.1: with g what the denominators have in common, nothing
+/// but a divisor of g can cancel.
+fn sum(a: &Rational, b: &Rational) -> Rational {
+    let Some(shared) = common(a.denom(), b.denom()) else {
+        let numerator = a.numer() * b.denom() + b.numer() * a.denom();
+        return if numerator.is_zero() {
+            Rational::zero()
+        } else {
+            Rational::new_raw(numerator, a.denom() * b.denom())
+        };
+    };
+    let (rest_a, rest_b) = (a.denom() / &shared, b.denom() / &shared);
+    let numerator = a.numer() * &rest_b + b.numer() * &rest_a;
+    match common(&numerator, &shared) {
+        _ if numerator.is_zero() => Rational::zero(),
+        Some(cancelled) => Rational::new_raw(numerator / &cancelled, rest_a * (b.denom() / cancelled)),
+        None => Rational::new_raw(numerator, rest_a * b.denom()),
+    }
+}
+
+/// The greatest common divisor; `None` for one. By Euclid's algorithm as long as the numbers are large, for which `BigInt` shifts bit
+/// by bit.
+fn common(a: &BigInt, b: &BigInt) -> Option<BigInt> {
+    let (mut a, mut b) = (Cow::Borrowed(a.magnitude()), Cow::Borrowed(b.magnitude()));
+    let divisor = loop {
+        match (a.to_u128(), b.to_u128()) {
+            (Some(a), Some(b)) => break BigInt::from(a.gcd(&b)),
+            _ if b.is_zero() => break BigInt::from(a.into_owned()),
+            _ => (a, b) = (b.clone(), Cow::Owned(&*a % &*b)),
+        }
+    };
+    (!divisor.is_one()).then_some(divisor)
 }
 
 /// `1/2*sqrt(2)`, `-3/10`.
@@ -166,6 +214,23 @@ mod tests {
         for text in ["2", "0.5", "1.05", "3.0000000009", "1e-9", "9", "1234567"] {
             let square = root(text).mul(&root(text));
             assert_eq!(square, Constant::rational(parse_decimal(text).expect("a decimal")), "{text}");
+        }
+    }
+
+    /// Small parts and parts beyond 128 bits; what cancels and what does not.
+    #[test]
+    fn products_and_sums_are_those_of_rationals() {
+        let parts = ["1", "-6", "1e-7", "-0.15", "2.5e30", "1234567e-9", "-3e-45", "0", "30", "1e-45"];
+        let mut numbers: Vec<_> = parts.map(|text| parse_decimal(text).expect("a decimal")).to_vec();
+        numbers.extend(numbers.clone().iter().filter(|x| !x.is_zero()).map(|x| x / BigInt::from(21)));
+        for a in &numbers {
+            for b in &numbers {
+                let (product, sum) = (product(a, b), sum(a, b));
+                for (found, expected) in [(&product, a * b), (&sum, a + b)] {
+                    let [found_parts, expected_parts] = [found, &expected].map(|x| (x.numer(), x.denom()));
+                    assert_eq!(found_parts, expected_parts, "{a}, {b}");
+                }
+            }
         }
     }
 

@@ -68,21 +68,12 @@ impl<'a> Expansion<'a> {
 
     fn node(&mut self, graph: &mut Graph, id: ExprId) -> ExprId {
         match graph.node(id).clone() {
-            Node::Constant(_) => id,
             Node::Symbol(symbol) => match (self.values.get(&symbol), self.definitions.get(symbol)) {
                 (Some(&value), _) => value,
                 (None, Some(definition)) => self.of(graph, definition),
                 (None, None) => id,
             },
-            Node::Add(a, b) => graph.add(self.memo[&a], self.memo[&b]),
-            Node::Mul(a, b) => graph.mul(self.memo[&a], self.memo[&b]),
-            Node::Neg(a) => graph.neg(self.memo[&a]),
-            Node::Recip(a) => graph.recip(self.memo[&a]),
-            Node::Sqrt(a) => graph.sqrt(self.memo[&a]),
-            Node::Sin(a) => graph.sin(self.memo[&a]),
-            Node::Cos(a) => graph.cos(self.memo[&a]),
-            Node::Tanh(a) => graph.tanh(self.memo[&a]),
-            Node::Atan2(a, b) => graph.atan2(self.memo[&a], self.memo[&b]),
+            node => graph.rebuilt(node.with_operands(|operand| self.memo[&operand])),
         }
     }
 }

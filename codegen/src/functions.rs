@@ -8,6 +8,8 @@ use crate::symbol::Symbol;
 /// The roots of each function that computes something.
 #[derive(Debug)]
 pub struct Functions {
+    /// Values of [`Symbol::SetUp`].
+    pub set_up: Vec<ExprId>,
     pub phi: Vec<ExprId>,
     pub phi_q: Vec<ExprId>,
     pub phi_pi: Vec<ExprId>,
@@ -49,6 +51,7 @@ impl Functions {
         let jacobian = equations.joint_space.as_ref().and_then(|space| space.jacobian.as_ref());
         let rates = equations.position_rates.iter().chain(&equations.power).chain(&equations.turn_rates);
         Self {
+            set_up: Vec::new(),
             phi: equations.phi.clone(),
             phi_q: values(&equations.phi_q),
             phi_pi: values(&equations.phi_pi),
@@ -81,6 +84,39 @@ impl Functions {
         }
     }
 
+    /// The roots of each function that is called in every step.
+    pub fn recurring_mut(&mut self) -> [&mut Vec<ExprId>; 27] {
+        [
+            &mut self.phi,
+            &mut self.phi_q,
+            &mut self.phi_pi,
+            &mut self.nu,
+            &mut self.gamma,
+            &mut self.velocity_residual,
+            &mut self.applied_force,
+            &mut self.accelerations,
+            &mut self.multipliers,
+            &mut self.project,
+            &mut self.derivative,
+            &mut self.energy,
+            &mut self.read_joints,
+            &mut self.outputs,
+            &mut self.chart_vectors,
+            &mut self.newton_step,
+            &mut self.solve_velocities,
+            &mut self.joint_accelerations,
+            &mut self.joint_derivative,
+            &mut self.to_maximal,
+            &mut self.to_joints,
+            &mut self.joint_accelerations_at,
+            &mut self.corrected_accelerations,
+            &mut self.corrected_multipliers,
+            &mut self.corrected_solution,
+            &mut self.joint_jacobian,
+            &mut self.joint_input_jacobian,
+        ]
+    }
+
     /// Whether part of ẏ depends on multipliers that only the exact accelerations come with.
     pub fn derivative_needs_multipliers(&self, graph: &Graph) -> bool {
         graph
@@ -91,7 +127,8 @@ impl Functions {
 
     /// Name, meaning and roots of each that there is, in the order of the data sheet.
     pub fn list(&self) -> Vec<(&'static str, &'static str, &[ExprId])> {
-        let all: [(_, _, &[ExprId]); 27] = [
+        let all: [(_, _, &[ExprId]); 28] = [
+            ("set_up", "what depends on parameters alone", &self.set_up),
             ("phi", "Φ", &self.phi),
             ("phi_q", "Φ_q, non-zeros in (r, p)", &self.phi_q),
             ("phi_pi", "(Φ_r, Φ_π'), non-zeros", &self.phi_pi),

@@ -44,6 +44,23 @@ impl Node {
         };
         a.into_iter().chain(b)
     }
+
+    /// The same operation on other operands.
+    #[must_use]
+    pub fn with_operands(&self, other: impl Fn(ExprId) -> ExprId) -> Self {
+        match self {
+            Self::Constant(_) | Self::Symbol(_) => self.clone(),
+            Self::Add(a, b) => Self::Add(other(*a), other(*b)),
+            Self::Mul(a, b) => Self::Mul(other(*a), other(*b)),
+            Self::Atan2(a, b) => Self::Atan2(other(*a), other(*b)),
+            Self::Neg(a) => Self::Neg(other(*a)),
+            Self::Recip(a) => Self::Recip(other(*a)),
+            Self::Sqrt(a) => Self::Sqrt(other(*a)),
+            Self::Sin(a) => Self::Sin(other(*a)),
+            Self::Cos(a) => Self::Cos(other(*a)),
+            Self::Tanh(a) => Self::Tanh(other(*a)),
+        }
+    }
 }
 
 /// The arena.
@@ -51,6 +68,16 @@ impl Node {
 pub struct Graph {
     nodes: Vec<Node>,
     index: HashMap<Node, ExprId>,
+    /// Of each node, what it changes with.
+    changes: Vec<Changes>,
+}
+
+/// What an expression changes with: the last of what its symbols are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Changes {
+    Never,
+    WithParameters,
+    WithState,
 }
 
 impl Graph {
@@ -58,7 +85,7 @@ impl Graph {
     pub const ONE: ExprId = ExprId(1);
 
     pub fn new() -> Self {
-        let mut graph = Self { nodes: Vec::new(), index: HashMap::default() };
+        let mut graph = Self { nodes: Vec::new(), index: HashMap::default(), changes: Vec::new() };
         graph.integer(0);
         graph.integer(1);
         graph
@@ -71,6 +98,11 @@ impl Graph {
     /// The exact value of a constant expression.
     pub fn as_constant(&self, id: ExprId) -> Option<&Constant> {
         if let Node::Constant(value) = self.node(id) { Some(value) } else { None }
+    }
+
+    /// Whether an expression depends on parameters and nothing else: it is computed once, before all steps (see `set_up`).
+    pub fn is_settled(&self, id: ExprId) -> bool {
+        self.changes[id.0 as usize] == Changes::WithParameters
     }
 
     /// Every node that the roots depend on, operands before their users, in the order in which a depth-first walk from the
@@ -311,13 +343,39 @@ impl Graph {
         }
     }
 
-    fn intern(&mut self, node: Node) -> ExprId {
+    /// An operation on other operands, simplified.
+    pub fn rebuilt(&mut self, node: Node) -> ExprId {
+        match node {
+            Node::Add(a, b) => self.add(a, b),
+            Node::Mul(a, b) => self.mul(a, b),
+            Node::Neg(a) => self.neg(a),
+            Node::Recip(a) => self.recip(a),
+            Node::Sqrt(a) => self.sqrt(a),
+            Node::Sin(a) => self.sin(a),
+            Node::Cos(a) => self.cos(a),
+            Node::Tanh(a) => self.tanh(a),
+            Node::Atan2(a, b) => self.atan2(a, b),
+            Node::Constant(_) | Node::Symbol(_) => self.intern(node),
+        }
+    }
+
+    /// An expression as it is, without any simplification.
+    pub fn intern(&mut self, node: Node) -> ExprId {
         if let Some(&id) = self.index.get(&node) {
             return id;
         }
         let id = ExprId(
             u32::try_from(self.nodes.len()).expect("four thousand million expressions do not fit in memory"),
         );
+        let changes = match &node {
+            Node::Symbol(Symbol::Parameter(_)) => Changes::WithParameters,
+            Node::Symbol(_) => Changes::WithState,
+            operation => {
+                let operands = operation.operands().map(|operand| self.changes[operand.0 as usize]);
+                operands.max().unwrap_or(Changes::Never)
+            }
+        };
+        self.changes.push(changes);
         self.nodes.push(node.clone());
         self.index.insert(node, id);
         id

@@ -34,7 +34,7 @@
 //!
 //! The pipeline, one file an arrow: `system` lowers the model to poses and frames, `constraints` writes Φ, `kinematics`
 //! differentiates it (`differentiate`), `dynamics` adds masses and forces, `freedom`, `null_space` and `mass_matrix` solve eq. (17), `partition` the coordinate
-//! partition, `definitions` expands, `schedule` orders, `emit` and `module` write.
+//! partition, `definitions` expands, `set_up` takes out what depends on parameters alone, `schedule` orders, `emit` and `module` write.
 #![deny(missing_docs)]
 
 mod closing;
@@ -66,6 +66,7 @@ mod partition;
 mod readings;
 mod saddle;
 mod schedule;
+mod set_up;
 mod sheet;
 mod steering;
 mod symbol;
@@ -173,6 +174,6 @@ pub fn generate_by(elimination: Elimination, file_name: &str, model: &Model) -> 
     let start = model.assemble().map_err(Error::Start)?;
     let equations = equations::Equations::derive(model, elimination, &start);
     let type_name = module::type_name(&model.name);
-    let module::Text { code, constants, sheet } = module::write(file_name, &type_name, &equations, &start);
+    let module::Text { code, constants, sheet } = module::write(file_name, &type_name, equations, &start);
     Ok(Module { name: model.name.clone(), type_name, code, constants, sheet })
 }

@@ -72,7 +72,7 @@ impl Trees {
         let solved: Vec<_> = trees.map(|tree| self.solved(system, kinematics, dynamics, tree)).collect();
         let reduced = self.reduced.as_ref().map(|tree| listed(&tree.accelerations(system, dynamics)));
         let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
-            Operations::count(&system.graph, &[&accelerations[..], closing].concat()).total()
+            Operations::recurring(&system.graph, &[&accelerations[..], closing].concat()).total()
         };
         let mut taken = solved.into_iter().min_by_key(cost).expect("at least one");
         // Elimination keeps more digits where a body spins fast or is light: they are worth a quarter of the operations.
@@ -113,7 +113,7 @@ impl Trees {
         });
         let mut projected: Vec<_> = projected.collect();
         projected.extend(self.reduced.as_ref().map(|tree| listed(&tree.project(graph, &changes))));
-        let cost = |motions: &Vec<_>| Operations::count(graph, motions).total();
+        let cost = |motions: &Vec<_>| Operations::recurring(graph, motions).total();
         projected.into_iter().min_by_key(cost).expect("at least one")
     }
 }

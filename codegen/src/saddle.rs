@@ -78,7 +78,7 @@ impl Saddle {
         let keys: Vec<_> = (0..self.rhs.len()).map(|unknown| Place::of(system, unknown)).collect();
         let solutions: Vec<_> =
             PREFERENCES.iter().map(|&p| self.eliminate(&mut system.graph, &keys, p)).collect();
-        let cost = |solution: &Vec<ExprId>| Operations::count(&system.graph, solution).total();
+        let cost = |solution: &Vec<ExprId>| Operations::recurring(&system.graph, solution).total();
         solutions.into_iter().min_by_key(cost).expect("there is a preference")
     }
 

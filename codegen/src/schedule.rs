@@ -21,7 +21,15 @@ pub struct Operations {
 impl Operations {
     /// Counts each shared expression once.
     pub(crate) fn count(graph: &Graph, roots: &[ExprId]) -> Self {
-        let uses = Uses::count(graph, roots);
+        Self::of(graph, &Uses::count(graph, roots))
+    }
+
+    /// The same but for what depends on parameters alone, which is computed once, before all steps.
+    pub(crate) fn recurring(graph: &Graph, roots: &[ExprId]) -> Self {
+        Self::of(graph, &Uses::beyond(graph, roots, |id| graph.is_settled(id)))
+    }
+
+    fn of(graph: &Graph, uses: &Uses) -> Self {
         let mut operations = Self::default();
         for &id in &uses.order {
             match graph.node(id) {
@@ -87,7 +95,7 @@ impl Passes {
 
 /// The set of roots that takes the fewest operations, and what each would have taken.
 pub fn cheapest(graph: &Graph, candidates: Vec<(String, Vec<ExprId>)>) -> (Vec<ExprId>, Vec<Form>) {
-    let costs: Vec<_> = candidates.iter().map(|(_, roots)| Operations::count(graph, roots)).collect();
+    let costs: Vec<_> = candidates.iter().map(|(_, roots)| Operations::recurring(graph, roots)).collect();
     let cost = |&k: &usize| (costs[k].functions, costs[k].total());
     let taken = (0..candidates.len()).min_by_key(cost).expect("there is a candidate");
     let form = |(k, (name, _)): (usize, &(String, _))| Form {
@@ -110,14 +118,19 @@ pub struct Uses {
 impl Uses {
     /// A negation is written where it is used, so its uses are uses of what it negates.
     pub fn count(graph: &Graph, roots: &[ExprId]) -> Self {
-        let order = graph.reachable(roots);
+        Self::beyond(graph, roots, |_| false)
+    }
+
+    /// The same, but for what is known and what only that depends on.
+    fn beyond(graph: &Graph, roots: &[ExprId], is_known: impl Fn(ExprId) -> bool) -> Self {
+        let order = graph.reachable_beyond(roots, &is_known);
         let mut counts: HashMap<ExprId, usize> = HashMap::default();
-        for &root in roots {
+        for &root in roots.iter().filter(|&&root| !is_known(root)) {
             *counts.entry(root).or_default() += 1;
         }
         for &id in order.iter().rev() {
             let weight = if matches!(graph.node(id), Node::Neg(_)) { counts[&id] } else { 1 };
-            for operand in graph.node(id).operands() {
+            for operand in graph.node(id).operands().filter(|&operand| !is_known(operand)) {
                 *counts.entry(operand).or_default() += weight;
             }
         }

@@ -17,6 +17,8 @@ pub enum Symbol {
     Chart { chart: usize, k: usize },
     /// A tunable number of the model.
     Parameter(usize),
+    /// A number that follows from parameters, by its place among what is set up before all steps.
+    SetUp(usize),
     /// A number that the caller sets at every step.
     Input(usize),
     /// The turn reference of an angle, by its place in `Model::turn_references`: part of the state, and constant in all

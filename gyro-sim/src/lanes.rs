@@ -22,10 +22,11 @@
 //! # #[cfg(feature = "generated")]
 //! # fn main() {
 //! use gyro_sim::lanes::{Lanes, Partitioned, f64x8};
-//! use gyro_sim::{Ode, generated::gyroscope_parameters::GyroscopeParameters};
+//! use gyro_sim::generated::gyroscope_parameters::{GyroscopeParameters, Parameters};
+//! use gyro_sim::Ode;
 //!
-//! let mut gyroscopes = GyroscopeParameters::<f64x8>::default();
-//! gyroscopes.rotor_mass = f64x8::from_lanes(|lane| 0.08 + 0.001 * lane as f64);
+//! let rotor_mass = f64x8::from_lanes(|lane| 0.08 + 0.001 * lane as f64);
+//! let gyroscopes = GyroscopeParameters::new(Parameters { rotor_mass, ..Parameters::default() });
 //! let mut states = gyroscopes.start();
 //! let mut solver = Partitioned::new(&gyroscopes, &states);
 //! for interval in 0..100 {

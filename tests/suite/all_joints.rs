@@ -3,7 +3,7 @@
 
 use gyro_model::{Model, to_f64};
 use gyro_runner::{Input, JointSample, Sample, Settings};
-use gyro_sim_suite::generated::all_joints::AllJoints;
+use gyro_sim_suite::generated::all_joints::{AllJoints, Parameters};
 use gyro_sim_suite::{Engine, Run, dense, fed, generated, model, simulate, worst};
 
 /// Long enough for all of it to move, at the page's step.
@@ -66,18 +66,18 @@ fn both_engines_move_alike() {
 }
 
 #[test]
-fn parameters_are_the_fields_of_the_mechanism() {
-    // Half the gear's ratio and a heavier puck: what the page says with other numbers, and the fields of the generated type.
+fn parameters_change_the_mechanism() {
+    // Half the gear's ratio and a heavier puck: what the page says with other numbers, and the parameters of the generated type.
     let text = ["gear_ratio", "puck_mass"].map(str::to_owned);
     let [ratio, mass] = ["-0.25", "0.9"].map(|x| gyro_model::parse_decimal(x).unwrap());
     let [first, second] = text;
     let model =
         model("all-joints").with_parameters(&[(first, ratio.clone()), (second, mass.clone())]).unwrap();
-    let mechanism = Engine::new(AllJoints {
+    let mechanism = Engine::new(AllJoints::new(Parameters {
         gear_ratio: to_f64(&ratio),
         puck_mass: to_f64(&mass),
-        ..AllJoints::default()
-    });
+        ..Parameters::default()
+    }));
     let run = [&mechanism, &dense(&model)].map(|engine| run(engine, &model));
     let found = differences(&run[0], &run[1]);
     println!("all joints, other parameters: {found:?}");

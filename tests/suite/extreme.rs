@@ -322,18 +322,10 @@ fn inputs_that_are_no_numbers_are_an_error() {
 #[test]
 fn parameters_that_are_no_numbers_are_an_error() {
     type Parametric = shipped::gyroscope_parameters::GyroscopeParameters<f64>;
-    type Field = fn(&mut Parametric) -> &mut f64;
-    let fields: [(&str, Field); 5] = [
-        ("gravity", |g| &mut g.gravity),
-        ("rotor_mass", |g| &mut g.rotor_mass),
-        ("rotor_offset", |g| &mut g.rotor_offset),
-        ("ring_axial_inertia", |g| &mut g.ring_axial_inertia),
-        ("ring_diametral_inertia", |g| &mut g.ring_diametral_inertia),
-    ];
-    for (name, field) in fields {
+    for (place, name) in Parametric::PARAMETERS.into_iter().enumerate() {
         for value in NO_NUMBERS {
             let mut mechanism = Parametric::default();
-            *field(&mut mechanism) = value;
+            assert!(mechanism.set_parameter(place, value));
             assert_refused(&format!("{name} = {value}"), &mechanism);
         }
     }

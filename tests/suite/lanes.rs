@@ -1,12 +1,20 @@
 //! Lanes against as many scalar runs of every shipped tree: the same bits, whatever happens in the other lanes.
 
 use gyro_sim::generated::{
-    compound_pendulum::CompoundPendulum, driven_gyroscope::DrivenGyroscope, free_body::FreeBody,
-    gyroscope::Gyroscope, gyroscope_combined_offsets::GyroscopeCombinedOffsets,
-    gyroscope_free_nutation::GyroscopeFreeNutation, gyroscope_maximal::GyroscopeMaximal,
-    gyroscope_parameters::GyroscopeParameters, gyroscope_radial_imbalance::GyroscopeRadialImbalance,
-    gyroscope_viscous::GyroscopeViscous, heavy_top::HeavyTop, pitching_gyroscope::PitchingGyroscope,
-    spinning_top::SpinningTop, torsion::Torsion,
+    compound_pendulum::CompoundPendulum,
+    driven_gyroscope::DrivenGyroscope,
+    free_body::FreeBody,
+    gyroscope::Gyroscope,
+    gyroscope_combined_offsets::GyroscopeCombinedOffsets,
+    gyroscope_free_nutation::GyroscopeFreeNutation,
+    gyroscope_maximal::GyroscopeMaximal,
+    gyroscope_parameters::{self, GyroscopeParameters},
+    gyroscope_radial_imbalance::GyroscopeRadialImbalance,
+    gyroscope_viscous::GyroscopeViscous,
+    heavy_top::HeavyTop,
+    pitching_gyroscope::PitchingGyroscope,
+    spinning_top::SpinningTop,
+    torsion::Torsion,
 };
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
 use gyro_sim::{
@@ -179,18 +187,19 @@ fn other_packs_are_scalar_runs_too() {
 #[test]
 fn each_lane_has_parameters_of_its_own() {
     let value = |lane: usize, parameter: usize| 1.0 + 0.01 * (lane * 5 + parameter) as f64;
-    let mut packs = GyroscopeParameters::<f64x8>::default();
-    let defaults = GyroscopeParameters::<f64>::default();
     let with = |lane: usize| {
-        let mut mechanism = defaults;
-        mechanism.rotor_mass *= value(lane, 0);
-        mechanism.rotor_offset *= value(lane, 1);
-        mechanism.ring_axial_inertia *= value(lane, 2);
-        mechanism
+        let mut parameters = gyroscope_parameters::Parameters::<f64>::default();
+        parameters.rotor_mass *= value(lane, 0);
+        parameters.rotor_offset *= value(lane, 1);
+        parameters.ring_axial_inertia *= value(lane, 2);
+        parameters
     };
-    packs.rotor_mass = f64x8::from_lanes(|lane| with(lane).rotor_mass);
-    packs.rotor_offset = f64x8::from_lanes(|lane| with(lane).rotor_offset);
-    packs.ring_axial_inertia = f64x8::from_lanes(|lane| with(lane).ring_axial_inertia);
+    let packs = GyroscopeParameters::new(gyroscope_parameters::Parameters {
+        rotor_mass: f64x8::from_lanes(|lane| with(lane).rotor_mass),
+        rotor_offset: f64x8::from_lanes(|lane| with(lane).rotor_offset),
+        ring_axial_inertia: f64x8::from_lanes(|lane| with(lane).ring_axial_inertia),
+        ..gyroscope_parameters::Parameters::default()
+    });
     let start = |mechanism: &GyroscopeParameters<f64>| {
         let mut y = mechanism.start();
         mechanism.to_maximal(0.0, &mechanism.joint_start(), &mut y);
@@ -202,7 +211,7 @@ fn each_lane_has_parameters_of_its_own() {
     (0..INTERVALS).for_each(|i| solver.advance(&packs, time(i), f64x8::splat(STEP), STEPS, &mut y));
     let expected: Vec<_> = (0..8)
         .map(|lane| {
-            let mechanism = with(lane);
+            let mechanism = GyroscopeParameters::new(with(lane));
             let mut y = start(&mechanism);
             let mut solver = Partitioned::new(&mechanism, &y);
             let error = run(|i| solver.advance(&mechanism, time(i), STEP, STEPS, &mut y));

@@ -14,8 +14,8 @@ use block::{Before, Form, Reader, Sizes};
 use gyro_model::{Model, Spline};
 use matching::{Hole, Matched};
 use proc_macro2::{TokenStream, TokenTree};
-use skeleton::Choice;
 pub(crate) use skeleton::n_state;
+use skeleton::{Choice, Has};
 use std::collections::BTreeMap;
 use syn::Block;
 
@@ -24,7 +24,9 @@ use syn::Block;
 pub struct Module {
     /// The text's documentation: the data sheet, a line each.
     pub sheet: Vec<String>,
-    /// The functions that compute something, by name.
+    /// The functions that compute something, by name, as they are written.
+    pub written: BTreeMap<String, Program>,
+    /// What each of them computes from parameters, time and state: `set_up` is part of those that read what it computes.
     pub programs: BTreeMap<String, Program>,
     /// What each function's documentation says of it.
     pub docs: BTreeMap<String, String>,
@@ -48,8 +50,12 @@ pub struct Module {
     pub constants: Constants,
 }
 
+/// The function that computes what depends on parameters alone.
+pub(crate) const SET_UP: &str = "set_up";
+
 /// Functions that are straight-line programs, and how they give their results.
-const FUNCTIONS: [(&str, Form); 28] = [
+const FUNCTIONS: [(&str, Form); 29] = [
+    (SET_UP, Form::Filling),
     ("derivative", Form::Filling),
     ("phi", Form::Filling),
     ("velocity_residual", Form::Filling),
@@ -161,10 +167,11 @@ impl Module {
             text.parse().map_err(|error: proc_macro2::LexError| Refusal::at(error.span(), "not Rust"))?;
         let tables = tables::read(model, tokens.clone())?;
         let choice = if text.contains("gyro_sim::charts") { Choice::Charts } else { Choice::Pivoting };
-        let has_jacobian = text.contains("gyro_sim::JointJacobian");
+        let jacobian = text.contains("gyro_sim::JointJacobian");
+        let has = Has { choice, jacobian, set_up: text.contains("fn set_up(") };
         let joints = JointLayout::of(model);
         let name = skeleton::type_name(&model.name);
-        let expected = skeleton::text(model, &name, &tables, (choice, has_jacobian), joints.as_ref());
+        let expected = skeleton::text(model, &name, &tables, has, joints.as_ref());
         let expected = expected.parse().expect("the expected text consists of tokens");
         let mut matched = Matched::default();
         matched.walk(expected, tokens, text.lines().count())?;
@@ -189,6 +196,7 @@ impl Module {
             joints: joints.as_ref().map_or(0, JointLayout::n_state),
             charts: n_charts.unwrap_or(0),
             tables: tables.len(),
+            derived: number("derived").unwrap_or(0),
         };
         let mut used = vec![false; constants.values.len()];
         let mut read = |name: &str, form| {
@@ -198,7 +206,9 @@ impl Module {
                 "joint_derivative" => joints.as_ref().map_or(0, |joints| joints.n_rates),
                 _ => n_accelerations,
             };
-            let (sizes, before) = (Sizes { accelerations, ..sizes }, of_function(&BEFORE, name));
+            // What is set up does not read what is set up.
+            let derived = if name == SET_UP { 0 } else { sizes.derived };
+            let (sizes, before) = (Sizes { accelerations, derived, ..sizes }, of_function(&BEFORE, name));
             let mut reader = Reader::new(model, &constants, &mut used, sizes, before);
             if hole.arguments.is_empty() {
                 before.iter().flat_map(Before::arguments).for_each(|argument| reader.argument(argument));
@@ -211,10 +221,15 @@ impl Module {
             }
             reader.body(&block(hole)?, form).map(|program| Some((name.to_owned(), program)))
         };
-        let mut programs = BTreeMap::new();
+        let mut written = BTreeMap::new();
         for (name, form) in FUNCTIONS {
-            programs.extend(read(name, form)?);
+            written.extend(read(name, form)?);
         }
+        let recurring = written.iter().filter(|(name, _)| *name != SET_UP);
+        let programs = match written.get(SET_UP) {
+            Some(set_up) => recurring.map(|(name, p)| (name.clone(), p.after(set_up))).collect(),
+            None => written.clone(),
+        };
         let pattern = |name: &str| block::pattern(&block(&matched.holes[name])?);
         let module = Self {
             sheet: text
@@ -231,6 +246,7 @@ impl Module {
                 None => Vec::new(),
             },
             joints,
+            written,
             programs,
             n_accelerations,
             n_charts,
@@ -254,6 +270,7 @@ impl Module {
         let has = |function: &str| self.programs.contains_key(function);
         let outputs = model.outputs.iter().map(|output| output.kind.columns().len()).sum();
         let expected = [
+            (SET_UP, number("derived")),
             ("derivative", n_state(model)),
             ("phi", rows + n),
             ("velocity_residual", rows),
@@ -281,7 +298,7 @@ impl Module {
             ("joint_jacobian", if has("joint_jacobian") { n_joints * (n_joints + 1) } else { 0 }),
             ("joint_input_jacobian", if has("joint_jacobian") { n_joints * model.inputs.len() } else { 0 }),
         ];
-        let found = |name: &str| self.programs.get(name).map_or(0, |program| program.results.len());
+        let found = |name: &str| self.written.get(name).map_or(0, |program| program.results.len());
         let patterns = [
             ("phi_q_pattern", self.phi_q_pattern.len(), number("phi_q")),
             ("phi_pi_pattern", self.phi_pi_pattern.len(), number("phi_pi")),

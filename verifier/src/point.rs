@@ -38,7 +38,8 @@ impl<F: Field> Point<F> {
             Source::State(k) => self.state.get(k),
             Source::Parameter(k) => self.parameters.get(k),
             Source::Input(k) => self.inputs.get(k),
-            Source::Acceleration(_)
+            Source::SetUp(_)
+            | Source::Acceleration(_)
             | Source::Joint(_)
             | Source::Chart(..)
             | Source::Factor(_)

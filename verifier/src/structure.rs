@@ -1,10 +1,10 @@
 //! What the text of a module is like: nothing unused, nothing computed twice, counted as its data sheet says.
 
-use crate::module::Module;
-use crate::program::{Node, Program};
+use crate::module::{Module, SET_UP};
+use crate::program::{Node, Program, Source};
 use crate::refusal::Refusal;
 use gyro_model::Model;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Operations of a program: a negation is free.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,7 +44,7 @@ impl Operations {
 /// All that is wrong with the structure of a module.
 pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
     let mut problems = Vec::new();
-    for (name, program) in &module.programs {
+    for (name, program) in &module.written {
         let unused = program.unused.iter();
         problems.extend(
             unused.map(|(unused, line)| Refusal::new(*line, format!("`{name}`: `{unused}` is not used"))),
@@ -54,8 +54,20 @@ pub fn problems(model: &Model, module: &Module) -> Vec<Refusal> {
         }));
         problems.extend(misdescribed(name, program, module));
     }
+    problems.extend(unread(module));
     problems.extend(sheet_problems(model, module));
     problems
+}
+
+/// What is set up and never read.
+fn unread(module: &Module) -> Option<Refusal> {
+    let set_up = module.written.get(SET_UP)?;
+    let nodes = module.written.values().flat_map(|program| &program.nodes);
+    let read: HashSet<Node> = nodes.copied().filter(|node| matches!(node, Node::Read(_))).collect();
+    let is_unread = |&place: &usize| !read.contains(&Node::Read(Source::SetUp(place)));
+    let place = (0..set_up.results.len()).find(is_unread)?;
+    let line = set_up.lines[set_up.results[place]];
+    Some(Refusal::new(line, format!("`{SET_UP}` computes derived[{place}], which nothing reads")))
 }
 
 /// A value up to its sign: which one, and whether it is negated.
@@ -128,7 +140,7 @@ fn misdescribed(name: &str, program: &Program, module: &Module) -> Option<Refusa
 /// What the data sheet says otherwise than it is.
 fn sheet_problems(model: &Model, module: &Module) -> Vec<Refusal> {
     // What goes on from other accelerations in the same way has no row of its own.
-    let listed = module.programs.iter().filter(|(name, _)| *name != "corrected_derivative");
+    let listed = module.written.iter().filter(|(name, _)| *name != "corrected_derivative");
     let expected = listed.map(|(name, program)| row(model, module, name, program));
     // What gives no numbers is not listed.
     let expected: Vec<String> = expected.filter(|row| !row.ends_with("| 0 of 0 |")).collect();
@@ -206,7 +218,6 @@ fn non_zeros(model: &Model, module: &Module) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::program::Source;
 
     #[test]
     fn repetitions_are_found_in_any_order_and_sign() {

@@ -66,6 +66,7 @@ angle_deg = 90
 const FINE: f64 = 1e-10;
 
 #[test]
+#[ignore = "compiles four optimised programs; `.ci/run` runs it after `cargo xtask report --quick`, which needs them too"]
 fn a_page_without_a_reference_is_reported_whole() {
     let folder = Folder::new("whole");
     let page = folder.0.join("my-pendulum.toml");

@@ -109,7 +109,7 @@ impl Reduced {
         let graph = &mut system.graph;
         let mut reduced = |graph: &mut Graph, what, (old, divisors): (&[ExprId], &[bool])| {
             let new = normal_form_of(graph, unit, old, divisors);
-            let [before, after] = [old, &new].map(|roots| Operations::count(graph, roots).total());
+            let [before, after] = [old, &new].map(|roots| Operations::recurring(graph, roots).total());
             reductions.push(Reduction { what, before, after });
             new
         };

@@ -1,7 +1,8 @@
-//! The mechanism's type, its default and its parameters.
+//! The mechanism's type, its parameters and what is set up from them.
 
 use super::ModuleWriter;
 use crate::emit::{float, ident, index};
+use gyro_model::Parameter;
 use proc_macro2::TokenStream;
 use quote::quote;
 
@@ -10,67 +11,167 @@ impl ModuleWriter<'_> {
     pub fn definition(&self) -> TokenStream {
         let name = ident(self.type_name);
         let doc = format!(" The mechanism `{}`.", self.equations.model.name);
-        let parameters = &self.equations.model.parameters;
-        let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
-        let strings = parameters.iter().map(|p| &p.name);
-        let values: Vec<_> = parameters.iter().map(|p| float(gyro_model::to_f64(&p.value))).collect();
-        let docs =
-            parameters.iter().map(|p| format!(" Parameter; default {:?}.", gyro_model::to_f64(&p.value)));
-        let inputs = &self.equations.model.inputs;
+        let (parameters, inputs) = (&self.equations.model.parameters, &self.equations.model.inputs);
         let input_names: Vec<_> = inputs.iter().map(|p| ident(&p.name)).collect();
-        let input_values = inputs.iter().map(|p| float(gyro_model::to_f64(&p.value)));
-        let input_docs = inputs
-            .iter()
-            .map(|p| format!(" Input, set at every step; until then {:?}.", gyro_model::to_f64(&p.value)));
-        let (count, positions) = (index(parameters.len()), (0..parameters.len()).map(index));
-        let (marker, marker_value) = if parameters.is_empty() && inputs.is_empty() {
+        let input_docs =
+            inputs.iter().map(|p| format!(" Input, set at every step; until then {:?}.", default(p)));
+        let inputs_at_first: Vec<_> = inputs.iter().map(|p| float(default(p))).collect();
+        let n_derived = (!self.functions.set_up.is_empty()).then(|| index(self.functions.set_up.len()));
+        let (fields, at_first) = if parameters.is_empty() && inputs.is_empty() {
             let doc = " The model has neither parameters nor inputs.";
             (
                 quote! { #[doc = #doc] scalar: ::core::marker::PhantomData<T>, },
                 quote! { scalar: ::core::marker::PhantomData, },
             )
         } else {
-            (quote! {}, quote! {})
+            let (parameters, derived) = ((!parameters.is_empty()).then_some(()), n_derived.iter());
+            let (declared, given) = (
+                parameters.map(|()| quote! { parameters: Parameters<T>, }),
+                parameters.map(|()| quote! { parameters, }),
+            );
+            let zeros = n_derived.iter().map(|n| quote! { derived: [T::constant(0.0); #n], });
+            (
+                quote! {
+                    #declared
+                    #(
+                        /// What depends on parameters alone.
+                        derived: [T; #derived],
+                    )*
+                    #(#[doc = #input_docs] pub #input_names: T,)*
+                },
+                quote! { #given #(#zeros)* #(#input_names: T::constant(#inputs_at_first),)* },
+            )
         };
-        let set_parameter = if parameters.is_empty() {
-            quote! {
-                pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
-                    false
-                }
-            }
+        let (default_value, set_parameters) = if parameters.is_empty() {
+            (quote! { Self { #at_first } }, self.without_parameters())
         } else {
-            quote! {
-                pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
-                    match index {
-                        #(#positions => self.#names = value,)*
-                        _ => return false,
-                    }
-                    true
-                }
-            }
+            (quote! { Self::new(Parameters::default()) }, self.set_parameters(&at_first))
         };
+        let (parameters, set_up) = (self.parameters(), self.set_up());
         quote! {
+            #parameters
+
             #[doc = #doc]
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct #name<T> {
-                #(#[doc = #docs] pub #names: T,)*
-                #(#[doc = #input_docs] pub #input_names: T,)*
-                #marker
+                #fields
             }
 
             impl<T: gyro_sim::Scalar> ::core::default::Default for #name<T> {
                 fn default() -> Self {
-                    Self { #(#names: T::constant(#values),)* #(#input_names: T::constant(#input_values),)* #marker_value }
+                    #default_value
                 }
             }
 
-            impl<T> #name<T> {
-                /// Names of the parameters.
-                pub const PARAMETERS: [&'static str; #count] = [#(#strings),*];
-
-                /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
-                #set_parameter
+            impl<T: gyro_sim::Scalar> #name<T> {
+                #set_parameters
+                #set_up
             }
         }
     }
+
+    /// The parameters by name; nothing if there are none.
+    fn parameters(&self) -> Option<TokenStream> {
+        let parameters = &self.equations.model.parameters;
+        if parameters.is_empty() {
+            return None;
+        }
+        let doc = format!(" Parameters of [`{}`].", self.type_name);
+        let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
+        let values: Vec<_> = parameters.iter().map(|p| float(default(p))).collect();
+        let docs = parameters.iter().map(|p| format!(" Default {:?}.", default(p)));
+        Some(quote! {
+            #[doc = #doc]
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct Parameters<T> {
+                #(#[doc = #docs] pub #names: T,)*
+            }
+
+            impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
+                fn default() -> Self {
+                    Self { #(#names: T::constant(#values),)* }
+                }
+            }
+        })
+    }
+
+    fn without_parameters(&self) -> TokenStream {
+        quote! {
+            /// Names of the parameters.
+            pub const PARAMETERS: [&'static str; 0] = [];
+
+            /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
+            pub fn set_parameter(&mut self, _index: usize, _value: T) -> bool {
+                false
+            }
+        }
+    }
+
+    fn set_parameters(&self, at_first: &TokenStream) -> TokenStream {
+        let parameters = &self.equations.model.parameters;
+        let names: Vec<_> = parameters.iter().map(|p| ident(&p.name)).collect();
+        let strings = parameters.iter().map(|p| &p.name);
+        let (count, places) = (index(parameters.len()), (0..parameters.len()).map(index));
+        let set_up = (!self.functions.set_up.is_empty()).then(|| {
+            quote! {
+                let mut derived = self.derived;
+                self.set_up(&mut derived);
+                self.derived = derived;
+            }
+        });
+        quote! {
+            /// Names of the parameters.
+            pub const PARAMETERS: [&'static str; #count] = [#(#strings),*];
+
+            /// The mechanism with these parameters.
+            pub fn new(parameters: Parameters<T>) -> Self {
+                let mut mechanism = Self { #at_first };
+                mechanism.set_parameters(parameters);
+                mechanism
+            }
+
+            /// The parameters.
+            pub fn parameters(&self) -> &Parameters<T> {
+                &self.parameters
+            }
+
+            /// Sets all parameters, and computes what depends on them alone.
+            pub fn set_parameters(&mut self, parameters: Parameters<T>) {
+                self.parameters = parameters;
+                #set_up
+            }
+
+            /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
+            pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
+                let mut parameters = self.parameters;
+                match index {
+                    #(#places => parameters.#names = value,)*
+                    _ => return false,
+                }
+                self.set_parameters(parameters);
+                true
+            }
+        }
+    }
+
+    /// Nothing if nothing depends on parameters alone.
+    fn set_up(&self) -> Option<TokenStream> {
+        let roots = &self.functions.set_up;
+        let n = index(roots.len());
+        (!roots.is_empty()).then(|| {
+            self.function("What depends on parameters alone", roots, |body, _, _| {
+                let (statements, values) = (&body.statements, &body.values);
+                quote! {
+                    fn set_up(&self, out: &mut [T; #n]) {
+                        #statements
+                        *out = [#(#values),*];
+                    }
+                }
+            })
+        })
+    }
+}
+
+fn default(parameter: &Parameter) -> f64 {
+    gyro_model::to_f64(&parameter.value)
 }

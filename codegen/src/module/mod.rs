@@ -15,6 +15,7 @@ use crate::equations::Equations;
 use crate::functions::Functions;
 use crate::graph::ExprId;
 use crate::schedule::Operations;
+use crate::set_up;
 use crate::sheet::Sheet;
 use crate::symbol::Symbol;
 use gyro_model::Start;
@@ -33,7 +34,7 @@ pub fn type_name(module_name: &str) -> String {
             .unwrap_or_default()
     };
     let name: String = module_name.split('_').map(capital).collect();
-    if ["Self", "T"].contains(&name.as_str()) { format!("{name}_") } else { name }
+    if ["Self", "T", "Parameters"].contains(&name.as_str()) { format!("{name}_") } else { name }
 }
 
 /// The text of a module, the exact constants of its literals and its data sheet.
@@ -44,9 +45,11 @@ pub struct Text {
 }
 
 /// Writes the files.
-pub fn write(file_name: &str, type_name: &str, equations: &Equations, start: &Start) -> Text {
-    let constants = RefCell::default();
-    let module = ModuleWriter { equations, type_name, functions: Functions::of(equations), constants };
+pub fn write(file_name: &str, type_name: &str, mut equations: Equations, start: &Start) -> Text {
+    let mut functions = Functions::of(&equations);
+    set_up::separate(&mut equations.graph, &mut functions);
+    let (equations, constants) = (&equations, RefCell::default());
+    let module = ModuleWriter { equations, type_name, functions, constants };
     let tokens = module.tokens(start);
     let file = syn::parse2(tokens).expect("the emitted tokens are Rust");
     let sheet = Sheet::of(equations, &module.functions);

@@ -33,7 +33,11 @@ impl Variables for ModuleWriter<'_> {
             }
             Symbol::Parameter(parameter) => {
                 let name = ident(&self.equations.model.parameters[parameter].name);
-                (quote! { self.#name }, None)
+                (quote! { self.parameters.#name }, None)
+            }
+            Symbol::SetUp(place) => {
+                let place = index(place);
+                (quote! { self.derived[#place] }, None)
             }
             Symbol::Input(input) => {
                 let name = ident(&self.equations.model.inputs[input].name);

@@ -5,7 +5,7 @@ use super::polynomial::{Literal, Monomial, Polynomial};
 use crate::constant::Constant;
 use crate::graph::{ExprId, Graph, Node};
 use crate::symbol::Symbol;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
 /// A function that is no polynomial.
@@ -53,9 +53,9 @@ impl<'a> Expansion<'a> {
         Self {
             graph,
             atoms: Vec::new(),
-            index: HashMap::new(),
-            rules: HashMap::new(),
-            memo: HashMap::new(),
+            index: HashMap::default(),
+            rules: HashMap::default(),
+            memo: HashMap::default(),
             terms,
         }
     }

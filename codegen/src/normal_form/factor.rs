@@ -7,8 +7,9 @@
 
 use super::polynomial::{Literal, Monomial};
 use super::sums::{Ratio, Scale, Scales, SumId, Sums, Term, Value};
+use rustc_hash::FxHashMap as HashMap;
 use std::cmp::Reverse;
-use std::collections::{BinaryHeap, HashMap};
+use std::collections::BinaryHeap;
 
 /// What terms may have in common. Sums are found by a number that equal ones share: most pairs of terms are met once and
 /// never again. What is extracted is compared exactly.
@@ -93,7 +94,7 @@ pub fn factor(mut system: Sums, seed: u64, steps: &mut usize) -> Option<Sums> {
         system,
         seed,
         candidates: Vec::new(),
-        index: HashMap::new(),
+        index: HashMap::default(),
         queue: BinaryHeap::new(),
         steps,
     };

@@ -48,7 +48,7 @@ pub fn normal_form_of(
     divisors: &[bool],
 ) -> Vec<ExprId> {
     let relations = relations(graph, unit, roots);
-    let cost = Operations::count(graph, roots).total();
+    let cost = Operations::recurring(graph, roots).total();
     match search(graph, &relations, (roots, divisors)) {
         Some(form) if form.cost < cost => form.system.build(graph),
         _ => roots.to_vec(),
@@ -169,7 +169,7 @@ fn factored(system: &Sums, seeds: std::ops::Range<u64>, steps: &mut usize) -> Op
 fn cost(system: &Sums) -> usize {
     let mut graph = Graph::new();
     let roots = system.build(&mut graph);
-    Operations::count(&graph, &roots).total()
+    Operations::recurring(&graph, &roots).total()
 }
 
 #[cfg(test)]

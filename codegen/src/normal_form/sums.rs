@@ -5,7 +5,7 @@ use super::polynomial::{Literal, Monomial, Polynomial};
 use crate::constant::Constant;
 use crate::graph::{ExprId, Graph};
 use crate::symbol::Symbol;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap as HashMap;
 use std::rc::Rc;
 
 /// A positive constant, by its place in [`Scales`]. Equal constants have one place.
@@ -44,7 +44,7 @@ impl Scales {
     pub const ONE: Scale = Scale(0);
 
     fn new() -> Self {
-        let mut scales = Self { values: Vec::new(), index: HashMap::new() };
+        let mut scales = Self { values: Vec::new(), index: HashMap::default() };
         scales.intern(Constant::integer(1));
         scales
     }
@@ -138,7 +138,7 @@ impl Sums {
     pub fn new(expansion: &Expansion, roots: &[Rc<Polynomial>]) -> Self {
         let system =
             Self { scales: Scales::new(), literals: Vec::new(), sums: Vec::new(), roots: roots.len() };
-        let mut lowering = Lowering { atoms: &expansion.atoms, places: HashMap::new(), system };
+        let mut lowering = Lowering { atoms: &expansion.atoms, places: HashMap::default(), system };
         lowering.system.sums.resize(roots.len(), Vec::new());
         for (at, root) in roots.iter().enumerate() {
             lowering.system.sums[at] = lowering.terms(root);
@@ -153,7 +153,7 @@ impl Sums {
 
     /// The roots as expressions of a graph.
     pub fn build(&self, graph: &mut Graph) -> Vec<ExprId> {
-        let mut building = Building { system: self, graph, literals: HashMap::new() };
+        let mut building = Building { system: self, graph, literals: HashMap::default() };
         (0..self.roots).map(|root| building.sum(root)).collect()
     }
 }

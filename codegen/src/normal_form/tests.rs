@@ -10,7 +10,7 @@ fn operations(graph: &Graph, roots: &[ExprId]) -> usize {
 }
 
 fn variable(graph: &mut Graph, k: usize) -> ExprId {
-    graph.symbol(Symbol::Parameter(k))
+    graph.symbol(Symbol::Input(k))
 }
 
 fn decimal(graph: &mut Graph, text: &str) -> ExprId {

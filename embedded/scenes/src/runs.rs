@@ -2,7 +2,7 @@
 
 use crate::digest::Digest;
 use crate::mechanisms::chain::Chain;
-use crate::mechanisms::gimbal::Gimbal;
+use crate::mechanisms::gimbal::{Gimbal, Parameters};
 use crate::{Simulator, demand};
 use gyro_sim::generated::gyroscope::Gyroscope;
 use gyro_sim::generated::gyroscope_combined_offsets::GyroscopeCombinedOffsets;
@@ -130,7 +130,7 @@ fn control<T: Bits>() -> Result<Outcome<T>, Error> {
 /// A heavier rotor, and a motor that pushes one way, then the other: what the examples in C and JavaScript do.
 fn driven<T: Bits>() -> Result<Outcome<T>, Error> {
     let k = T::constant;
-    let mut gimbal = Gimbal { rotor_mass: k(0.085), ..Gimbal::default() };
+    let mut gimbal = Gimbal::new(Parameters { rotor_mass: k(0.085) });
     let mut state = gimbal.start();
     let mut solver = Partitioned::new(&gimbal, &state);
     let mut turns = Turns::new(&gimbal, k(0.0), &state, &[]);

@@ -1,6 +1,6 @@
 //! One gyroscope of the ensemble.
 
-use gyro_sim::generated::gyroscope_misalignments::GyroscopeMisalignments;
+use gyro_sim::generated::gyroscope_misalignments::{GyroscopeMisalignments, Parameters};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -25,7 +25,7 @@ impl Scenario {
     pub(crate) fn drawn(seed: u64, index: u64) -> Self {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         random.set_stream(index);
-        let nominal = GyroscopeMisalignments::<f64>::default();
+        let nominal = Parameters::<f64>::default();
         let mut within = |value: f64, tolerance: f64| value + random.random_range(-tolerance..=tolerance);
         Self([
             within(nominal.offset_x, JOINT),

@@ -62,7 +62,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for FourBarRevolute<T> {
         }
     }
 }
-impl<T> FourBarRevolute<T> {
+impl<T: gyro_sim::Scalar> FourBarRevolute<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

@@ -74,7 +74,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for FreeBody<T> {
         }
     }
 }
-impl<T> FreeBody<T> {
+impl<T: gyro_sim::Scalar> FreeBody<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

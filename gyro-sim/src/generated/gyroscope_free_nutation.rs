@@ -84,7 +84,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeFreeNutation<T> 
         }
     }
 }
-impl<T> GyroscopeFreeNutation<T> {
+impl<T: gyro_sim::Scalar> GyroscopeFreeNutation<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

@@ -83,7 +83,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeHeavyRotor<T> {
         }
     }
 }
-impl<T> GyroscopeHeavyRotor<T> {
+impl<T: gyro_sim::Scalar> GyroscopeHeavyRotor<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

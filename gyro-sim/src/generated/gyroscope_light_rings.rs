@@ -83,7 +83,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeLightRings<T> {
         }
     }
 }
-impl<T> GyroscopeLightRings<T> {
+impl<T: gyro_sim::Scalar> GyroscopeLightRings<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

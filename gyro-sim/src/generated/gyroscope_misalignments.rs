@@ -10,42 +10,43 @@
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 838 operations by relative Euler parameters; 858 operations by rotations of the bodies
-//! * project: 740 operations by rotations of the bodies; 801 operations by relative Euler parameters
-//! * joint_accelerations: 191 operations by normal form; 441 operations by recursion
-//! * joint_accelerations_at: 229 operations by normal form; 479 operations by recursion; 1 more compared
-//! * corrected_accelerations: 366 operations by normal form in the bodies' frames; 458 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 518 operations by derivatives of u̇, from its leaves; 518 operations by normal form of that; 7 more compared
+//! * accelerations: 792 operations by relative Euler parameters; 812 operations by rotations of the bodies
+//! * project: 763 operations by rotations of the bodies; 789 operations by relative Euler parameters
+//! * joint_accelerations: 165 operations by normal form; 392 operations by recursion
+//! * joint_accelerations_at: 203 operations by normal form; 430 operations by recursion; 1 more compared
+//! * corrected_accelerations: 340 operations by normal form in the bodies' frames; 432 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 496 operations by derivatives of u̇, from its leaves; 496 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 70 | 81 | 0 | 151 | 0 of 18 | 257 | 151 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 94 | 164 | 0 | 258 | 0 of 91 | 706 | 258 |
+//! | set_up | what depends on parameters alone | 16 | 57 | 2 | 75 | 0 of 48 | 178 | 75 |
+//! | phi | Φ | 70 | 72 | 0 | 142 | 0 of 18 | 248 | 142 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 94 | 161 | 0 | 255 | 0 of 91 | 703 | 255 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 129 | 0 | 205 | 0 of 53 | 686 | 205 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
 //! | gamma | γ | 160 | 243 | 0 | 403 | 6 of 15 | 1786 | 403 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 164 | 0 | 278 | 0 of 15 | 759 | 278 |
 //! | applied_force | (f, n' − w̃'J'w') | 7 | 22 | 0 | 29 | 8 of 18 | 32 | 29 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 336 | 496 | 6 | 838 | 6 of 18 | 6.5e7 | 842 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 326 | 454 | 5 | 785 | 6 of 18 | 5.9e7 | 789 |
 //! | multipliers | λ, the accelerations being known | 150 | 239 | 3 | 392 | 0 of 15 | 6505 | 392 |
-//! | project | (δr, δπ') that changes the rows as given | 302 | 432 | 6 | 740 | 0 of 18 | 3.6e7 | 741 |
+//! | project | (δr, δπ') that changes the rows as given | 316 | 442 | 5 | 763 | 0 of 18 | 1.8e7 | 764 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 23 | 37 | 0 | 60 | 0 of 2 | 60 | 60 |
+//! | energy | T and V | 23 | 36 | 0 | 59 | 0 of 2 | 59 | 59 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 213 | 348 | 3 | 564 | 6 of 21 | 7.3e9 | 564 |
+//! | newton_step | dependent positions, one Newton step | 213 | 339 | 3 | 555 | 6 of 21 | 7.3e9 | 555 |
 //! | solve_velocities | dependent velocities, eq. (19) | 120 | 194 | 3 | 317 | 6 of 18 | 36786 | 317 |
-//! | joint_accelerations | u̇ in joint coordinates | 76 | 112 | 3 | 191 | 0 of 3 | 6171 | 192 |
+//! | joint_accelerations | u̇ in joint coordinates | 69 | 93 | 2 | 164 | 0 of 3 | 4084 | 165 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 64 | 108 | 0 | 172 | 16 of 39 | 1442 | 172 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 92 | 134 | 3 | 229 | 0 of 3 | 34392 | 230 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 147 | 216 | 3 | 366 | 6 of 18 | 572394 | 367 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 106 | 161 | 0 | 267 | 0 of 15 | 1835 | 267 |
-//! | corrected_solution | both | 219 | 328 | 3 | 550 | 6 of 33 | 1.8e7 | 551 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 204 | 311 | 3 | 518 | 24 of 42 | 65963 | 518 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 85 | 115 | 2 | 202 | 0 of 3 | 32466 | 203 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 140 | 197 | 2 | 339 | 6 of 18 | 540714 | 340 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 106 | 155 | 0 | 261 | 0 of 15 | 1811 | 261 |
+//! | corrected_solution | both | 212 | 309 | 2 | 523 | 6 of 33 | 1.7e7 | 524 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 198 | 296 | 2 | 496 | 24 of 42 | 44042 | 496 |
 //!
 //! # Proof
 //!
@@ -68,25 +69,25 @@
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
-/// The mechanism `gyroscope_misalignments`.
+/// Parameters of [`GyroscopeMisalignments`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GyroscopeMisalignments<T> {
-    /// Parameter; default 0.000125.
+pub struct Parameters<T> {
+    /// Default 0.000125.
     pub offset_x: T,
-    /// Parameter; default 0.0.
+    /// Default 0.0.
     pub offset_y: T,
-    /// Parameter; default 0.0.
+    /// Default 0.0.
     pub offset_z: T,
-    /// Parameter; default 0.0.
+    /// Default 0.0.
     pub imbalance_y: T,
-    /// Parameter; default 0.0.
+    /// Default 0.0.
     pub imbalance_z: T,
-    /// Parameter; default 0.0.
+    /// Default 0.0.
     pub product_xy: T,
-    /// Parameter; default 0.0.
+    /// Default 0.0.
     pub product_xz: T,
 }
-impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeMisalignments<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
     fn default() -> Self {
         Self {
             offset_x: T::constant(0.000125),
@@ -99,7 +100,19 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeMisalignments<T>
         }
     }
 }
-impl<T> GyroscopeMisalignments<T> {
+/// The mechanism `gyroscope_misalignments`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GyroscopeMisalignments<T> {
+    parameters: Parameters<T>,
+    /// What depends on parameters alone.
+    derived: [T; 48],
+}
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeMisalignments<T> {
+    fn default() -> Self {
+        Self::new(Parameters::default())
+    }
+}
+impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 7] = [
         "offset_x",
@@ -110,19 +123,119 @@ impl<T> GyroscopeMisalignments<T> {
         "product_xy",
         "product_xz",
     ];
+    /// The mechanism with these parameters.
+    pub fn new(parameters: Parameters<T>) -> Self {
+        let mut mechanism = Self {
+            parameters,
+            derived: [T::constant(0.0); 48],
+        };
+        mechanism.set_parameters(parameters);
+        mechanism
+    }
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters<T> {
+        &self.parameters
+    }
+    /// Sets all parameters, and computes what depends on them alone.
+    pub fn set_parameters(&mut self, parameters: Parameters<T>) {
+        self.parameters = parameters;
+        let mut derived = self.derived;
+        self.set_up(&mut derived);
+        self.derived = derived;
+    }
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
     pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
+        let mut parameters = self.parameters;
         match index {
-            0 => self.offset_x = value,
-            1 => self.offset_y = value,
-            2 => self.offset_z = value,
-            3 => self.imbalance_y = value,
-            4 => self.imbalance_z = value,
-            5 => self.product_xy = value,
-            6 => self.product_xz = value,
+            0 => parameters.offset_x = value,
+            1 => parameters.offset_y = value,
+            2 => parameters.offset_z = value,
+            3 => parameters.imbalance_y = value,
+            4 => parameters.imbalance_z = value,
+            5 => parameters.product_xy = value,
+            6 => parameters.product_xz = value,
             _ => return false,
         }
+        self.set_parameters(parameters);
         true
+    }
+    /// What depends on parameters alone: 75 operations (16 ±, 57 ×, 2 ÷).
+    fn set_up(&self, out: &mut [T; 48]) {
+        let k = T::constant;
+        let t0 = k(0.08) * self.parameters.imbalance_z;
+        let t1 = self.parameters.imbalance_y * self.parameters.imbalance_y;
+        let t2 = self.parameters.imbalance_z * self.parameters.imbalance_z;
+        let t3 = k(1.0) / T::fused(k(0.08), t2 + t1, k(1e-5));
+        let t4 = t3 * t0;
+        let t5 = k(0.08) * self.parameters.imbalance_y;
+        let t6 = t3 * t5;
+        let t7 = self.parameters.product_xy * t3;
+        let t8 = self.parameters.offset_x * self.parameters.offset_x;
+        let t9 = self.parameters.offset_y * self.parameters.offset_y;
+        let t10 = self.parameters.offset_y * self.parameters.offset_z;
+        let t11 = self.parameters.offset_z * self.parameters.offset_z;
+        let t12 = self.parameters.offset_x * self.parameters.offset_z;
+        let t13 = self.parameters.imbalance_y * t5;
+        let t14 = self.parameters.imbalance_z * t0;
+        let t15 = k(1e-5) + t14;
+        *out = [
+            k(2.0) * self.parameters.imbalance_z,
+            k(2.0) * self.parameters.imbalance_y,
+            k(2.0) * self.parameters.offset_x,
+            k(4.0) * self.parameters.offset_x,
+            k(4.0) * self.parameters.imbalance_y,
+            k(4.0) * self.parameters.imbalance_z,
+            t0,
+            self.parameters.product_xy * t4,
+            self.parameters.product_xy * t6,
+            t5,
+            self.parameters.product_xz * t4,
+            self.parameters.product_xz * t6,
+            k(2.0) * self.parameters.offset_y,
+            t0 * t4,
+            t5 * t4,
+            t5 * t6,
+            T::fused(-self.parameters.product_xy, t7, T::fused(k(0.08), t2, k(5e-6))),
+            T::fused(
+                self.parameters.product_xz,
+                t7,
+                k(0.08) * (self.parameters.imbalance_y * self.parameters.imbalance_z),
+            ),
+            T::fused(
+                -self.parameters.product_xz,
+                self.parameters.product_xz * t3,
+                T::fused(k(0.08), t1, k(5e-6)),
+            ),
+            k(0.08) * (t9 + t8),
+            k(0.08) * t10,
+            k(2.0) * self.parameters.offset_z,
+            t11,
+            t12,
+            k(0.08) * (t11 + t8),
+            k(0.08) * t12,
+            k(0.08) * (self.parameters.offset_x * self.parameters.offset_y),
+            t9,
+            t10,
+            k(0.08) * (t11 + t9),
+            t3,
+            k(0.5) * self.parameters.product_xz,
+            k(0.5) * self.parameters.product_xy,
+            k(2.0) * self.parameters.product_xy,
+            k(2.0) * self.parameters.product_xz,
+            k(0.16) * self.parameters.imbalance_y,
+            t13,
+            t15,
+            k(1.0) / (t13 + t15),
+            k(0.08) * self.parameters.offset_z,
+            t13 - t14,
+            self.parameters.imbalance_z * t5,
+            k(0.5) * self.parameters.offset_z,
+            t14,
+            k(0.08) * (t9 - t8),
+            T::fused(k(0.08), t1 + t11, k(8e-6)),
+            k(0.5) * self.parameters.offset_x,
+            k(0.16) * self.parameters.offset_x,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeMisalignments<T> {
@@ -493,7 +606,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 151 operations (70 ±, 81 ×, 0 ÷).
+    /// Writes Φ: 142 operations (70 ±, 72 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -540,56 +653,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             t15,
             -T::fused(-(k(2.0) * (k(0.5) - (t7 + t16))), t11, t3 * t6),
         );
-        let t18 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t19 = inner_ring_e0 * inner_ring_e3;
-        let t20 = inner_ring_e1 * inner_ring_e2;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = T::fused(
-            t6,
-            self.offset_z,
-            T::fused(-(k(2.0) * (k(0.5) - t18)), self.offset_x, t21 * self.offset_y),
-        );
-        let t23 = rotor_e0 * rotor_e3;
-        let t24 = rotor_e1 * rotor_e2;
-        let t25 = rotor_e0 * rotor_e2;
-        let t26 = rotor_e1 * rotor_e3;
-        let t27 = T::fused(
-            k(2.0) * (t24 - t23),
-            self.imbalance_y,
-            k(2.0) * (t26 + t25) * self.imbalance_z,
-        );
-        let t28 = inner_ring_e2 * inner_ring_e2;
-        let t29 = k(2.0) * (k(0.5) - (t14 + t28));
-        let t30 = T::fused(
-            t11,
-            self.offset_z,
-            -T::fused(-(k(2.0) * (t20 + t19)), self.offset_x, t29 * self.offset_y),
-        );
-        let t31 = rotor_e2 * rotor_e2;
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = rotor_e0 * rotor_e1;
-        let t34 = rotor_e2 * rotor_e3;
-        let t35 = T::fused(
-            -(k(2.0) * (k(0.5) - (t32 + t31))),
-            self.imbalance_y,
-            k(2.0) * (t34 - t33) * self.imbalance_z,
-        );
-        let t36 = k(2.0) * (t10 + t9);
-        let t37 = T::fused(
-            t15,
-            self.offset_z,
-            -T::fused(k(2.0) * (t5 - t4), self.offset_x, t36 * self.offset_y),
-        );
-        let t38 = rotor_e3 * rotor_e3;
-        let t39 = T::fused(
-            -(k(2.0) * (t34 + t33)),
-            self.imbalance_y,
-            k(2.0) * (k(0.5) - (t32 + t38)) * self.imbalance_z,
-        );
-        let t40 = T::fused(rotor_e1, rotor_e1, t32);
+        let t18 = rotor_e0 * rotor_e2;
+        let t19 = rotor_e1 * rotor_e3;
+        let t20 = rotor_e0 * rotor_e3;
+        let t21 = rotor_e1 * rotor_e2;
+        let t22 = T::fused(inner_ring_e1, inner_ring_e1, t14);
+        let t23 = inner_ring_e0 * inner_ring_e3;
+        let t24 = inner_ring_e1 * inner_ring_e2;
+        let t25 = k(2.0) * (t24 - t23);
+        let t26 = inner_ring_rx
+            + T::fused(
+                t6,
+                self.parameters.offset_z,
+                T::fused(
+                    -(k(0.5) - t22),
+                    self.derived[2],
+                    t25 * self.parameters.offset_y,
+                ),
+            );
+        let t27 = t26
+            - (rotor_rx
+                + T::fused(t19 + t18, self.derived[0], (t21 - t20) * self.derived[1]));
+        let t28 = rotor_e0 * rotor_e1;
+        let t29 = rotor_e2 * rotor_e3;
+        let t30 = rotor_e2 * rotor_e2;
+        let t31 = rotor_e0 * rotor_e0;
+        let t32 = rotor_ry
+            - T::fused(
+                -(t29 - t28),
+                self.derived[0],
+                (k(0.5) - (t31 + t30)) * self.derived[1],
+            );
+        let t33 = inner_ring_e2 * inner_ring_e2;
+        let t34 = k(2.0) * (k(0.5) - (t14 + t33));
+        let t35 = inner_ring_ry
+            + T::fused(
+                t11,
+                self.parameters.offset_z,
+                -T::fused(-(t24 + t23), self.derived[2], t34 * self.parameters.offset_y),
+            );
+        let t36 = rotor_e3 * rotor_e3;
+        let t37 = rotor_rz
+            + T::fused(
+                -(k(0.5) - (t31 + t36)),
+                self.derived[0],
+                (t29 + t28) * self.derived[1],
+            );
+        let t38 = k(2.0) * (t10 + t9);
+        let t39 = inner_ring_rz
+            - T::fused(
+                t15,
+                self.parameters.offset_z,
+                -T::fused(t5 - t4, self.derived[2], t38 * self.parameters.offset_y),
+            );
+        let t40 = T::fused(rotor_e1, rotor_e1, t31);
         let t41 = k(2.0) * (k(0.5) - t40);
-        let t42 = k(2.0) * (t24 + t23);
-        let t43 = k(2.0) * (t26 - t25);
+        let t42 = k(2.0) * (t21 + t20);
+        let t43 = k(2.0) * (t19 - t18);
         *out = [
             outer_ring_rx,
             outer_ring_ry,
@@ -610,14 +730,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
                 t12,
             ),
             -t17,
-            rotor_rx + t27 - (inner_ring_rx + t22),
-            rotor_ry + t35 - (inner_ring_ry + t30),
-            rotor_rz - t39 - (inner_ring_rz - t37),
-            T::fused(t36, t43, -T::fused(t21, t41, t29 * t42)),
+            -t27,
+            t32 - t35,
+            t37 - t39,
+            T::fused(t38, t43, -T::fused(t25, t41, t34 * t42)),
             T::fused(-t15, t43, T::fused(-t6, t41, t11 * t42)),
             T::fused(outer_ring_e3, outer_ring_e3, t8 + t16) - k(1.0),
-            t13 + (t18 + t28) - k(1.0),
-            t38 + (t40 + t31) - k(1.0),
+            t13 + (t22 + t33) - k(1.0),
+            t36 + (t40 + t30) - k(1.0),
         ];
     }
     /// Writes Φ_r s + Φ_π' w' − ν: 278 operations (114 ±, 164 ×, 0 ÷).
@@ -714,18 +834,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let t42 = rotor_e1 * rotor_e3;
         let t43 = k(2.0) * (t42 + t41);
         let t44 = T::fused(
-            -self.imbalance_z,
+            -self.parameters.imbalance_z,
             T::fused(t37, rotor_wy, t40 * rotor_wx),
-            self.imbalance_y * T::fused(t37, rotor_wz, t43 * rotor_wx),
+            self.parameters.imbalance_y * T::fused(t37, rotor_wz, t43 * rotor_wx),
         );
         let t45 = T::fused(
-            self.offset_y,
+            self.parameters.offset_y,
             T::fused(t13, inner_ring_wx, t24 * inner_ring_wz),
-            self.offset_x * T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
+            self.parameters.offset_x * T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
         );
         let t46 = inner_ring_sx
             + T::fused(
-                -self.offset_z,
+                -self.parameters.offset_z,
                 T::fused(t24, inner_ring_wy, t30 * inner_ring_wx),
                 t45,
             ) - (rotor_sx + t44);
@@ -735,18 +855,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let t50 = rotor_e2 * rotor_e3;
         let t51 = k(2.0) * (t50 - t49);
         let t52 = T::fused(
-            self.imbalance_z,
+            self.parameters.imbalance_z,
             T::fused(t47, rotor_wy, t48 * rotor_wx),
-            self.imbalance_y * T::fused(-t47, rotor_wz, t51 * rotor_wx),
+            self.parameters.imbalance_y * T::fused(-t47, rotor_wz, t51 * rotor_wx),
         );
         let t53 = T::fused(
-            self.offset_y,
+            self.parameters.offset_y,
             T::fused(-t9, inner_ring_wx, t27 * inner_ring_wz),
-            self.offset_x * T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
+            self.parameters.offset_x * T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
         );
         let t54 = inner_ring_sy
             - T::fused(
-                -self.offset_z,
+                -self.parameters.offset_z,
                 T::fused(t27, inner_ring_wy, t31 * inner_ring_wx),
                 t53,
             ) - (rotor_sy + t52);
@@ -754,18 +874,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let t56 = k(2.0) * (t50 + t49);
         let t57 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
         let t58 = T::fused(
-            self.imbalance_z,
+            self.parameters.imbalance_z,
             T::fused(-t55, rotor_wy, t56 * rotor_wx),
-            self.imbalance_y * T::fused(t55, rotor_wz, t57 * rotor_wx),
+            self.parameters.imbalance_y * T::fused(t55, rotor_wz, t57 * rotor_wx),
         );
         let t59 = T::fused(
-            -self.offset_y,
+            -self.parameters.offset_y,
             T::fused(t18, inner_ring_wx, t29 * inner_ring_wz),
-            self.offset_x * T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
+            self.parameters.offset_x * T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
         );
         let t60 = inner_ring_sz
             + T::fused(
-                -self.offset_z,
+                -self.parameters.offset_z,
                 T::fused(-t29, inner_ring_wy, t32 * inner_ring_wx),
                 t59,
             ) - (rotor_sz - t58);
@@ -808,7 +928,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             -(t65 + t64),
         ];
     }
-    /// Kinetic and potential energy: 60 operations (23 ±, 37 ×, 0 ÷).
+    /// Kinetic and potential energy: 59 operations (23 ±, 36 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -834,16 +954,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let rotor_wz = y[38];
         let t0 = T::fused(
             rotor_wy,
-            T::fused(k(5e-6), rotor_wy, rotor_wx * self.product_xy),
+            T::fused(k(2.5e-6), rotor_wy, rotor_wx * self.derived[32]),
             rotor_wx
                 * T::fused(
                     rotor_wz,
-                    self.product_xz,
-                    T::fused(rotor_wy, self.product_xy, k(1e-5) * rotor_wx),
+                    self.derived[31],
+                    T::fused(rotor_wy, self.derived[32], k(5e-6) * rotor_wx),
                 ),
         );
         let t1 = T::fused(
-            k(0.08),
+            k(0.04),
             T::fused(
                 rotor_sz,
                 rotor_sz,
@@ -851,21 +971,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             ),
             T::fused(
                 rotor_wz,
-                T::fused(k(5e-6), rotor_wz, rotor_wx * self.product_xz),
+                T::fused(k(2.5e-6), rotor_wz, rotor_wx * self.derived[31]),
                 t0,
             ),
         );
         let t2 = T::fused(
             inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
+            k(5e-7) * inner_ring_wz,
             T::fused(
                 inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
+                k(1e-6) * inner_ring_wy,
+                inner_ring_wx * (k(5e-7) * inner_ring_wx),
             ),
         );
         let t3 = T::fused(
-            k(0.01),
+            k(0.005),
             T::fused(
                 inner_ring_sz,
                 inner_ring_sz,
@@ -875,15 +995,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         );
         let t4 = T::fused(
             outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
+            k(5e-7) * outer_ring_wz,
             T::fused(
                 outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
+                k(5e-7) * outer_ring_wy,
+                outer_ring_wx * (k(1e-6) * outer_ring_wx),
             ),
         );
         let t5 = T::fused(
-            k(0.01),
+            k(0.005),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
@@ -892,7 +1012,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             t4,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
+            kinetic: t5 + t3 + t1,
             potential: T::fused(
                 k(0.8),
                 rotor_ry,
@@ -1130,7 +1250,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 564 operations (213 ±, 348 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 555 operations (213 ±, 339 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1320,19 +1440,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
             T::fused(-t41, t79, T::fused(t38, t80, t37 * t81)),
             t40,
         );
-        let t86 = t82 * t82;
-        let t87 = t83 * t84;
-        let t88 = t82 * t85;
-        let t89 = k(2.0) * (t88 - t87);
-        let t90 = T::fused(
-            self.offset_x,
-            k(2.0) * (k(0.5) - T::fused(t83, t83, t86)),
-            self.offset_y * t89,
-        );
-        let t91 = t83 * t85;
-        let t92 = t82 * t84;
-        let t93 = k(2.0) * (t92 + t91);
-        let t94 = T::fused(
+        let t86 = T::fused(
             rotor_e3,
             rotor_e3,
             T::fused(
@@ -1341,120 +1449,136 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
                 T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
             ),
         );
-        let t95 = k(0.5) * (t94 - k(3.0));
-        let t96 = rotor_e2 * t95;
-        let t97 = rotor_e3 * t95;
-        let t98 = rotor_e0 * t95;
-        let t99 = rotor_e1 * t95;
-        let t100 = T::fused(
+        let t87 = k(0.5) * (t86 - k(3.0));
+        let t88 = rotor_e2 * t87;
+        let t89 = rotor_e3 * t87;
+        let t90 = rotor_e0 * t87;
+        let t91 = rotor_e1 * t87;
+        let t92 = T::fused(
             chart2_3,
-            t96,
-            T::fused(-chart2_2, t97, T::fused(-chart2_1, t98, chart2_0 * t99)),
+            t88,
+            T::fused(-chart2_2, t89, T::fused(-chart2_1, t90, chart2_0 * t91)),
         );
-        let t101 = k(0.5) * t100;
-        let t102 = t99 * t97;
-        let t103 = t98 * t96;
-        let t104 = k(2.0) * (t103 + t102);
-        let t105 = k(2.0) * (k(0.5) - T::fused(t84, t84, t86));
-        let t106 = t96 * t97;
-        let t107 = t98 * t99;
-        let t108 = k(2.0) * (t107 - t106);
-        let t109 = t84 * t85;
-        let t110 = t82 * t83;
-        let t111 = k(2.0) * (t110 + t109);
-        let t112 = t98 * t98;
-        let t113 = k(2.0) * (k(0.5) - T::fused(t97, t97, t112));
-        let t114 = T::fused(t113, t111, -T::fused(-t104, t89, t108 * t105));
-        let t115 = k(2.0) * (k(0.5) - T::fused(t99, t99, t112));
-        let t116 = k(2.0) * (t110 - t109);
-        let t117 = t99 * t96;
-        let t118 = t98 * t97;
-        let t119 = k(2.0) * (t118 + t117);
-        let t120 = k(2.0) * (k(0.5) - T::fused(t85, t85, t86));
-        let t121 = k(2.0) * (t103 - t102);
-        let t122 = T::fused(t121, t120, -T::fused(t115, t93, t119 * t116));
-        let t123 = T::fused(t113, t120, T::fused(t104, t93, t108 * t116));
-        let t124 = T::fused(t111, t121, T::fused(-t89, t115, t105 * t119));
-        let t125 = k(2.0) * (t118 - t117);
-        let t126 = k(2.0) * (k(0.5) - T::fused(t96, t96, t112));
-        let t127 = k(2.0) * (t107 + t106);
-        let t128 = T::fused(t111, t127, T::fused(t89, t125, t105 * t126));
-        let t129 = T::fused(t127, t120, -T::fused(-t125, t93, t126 * t116));
-        let t130 = T::fused(-t128, t123, t114 * t129);
-        let t131 = k(1.0) / (t101 * t130);
-        let t132 = t131 * T::fused(-t122, t114 * t101, t124 * (t123 * t101));
-        let t133 = t131 * T::fused(-t122, t128 * t101, t124 * (t129 * t101));
-        let t134 = T::fused(
+        let t93 = k(0.5) * t92;
+        let t94 = t83 * t84;
+        let t95 = t82 * t85;
+        let t96 = k(2.0) * (t95 - t94);
+        let t97 = t91 * t89;
+        let t98 = t90 * t88;
+        let t99 = k(2.0) * (t98 + t97);
+        let t100 = t82 * t82;
+        let t101 = k(2.0) * (k(0.5) - T::fused(t84, t84, t100));
+        let t102 = t88 * t89;
+        let t103 = t90 * t91;
+        let t104 = k(2.0) * (t103 - t102);
+        let t105 = t84 * t85;
+        let t106 = t82 * t83;
+        let t107 = k(2.0) * (t106 + t105);
+        let t108 = t90 * t90;
+        let t109 = k(2.0) * (k(0.5) - T::fused(t89, t89, t108));
+        let t110 = T::fused(t109, t107, -T::fused(-t99, t96, t104 * t101));
+        let t111 = t83 * t85;
+        let t112 = t82 * t84;
+        let t113 = k(2.0) * (t112 + t111);
+        let t114 = k(2.0) * (k(0.5) - T::fused(t91, t91, t108));
+        let t115 = k(2.0) * (t106 - t105);
+        let t116 = t91 * t88;
+        let t117 = t90 * t89;
+        let t118 = k(2.0) * (t117 + t116);
+        let t119 = k(2.0) * (k(0.5) - T::fused(t85, t85, t100));
+        let t120 = k(2.0) * (t98 - t97);
+        let t121 = T::fused(t120, t119, -T::fused(t114, t113, t118 * t115));
+        let t122 = T::fused(t109, t119, T::fused(t99, t113, t104 * t115));
+        let t123 = T::fused(t107, t120, T::fused(-t96, t114, t101 * t118));
+        let t124 = k(2.0) * (t117 - t116);
+        let t125 = k(2.0) * (k(0.5) - T::fused(t88, t88, t108));
+        let t126 = k(2.0) * (t103 + t102);
+        let t127 = T::fused(t107, t126, T::fused(t96, t124, t101 * t125));
+        let t128 = T::fused(t126, t119, -T::fused(-t124, t113, t125 * t115));
+        let t129 = T::fused(-t127, t122, t110 * t128);
+        let t130 = k(1.0) / (t93 * t129);
+        let t131 = t130 * T::fused(-t121, t110 * t93, t123 * (t122 * t93));
+        let t132 = t130 * T::fused(-t121, t127 * t93, t123 * (t128 * t93));
+        let t133 = T::fused(
             chart2_2,
-            rotor_e2 + t96,
-            T::fused(chart2_1, rotor_e1 + t99, chart2_0 * (rotor_e0 + t98)),
+            rotor_e2 + t88,
+            T::fused(chart2_1, rotor_e1 + t91, chart2_0 * (rotor_e0 + t90)),
         );
-        let t135 = T::fused(
+        let t134 = T::fused(
             -chart2_3,
-            t98,
-            T::fused(chart2_2, t99, T::fused(-chart2_1, t96, chart2_0 * t97)),
+            t90,
+            T::fused(chart2_2, t91, T::fused(-chart2_1, t88, chart2_0 * t89)),
         );
-        let t136 = k(0.5) * t135;
-        let t137 = T::fused(
+        let t135 = k(0.5) * t134;
+        let t136 = T::fused(
             -chart2_3,
-            t99,
-            T::fused(-chart2_2, t98, T::fused(chart2_1, t97, chart2_0 * t96)),
+            t91,
+            T::fused(-chart2_2, t90, T::fused(chart2_1, t89, chart2_0 * t88)),
         );
-        let t138 = k(0.5) * t137;
-        let t139 = T::fused(
-            t122,
-            T::fused(-t114, t136, t128 * t138),
-            t124 * T::fused(-t129, t138, t123 * t136),
+        let t137 = k(0.5) * t136;
+        let t138 = T::fused(
+            t121,
+            T::fused(-t110, t135, t127 * t137),
+            t123 * T::fused(-t128, t137, t122 * t135),
         );
-        let t140 = t131 * T::fused(T::fused(chart2_3, rotor_e3 + t97, t134), t130, t139);
+        let t139 = t130 * T::fused(T::fused(chart2_3, rotor_e3 + t89, t133), t129, t138);
+        let t140 = T::fused(
+            -k(0.5),
+            T::fused(t90, t131, T::fused(-t91, t132, t88 * t139)),
+            t89,
+        );
         let t141 = T::fused(
             k(0.5),
-            T::fused(t99, t132, T::fused(t98, t133, t97 * t140)),
-            t96,
+            T::fused(-t88, t131, T::fused(-t89, t132, t90 * t139)),
+            t91,
         );
         let t142 = T::fused(
             k(0.5),
-            T::fused(-t96, t132, T::fused(-t97, t133, t98 * t140)),
-            t99,
+            T::fused(t91, t131, T::fused(t90, t132, t89 * t139)),
+            t88,
         );
         let t143 = T::fused(
             -k(0.5),
-            T::fused(t98, t132, T::fused(-t99, t133, t96 * t140)),
-            t97,
+            T::fused(-t89, t131, T::fused(t88, t132, t91 * t139)),
+            t90,
         );
         let t144 = T::fused(
-            -k(0.5),
-            T::fused(-t97, t132, T::fused(t96, t133, t99 * t140)),
-            t98,
+            -T::fused(t141, t140, t143 * t142),
+            self.derived[0],
+            T::fused(-t141, t142, t143 * t140) * self.derived[1],
         );
         let t145 = T::fused(
-            -self.imbalance_y,
-            k(2.0) * T::fused(-t142, t141, t144 * t143),
-            self.imbalance_z * (k(2.0) * T::fused(t142, t143, t144 * t141)),
+            self.parameters.offset_z,
+            t113,
+            -T::fused(
+                k(0.5) - T::fused(t83, t83, t100),
+                self.derived[2],
+                self.parameters.offset_y * t96,
+            ),
         );
-        let t146 = T::fused(
-            self.offset_z,
-            t116,
-            T::fused(-self.offset_x, k(2.0) * (t88 + t87), self.offset_y * t105),
+        let t146 = t142 * t140;
+        let t147 = t143 * t141;
+        let t148 = t143 * t143;
+        let t149 = T::fused(
+            t147 - t146,
+            self.derived[0],
+            (k(0.5) - T::fused(t142, t142, t148)) * self.derived[1],
         );
-        let t147 = t144 * t144;
-        let t148 = t141 * t143;
-        let t149 = t144 * t142;
         let t150 = T::fused(
-            self.imbalance_y,
-            k(2.0) * (k(0.5) - T::fused(t141, t141, t147)),
-            self.imbalance_z * (k(2.0) * (t149 - t148)),
-        );
+            self.parameters.offset_z,
+            t115,
+            T::fused(-(t95 + t94), self.derived[2], self.parameters.offset_y * t101),
+        ) - t149;
         let t151 = T::fused(
-            self.offset_z,
-            t120,
-            -T::fused(-self.offset_x, k(2.0) * (t92 - t91), self.offset_y * t111),
+            -(k(0.5) - T::fused(t140, t140, t148)),
+            self.derived[0],
+            (t147 + t146) * self.derived[1],
         );
         let t152 = T::fused(
-            -self.imbalance_y,
-            k(2.0) * (t149 + t148),
-            self.imbalance_z * (k(2.0) * (k(0.5) - T::fused(t143, t143, t147))),
-        );
+            self.parameters.offset_z,
+            t119,
+            -T::fused(-(t112 - t111), self.derived[2], self.parameters.offset_y * t107),
+        ) + t151;
         y[0] = k(0.0);
         y[1] = k(0.0);
         y[2] = k(0.0);
@@ -1469,13 +1593,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
         y[11] = -t83;
         y[12] = -t84;
         y[13] = -t85;
-        y[14] = T::fused(self.offset_z, t93, -t90) - t145;
-        y[15] = t150 - t146;
-        y[16] = t152 - t151;
-        y[17] = -t144;
-        y[18] = -t142;
-        y[19] = -t141;
-        y[20] = -t143;
+        y[14] = t145 + t144;
+        y[15] = -t150;
+        y[16] = -t152;
+        y[17] = -t143;
+        y[18] = -t141;
+        y[19] = -t142;
+        y[20] = -t140;
     }
     /// Solves eq. (19) for the dependent velocities: 317 operations (120 ±, 194 ×, 3 ÷).
     fn solve_velocities_on(&self, _t: T, _charts: &Self::Vectors, y: &mut Self::State) {
@@ -1594,34 +1718,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
         let t74 = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
         let t75 = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
         let t76 = T::fused(
-            -self.imbalance_z,
+            -self.parameters.imbalance_z,
             T::fused(t66, t74, t52 * rotor_wx),
-            self.imbalance_y * T::fused(t66, t75, t60 * rotor_wx),
+            self.parameters.imbalance_y * T::fused(t66, t75, t60 * rotor_wx),
         );
         let t77 = T::fused(
-            -self.offset_y,
+            -self.parameters.offset_y,
             T::fused(t13, inner_ring_wz, t38 * t46),
-            self.offset_x * T::fused(-t28, inner_ring_wz, t38 * t47),
+            self.parameters.offset_x * T::fused(-t28, inner_ring_wz, t38 * t47),
         );
         let t78 = T::fused(
-            self.imbalance_z,
+            self.parameters.imbalance_z,
             T::fused(t67, t74, t49 * rotor_wx),
-            self.imbalance_y * T::fused(-t67, t75, t57 * rotor_wx),
+            self.parameters.imbalance_y * T::fused(-t67, t75, t57 * rotor_wx),
         );
         let t79 = T::fused(
-            -self.offset_y,
+            -self.parameters.offset_y,
             T::fused(-t19, inner_ring_wz, t39 * t46),
-            self.offset_x * T::fused(t29, inner_ring_wz, t39 * t47),
+            self.parameters.offset_x * T::fused(t29, inner_ring_wz, t39 * t47),
         );
         let t80 = T::fused(
-            self.imbalance_z,
+            self.parameters.imbalance_z,
             T::fused(-t68, t74, t55 * rotor_wx),
-            self.imbalance_y * T::fused(t68, t75, t61 * rotor_wx),
+            self.parameters.imbalance_y * T::fused(t68, t75, t61 * rotor_wx),
         );
         let t81 = T::fused(
-            -self.offset_y,
+            -self.parameters.offset_y,
             T::fused(t23, inner_ring_wz, t40 * t46),
-            self.offset_x * T::fused(t33, inner_ring_wz, t40 * t47),
+            self.parameters.offset_x * T::fused(t33, inner_ring_wz, t40 * t47),
         );
         y[21] = k(0.0);
         y[22] = k(0.0);
@@ -1633,9 +1757,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
         y[29] = k(0.0);
         y[30] = t46;
         y[31] = t47;
-        y[33] = -(T::fused(self.offset_z, T::fused(t13, t47, t28 * t46), t77) + t76);
-        y[34] = -(T::fused(-self.offset_z, T::fused(t19, t47, t29 * t46), t79) + t78);
-        y[35] = T::fused(-self.offset_z, T::fused(-t23, t47, t33 * t46), t81) + t80;
+        y[33] = -(T::fused(self.parameters.offset_z, T::fused(t13, t47, t28 * t46), t77)
+            + t76);
+        y[34] = -(T::fused(-self.parameters.offset_z, T::fused(t19, t47, t29 * t46), t79)
+            + t78);
+        y[35] = T::fused(-self.parameters.offset_z, T::fused(-t23, t47, t33 * t46), t81)
+            + t80;
         y[37] = t74;
         y[38] = t75;
     }
@@ -1847,7 +1974,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 258 operations (94 ±, 164 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 255 operations (94 ±, 161 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1895,31 +2022,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
         let t29 = k(2.0) * (t19 - t18);
-        let t30 = self.offset_y * t25;
-        let t31 = self.offset_z * t21;
-        let t32 = self.offset_y * t21;
-        let t33 = self.offset_z * t25;
-        let t34 = self.offset_z * t24;
-        let t35 = self.offset_y * t17;
-        let t36 = self.offset_y * t24;
-        let t37 = self.offset_z * t17;
+        let t30 = self.parameters.offset_y * t25;
+        let t31 = self.parameters.offset_z * t21;
+        let t32 = self.parameters.offset_y * t21;
+        let t33 = self.parameters.offset_z * t25;
+        let t34 = self.parameters.offset_z * t24;
+        let t35 = self.parameters.offset_y * t17;
+        let t36 = self.parameters.offset_y * t24;
+        let t37 = self.parameters.offset_z * t17;
         let t38 = k(2.0) * rotor_e3;
-        let t39 = self.imbalance_y * t38;
+        let t39 = self.parameters.imbalance_y * t38;
         let t40 = k(2.0) * rotor_e2;
-        let t41 = self.imbalance_z * t40;
-        let t42 = self.imbalance_y * t40;
-        let t43 = self.imbalance_z * t38;
+        let t41 = self.parameters.imbalance_z * t40;
+        let t42 = self.parameters.imbalance_y * t40;
+        let t43 = self.parameters.imbalance_z * t38;
         let t44 = k(2.0) * rotor_e0;
-        let t45 = self.imbalance_z * t44;
+        let t45 = self.parameters.imbalance_z * t44;
         let t46 = k(2.0) * rotor_e1;
-        let t47 = self.imbalance_y * t46;
-        let t48 = self.imbalance_y * t44;
-        let t49 = self.imbalance_z * t46;
-        let t50 = self.offset_x * t25;
-        let t51 = self.offset_x * t21;
-        let t52 = self.offset_x * t17;
+        let t47 = self.parameters.imbalance_y * t46;
+        let t48 = self.parameters.imbalance_y * t44;
+        let t49 = self.parameters.imbalance_z * t46;
+        let t50 = self.parameters.offset_x * t25;
+        let t51 = self.parameters.offset_x * t21;
+        let t52 = self.parameters.offset_x * t17;
         let t53 = k(4.0) * inner_ring_e2;
-        let t54 = self.offset_x * t24;
+        let t54 = self.parameters.offset_x * t24;
         let t55 = k(4.0) * rotor_e0;
         let t56 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         let t57 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
@@ -1968,8 +2095,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             T::fused(-t28, t25, t29 * t24),
             T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
             k(-1.0),
-            T::fused(-self.offset_x, t15, t30) - t31,
-            -(t33 + T::fused(self.offset_x, k(4.0) * inner_ring_e1, t32)),
+            T::fused(-self.parameters.offset_x, t15, t30) - t31,
+            -(t33 + T::fused(inner_ring_e1, self.derived[3], t32)),
             -(t35 + t34),
             t36 - t37,
             k(1.0),
@@ -1978,25 +2105,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             t47 + t45,
             t49 - t48,
             k(-1.0),
-            t37 - T::fused(self.offset_y, t15, t50),
+            t37 - T::fused(self.parameters.offset_y, t15, t50),
             t34 - t51,
-            -(t33 + T::fused(self.offset_y, t53, t52)),
+            -(t33 + T::fused(self.parameters.offset_y, t53, t52)),
             -(t31 + t54),
             k(1.0),
-            T::fused(self.imbalance_y, t55, -t49),
+            T::fused(self.parameters.imbalance_y, t55, -t49),
             -t45,
-            T::fused(self.imbalance_y, k(4.0) * rotor_e2, t43),
+            T::fused(rotor_e2, self.derived[4], t43),
             t41,
             k(-1.0),
-            -T::fused(self.offset_z, t15, t35 - t51),
+            -T::fused(self.parameters.offset_z, t15, t35 - t51),
             -(t50 + t36),
             t54 - t30,
-            -T::fused(self.offset_z, t26, t32 + t52),
+            -T::fused(self.parameters.offset_z, t26, t32 + t52),
             k(1.0),
-            T::fused(self.imbalance_z, t55, t47),
+            T::fused(self.parameters.imbalance_z, t55, t47),
             t48,
             t39,
-            T::fused(self.imbalance_z, k(4.0) * rotor_e3, t42),
+            T::fused(rotor_e3, self.derived[5], t42),
             T::fused(t56, t17, T::fused(t57, t15, t59)),
             T::fused(t56, t24, -t60),
             T::fused(t56, t25, -T::fused(-t57, t53, t61)),
@@ -2114,29 +2241,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             -T::fused(t22, t28, T::fused(t18, t26, t21 * t25)),
             T::fused(t22, t31, -T::fused(t21, t29, t18 * t30)),
             k(-1.0),
-            T::fused(-t16, self.offset_y, t25 * self.offset_z),
-            T::fused(t29, self.offset_z, t16 * self.offset_x),
-            -T::fused(t29, self.offset_y, t25 * self.offset_x),
+            T::fused(-t16, self.parameters.offset_y, t25 * self.parameters.offset_z),
+            T::fused(t29, self.parameters.offset_z, t16 * self.parameters.offset_x),
+            -T::fused(t29, self.parameters.offset_y, t25 * self.parameters.offset_x),
             k(1.0),
-            T::fused(-t34, self.imbalance_z, t37 * self.imbalance_y),
-            -(t39 * self.imbalance_z),
-            t39 * self.imbalance_y,
+            T::fused(
+                -t34,
+                self.parameters.imbalance_z,
+                t37 * self.parameters.imbalance_y,
+            ),
+            -(t39 * self.parameters.imbalance_z),
+            t39 * self.parameters.imbalance_y,
             k(-1.0),
-            -T::fused(t26, self.offset_z, t11 * self.offset_y),
-            T::fused(-t30, self.offset_z, t11 * self.offset_x),
-            T::fused(t30, self.offset_y, t26 * self.offset_x),
+            -T::fused(t26, self.parameters.offset_z, t11 * self.parameters.offset_y),
+            T::fused(-t30, self.parameters.offset_z, t11 * self.parameters.offset_x),
+            T::fused(t30, self.parameters.offset_y, t26 * self.parameters.offset_x),
             k(1.0),
-            T::fused(t40, self.imbalance_z, t43 * self.imbalance_y),
-            t44 * self.imbalance_z,
-            -(t44 * self.imbalance_y),
+            T::fused(
+                t40,
+                self.parameters.imbalance_z,
+                t43 * self.parameters.imbalance_y,
+            ),
+            t44 * self.parameters.imbalance_z,
+            -(t44 * self.parameters.imbalance_y),
             k(-1.0),
-            T::fused(t28, self.offset_z, t8 * self.offset_y),
-            -T::fused(t31, self.offset_z, t8 * self.offset_x),
-            T::fused(-t28, self.offset_x, t31 * self.offset_y),
+            T::fused(t28, self.parameters.offset_z, t8 * self.parameters.offset_y),
+            -T::fused(t31, self.parameters.offset_z, t8 * self.parameters.offset_x),
+            T::fused(-t28, self.parameters.offset_x, t31 * self.parameters.offset_y),
             k(1.0),
-            -T::fused(t45, self.imbalance_z, t46 * self.imbalance_y),
-            t47 * self.imbalance_z,
-            -(t47 * self.imbalance_y),
+            -T::fused(
+                t45,
+                self.parameters.imbalance_z,
+                t46 * self.parameters.imbalance_y,
+            ),
+            t47 * self.parameters.imbalance_z,
+            -(t47 * self.parameters.imbalance_y),
             T::fused(-t8, t47, T::fused(-t16, t39, t11 * t44)),
             -t48,
             T::fused(t28, t46, -T::fused(-t26, t43, t25 * t37)),
@@ -2273,12 +2412,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t54 = inner_ring_wx * inner_ring_wy;
         let t55 = t52 + t47;
         let t56 = T::fused(
-            self.offset_x,
+            self.parameters.offset_x,
             T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
-            self.offset_y * T::fused(t19, t46, -T::fused(t32, t54, t39 * t55)),
+            self.parameters.offset_y * T::fused(t19, t46, -T::fused(t32, t54, t39 * t55)),
         );
         let t57 = T::fused(
-            self.offset_z,
+            self.parameters.offset_z,
             T::fused(t19, t49, -T::fused(-t32, t44, t39 * t46)),
             -t56,
         );
@@ -2299,17 +2438,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t72 = rotor_wy * rotor_wy;
         let t73 = t72 + t61;
         let t74 = T::fused(
-            -self.imbalance_y,
+            -self.parameters.imbalance_y,
             T::fused(t70, t67, -T::fused(t60, t58, t66 * t63)),
-            self.imbalance_z * T::fused(t70, t73, -T::fused(-t60, t71, t66 * t67)),
+            self.parameters.imbalance_z
+                * T::fused(t70, t73, -T::fused(-t60, t71, t66 * t67)),
         );
         let t75 = T::fused(
-            self.offset_x,
+            self.parameters.offset_x,
             T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
-            self.offset_y * T::fused(t22, t46, T::fused(t35, t54, t38 * t55)),
+            self.parameters.offset_y * T::fused(t22, t46, T::fused(t35, t54, t38 * t55)),
         );
         let t76 = T::fused(
-            self.offset_z,
+            self.parameters.offset_z,
             T::fused(t22, t49, T::fused(-t35, t44, t38 * t46)),
             -t75,
         );
@@ -2319,17 +2459,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t80 = rotor_e2 * rotor_e3;
         let t81 = k(2.0) * (t80 - t79);
         let t82 = T::fused(
-            -self.imbalance_y,
+            -self.parameters.imbalance_y,
             T::fused(t81, t67, T::fused(t77, t58, t78 * t63)),
-            self.imbalance_z * T::fused(t81, t73, T::fused(-t77, t71, t78 * t67)),
+            self.parameters.imbalance_z
+                * T::fused(t81, t73, T::fused(-t77, t71, t78 * t67)),
         );
         let t83 = T::fused(
-            self.offset_x,
+            self.parameters.offset_x,
             T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54)),
-            self.offset_y * T::fused(t25, t46, T::fused(-t36, t54, t40 * t55)),
+            self.parameters.offset_y * T::fused(t25, t46, T::fused(-t36, t54, t40 * t55)),
         );
         let t84 = T::fused(
-            self.offset_z,
+            self.parameters.offset_z,
             T::fused(t25, t49, T::fused(t36, t44, t40 * t46)),
             -t83,
         );
@@ -2337,9 +2478,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t86 = k(2.0) * (t80 + t79);
         let t87 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t59));
         let t88 = T::fused(
-            -self.imbalance_y,
+            -self.parameters.imbalance_y,
             T::fused(t87, t67, T::fused(-t85, t58, t86 * t63)),
-            self.imbalance_z * T::fused(t87, t73, T::fused(t85, t71, t86 * t67)),
+            self.parameters.imbalance_z
+                * T::fused(t87, t73, T::fused(t85, t71, t86 * t67)),
         );
         let t89 = T::fused(t36, t85, T::fused(t32, t60, t35 * t77));
         let t90 = T::fused(t40, t85, -T::fused(t39, t60, t38 * t77));
@@ -2402,14 +2544,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_wz * self.product_xy;
-        let t1 = rotor_wy * self.product_xz;
+        let t0 = rotor_wz * self.parameters.product_xy;
+        let t1 = rotor_wy * self.parameters.product_xz;
         let t2 = rotor_wx * rotor_wx;
         let t3 = T::fused(
             rotor_wy,
             t0,
             T::fused(
-                self.product_xz,
+                self.parameters.product_xz,
                 T::fused(rotor_wz, rotor_wz, -t2),
                 k(5e-6) * (rotor_wx * rotor_wz),
             ),
@@ -2418,7 +2560,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             rotor_wz,
             t1,
             T::fused(
-                self.product_xy,
+                self.parameters.product_xy,
                 T::fused(rotor_wy, rotor_wy, -t2),
                 k(5e-6) * (rotor_wx * rotor_wy),
             ),
@@ -2444,7 +2586,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             t4,
         ];
     }
-    /// Solves eq. (17): 838 operations (336 ±, 496 ×, 6 ÷).
+    /// Solves eq. (17): 785 operations (326 ±, 454 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2468,555 +2610,536 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let (
-            t1,
-            t128,
-            t129,
-            t130,
-            t135,
-            t136,
-            t138,
-            t139,
-            t140,
-            t184,
-            t186,
-            t187,
-            t188,
-            t189,
-            t193,
-            t194,
-            t195,
-            t196,
-            t197,
-            t199,
-        ) = {
-            let t0 = T::fused(
-                outer_ring_wx,
-                outer_ring_wx,
-                outer_ring_wz * outer_ring_wz,
-            )
-                * (k(0.5)
-                    / (k(0.5)
-                        - T::fused(
-                            outer_ring_e2,
-                            outer_ring_e2,
-                            outer_ring_e0 * outer_ring_e0,
-                        )));
-            let t1 = T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e1,
-                        outer_ring_e2 * outer_ring_e3,
-                    )),
-                t0,
-                outer_ring_wy * outer_ring_wz,
-            );
-            let t2 = T::fused(
-                -inner_ring_e0,
-                rotor_e3,
-                T::fused(
-                    inner_ring_e1,
-                    rotor_e2,
-                    T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-                ),
-            );
-            let t3 = T::fused(
-                inner_ring_e3,
-                rotor_e3,
-                T::fused(
-                    inner_ring_e2,
-                    rotor_e2,
-                    T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-                ),
-            );
-            let t4 = t3 * t2;
-            let t5 = T::fused(
-                -inner_ring_e1,
-                rotor_e3,
-                T::fused(
-                    -inner_ring_e0,
-                    rotor_e2,
-                    T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-                ),
-            );
-            let t6 = T::fused(
-                inner_ring_e2,
-                rotor_e3,
-                T::fused(
-                    -inner_ring_e3,
-                    rotor_e2,
-                    T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-                ),
-            );
-            let t7 = t6 * t5;
-            let t8 = k(2.0) * (t7 + t4);
-            let t9 = self.imbalance_y * self.imbalance_y;
-            let t10 = self.imbalance_z * self.imbalance_z;
-            let t11 = k(1.0) / T::fused(k(0.08), t10 + t9, k(1e-5));
-            let t12 = self.product_xy * t11;
-            let t13 = T::fused(-self.product_xy, t12, T::fused(k(0.08), t10, k(5e-6)));
-            let t14 = t3 * t5;
-            let t15 = t6 * t2;
-            let t16 = k(2.0) * (t15 - t14);
-            let t17 = T::fused(
-                self.product_xz,
-                t12,
-                k(0.08) * (self.imbalance_y * self.imbalance_z),
-            );
-            let t18 = T::fused(-t13, t8, t17 * t16);
-            let t19 = T::fused(
-                -self.product_xz,
-                self.product_xz * t11,
-                T::fused(k(0.08), t9, k(5e-6)),
-            );
-            let t20 = T::fused(-t17, t8, t19 * t16);
-            let t21 = self.offset_y * self.offset_y;
-            let t22 = self.offset_z * self.offset_z;
-            let t23 = t3 * t3;
-            let t24 = k(2.0) * (k(0.5) - T::fused(t5, t5, t23));
-            let t25 = k(0.08) * self.imbalance_z;
-            let t26 = t11 * t25;
-            let t27 = t25 * t26;
-            let t28 = t3 * t6;
-            let t29 = t5 * t2;
-            let t30 = k(2.0) * (t29 + t28);
-            let t31 = k(0.08) * self.imbalance_y;
-            let t32 = t31 * t26;
-            let t33 = T::fused(t27, t24, t32 * t30);
-            let t34 = t11 * t31;
-            let t35 = t31 * t34;
-            let t36 = T::fused(t32, t24, t35 * t30);
-            let t37 = T::fused(t24, t33, t30 * t36);
-            let t38 = k(2.0) * (t29 - t28);
-            let t39 = k(2.0) * (k(0.5) - T::fused(t2, t2, t23));
-            let t40 = T::fused(t38, t33, t39 * t36);
-            let t41 = T::fused(
-                t38,
-                T::fused(t27, t38, t32 * t39),
-                t39 * T::fused(t32, t38, t35 * t39),
-            );
-            let t42 = T::fused(
-                self.offset_z,
-                T::fused(self.offset_z, t37, self.offset_y * t40),
-                self.offset_y * T::fused(self.offset_z, t40, self.offset_y * t41),
-            );
-            let t43 = k(2.0) * (t7 - t4);
-            let t44 = self.product_xy * t26;
-            let t45 = self.product_xy * t34;
-            let t46 = T::fused(t45, t30, T::fused(-t25, t43, t44 * t24));
-            let t47 = self.product_xz * t26;
-            let t48 = self.product_xz * t34;
-            let t49 = T::fused(t48, t30, T::fused(t31, t43, t47 * t24));
-            let t50 = T::fused(t8, t46, t16 * t49);
-            let t51 = k(2.0) * (t15 + t14);
-            let t52 = T::fused(t45, t39, T::fused(t25, t51, t44 * t38));
-            let t53 = T::fused(t48, t39, T::fused(-t31, t51, t47 * t38));
-            let t54 = T::fused(t8, t52, t16 * t53);
-            let t55 = T::fused(
-                k(2.0),
-                T::fused(self.offset_z, t50, self.offset_y * t54),
-                t42,
-            ) - T::fused(k(0.08), t22 + t21, T::fused(-t8, t18, t16 * t20));
-            let t56 = T::fused(-t27, t8, t32 * t16);
-            let t57 = T::fused(-t32, t8, t35 * t16);
-            let t58 = T::fused(t24, t56, t30 * t57);
-            let t59 = T::fused(-self.offset_y, t58, self.offset_x * t37);
-            let t60 = T::fused(t38, t56, t39 * t57);
-            let t61 = self.offset_x * t40;
-            let t62 = T::fused(-self.offset_y, t60, t61);
-            let t63 = T::fused(-t38, t46, t39 * t49);
-            let t64 = T::fused(-t38, t52, t39 * t53);
-            let t65 = k(0.5) - T::fused(t6, t6, t23);
-            let t66 = k(2.0) * t65;
-            let t67 = T::fused(t45, t16, -T::fused(-t25, t66, t44 * t8));
-            let t68 = T::fused(t48, t16, -T::fused(t31, t66, t47 * t8));
-            let t69 = T::fused(t8, t67, t16 * t68);
-            let t70 = T::fused(-self.offset_y, t69, self.offset_x * t50)
-                + T::fused(self.offset_z, t63, self.offset_y * t64);
-            let t71 = t70 + T::fused(self.offset_z, t59, self.offset_y * t62)
-                - T::fused(
-                    k(0.08),
-                    self.offset_x * self.offset_z,
-                    T::fused(t38, t18, t39 * t20),
-                );
-            let t72 = T::fused(
-                t38,
-                T::fused(t13, t38, t17 * t39),
-                t39 * T::fused(t17, t38, t19 * t39),
-            );
-            let t73 = self.offset_x * self.offset_x;
-            let t74 = T::fused(-t8, t56, t16 * t57);
-            let t75 = T::fused(-self.offset_y, t74, self.offset_x * t58);
-            let t76 = T::fused(-t38, t67, t39 * t68);
-            let t77 = T::fused(
-                k(2.0),
-                T::fused(-self.offset_y, t76, self.offset_x * t63),
-                T::fused(-self.offset_y, t75, self.offset_x * t59),
-            );
-            let t78 = k(1.0) / (k(1e-6) - (t77 - T::fused(k(0.08), t21 + t73, t72)));
-            let t79 = t78 * t71;
-            let t80 = T::fused(t71, t79, -(k(1e-6) - t55));
-            let t81 = T::fused(
-                -outer_ring_e0,
-                inner_ring_e3,
-                T::fused(
-                    outer_ring_e1,
-                    inner_ring_e2,
-                    T::fused(
-                        -outer_ring_e2,
-                        inner_ring_e1,
-                        outer_ring_e3 * inner_ring_e0,
-                    ),
-                ),
-            );
-            let t82 = T::fused(
-                outer_ring_e3,
-                inner_ring_e3,
-                T::fused(
-                    outer_ring_e2,
-                    inner_ring_e2,
-                    T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-                ),
-            );
-            let t83 = t82 * t81;
-            let t84 = T::fused(
-                -outer_ring_e1,
-                inner_ring_e3,
-                T::fused(
+        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
+            * (k(0.5)
+                / (k(0.5)
+                    - T::fused(
+                        outer_ring_e2,
+                        outer_ring_e2,
+                        outer_ring_e0 * outer_ring_e0,
+                    )));
+        let t1 = T::fused(
+            -(k(2.0)
+                * T::fused(
                     -outer_ring_e0,
-                    inner_ring_e2,
-                    T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
-                ),
-            );
-            let t85 = T::fused(
+                    outer_ring_e1,
+                    outer_ring_e2 * outer_ring_e3,
+                )),
+            t0,
+            outer_ring_wy * outer_ring_wz,
+        );
+        let t2 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t3 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t4 = t3 * t3;
+        let t5 = k(0.5) - T::fused(t2, t2, t4);
+        let t6 = k(2.0) * t5;
+        let t7 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t8 = t3 * t7;
+        let t9 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t10 = t2 * t9;
+        let t11 = k(2.0) * (t10 + t8);
+        let t12 = t3 * t9;
+        let t13 = t2 * t7;
+        let t14 = k(2.0) * (t13 - t12);
+        let t15 = T::fused(
+            self.derived[8],
+            t14,
+            -T::fused(-self.derived[6], t6, self.derived[7] * t11),
+        );
+        let t16 = t3 * t2;
+        let t17 = t9 * t7;
+        let t18 = k(2.0) * (t17 - t16);
+        let t19 = T::fused(
+            self.derived[11],
+            t14,
+            -T::fused(self.derived[9], t6, self.derived[10] * t11),
+        );
+        let t20 = k(2.0) * (k(0.5) - T::fused(t7, t7, t4));
+        let t21 = T::fused(-t18, t15, t20 * t19);
+        let t22 = k(2.0) * (t10 - t8);
+        let t23 = k(2.0) * (k(0.5) - T::fused(t9, t9, t4));
+        let t24 = k(2.0) * (t17 + t16);
+        let t25 = T::fused(
+            self.derived[8],
+            t24,
+            T::fused(-self.derived[6], t22, self.derived[7] * t23),
+        );
+        let t26 = T::fused(
+            self.derived[11],
+            t24,
+            T::fused(self.derived[9], t22, self.derived[10] * t23),
+        );
+        let t27 = T::fused(-t18, t25, t20 * t26);
+        let t28 = T::fused(-self.derived[13], t11, self.derived[14] * t14);
+        let t29 = T::fused(-self.derived[14], t11, self.derived[15] * t14);
+        let t30 = T::fused(-t11, t28, t14 * t29);
+        let t31 = T::fused(t23, t28, t24 * t29);
+        let t32 = T::fused(
+            -self.parameters.offset_y,
+            t30,
+            self.parameters.offset_x * t31,
+        );
+        let t33 = T::fused(self.derived[13], t23, self.derived[14] * t24);
+        let t34 = T::fused(self.derived[14], t23, self.derived[15] * t24);
+        let t35 = T::fused(t23, t33, t24 * t34);
+        let t36 = T::fused(
+            -self.parameters.offset_y,
+            t31,
+            self.parameters.offset_x * t35,
+        );
+        let t37 = T::fused(
+            -self.parameters.offset_y,
+            t32,
+            self.parameters.offset_x * t36,
+        ) + T::fused(-t21, self.derived[12], t27 * self.derived[2]);
+        let t38 = T::fused(
+            t18,
+            T::fused(self.derived[16], t18, self.derived[17] * t20),
+            t20 * T::fused(self.derived[17], t18, self.derived[18] * t20),
+        );
+        let t39 = k(1.0) / (k(1e-6) + (self.derived[19] + t38 - t37));
+        let t40 = T::fused(self.derived[16], t23, self.derived[17] * t24);
+        let t41 = T::fused(self.derived[17], t23, self.derived[18] * t24);
+        let t42 = T::fused(t18, t28, t20 * t29);
+        let t43 = T::fused(t18, t33, t20 * t34);
+        let t44 = self.parameters.offset_x * t43;
+        let t45 = T::fused(-self.parameters.offset_y, t42, t44);
+        let t46 = k(2.0) * (t13 + t12);
+        let t47 = T::fused(
+            self.derived[8],
+            t20,
+            T::fused(self.derived[6], t46, self.derived[7] * t18),
+        );
+        let t48 = T::fused(
+            self.derived[11],
+            t20,
+            T::fused(-self.derived[9], t46, self.derived[10] * t18),
+        );
+        let t49 = T::fused(-t18, t47, t20 * t48);
+        let t50 = T::fused(-t23, t15, t24 * t19);
+        let t51 = T::fused(-t23, t25, t24 * t26);
+        let t52 = T::fused(
+            -self.parameters.offset_y,
+            t50,
+            self.parameters.offset_x * t51,
+        ) - T::fused(self.parameters.offset_z, t21, self.parameters.offset_x * t49);
+        let t53 = t52
+            - T::fused(self.parameters.offset_z, t32, self.parameters.offset_x * t45)
+            - (self.derived[20] + T::fused(t18, t40, t20 * t41));
+        let t54 = T::fused(-t23, t47, t24 * t48);
+        let t55 = T::fused(
+            t18,
+            T::fused(self.derived[13], t18, self.derived[14] * t20),
+            t20 * T::fused(self.derived[14], t18, self.derived[15] * t20),
+        );
+        let t56 = T::fused(
+            self.parameters.offset_z,
+            t42,
+            self.parameters.offset_x * t55,
+        );
+        let t57 = T::fused(
+            self.parameters.offset_x,
+            t56,
+            T::fused(self.derived[22], t30, self.derived[23] * t42),
+        ) - T::fused(t50, self.derived[21], t54 * self.derived[2]);
+        let t58 = T::fused(
+            -t53,
+            t53 * t39,
+            k(2e-6) + (self.derived[24] + T::fused(t23, t40, t24 * t41) - t57),
+        );
+        let t59 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t60 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
                 outer_ring_e2,
-                inner_ring_e3,
-                T::fused(
-                    -outer_ring_e3,
-                    inner_ring_e2,
-                    T::fused(
-                        -outer_ring_e0,
-                        inner_ring_e1,
-                        outer_ring_e1 * inner_ring_e0,
-                    ),
-                ),
-            );
-            let t86 = t85 * t84;
-            let t87 = k(2.0) * (t86 - t83);
-            let t88 = T::fused(self.offset_z, t60, self.offset_x * t41);
-            let t89 = T::fused(-t24, t46, t30 * t49);
-            let t90 = T::fused(-t24, t52, t30 * t53);
-            let t91 = T::fused(self.offset_z, t69, self.offset_x * t54)
-                - T::fused(self.offset_z, t89, self.offset_y * t90);
-            let t92 = t91
-                + T::fused(
-                    self.offset_z,
-                    T::fused(self.offset_z, t58, t61),
-                    self.offset_y * t88,
-                )
-                - T::fused(
-                    k(0.08),
-                    self.offset_x * self.offset_y,
-                    -T::fused(t24, t18, t30 * t20),
-                );
-            let t93 = T::fused(t13, t24, t17 * t30);
-            let t94 = T::fused(t17, t24, t19 * t30);
-            let t95 = T::fused(-t24, t67, t30 * t68);
-            let t96 = T::fused(-self.offset_y, t95, self.offset_x * t89)
-                - T::fused(self.offset_z, t76, self.offset_x * t64);
-            let t97 = t96 - T::fused(self.offset_z, t75, self.offset_x * t62)
-                - T::fused(
-                    k(0.08),
-                    self.offset_y * self.offset_z,
-                    T::fused(t38, t93, t39 * t94),
-                );
-            let t98 = T::fused(t97, t79, -t92);
-            let t99 = t82 * t82;
-            let t100 = k(2.0) * (k(0.5) - T::fused(t84, t84, t99));
-            let t101 = T::fused(-t87, t80, t100 * t98);
-            let t102 = T::fused(
-                k(2.0),
-                T::fused(self.offset_z, t95, self.offset_x * t90),
-                -T::fused(
-                    self.offset_z,
-                    T::fused(self.offset_z, t74, self.offset_x * t60),
-                    self.offset_x * t88,
-                ),
-            );
-            let t103 = t102
-                + T::fused(k(0.08), t22 + t73, T::fused(t24, t93, t30 * t94));
-            let t104 = T::fused(t97, t78 * t97, -(k(2e-6) + t103));
-            let t105 = T::fused(-t87, t98, t100 * t104);
-            let t106 = T::fused(
-                inner_ring_wz,
-                t51,
-                T::fused(-inner_ring_wx, t66, inner_ring_wy * t43),
-            );
-            let t107 = rotor_wx - t106;
-            let t108 = T::fused(
-                inner_ring_wz,
-                t39,
-                -T::fused(inner_ring_wx, t16, inner_ring_wy * t30),
-            );
-            let t109 = rotor_wz + t108;
-            let t110 = T::fused(
-                inner_ring_wz,
-                t38,
-                -T::fused(-inner_ring_wx, t8, inner_ring_wy * t24),
-            );
-            let t111 = rotor_wy - t110;
-            let t112 = k(0.5) / t65 * T::fused(t109, t109, t111 * t111);
-            let t113 = T::fused(rotor_wx, t108, rotor_wz * t106)
-                + T::fused(-t109, t107, t16 * t112);
-            let t114 = T::fused(-rotor_wy, t106, rotor_wx * t110)
-                - T::fused(-t111, t107, t8 * t112);
-            let t115 = T::fused(
-                -inner_ring_wx,
-                self.offset_z,
-                inner_ring_wz * self.offset_x,
-            );
-            let t116 = T::fused(
-                -inner_ring_wy,
-                self.offset_x,
-                inner_ring_wx * self.offset_y,
-            );
-            let t117 = T::fused(-inner_ring_wz, t115, inner_ring_wy * t116);
-            let t118 = T::fused(
-                -inner_ring_wz,
-                self.offset_y,
-                inner_ring_wy * self.offset_z,
-            );
-            let t119 = T::fused(-inner_ring_wx, t116, inner_ring_wz * t118);
-            let t120 = T::fused(-inner_ring_wy, t118, inner_ring_wx * t115);
-            let t121 = rotor_wx * self.imbalance_z;
-            let t122 = rotor_wx * self.imbalance_y;
-            let t123 = T::fused(rotor_wz, t121, rotor_wy * t122)
-                - T::fused(t120, t51, T::fused(-t117, t66, t119 * t43));
-            let t124 = T::fused(
-                -rotor_wz,
-                self.imbalance_y,
-                rotor_wy * self.imbalance_z,
-            );
-            let t125 = T::fused(-rotor_wx, t122, rotor_wz * t124)
-                - T::fused(t120, t38, -T::fused(-t117, t8, t119 * t24));
-            let t126 = T::fused(rotor_wy, t124, rotor_wx * t121)
-                - T::fused(t120, t39, -T::fused(t117, t16, t119 * t30));
-            let t127 = T::fused(t45, t126, T::fused(t25, t123, t44 * t125))
-                + T::fused(-t13, t113, t17 * t114);
-            let t128 = rotor_e0 * rotor_e3;
-            let t129 = rotor_e1 * rotor_e2;
-            let t130 = t129 + t128;
-            let t131 = k(1.6) * t130;
-            let t132 = rotor_wx * rotor_wx;
-            let t133 = rotor_wz * self.product_xy;
-            let t134 = T::fused(
-                rotor_wy,
-                t133,
-                T::fused(
-                    self.product_xz,
-                    T::fused(rotor_wz, rotor_wz, -t132),
-                    k(5e-6) * (rotor_wx * rotor_wz),
-                ),
-            );
-            let t135 = rotor_e0 * rotor_e0;
-            let t136 = k(0.5) - T::fused(rotor_e2, rotor_e2, t135);
-            let t137 = k(1.6) * t136;
-            let t138 = rotor_e0 * rotor_e1;
-            let t139 = rotor_e2 * rotor_e3;
-            let t140 = t139 - t138;
-            let t141 = k(1.6) * t140;
-            let t142 = rotor_wy * self.product_xz;
-            let t143 = T::fused(
-                rotor_wx,
-                t142 - t133,
-                -T::fused(self.imbalance_z, t137, self.imbalance_y * t141),
-            );
-            let t144 = t11 * t143;
-            let t145 = T::fused(
-                self.product_xy,
-                t144,
-                -T::fused(-self.imbalance_z, t131, t134),
-            ) - t127;
-            let t146 = T::fused(t48, t126, T::fused(-t31, t123, t47 * t125))
-                - T::fused(-t17, t113, t19 * t114);
-            let t147 = T::fused(
-                rotor_wz,
-                t142,
-                T::fused(
-                    self.product_xy,
-                    T::fused(rotor_wy, rotor_wy, -t132),
-                    k(5e-6) * (rotor_wx * rotor_wy),
-                ),
-            );
-            let t148 = T::fused(
-                self.product_xz,
-                t144,
-                T::fused(-self.imbalance_y, t131, t147),
-            ) - t146;
-            let t149 = t131 - T::fused(k(0.08), t123, T::fused(-t25, t113, t31 * t114));
-            let t150 = T::fused(t44, t113, t47 * t114)
-                + T::fused(-k(0.08), t125, T::fused(t27, t125, t32 * t126));
-            let t151 = T::fused(t25, t144, t137) - t150;
-            let t152 = T::fused(t45, t113, t48 * t114)
-                + T::fused(-k(0.08), t126, T::fused(t32, t125, t35 * t126));
-            let t153 = T::fused(t31, t144, t141) - t152;
-            let t154 = T::fused(t30, t153, T::fused(t43, t149, t24 * t151));
-            let t155 = T::fused(t39, t153, T::fused(-t51, t149, t38 * t151));
-            let t156 = T::fused(self.offset_z, t154, self.offset_y * t155)
-                + T::fused(t8, t145, t16 * t148);
-            let t157 = T::fused(t16, t153, -T::fused(t66, t149, t8 * t151));
-            let t158 = T::fused(-self.offset_y, t157, self.offset_x * t154)
-                + T::fused(-t38, t145, t39 * t148);
-            let t159 = T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, t158);
-            let t160 = t78 * t159;
-            let t161 = t82 * t84;
-            let t162 = t85 * t81;
-            let t163 = t82 * t85;
-            let t164 = t84 * t81;
-            let t165 = T::fused(
-                outer_ring_wx,
-                k(2.0) * (t162 - t161),
-                outer_ring_wy * (k(2.0) * (t164 + t163)),
-            );
-            let t166 = k(0.5) - T::fused(t81, t81, t99);
-            let t167 = T::fused(outer_ring_wz, k(2.0) * t166, -t165);
-            let t168 = inner_ring_wz + t167;
-            let t169 = k(2.0) * (t86 + t83);
-            let t170 = k(2.0) * (t164 - t163);
-            let t171 = T::fused(
-                outer_ring_wz,
-                t170,
-                -T::fused(-outer_ring_wx, t169, outer_ring_wy * t100),
-            );
-            let t172 = inner_ring_wy - t171;
-            let t173 = k(2.0) * (k(0.5) - T::fused(t85, t85, t99));
-            let t174 = k(2.0) * (t162 + t161);
-            let t175 = T::fused(
-                outer_ring_wz,
-                t174,
-                T::fused(-outer_ring_wx, t173, outer_ring_wy * t87),
-            );
-            let t176 = inner_ring_wx - t175;
-            let t177 = k(0.5) / t166 * T::fused(t172, t172, t176 * t176);
-            let t178 = T::fused(inner_ring_wz, t171, inner_ring_wy * t167)
-                - T::fused(-t172, t168, t170 * t177);
-            let t179 = T::fused(inner_ring_wx, t167, inner_ring_wz * t175)
-                - T::fused(-t176, t168, t174 * t177);
-            let t180 = T::fused(-t80, t178, t98 * t179)
-                - T::fused(
-                    t71,
-                    t160,
-                    T::fused(k(1e-6), inner_ring_wy * inner_ring_wz, t156),
-                );
-            let t181 = T::fused(self.offset_z, t157, self.offset_x * t155)
-                - T::fused(-t24, t145, t30 * t148);
-            let t182 = T::fused(
-                -t87,
-                t180,
-                t100 * (T::fused(-t98, t178, t104 * t179) - T::fused(t97, t160, -t181)),
-            );
-            let t183 = T::fused(
-                -t87,
-                T::fused(-t173, t80, t169 * t98),
-                t100 * T::fused(-t173, t98, t169 * t104),
-            );
-            let t184 = T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        outer_ring_e0,
-                        outer_ring_e3,
-                        outer_ring_e1 * outer_ring_e2,
-                    )),
-                t0,
-                outer_ring_wx * outer_ring_wy,
-            );
-            let t185 = T::fused(-t1, t183, t184 * T::fused(t174, t101, t170 * t105))
-                + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t182);
-            let t186 = t185 / (k(1e-6) - T::fused(-t87, t101, t100 * t105));
-            let t187 = t178 - T::fused(-t184, t174, T::fused(-t1, t173, t87 * t186));
-            let t188 = t179 - T::fused(t184, t170, T::fused(-t1, t169, t100 * t186));
-            let t189 = t78 * (t159 - T::fused(-t71, t187, t97 * t188));
-            let t190 = T::fused(-self.offset_z, t188, self.offset_y * t189);
-            let t191 = T::fused(self.offset_z, t187, self.offset_x * t189);
-            let t192 = T::fused(self.offset_y, t187, self.offset_x * t188);
-            let t193 = t113 + T::fused(t38, t189, -T::fused(t8, t187, t24 * t188));
-            let t194 = t114 - T::fused(t39, t189, -T::fused(-t16, t187, t30 * t188));
-            let t195 = T::fused(-self.imbalance_z, t193, self.imbalance_y * t194)
-                + (t123 - T::fused(t51, t192, -T::fused(t66, t190, t43 * t191)));
-            let t196 = t125 - T::fused(t38, t192, T::fused(t8, t190, t24 * t191));
-            let t197 = t126 - T::fused(t39, t192, T::fused(-t16, t190, t30 * t191));
-            let t198 = T::fused(self.product_xy, t193, self.product_xz * t194)
-                + T::fused(t25, t196, t31 * t197);
-            let t199 = t11 * (t143 - t198);
-            (
-                t1,
-                t128,
-                t129,
-                t130,
-                t135,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t61 = t60 * t60;
+        let t62 = k(2.0) * (k(0.5) - T::fused(t59, t59, t61));
+        let t63 = T::fused(-self.derived[16], t11, self.derived[17] * t14);
+        let t64 = T::fused(-self.derived[17], t11, self.derived[18] * t14);
+        let t65 = T::fused(t11, t15, t14 * t19);
+        let t66 = T::fused(t11, t25, t14 * t26);
+        let t67 = T::fused(
+            -self.parameters.offset_y,
+            t65,
+            self.parameters.offset_x * t66,
+        ) + T::fused(self.parameters.offset_z, t27, self.parameters.offset_y * t49);
+        let t68 = t67
+            + T::fused(self.parameters.offset_z, t36, self.parameters.offset_y * t45)
+            - (self.derived[25] + T::fused(t18, t63, t20 * t64));
+        let t69 = t68 * t39;
+        let t70 = T::fused(t11, t47, t14 * t48);
+        let t71 = T::fused(self.parameters.offset_z, t65, self.parameters.offset_x * t70)
+            - T::fused(self.parameters.offset_z, t51, self.parameters.offset_y * t54);
+        let t72 = t71
+            + T::fused(
+                self.parameters.offset_z,
+                T::fused(self.parameters.offset_z, t31, t44),
+                self.parameters.offset_y * t56,
+            ) - (self.derived[26] - T::fused(t23, t63, t24 * t64));
+        let t73 = T::fused(-t53, t69, t72);
+        let t74 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t75 = t60 * t74;
+        let t76 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t77 = t76 * t59;
+        let t78 = k(2.0) * (t77 - t75);
+        let t79 = T::fused(-t62, t58, t78 * t73);
+        let t80 = t60 * t76;
+        let t81 = t59 * t74;
+        let t82 = k(2.0) * (t81 - t80);
+        let t83 = self.derived[28] * t43;
+        let t84 = T::fused(self.derived[22], t35, t83)
+            + T::fused(self.derived[27], t55, t83)
+            + T::fused(t66, self.derived[21], t70 * self.derived[12]);
+        let t85 = T::fused(
+            -t68,
+            t69,
+            k(1e-6) + (self.derived[29] + T::fused(-t11, t63, t14 * t64) - t84),
+        );
+        let t86 = T::fused(-t62, t73, t78 * t85);
+        let t87 = t60 * t59;
+        let t88 = t76 * t74;
+        let t89 = k(2.0) * (t88 + t87);
+        let t90 = T::fused(
+            -(k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
+            t0,
+            outer_ring_wx * outer_ring_wy,
+        );
+        let t91 = k(2.0) * (t77 + t75);
+        let t92 = k(2.0) * (k(0.5) - T::fused(t76, t76, t61));
+        let t93 = T::fused(
+            -t62,
+            T::fused(-t91, t58, t92 * t73),
+            t78 * T::fused(-t91, t73, t92 * t85),
+        );
+        let t94 = T::fused(
+            outer_ring_wx,
+            k(2.0) * (t88 - t87),
+            outer_ring_wy * (k(2.0) * (t81 + t80)),
+        );
+        let t95 = k(0.5) - T::fused(t74, t74, t61);
+        let t96 = T::fused(outer_ring_wz, k(2.0) * t95, -t94);
+        let t97 = inner_ring_wz + t96;
+        let t98 = T::fused(
+            outer_ring_wz,
+            t89,
+            T::fused(-outer_ring_wx, t92, outer_ring_wy * t78),
+        );
+        let t99 = inner_ring_wx - t98;
+        let t100 = T::fused(
+            outer_ring_wz,
+            t82,
+            -T::fused(-outer_ring_wx, t91, outer_ring_wy * t62),
+        );
+        let t101 = inner_ring_wy - t100;
+        let t102 = k(0.5) / t95 * T::fused(t101, t101, t99 * t99);
+        let t103 = T::fused(inner_ring_wx, t96, inner_ring_wz * t98)
+            - T::fused(-t99, t97, t89 * t102);
+        let t104 = T::fused(inner_ring_wz, t100, inner_ring_wy * t96)
+            - T::fused(-t101, t97, t82 * t102);
+        let t105 = T::fused(
+            inner_ring_wz,
+            t46,
+            T::fused(-inner_ring_wx, t6, inner_ring_wy * t22),
+        );
+        let t106 = rotor_wx - t105;
+        let t107 = T::fused(
+            inner_ring_wz,
+            t20,
+            -T::fused(inner_ring_wx, t14, inner_ring_wy * t24),
+        );
+        let t108 = rotor_wz + t107;
+        let t109 = T::fused(
+            inner_ring_wz,
+            t18,
+            -T::fused(-inner_ring_wx, t11, inner_ring_wy * t23),
+        );
+        let t110 = rotor_wy - t109;
+        let t111 = k(0.5) / t5 * T::fused(t108, t108, t110 * t110);
+        let t112 = T::fused(rotor_wx, t107, rotor_wz * t105)
+            + T::fused(-t108, t106, t14 * t111);
+        let t113 = T::fused(-rotor_wy, t105, rotor_wx * t109)
+            - T::fused(-t110, t106, t11 * t111);
+        let t114 = T::fused(
+            -inner_ring_wx,
+            self.parameters.offset_z,
+            inner_ring_wz * self.parameters.offset_x,
+        );
+        let t115 = T::fused(
+            -inner_ring_wy,
+            self.parameters.offset_x,
+            inner_ring_wx * self.parameters.offset_y,
+        );
+        let t116 = T::fused(-inner_ring_wz, t114, inner_ring_wy * t115);
+        let t117 = T::fused(
+            -inner_ring_wz,
+            self.parameters.offset_y,
+            inner_ring_wy * self.parameters.offset_z,
+        );
+        let t118 = T::fused(-inner_ring_wx, t115, inner_ring_wz * t117);
+        let t119 = T::fused(-inner_ring_wy, t117, inner_ring_wx * t114);
+        let t120 = rotor_wx * self.parameters.imbalance_z;
+        let t121 = rotor_wx * self.parameters.imbalance_y;
+        let t122 = T::fused(rotor_wz, t120, rotor_wy * t121)
+            - T::fused(t119, t46, T::fused(-t116, t6, t118 * t22));
+        let t123 = T::fused(
+            -rotor_wz,
+            self.parameters.imbalance_y,
+            rotor_wy * self.parameters.imbalance_z,
+        );
+        let t124 = T::fused(-rotor_wx, t121, rotor_wz * t123)
+            - T::fused(t119, t18, -T::fused(-t116, t11, t118 * t23));
+        let t125 = T::fused(rotor_wy, t123, rotor_wx * t120)
+            - T::fused(t119, t20, -T::fused(t116, t14, t118 * t24));
+        let t126 = T::fused(
+            self.derived[8],
+            t125,
+            T::fused(self.derived[6], t122, self.derived[7] * t124),
+        ) + T::fused(-self.derived[16], t112, self.derived[17] * t113);
+        let t127 = rotor_e0 * rotor_e3;
+        let t128 = rotor_e1 * rotor_e2;
+        let t129 = t128 + t127;
+        let t130 = k(1.6) * t129;
+        let t131 = rotor_wx * rotor_wx;
+        let t132 = rotor_wz * self.parameters.product_xy;
+        let t133 = T::fused(
+            rotor_wy,
+            t132,
+            T::fused(
+                self.parameters.product_xz,
+                T::fused(rotor_wz, rotor_wz, -t131),
+                k(5e-6) * (rotor_wx * rotor_wz),
+            ),
+        );
+        let t134 = rotor_e0 * rotor_e0;
+        let t135 = k(0.5) - T::fused(rotor_e2, rotor_e2, t134);
+        let t136 = k(1.6) * t135;
+        let t137 = rotor_e0 * rotor_e1;
+        let t138 = rotor_e2 * rotor_e3;
+        let t139 = t138 - t137;
+        let t140 = k(1.6) * t139;
+        let t141 = rotor_wy * self.parameters.product_xz;
+        let t142 = T::fused(
+            rotor_wx,
+            t141 - t132,
+            -T::fused(
+                self.parameters.imbalance_z,
                 t136,
-                t138,
-                t139,
-                t140,
-                t184,
-                t186,
-                t187,
-                t188,
-                t189,
-                t193,
-                t194,
-                t195,
-                t196,
-                t197,
-                t199,
-            )
-        };
-        let (t201, t202, t203, t204, t205, t206) = {
-            let t200 = T::fused(self.imbalance_z, t199, t196);
-            let t201 = T::fused(
-                -(k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t135))),
-                t195,
-                k(2.0) * (t129 - t128) * t200,
+                self.parameters.imbalance_y * t140,
+            ),
+        );
+        let t143 = self.derived[30] * t142;
+        let t144 = T::fused(
+            self.parameters.product_xy,
+            t143,
+            -T::fused(-self.parameters.imbalance_z, t130, t133),
+        ) - t126;
+        let t145 = T::fused(
+            self.derived[11],
+            t125,
+            T::fused(-self.derived[9], t122, self.derived[10] * t124),
+        ) - T::fused(-self.derived[17], t112, self.derived[18] * t113);
+        let t146 = T::fused(
+            rotor_wz,
+            t141,
+            T::fused(
+                self.parameters.product_xy,
+                T::fused(rotor_wy, rotor_wy, -t131),
+                k(5e-6) * (rotor_wx * rotor_wy),
+            ),
+        );
+        let t147 = T::fused(
+            self.parameters.product_xz,
+            t143,
+            T::fused(-self.parameters.imbalance_y, t130, t146),
+        ) - t145;
+        let t148 = t130
+            - T::fused(
+                k(0.08),
+                t122,
+                T::fused(-self.derived[6], t112, self.derived[9] * t113),
             );
-            let t202 = T::fused(self.imbalance_y, t199, t197);
-            let t203 = rotor_e0 * rotor_e2;
-            let t204 = rotor_e1 * rotor_e3;
-            let t205 = T::fused(
-                k(2.0) * t140,
-                t202,
-                T::fused(-(k(2.0) * t130), t195, k(2.0) * t136 * t200),
+        let t149 = T::fused(self.derived[7], t112, self.derived[10] * t113)
+            + T::fused(
+                -k(0.08),
+                t124,
+                T::fused(self.derived[13], t124, self.derived[14] * t125),
             );
-            let t206 = T::fused(
-                k(2.0) * (t204 - t203),
-                t195,
-                k(2.0) * (t139 + t138) * t200,
+        let t150 = T::fused(self.derived[6], t143, t136) - t149;
+        let t151 = T::fused(self.derived[8], t112, self.derived[11] * t113)
+            + T::fused(
+                -k(0.08),
+                t125,
+                T::fused(self.derived[14], t124, self.derived[15] * t125),
             );
-            (t201, t202, t203, t204, t205, t206)
-        };
+        let t152 = T::fused(self.derived[9], t143, t140) - t151;
+        let t153 = T::fused(t14, t152, -T::fused(t6, t148, t11 * t150));
+        let t154 = T::fused(t24, t152, T::fused(t22, t148, t23 * t150));
+        let t155 = T::fused(
+            -self.parameters.offset_y,
+            t153,
+            self.parameters.offset_x * t154,
+        ) + T::fused(-t18, t144, t20 * t147);
+        let t156 = T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, t155);
+        let t157 = t156 * t39;
+        let t158 = T::fused(t20, t152, T::fused(-t46, t148, t18 * t150));
+        let t159 = T::fused(
+            self.parameters.offset_z,
+            t153,
+            self.parameters.offset_x * t158,
+        ) - T::fused(-t23, t144, t24 * t147);
+        let t160 = T::fused(
+            self.parameters.offset_z,
+            t154,
+            self.parameters.offset_y * t158,
+        ) + T::fused(t11, t144, t14 * t147);
+        let t161 = T::fused(
+            t68,
+            t157,
+            T::fused(k(1e-6), inner_ring_wy * inner_ring_wz, t160),
+        ) - T::fused(-t103, t73, t104 * t85);
+        let t162 = T::fused(
+            t62,
+            T::fused(-t53, t157, t159) + T::fused(-t103, t58, t104 * t73),
+            t78 * t161,
+        );
+        let t163 = T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t162)
+            + T::fused(t90, T::fused(t82, t79, t89 * t86), t1 * t93);
+        let t164 = t163 / (k(1e-6) + T::fused(-t62, t79, t78 * t86));
+        let t165 = t104 + T::fused(t90, t89, T::fused(-t78, t164, t1 * t92));
+        let t166 = t103 - T::fused(t90, t82, -T::fused(-t62, t164, t1 * t91));
+        let t167 = t39 * (t156 + T::fused(-t53, t166, t68 * t165));
+        let t168 = t113 - T::fused(t20, t167, T::fused(-t24, t166, t14 * t165));
+        let t169 = t112 - T::fused(-t18, t167, T::fused(t23, t166, t11 * t165));
+        let t170 = T::fused(
+            self.parameters.offset_x,
+            t166,
+            self.parameters.offset_y * t165,
+        );
+        let t171 = T::fused(
+            self.parameters.offset_x,
+            t167,
+            self.parameters.offset_z * t165,
+        );
+        let t172 = T::fused(
+            -self.parameters.offset_y,
+            t167,
+            self.parameters.offset_z * t166,
+        );
+        let t173 = t125 - T::fused(t20, t170, T::fused(t24, t171, t14 * t172));
+        let t174 = t124 + T::fused(-t18, t170, T::fused(-t23, t171, t11 * t172));
+        let t175 = T::fused(self.derived[9], t173, self.derived[6] * t174)
+            + T::fused(
+                self.parameters.product_xz,
+                t168,
+                self.parameters.product_xy * t169,
+            );
+        let t176 = self.derived[30] * (t142 - t175);
+        let t177 = T::fused(self.parameters.imbalance_y, t176, t173);
+        let t178 = rotor_e0 * rotor_e2;
+        let t179 = rotor_e1 * rotor_e3;
+        let t180 = T::fused(self.parameters.imbalance_z, t176, t174);
+        let t181 = t122 - T::fused(t46, t170, T::fused(-t22, t171, t6 * t172))
+            - T::fused(
+                -self.parameters.imbalance_y,
+                t168,
+                self.parameters.imbalance_z * t169,
+            );
+        let t182 = T::fused(
+            -(k(2.0) * (t128 - t127)),
+            t180,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t134)) * t181,
+        );
+        let t183 = T::fused(
+            -(k(2.0) * t139),
+            t177,
+            T::fused(-(k(2.0) * t135), t180, k(2.0) * t129 * t181),
+        );
+        let t184 = T::fused(k(2.0) * (t138 + t137), t180, k(2.0) * (t179 - t178) * t181);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t1,
-            -t186,
-            t184,
+            -t164,
+            t90,
             k(0.0),
             k(0.0),
             k(0.0),
-            t187,
-            -t188,
-            -t189,
-            T::fused(k(2.0) * (t204 + t203), t202, -t201),
-            t205,
+            t165,
+            -t166,
+            -t167,
+            T::fused(k(2.0) * (t179 + t178), t177, t182),
+            -t183,
             -T::fused(
-                k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t135)),
-                t202,
-                t206,
+                k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t134)),
+                t177,
+                t184,
             ),
-            -t199,
-            -t193,
-            -t194,
+            -t176,
+            -t169,
+            -t168,
         ];
     }
     /// Writes λ: 392 operations (150 ±, 239 ×, 3 ÷).
@@ -3084,26 +3207,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t16 = k(2.0) * (t15 - t14);
         let t17 = T::fused(
             t0,
-            T::fused(-t8, self.imbalance_z, t11 * self.imbalance_y),
-            t2 * T::fused(t13, self.imbalance_z, t16 * self.imbalance_y),
+            T::fused(
+                -t8,
+                self.parameters.imbalance_z,
+                t11 * self.parameters.imbalance_y,
+            ),
+            t2
+                * T::fused(
+                    t13,
+                    self.parameters.imbalance_z,
+                    t16 * self.parameters.imbalance_y,
+                ),
         );
         let t18 = k(2.0) * (t15 + t14);
         let t19 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t12));
-        let t20 = rotor_wz * self.product_xy;
-        let t21 = rotor_wy * self.product_xz;
+        let t20 = rotor_wz * self.parameters.product_xy;
+        let t21 = rotor_wy * self.parameters.product_xz;
         let t22 = T::fused(
             rotor_wx,
             t21 - t20,
             T::fused(
-                self.product_xz,
+                self.parameters.product_xz,
                 rotor_dwz,
-                T::fused(self.product_xy, rotor_dwy, k(1e-5) * rotor_dwx),
+                T::fused(self.parameters.product_xy, rotor_dwy, k(1e-5) * rotor_dwx),
             ),
         );
         let t23 = t22
             + T::fused(
                 t4,
-                T::fused(t18, self.imbalance_z, t19 * self.imbalance_y),
+                T::fused(
+                    t18,
+                    self.parameters.imbalance_z,
+                    t19 * self.parameters.imbalance_y,
+                ),
                 -t17,
             );
         let t24 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t12));
@@ -3119,20 +3255,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t34 = k(2.0) * (t33 - t32);
         let t35 = T::fused(
             t4,
-            t31 * self.imbalance_z,
-            T::fused(-t0, t24 * self.imbalance_z, t2 * (t27 * self.imbalance_z)),
+            t31 * self.parameters.imbalance_z,
+            T::fused(
+                -t0,
+                t24 * self.parameters.imbalance_z,
+                t2 * (t27 * self.parameters.imbalance_z),
+            ),
         );
         let t36 = rotor_wx * rotor_wx;
         let t37 = T::fused(
             rotor_wy,
             t20,
             T::fused(
-                self.product_xz,
+                self.parameters.product_xz,
                 T::fused(rotor_wz, rotor_wz, -t36),
                 k(5e-6) * (rotor_wx * rotor_wz),
             ),
         );
-        let t38 = t37 + T::fused(k(5e-6), rotor_dwy, self.product_xy * rotor_dwx) - t35;
+        let t38 = t37
+            + T::fused(k(5e-6), rotor_dwy, self.parameters.product_xy * rotor_dwx) - t35;
         let t39 = T::fused(
             T::fused(t34, t31, T::fused(t26, t24, t30 * t27)),
             t23,
@@ -3140,19 +3281,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         );
         let t40 = T::fused(
             t4,
-            t31 * self.imbalance_y,
-            T::fused(-t0, t24 * self.imbalance_y, t2 * (t27 * self.imbalance_y)),
+            t31 * self.parameters.imbalance_y,
+            T::fused(
+                -t0,
+                t24 * self.parameters.imbalance_y,
+                t2 * (t27 * self.parameters.imbalance_y),
+            ),
         );
         let t41 = T::fused(
             rotor_wz,
             t21,
             T::fused(
-                self.product_xy,
+                self.parameters.product_xy,
                 T::fused(rotor_wy, rotor_wy, -t36),
                 k(5e-6) * (rotor_wx * rotor_wy),
             ),
         );
-        let t42 = t41 - T::fused(k(5e-6), rotor_dwz, self.product_xz * rotor_dwx) - t40;
+        let t42 = t41
+            - T::fused(k(5e-6), rotor_dwz, self.parameters.product_xz * rotor_dwx) - t40;
         let t43 = T::fused(
             T::fused(t34, t19, -T::fused(-t26, t11, t30 * t16)),
             t42,
@@ -3166,15 +3312,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t49 = k(2.0) * (t48 - t47);
         let t50 = T::fused(
             t0,
-            T::fused(-t44, self.offset_z, t45 * self.offset_y),
-            t2 * T::fused(t46, self.offset_z, t49 * self.offset_y),
+            T::fused(-t44, self.parameters.offset_z, t45 * self.parameters.offset_y),
+            t2 * T::fused(t46, self.parameters.offset_z, t49 * self.parameters.offset_y),
         );
         let t51 = k(2.0) * (t48 + t47);
         let t52 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t25));
         let t53 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            T::fused(t4, T::fused(t51, self.offset_z, t52 * self.offset_y), -t50) - t43,
+            T::fused(
+                t4,
+                T::fused(t51, self.parameters.offset_z, t52 * self.parameters.offset_y),
+                -t50,
+            ) - t43,
         );
         let t54 = outer_ring_e0 * outer_ring_e0;
         let t55 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t54));
@@ -3194,11 +3344,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t65 = T::fused(t51, t19, -T::fused(-t46, t16, t44 * t11));
         let t66 = T::fused(
             t0,
-            T::fused(t26, self.offset_z, t45 * self.offset_x),
-            t2 * T::fused(-t30, self.offset_z, t49 * self.offset_x),
+            T::fused(t26, self.parameters.offset_z, t45 * self.parameters.offset_x),
+            t2 * T::fused(-t30, self.parameters.offset_z, t49 * self.parameters.offset_x),
         );
-        let t67 = T::fused(t4, T::fused(t34, self.offset_z, t52 * self.offset_x), -t66)
-            + T::fused(t65, t42, t64);
+        let t67 = T::fused(
+            t4,
+            T::fused(t34, self.parameters.offset_z, t52 * self.parameters.offset_x),
+            -t66,
+        ) + T::fused(t65, t42, t64);
         let t68 = T::fused(k(2e-6), inner_ring_dwy, t67);
         let t69 = T::fused(t61, t51, -T::fused(t55, t44, t58 * t46));
         let t70 = T::fused(t52, t18, -T::fused(-t49, t13, t45 * t8));
@@ -3210,11 +3363,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t72 = T::fused(t52, t19, T::fused(t49, t16, t45 * t11));
         let t73 = T::fused(
             -t0,
-            T::fused(t26, self.offset_y, t44 * self.offset_x),
-            t2 * T::fused(t30, self.offset_y, t46 * self.offset_x),
+            T::fused(t26, self.parameters.offset_y, t44 * self.parameters.offset_x),
+            t2 * T::fused(t30, self.parameters.offset_y, t46 * self.parameters.offset_x),
         );
-        let t74 = T::fused(t4, T::fused(-t34, self.offset_y, t51 * self.offset_x), -t73)
-            - T::fused(t72, t42, t71);
+        let t74 = T::fused(
+            t4,
+            T::fused(-t34, self.parameters.offset_y, t51 * self.parameters.offset_x),
+            -t73,
+        ) - T::fused(t72, t42, t71);
         let t75 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
@@ -3270,7 +3426,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 740 operations (302 ±, 432 ×, 6 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 763 operations (316 ±, 442 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -3306,335 +3462,332 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e3;
-        let t1 = outer_ring_e1 * outer_ring_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = outer_ring_e0 * outer_ring_e1;
-        let t8 = outer_ring_e2 * outer_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = outer_ring_e0 * outer_ring_e2;
-        let t11 = outer_ring_e1 * outer_ring_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = T::fused(t12, t9, -T::fused(t4, t2, t6 * t5));
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t14));
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = inner_ring_e0 * inner_ring_e1;
-        let t20 = inner_ring_e2 * inner_ring_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = T::fused(t9, t21, T::fused(t5, t15, t2 * t18));
-        let t23 = rotor_e0 * rotor_e3;
-        let t24 = rotor_e1 * rotor_e2;
-        let t25 = k(2.0) * (t24 - t23);
+        let t0 = outer_ring_e0 * outer_ring_e0;
+        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
+        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
+        let t3 = outer_ring_e0 * outer_ring_e2;
+        let t4 = outer_ring_e1 * outer_ring_e3;
+        let t5 = k(2.0) * (t4 - t3);
+        let t6 = k(2.0) * (t4 + t3);
+        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
+        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
+        let t9 = rotor_e0 * rotor_e3;
+        let t10 = rotor_e1 * rotor_e2;
+        let t11 = k(2.0) * (t10 - t9);
+        let t12 = rotor_e0 * rotor_e2;
+        let t13 = rotor_e1 * rotor_e3;
+        let t14 = k(2.0) * (t13 + t12);
+        let t15 = T::fused(
+            -t11,
+            self.parameters.imbalance_z,
+            t14 * self.parameters.imbalance_y,
+        );
+        let t16 = k(0.08) * t15;
+        let t17 = self.derived[30] * t16;
+        let t18 = t16 * t17;
+        let t19 = inner_ring_e0 * inner_ring_e3;
+        let t20 = inner_ring_e1 * inner_ring_e2;
+        let t21 = k(2.0) * (t20 - t19);
+        let t22 = inner_ring_e0 * inner_ring_e2;
+        let t23 = inner_ring_e1 * inner_ring_e3;
+        let t24 = k(2.0) * (t23 + t22);
+        let t25 = T::fused(
+            -t21,
+            self.parameters.offset_z,
+            t24 * self.parameters.offset_y,
+        );
         let t26 = rotor_e0 * rotor_e0;
         let t27 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t26));
         let t28 = rotor_e0 * rotor_e1;
         let t29 = rotor_e2 * rotor_e3;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = T::fused(t9, t30, T::fused(t2, t25, t5 * t27));
-        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t26));
-        let t33 = k(2.0) * (t24 + t23);
-        let t34 = rotor_e0 * rotor_e2;
-        let t35 = rotor_e1 * rotor_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = T::fused(t9, t36, -T::fused(t2, t32, t5 * t33));
-        let t38 = k(5e-6) * t37;
-        let t39 = k(2.0) * (t35 + t34);
-        let t40 = k(2.0) * (t29 - t28);
+        let t30 = k(2.0) * (t29 - t28);
+        let t31 = T::fused(
+            t27,
+            self.parameters.imbalance_z,
+            t30 * self.parameters.imbalance_y,
+        );
+        let t32 = k(0.08) * t31;
+        let t33 = t32 * t17;
+        let t34 = inner_ring_e0 * inner_ring_e0;
+        let t35 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t34));
+        let t36 = inner_ring_e0 * inner_ring_e1;
+        let t37 = inner_ring_e2 * inner_ring_e3;
+        let t38 = k(2.0) * (t37 - t36);
+        let t39 = T::fused(
+            t35,
+            self.parameters.offset_z,
+            t38 * self.parameters.offset_y,
+        );
+        let t40 = k(2.0) * (t29 + t28);
         let t41 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t26));
-        let t42 = T::fused(t9, t41, T::fused(-t2, t39, t5 * t40));
-        let t43 = T::fused(
-            -t37,
-            T::fused(self.product_xz, t42, -T::fused(self.product_xy, t31, t38)),
-            t31 * (self.product_xy * t37),
+        let t42 = T::fused(
+            t40,
+            self.parameters.imbalance_z,
+            t41 * self.parameters.imbalance_y,
         );
-        let t44 = inner_ring_e0 * inner_ring_e2;
-        let t45 = inner_ring_e1 * inner_ring_e3;
-        let t46 = k(2.0) * (t45 - t44);
-        let t47 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t14));
-        let t48 = T::fused(-t30, self.imbalance_y, t41 * self.imbalance_z);
-        let t49 = t48
-            - T::fused(
-                t47,
-                self.offset_z,
-                -T::fused(t46, self.offset_x, t21 * self.offset_y),
-            );
-        let t50 = k(2.0) * (t17 + t16);
-        let t51 = k(2.0) * (t20 - t19);
-        let t52 = T::fused(-t27, self.imbalance_y, t40 * self.imbalance_z);
-        let t53 = t52
-            - T::fused(
-                t51,
-                self.offset_z,
-                -T::fused(-t50, self.offset_x, t15 * self.offset_y),
-            );
-        let t54 = T::fused(-t5, t49, t9 * t53);
-        let t55 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t14));
-        let t56 = k(2.0) * (t45 + t44);
-        let t57 = T::fused(t25, self.imbalance_y, t39 * self.imbalance_z);
-        let t58 = t57
-            - T::fused(
-                t56,
-                self.offset_z,
-                T::fused(-t55, self.offset_x, t18 * self.offset_y),
-            );
-        let t59 = T::fused(t2, t49, t9 * t58);
-        let t60 = T::fused(t2, t53, t5 * t58);
-        let t61 = T::fused(
-            k(0.08),
-            T::fused(t60, t60, T::fused(t54, t54, t59 * t59)),
-            -T::fused(t42, self.product_xz * t37, -t43),
+        let t43 = k(0.08) * t42;
+        let t44 = t43 * t17;
+        let t45 = k(2.0) * (t37 + t36);
+        let t46 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t34));
+        let t47 = T::fused(
+            t45,
+            self.parameters.offset_z,
+            t46 * self.parameters.offset_y,
         );
-        let t62 = k(7e-6) + (t61 + T::fused(t13, k(1e-6) * t13, t22 * (k(1e-6) * t22)));
-        let t63 = T::fused(t36, t36, T::fused(t32, t32, t33 * t33));
-        let t64 = T::fused(t36, t30, -T::fused(t32, t25, t33 * t27));
-        let t65 = T::fused(t36, t41, -T::fused(-t32, t39, t33 * t40));
-        let t66 = T::fused(
-            self.product_xz,
-            t65,
-            -T::fused(k(5e-6), t63, self.product_xy * t64),
+        let t48 = T::fused(t47, t44, T::fused(t25, t18, t39 * t33));
+        let t49 = self.derived[30] * t32;
+        let t50 = t32 * t49;
+        let t51 = t43 * t49;
+        let t52 = T::fused(t47, t51, T::fused(t25, t33, t39 * t50));
+        let t53 = self.derived[30] * t43;
+        let t54 = t43 * t53;
+        let t55 = T::fused(t47, t54, T::fused(t25, t44, t39 * t51));
+        let t56 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t26));
+        let t57 = t56 * self.parameters.imbalance_z;
+        let t58 = T::fused(k(0.08), t57, self.parameters.product_xy * t17);
+        let t59 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t34));
+        let t60 = k(2.0) * (t20 + t19);
+        let t61 = k(2.0) * (t23 - t22);
+        let t62 = T::fused(t61, t40, -T::fused(t59, t11, t60 * t27));
+        let t63 = t56 * self.parameters.imbalance_y;
+        let t64 = T::fused(-k(0.08), t63, self.parameters.product_xz * t17);
+        let t65 = T::fused(t61, t41, -T::fused(-t59, t14, t60 * t30));
+        let t66 = T::fused(-t62, t58, t65 * t64);
+        let t67 = k(2.0) * (t10 + t9);
+        let t68 = t67 * self.parameters.imbalance_z;
+        let t69 = T::fused(-k(0.08), t68, self.parameters.product_xy * t49);
+        let t70 = t67 * self.parameters.imbalance_y;
+        let t71 = T::fused(k(0.08), t70, self.parameters.product_xz * t49);
+        let t72 = T::fused(-t62, t69, t65 * t71);
+        let t73 = k(2.0) * (t13 - t12);
+        let t74 = t73 * self.parameters.imbalance_z;
+        let t75 = T::fused(k(0.08), t74, self.parameters.product_xy * t53);
+        let t76 = t73 * self.parameters.imbalance_y;
+        let t77 = T::fused(-k(0.08), t76, self.parameters.product_xz * t53);
+        let t78 = T::fused(-t62, t75, t65 * t77);
+        let t79 = T::fused(
+            k(2.0),
+            T::fused(t47, t78, T::fused(t25, t66, t39 * t72)),
+            T::fused(t47, t55, T::fused(t25, t48, t39 * t52)),
         );
-        let t67 = self.product_xy * t63;
-        let t68 = self.product_xz * t63;
-        let t69 = T::fused(t36, t52, t33 * t48);
-        let t70 = T::fused(-t32, t48, t36 * t57);
-        let t71 = T::fused(t33, t57, t32 * t52);
-        let t72 = T::fused(
-            k(0.08),
-            T::fused(t71, t60, -T::fused(t69, t54, t70 * t59)),
-            T::fused(t68, t42, -T::fused(-t66, t37, t67 * t31)),
+        let t80 = T::fused(self.derived[16], t62, self.derived[17] * t65);
+        let t81 = T::fused(self.derived[17], t62, self.derived[18] * t65);
+        let t82 = T::fused(
+            t59,
+            self.parameters.offset_y,
+            t21 * self.parameters.offset_x,
         );
-        let t73 = t72 - t38;
-        let t74 = T::fused(
-            k(0.08),
-            T::fused(t71, t71, T::fused(t69, t69, t70 * t70)),
-            -T::fused(t68, t65, -T::fused(-t63, t66, t67 * t64)),
+        let t83 = T::fused(
+            t60,
+            self.parameters.offset_y,
+            t35 * self.parameters.offset_x,
         );
-        let t75 = k(1.0) / (k(5e-6) + t74);
-        let t76 = t75 * t73;
-        let t77 = T::fused(t21, t47, T::fused(-t18, t56, t15 * t51));
-        let t78 = k(1e-6) * t77;
-        let t79 = T::fused(t47, t30, -T::fused(-t51, t27, t56 * t25));
-        let t80 = T::fused(t47, t36, -T::fused(-t56, t32, t51 * t33));
-        let t81 = k(5e-6) * t80;
-        let t82 = T::fused(t47, t41, T::fused(t51, t40, t56 * t39));
-        let t83 = T::fused(self.product_xz, t82, -T::fused(self.product_xy, t79, t81));
-        let t84 = self.product_xy * t80;
-        let t85 = self.product_xz * t80;
-        let t86 = T::fused(-t51, t49, t47 * t53);
-        let t87 = T::fused(-t56, t49, t47 * t58);
-        let t88 = T::fused(-t56, t53, t51 * t58);
-        let t89 = T::fused(
-            k(0.08),
-            T::fused(t88, t60, T::fused(t86, t54, t87 * t59)),
-            -T::fused(t85, t42, -T::fused(-t83, t37, t84 * t31)),
+        let t84 = T::fused(
+            -t61,
+            self.parameters.offset_y,
+            t45 * self.parameters.offset_x,
         );
-        let t90 = T::fused(
-            k(6e-6),
-            T::fused(t9, t47, -T::fused(-t5, t51, t2 * t56)),
-            T::fused(t22, t78, t89),
-        );
-        let t91 = T::fused(
-            k(0.08),
-            T::fused(t71, t88, -T::fused(t69, t86, t70 * t87)),
-            T::fused(t82, t68, -T::fused(-t80, t66, t79 * t67)),
-        );
-        let t92 = t91 - t81;
-        let t93 = t75 * t92;
-        let t94 = T::fused(t93, t73, -t90);
+        let t85 = T::fused(t84, t44, T::fused(-t82, t18, t83 * t33));
+        let t86 = T::fused(t84, t51, T::fused(-t82, t33, t83 * t50));
+        let t87 = T::fused(t84, t54, T::fused(-t82, t44, t83 * t51));
+        let t88 = T::fused(t46, t40, -T::fused(-t38, t27, t24 * t11));
+        let t89 = T::fused(t46, t41, T::fused(t38, t30, t24 * t14));
+        let t90 = T::fused(-t88, t58, t89 * t64);
+        let t91 = T::fused(-t88, t69, t89 * t71);
+        let t92 = T::fused(-t88, t75, t89 * t77);
+        let t93 = T::fused(t84, t78, T::fused(-t82, t66, t83 * t72))
+            + T::fused(t47, t92, T::fused(t25, t90, t39 * t91));
+        let t94 = self.derived[25] + T::fused(t88, t80, t89 * t81)
+            - (t93 + T::fused(t47, t87, T::fused(t25, t85, t39 * t86)));
         let t95 = T::fused(
-            k(0.08),
-            T::fused(t88, t88, T::fused(t86, t86, t87 * t87)),
-            -T::fused(t82, t85, -T::fused(-t80, t83, t79 * t84)),
+            k(2.0),
+            T::fused(t84, t92, T::fused(-t82, t90, t83 * t91)),
+            T::fused(t84, t87, T::fused(-t82, t85, t83 * t86)),
         );
-        let t96 = k(1.0) / T::fused(t92, t93, -(k(6e-6) + T::fused(t77, t78, t95)));
-        let t97 = t96 * t94;
-        let t98 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
-        let t99 = k(2.0) * (t11 + t10);
-        let t100 = k(1.0) / T::fused(-t4, t98, t99 * t12);
-        let t101 = t4 * t100;
-        let t102 = t99 * t100;
-        let t103 = t12 * t100;
-        let t104 = t98 * t100;
-        let t105 = T::fused(
-            row3,
-            T::fused(t4, t101, t99 * t102),
-            row4 * T::fused(t4, t103, t99 * t104),
+        let t96 = T::fused(
+            t88,
+            T::fused(self.derived[16], t88, self.derived[17] * t89),
+            t89 * T::fused(self.derived[17], t88, self.derived[18] * t89),
         );
-        let t106 = k(2.0) * (t8 - t7);
-        let t107 = T::fused(
-            row3,
-            T::fused(-t6, t101, t106 * t102),
-            row4 * T::fused(-t6, t103, t106 * t104),
+        let t97 = k(1.0) / (k(1e-6) + (self.derived[19] + t96 - t95));
+        let t98 = t97 * t94;
+        let t99 = T::fused(
+            t94,
+            t98,
+            -(k(1e-6) + (self.derived[29] + T::fused(t62, t80, t65 * t81) - t79)),
         );
+        let t100 = outer_ring_e0 * outer_ring_e3;
+        let t101 = outer_ring_e1 * outer_ring_e2;
+        let t102 = k(2.0) * (t101 - t100);
+        let t103 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
+        let t104 = outer_ring_e0 * outer_ring_e1;
+        let t105 = outer_ring_e2 * outer_ring_e3;
+        let t106 = k(2.0) * (t105 + t104);
+        let t107 = T::fused(t106, t61, -T::fused(t102, t59, t103 * t60));
         let t108 = T::fused(
-            row3,
-            T::fused(t12, t101, t98 * t102),
-            row4 * T::fused(t12, t103, t98 * t104),
+            t59,
+            self.parameters.offset_z,
+            t24 * self.parameters.offset_x,
         );
-        let t109 = k(1e-6) * T::fused(t12, t108, -T::fused(-t4, t105, t6 * t107));
-        let t110 = T::fused(t9, t46, -T::fused(t2, t55, t5 * t50));
-        let t111 = T::fused(t12, t21, -T::fused(t4, t18, t6 * t15));
-        let t112 = T::fused(t12, t46, T::fused(t4, t55, t6 * t50));
-        let t113 = k(1.0) / T::fused(-t111, t110, t112 * t22);
-        let t114 = t110 * t113;
-        let t115 = t22 * t113;
-        let t116 = t112 * t113;
-        let t117 = t111 * t113;
-        let t118 = T::fused(
-            -row8,
-            T::fused(-t55, t114, t18 * t115),
-            row9 * T::fused(-t55, t116, t18 * t117),
+        let t109 = T::fused(
+            -t60,
+            self.parameters.offset_z,
+            t38 * self.parameters.offset_x,
         );
-        let t119 = t118 + t105;
-        let t120 = T::fused(
-            -row8,
-            T::fused(-t50, t114, t15 * t115),
-            row9 * T::fused(-t50, t116, t15 * t117),
+        let t110 = T::fused(
+            t61,
+            self.parameters.offset_z,
+            t46 * self.parameters.offset_x,
         );
-        let t121 = t120 - t107;
-        let t122 = T::fused(
-            -row8,
-            T::fused(t46, t114, t21 * t115),
-            row9 * T::fused(t46, t116, t21 * t117),
+        let t111 = T::fused(t110, t44, T::fused(t108, t18, t109 * t33));
+        let t112 = T::fused(t110, t51, T::fused(t108, t33, t109 * t50));
+        let t113 = T::fused(t110, t54, T::fused(t108, t44, t109 * t51));
+        let t114 = T::fused(t45, t40, T::fused(t35, t27, t21 * t11));
+        let t115 = T::fused(t45, t41, -T::fused(-t35, t30, t21 * t14));
+        let t116 = T::fused(-t114, t58, t115 * t64);
+        let t117 = T::fused(-t114, t69, t115 * t71);
+        let t118 = T::fused(-t114, t75, t115 * t77);
+        let t119 = T::fused(t110, t78, T::fused(t108, t66, t109 * t72))
+            - T::fused(t47, t118, T::fused(t25, t116, t39 * t117));
+        let t120 = self.derived[26] - T::fused(t114, t80, t115 * t81)
+            - (t119 + T::fused(t47, t113, T::fused(t25, t111, t39 * t112)));
+        let t121 = T::fused(t84, t118, T::fused(-t82, t116, t83 * t117))
+            - T::fused(t110, t92, T::fused(t108, t90, t109 * t91));
+        let t122 = T::fused(self.derived[16], t114, self.derived[17] * t115);
+        let t123 = T::fused(self.derived[17], t114, self.derived[18] * t115);
+        let t124 = self.derived[20] + T::fused(t88, t122, t89 * t123)
+            - (t121 - T::fused(t110, t87, T::fused(t108, t85, t109 * t86)));
+        let t125 = T::fused(t124, t98, t120);
+        let t126 = T::fused(t106, t45, T::fused(t103, t35, t102 * t21));
+        let t127 = T::fused(t107, t99, t126 * t125);
+        let t128 = T::fused(
+            k(2.0),
+            T::fused(t110, t118, T::fused(t108, t116, t109 * t117)),
+            -T::fused(t110, t113, T::fused(t108, t111, t109 * t112)),
         );
-        let t123 = t122 - t108;
-        let t124 = k(1e-6) * T::fused(t21, t123, T::fused(t18, t119, t15 * t121));
-        let t125 = T::fused(t21, t41, -T::fused(-t15, t40, t18 * t39));
-        let t126 = T::fused(t21, t30, T::fused(t15, t27, t18 * t25));
-        let t127 = k(1.0) / T::fused(-t125, t79, t126 * t82);
-        let t128 = t126 * t127;
-        let t129 = t125 * t127;
-        let t130 = T::fused(-t25, t128, t39 * t129);
-        let t131 = T::fused(t30, t128, t41 * t129);
-        let t132 = t79 * t127;
-        let t133 = t82 * t127;
-        let t134 = T::fused(-t25, t132, t39 * t133);
-        let t135 = T::fused(t30, t132, t41 * t133);
+        let t129 = T::fused(
+            t124,
+            t97 * t124,
+            -(k(2e-6) + (self.derived[24] + T::fused(t114, t122, t115 * t123) + t128)),
+        );
+        let t130 = T::fused(t107, t125, t126 * t129);
+        let t131 = k(1.0) / T::fused(-t115, t88, t114 * t89);
+        let t132 = T::fused(t88 * t131, row13, t114 * t131 * row14);
+        let t133 = T::fused(t89 * t131, row13, t115 * t131 * row14);
+        let t134 = T::fused(self.derived[16], t132, self.derived[17] * t133)
+            + T::fused(row12, t75, -T::fused(row10, t58, row11 * t69));
+        let t135 = T::fused(self.derived[17], t132, self.derived[18] * t133)
+            - T::fused(row12, t77, -T::fused(row10, t64, row11 * t71));
         let t136 = T::fused(
-            row14,
-            T::fused(-t130, t48, t131 * t57),
-            T::fused(row13, T::fused(-t134, t48, t135 * t57), row11),
+            k(0.08),
+            row10,
+            T::fused(row12, t44, -T::fused(row10, t18, row11 * t33)),
         );
-        let t137 = row1 + row6;
-        let t138 = t137 + T::fused(t119, t49, t123 * t58) + t136;
-        let t139 = k(0.08) * t138;
-        let t140 = T::fused(t27, t128, t40 * t129);
-        let t141 = T::fused(t27, t132, t40 * t133);
-        let t142 = T::fused(
-            -row14,
-            T::fused(-t140, t57, t130 * t52),
-            T::fused(-row13, T::fused(-t141, t57, t134 * t52), row12),
+        let t137 = T::fused(-t58, t132, t64 * t133) + t136;
+        let t138 = T::fused(
+            k(0.08),
+            row11,
+            T::fused(row12, t51, -T::fused(row10, t33, row11 * t50)),
         );
-        let t143 = row2 + row7;
-        let t144 = t143 + T::fused(t119, t53, t121 * t58) + t142;
-        let t145 = k(0.08) * t144;
-        let t146 = t119 - T::fused(row13, t134, row14 * t130);
-        let t147 = t121 + T::fused(row13, t141, row14 * t140);
-        let t148 = t123 + T::fused(row13, t135, row14 * t131);
-        let t149 = T::fused(t36, t148, -T::fused(t32, t146, t33 * t147));
-        let t150 = T::fused(
-            k(5e-6),
-            t149,
-            self.product_xy * T::fused(t30, t148, T::fused(t25, t146, t27 * t147)),
+        let t139 = T::fused(-t69, t132, t71 * t133) + t138;
+        let t140 = T::fused(
+            k(0.08),
+            row12,
+            -T::fused(row12, t54, -T::fused(row10, t44, row11 * t51)),
         );
-        let t151 = T::fused(
-            self.product_xz,
-            T::fused(t41, t148, T::fused(-t39, t146, t40 * t147)),
-            -t150,
-        );
-        let t152 = self.product_xy * t149;
-        let t153 = self.product_xz * t149;
-        let t154 = T::fused(
-            k(5e-6),
-            t146,
-            T::fused(t39, t153, T::fused(t32, t151, t25 * t152)),
-        );
-        let t155 = t154 + T::fused(t49, t139, t53 * t145)
-            + T::fused(t18, t124, k(1e-6) * t119);
-        let t156 = T::fused(
-            row14,
-            T::fused(-t131, t52, t140 * t48),
-            T::fused(row13, T::fused(-t135, t52, t141 * t48), row10),
-        );
-        let t157 = row0 + row5;
-        let t158 = t157 - T::fused(-t121, t49, t123 * t53) + t156;
-        let t159 = k(0.08) * t158;
-        let t160 = T::fused(
-            k(5e-6),
-            t147,
-            -T::fused(t40, t153, -T::fused(t33, t151, t27 * t152)),
-        );
-        let t161 = t160 + T::fused(t49, t159, t58 * t145)
-            + T::fused(t15, t124, k(1e-6) * t121);
-        let t162 = T::fused(
-            t2,
-            t155 + T::fused(t4, t109, k(1e-6) * t105),
-            t5 * (t161 - T::fused(-t6, t109, k(1e-6) * t107)),
-        );
-        let t163 = T::fused(
-            k(5e-6),
-            t148,
-            -T::fused(t41, t153, -T::fused(-t36, t151, t30 * t152)),
-        );
-        let t164 = t163 + T::fused(-t53, t159, t58 * t139)
-            + T::fused(t21, t124, k(1e-6) * t123);
-        let t165 = T::fused(t36, t163, -T::fused(t32, t154, t33 * t160))
-            - T::fused(t145, t71, -T::fused(-t159, t69, t139 * t70));
+        let t141 = T::fused(-t75, t132, t77 * t133) - t140;
+        let t142 = T::fused(t47, t141, T::fused(t25, t137, t39 * t139))
+            - T::fused(t62, t134, t65 * t135);
+        let t143 = T::fused(t84, t141, T::fused(-t82, t137, t83 * t139))
+            - T::fused(t88, t134, t89 * t135);
+        let t144 = t97 * t143;
+        let t145 = t90 + T::fused(k(0.08), t82, t85);
+        let t146 = t97 * t145;
+        let t147 = T::fused(t94, t146, -(t66 + T::fused(-k(0.08), t25, t48)));
+        let t148 = t91 + T::fused(-k(0.08), t83, t86);
+        let t149 = t97 * t148;
+        let t150 = T::fused(t94, t149, -(t72 + T::fused(-k(0.08), t39, t52)));
+        let t151 = t92 + T::fused(-k(0.08), t84, t87);
+        let t152 = t97 * t151;
+        let t153 = T::fused(t94, t152, -(t78 + T::fused(-k(0.08), t47, t55)));
+        let t154 = k(2.0) * (t101 + t100);
+        let t155 = T::fused(t5, t45, -T::fused(t2, t21, t154 * t35));
+        let t156 = T::fused(t5, t61, T::fused(t2, t59, t154 * t60));
+        let t157 = k(1.0) / T::fused(-t155, t107, t156 * t126);
+        let t158 = T::fused(-(t107 * t157), row8, t156 * t157 * row9);
+        let t159 = T::fused(-(t126 * t157), row8, t155 * t157 * row9);
+        let t160 = T::fused(t99, t158, t125 * t159)
+            - T::fused(row7, t153, -T::fused(row5, t147, row6 * t150));
+        let t161 = T::fused(t110, t141, T::fused(t108, t137, t109 * t139))
+            + T::fused(t114, t134, t115 * t135);
+        let t162 = T::fused(t124, t146, -(t116 - T::fused(-k(0.08), t108, t111)));
+        let t163 = T::fused(t124, t149, -(t117 - T::fused(-k(0.08), t109, t112)));
+        let t164 = T::fused(t124, t152, -(t118 - T::fused(-k(0.08), t110, t113)));
+        let t165 = T::fused(t125, t158, t129 * t159)
+            - T::fused(row7, t164, -T::fused(row5, t162, row6 * t163));
         let t166 = T::fused(
-            t165,
-            t76,
-            T::fused(t9, t164 - T::fused(t12, t109, k(1e-6) * t108), t162),
+            t107,
+            t160 - T::fused(t94, t144, -t142),
+            t126 * (t165 - T::fused(t124, t144, t161)),
         );
         let t167 = T::fused(
-            t165,
-            t93,
-            T::fused(t47, t164, T::fused(-t56, t155, t51 * t161)),
+            row0,
+            T::fused(t107, t147, t126 * t162),
+            row1 * T::fused(t107, t150, t126 * t163),
         );
-        let t168 = T::fused(t167, t97, -t166)
-            / T::fused(t94, t97, -T::fused(t73, t76, -t62));
-        let t169 = t2 * t168;
-        let t170 = t105 + t169;
-        let t171 = t5 * t168;
-        let t172 = t107 - t171;
-        let t173 = t9 * t168;
-        let t174 = t108 - t173;
-        let t175 = T::fused(-t167, t96, t97 * t168);
-        let t176 = t56 * t175;
-        let t177 = t176 + (t119 + t169);
-        let t178 = t51 * t175;
-        let t179 = t178 - (t121 + t171);
-        let t180 = t47 * t175;
-        let t181 = t180 - (t123 + t173);
-        let t182 = T::fused(t93, t175, -T::fused(-t165, t75, t76 * t168));
-        let t183 = T::fused(t32, t182, t176 + (t146 + t169));
-        let t184 = T::fused(t33, t182, -(t178 - (t147 + t171)));
-        let t185 = T::fused(t36, t182, t180 - (t148 + t173));
+        let t168 = T::fused(
+            t107,
+            T::fused(t156, t99, t155 * t125),
+            t126 * T::fused(t156, t125, t155 * t129),
+        );
+        let t169 = k(2.0) * (t105 - t104);
+        let t170 = T::fused(t1, t61, -T::fused(-t6, t59, t169 * t60));
+        let t171 = T::fused(t1, t45, -T::fused(-t169, t35, t6 * t21));
+        let t172 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+        let t173 = T::fused(t8, t168, t172 * T::fused(t170, t127, t171 * t130))
+            + T::fused(row2, T::fused(t107, t153, t126 * t164), -t167);
+        let t174 = (t173 - t166) / (k(1e-6) - T::fused(t107, t127, t126 * t130));
+        let t175 = row0 + row5;
+        let t176 = row1 + row6;
+        let t177 = row2 + row7;
+        let t178 = t158 - T::fused(t170, t172, T::fused(t156, t8, t107 * t174));
+        let t179 = t159 - T::fused(t171, t172, T::fused(t155, t8, t126 * t174));
+        let t180 = T::fused(t94, t178, t124 * t179)
+            - T::fused(t177, t151, -T::fused(t175, t145, t176 * t148));
+        let t181 = t97 * (t143 - t180);
+        let t182 = row10
+            + (t175 + T::fused(t82, t181, T::fused(-t25, t178, t108 * t179)));
+        let t183 = row11
+            + (t176 - T::fused(t83, t181, -T::fused(-t39, t178, t109 * t179)));
+        let t184 = row12
+            + (t177 + T::fused(t84, t181, -T::fused(-t47, t178, t110 * t179)));
+        let t185 = t132 + T::fused(t88, t181, T::fused(t62, t178, t114 * t179));
+        let t186 = t133 + T::fused(t89, t181, T::fused(t65, t178, t115 * t179));
+        let t187 = T::fused(
+            -self.parameters.product_xy,
+            t185,
+            self.parameters.product_xz * t186,
+        ) + T::fused(t43, t184, -T::fused(t16, t182, t32 * t183));
+        let t188 = self.derived[30] * t187;
         *out = [
             row0,
             row1,
             row2,
-            T::fused(t12, t174, -T::fused(-t4, t170, t6 * t172)),
-            T::fused(t9, t174, T::fused(-t2, t170, t5 * t172)),
-            -T::fused(t98, t174, T::fused(t99, t170, t106 * t172)),
-            t157,
-            t137,
-            t143,
-            T::fused(t46, t181, -T::fused(-t55, t177, t50 * t179)),
-            T::fused(t21, t181, T::fused(-t18, t177, t15 * t179)),
-            -T::fused(t47, t181, T::fused(t56, t177, t51 * t179)),
-            T::fused(t69, t182, T::fused(t86, t175, T::fused(-t54, t168, t158))),
-            -T::fused(t70, t182, T::fused(t87, t175, -T::fused(t59, t168, t138))),
-            T::fused(t71, t182, -T::fused(t88, t175, -T::fused(t60, t168, t144))),
-            T::fused(t36, t185, T::fused(t32, t183, t33 * t184)),
-            T::fused(t30, t185, -T::fused(t25, t183, t27 * t184)),
-            T::fused(-t41, t185, T::fused(-t39, t183, t40 * t184)),
+            t8,
+            t174,
+            -t172,
+            t175,
+            t176,
+            t177,
+            -t178,
+            -t179,
+            t181,
+            t182 - T::fused(t63, t186, T::fused(-t15, t188, t57 * t185)),
+            t183 + T::fused(t70, t186, T::fused(t31, t188, t68 * t185)),
+            t184 + T::fused(t76, t186, T::fused(-t42, t188, t74 * t185)),
+            -t188,
+            -t185,
+            t186,
         ];
     }
 }
@@ -3652,7 +3805,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 191 operations (76 ±, 112 ×, 3 ÷) and 4 functions.
+    /// Writes u̇: 164 operations (69 ±, 93 ×, 2 ÷) and 4 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -3660,105 +3813,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = k(0.08) * self.imbalance_y;
-        let t1 = self.imbalance_y * t0;
-        let t2 = self.imbalance_z * self.imbalance_z;
-        let t3 = k(0.08) * t2;
-        let t4 = t3 - t1;
-        let t5 = x2.cos();
-        let t6 = x2.sin();
-        let t7 = self.imbalance_z * t6;
-        let t8 = k(0.16) * self.imbalance_y;
-        let t9 = T::fused(-t6, T::fused(t5, t4, t8 * t7), self.imbalance_z * t0);
-        let t10 = t5 * t8;
-        let t11 = T::fused(-k(0.16), t7, t10);
-        let t12 = k(0.5) * (self.offset_z * t11);
-        let t13 = t12 - t9;
-        let t14 = x1.sin();
-        let t15 = T::fused(self.product_xy, t6, self.product_xz * t5);
-        let t16 = x1.cos();
-        let t17 = self.offset_y * t14;
-        let t18 = T::fused(-self.offset_x, t16, t17);
-        let t19 = T::fused(k(0.08), self.imbalance_z * t5, t0 * t6);
-        let t20 = T::fused(-t16, t15, t19 * t18);
-        let t21 = k(0.08) * self.offset_z;
-        let t22 = u1 * u1;
-        let t23 = T::fused(-self.offset_z, t19, t3);
-        let t24 = t6 * T::fused(-t6, t4, self.imbalance_z * t10);
-        let t25 = u0 * T::fused(t14, T::fused(t14, t9, -t20), t13);
-        let t26 = t1 - t24;
-        let t27 = self.offset_x * self.offset_x;
-        let t28 = T::fused(
-            k(0.08),
-            T::fused(self.offset_y, self.offset_y, -t27),
-            k(4e-6),
-        ) + t26;
-        let t29 = k(0.16) * self.offset_x;
-        let t30 = k(2.0) * T::fused(-self.product_xy, t5, self.product_xz * t6);
-        let t31 = T::fused(-self.offset_x, t11, t30);
-        let t32 = self.offset_y * t16;
-        let t33 = T::fused(-t14, t31, t11 * t32);
-        let t34 = k(0.08) * self.offset_y;
-        let t35 = T::fused(
-            -t14,
-            T::fused(t16, t28, t29 * t17),
-            T::fused(t14, t33, self.offset_x * t34),
+        let t0 = x2.cos();
+        let t1 = x2.sin();
+        let t2 = T::fused(-t0, self.derived[33], t1 * self.derived[34]);
+        let t3 = x1.cos();
+        let t4 = x1.sin();
+        let t5 = self.parameters.offset_y * t4;
+        let t6 = T::fused(-self.parameters.offset_x, t3, t5);
+        let t7 = self.parameters.imbalance_z * t1;
+        let t8 = t0 * self.derived[35];
+        let t9 = T::fused(-k(0.16), t7, t8);
+        let t10 = T::fused(t3, t2, t9 * t6);
+        let t11 = T::fused(self.derived[6], t0, self.derived[9] * t1);
+        let t12 = self.parameters.offset_z * t11;
+        let t13 = self.derived[36] - t12;
+        let t14 = T::fused(-k(0.5), t10, t4 * (self.derived[37] + t13));
+        let t15 = T::fused(
+            self.parameters.product_xy,
+            t1,
+            self.parameters.product_xz * t0,
         );
-        let t36 = u0 * T::fused(k(0.5), t31, t35);
-        let t37 = T::fused(
-            u2,
-            T::fused(-(k(5e-6) + (t24 + t23)), u1 * t16, t25),
-            u1 * t36,
+        let t16 = T::fused(self.parameters.offset_x, t11, t15);
+        let t17 = self.derived[38] * t16;
+        let t18 = self.parameters.offset_y * t3;
+        let t19 = T::fused(
+            -t0,
+            T::fused(t1, self.derived[40], self.parameters.imbalance_z * t8),
+            self.derived[41],
         );
-        let t38 = T::fused(
-            -t22,
-            T::fused(t21, t18, -T::fused(t14, t13, t20)),
-            T::fused(-(u2 * u2), T::fused(-t14, t12, t20), k(2.0) * t37),
+        let t20 = T::fused(self.derived[42], t9, t19);
+        let t21 = T::fused(
+            -(self.derived[39] - t11),
+            T::fused(self.parameters.offset_x, t4, t18),
+            T::fused(t4, t15, t3 * t20),
         );
-        let t39 = T::fused(-self.offset_y, t19, t9);
-        let t40 = T::fused(t16, T::fused(k(2.0), t26, k(1e-5)), -t33);
-        let t41 = T::fused(
-            t22,
-            t39,
-            T::fused(k(10.0), t16 * t19, u0 * T::fused(u1, t40, t25)),
+        let t22 = T::fused(-t17, t14, t21);
+        let t23 = t0 * T::fused(-t0, self.derived[40], self.derived[35] * t7);
+        let t24 = self.derived[43] - t23;
+        let t25 = k(1.0)
+            / T::fused(
+                t16,
+                t17,
+                -(self.derived[19]
+                    + (T::fused(-self.parameters.offset_y, t9, k(6e-6)) + t24)),
+            );
+        let t26 = t25 * t22;
+        let t27 = self.derived[38] * t14;
+        let t28 = k(4e-6) + (self.derived[44] + t24);
+        let t29 = T::fused(
+            self.derived[47],
+            T::fused(-t3, t5, self.derived[46]),
+            t23 + T::fused(t4, T::fused(t4, t28, -t10), self.derived[45]),
         );
-        let t42 = T::fused(t11, t18, t16 * t30);
-        let t43 = k(1e-5) + t1;
-        let t44 = T::fused(-k(0.5), t42, t14 * (t43 + t23));
-        let t45 = k(1.0) / (t3 + t43);
-        let t46 = t45 * t44;
-        let t47 = T::fused(
+        let t30 = T::fused(self.parameters.offset_x, t9, -t2);
+        let t31 = T::fused(t4, t30, t9 * t18);
+        let t32 = T::fused(t3, T::fused(k(2.0), t24, k(1e-5)), -t31);
+        let t33 = u1 * T::fused(self.parameters.offset_y, t11, t19);
+        let t34 = T::fused(-t3, t15, t11 * t6);
+        let t35 = u0 * T::fused(-t4, T::fused(t4, t19, t34), t20);
+        let t36 = T::fused(
             u0,
-            T::fused(u2, t40, -t36),
-            T::fused(-k(5.0), t14 * t11, k(0.8) * t18),
+            t35,
+            T::fused(-u1, T::fused(-u0, t32, t33), k(10.0) * (t3 * t11)),
         );
-        let t48 = T::fused(k(2.0), u2 * T::fused(u1, t39, k(0.25) * (u2 * t31)), t47);
-        let t49 = T::fused(self.offset_x, t19, t15);
-        let t50 = t45 * t49;
-        let t51 = T::fused(t50, t41, t48);
-        let t52 = T::fused(
-            -(t21 - t19),
-            T::fused(self.offset_x, t14, t32),
-            T::fused(t14, t15, t16 * t13),
+        let t37 = T::fused(-k(2.0), u2 * T::fused(k(0.25), u2 * t30, t33), k(0.8) * t6);
+        let t38 = T::fused(
+            t4,
+            T::fused(t3, t28, self.derived[47] * t5),
+            -T::fused(t4, t31, self.derived[26]),
         );
-        let t53 = T::fused(t50, t44, -t52);
-        let t54 = T::fused(
-            t49,
-            t50,
-            -T::fused(k(0.08), t27, T::fused(self.offset_y, t34 - t11, k(6e-6) + t26)),
+        let t39 = u0 * T::fused(k(2.0), t38, t30);
+        let t40 = t4 * t9;
+        let t41 = T::fused(
+            k(5.0),
+            t40,
+            -T::fused(u0, T::fused(k(0.5), t39, u2 * t32), t37),
         );
-        let t55 = k(1.0) / t54;
-        let t56 = t55 * t53;
-        let t57 = T::fused(
-            k(0.08),
-            T::fused(self.offset_z, T::fused(-k(25.0), t19, self.offset_z), t2 + t27),
-            k(8e-6),
+        let t42 = T::fused(-t17, t36, t41);
+        let t43 = T::fused(
+            -k(2.0),
+            T::fused(-(k(5e-6) + (t23 + t13)), u1 * t3, t35),
+            u2 * T::fused(-self.derived[42], t40, t34),
         );
-        let t58 = t24 + T::fused(t14, T::fused(t14, t28, -T::fused(t29, t32, t42)), t57);
-        let t59 = T::fused(t56, t51, -T::fused(t46, t41, t38))
-            / T::fused(t53, t56, -T::fused(t44, t46, -t58));
-        let t60 = T::fused(-t55, t51, t56 * t59);
-        *out = [-t59, t60, T::fused(-t50, t60, T::fused(-t45, t41, t46 * t59))];
+        let t44 = T::fused(
+            -u1,
+            T::fused(u1, T::fused(t4, t20, T::fused(-self.derived[39], t6, t34)), -t39),
+            u2 * t43,
+        );
+        let t45 = T::fused(t42, t26, T::fused(-t36, t27, t44))
+            / T::fused(-t22, t26, T::fused(t14, t27, T::fused(k(2.0), t12, -t29)));
+        let t46 = T::fused(t26, t45, t25 * t42);
+        *out = [
+            t45,
+            t46,
+            -T::fused(t17, t46, T::fused(t27, t45, self.derived[38] * t36)),
+        ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
@@ -3810,10 +3959,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t29 = t5 * t5;
         let t30 = k(2.0) * (k(0.5) - T::fused(t7, t7, t29));
         let t31 = T::fused(
-            -self.offset_z,
+            -self.parameters.offset_z,
             t25,
-            T::fused(-self.offset_y, t28, self.offset_x * t30),
-        ) + T::fused(self.imbalance_z, t19, self.imbalance_y * t22);
+            T::fused(-self.parameters.offset_y, t28, self.parameters.offset_x * t30),
+        )
+            + T::fused(
+                self.parameters.imbalance_z,
+                t19,
+                self.parameters.imbalance_y * t22,
+            );
         let t32 = t14 * t17;
         let t33 = t13 * t16;
         let t34 = k(2.0) * (t33 - t32);
@@ -3825,40 +3979,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t40 = k(2.0) * (k(0.5) - T::fused(t8, t8, t29));
         let t41 = k(2.0) * (t27 + t26);
         let t42 = T::fused(
-            self.offset_z,
+            self.parameters.offset_z,
             t39,
-            T::fused(-self.offset_y, t40, self.offset_x * t41),
-        ) + T::fused(-self.imbalance_z, t34, self.imbalance_y * t36);
+            T::fused(-self.parameters.offset_y, t40, self.parameters.offset_x * t41),
+        )
+            + T::fused(
+                -self.parameters.imbalance_z,
+                t34,
+                self.parameters.imbalance_y * t36,
+            );
         let t43 = k(2.0) * (k(0.5) - T::fused(t16, t16, t35));
         let t44 = k(2.0) * (t33 + t32);
         let t45 = k(2.0) * (k(0.5) - T::fused(t9, t9, t29));
         let t46 = k(2.0) * (t38 + t37);
         let t47 = k(2.0) * (t24 - t23);
         let t48 = T::fused(
-            -self.offset_z,
+            -self.parameters.offset_z,
             t45,
-            T::fused(self.offset_y, t46, self.offset_x * t47),
-        ) - T::fused(-self.imbalance_z, t43, self.imbalance_y * t44);
+            T::fused(self.parameters.offset_y, t46, self.parameters.offset_x * t47),
+        )
+            - T::fused(
+                -self.parameters.imbalance_z,
+                t43,
+                self.parameters.imbalance_y * t44,
+            );
         let t49 = k(2.0) * t6;
         let t50 = u0 * (t4 * t49);
         let t51 = u0 * T::fused(-t6, t49, k(1.0));
-        let t52 = T::fused(-self.offset_z, t51, self.offset_y * u1);
-        let t53 = T::fused(-self.offset_z, t50, self.offset_x * u1);
-        let t54 = T::fused(-self.offset_y, t50, self.offset_x * t51);
+        let t52 = T::fused(
+            -self.parameters.offset_z,
+            t51,
+            self.parameters.offset_y * u1,
+        );
+        let t53 = T::fused(
+            -self.parameters.offset_z,
+            t50,
+            self.parameters.offset_x * u1,
+        );
+        let t54 = T::fused(
+            -self.parameters.offset_y,
+            t50,
+            self.parameters.offset_x * t51,
+        );
         let t55 = k(2.0) * t11;
         let t56 = T::fused(-t11, t55, k(1.0));
         let t57 = t12 * t55;
         let t58 = T::fused(t56, t51, u1 * t57);
         let t59 = T::fused(-t57, t51, u1 * t56);
-        let t60 = T::fused(-self.imbalance_z, t58, self.imbalance_y * t59);
+        let t60 = T::fused(
+            -self.parameters.imbalance_z,
+            t58,
+            self.parameters.imbalance_y * t59,
+        );
         let t61 = u2 + t50;
-        let t62 = self.imbalance_z * t61;
+        let t62 = self.parameters.imbalance_z * t61;
         let t63 = T::fused(
             -(k(2.0) * (k(0.5) - T::fused(t17, t17, t35))),
             t60,
             t22 * t62,
         );
-        let t64 = self.imbalance_y * t61;
+        let t64 = self.parameters.imbalance_y * t61;
         let t65 = T::fused(t19, t64, -t63)
             + T::fused(t25, t54, -T::fused(t30, t52, t28 * t53));
         let t66 = T::fused(t34, t64, T::fused(-(k(2.0) * (t21 + t20)), t60, t36 * t62));
@@ -4004,7 +4184,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 229 operations (92 ±, 134 ×, 3 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 202 operations (85 ±, 115 ×, 2 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4024,12 +4204,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let inner_ring_wx = y[30];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = k(0.08) * self.imbalance_y;
-        let t1 = self.imbalance_y * t0;
-        let t2 = self.imbalance_z * self.imbalance_z;
-        let t3 = k(0.08) * t2;
-        let t4 = t3 - t1;
-        let t5 = T::fused(
+        let t0 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4038,9 +4213,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t6 = k(2.0) * t5;
-        let t7 = T::fused(-t5, t6, k(1.0));
-        let t8 = T::fused(
+        let t1 = k(2.0) * t0;
+        let t2 = T::fused(-t0, t1, k(1.0));
+        let t3 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4049,15 +4224,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t9 = t8 * t6;
-        let t10 = self.imbalance_z * t9;
-        let t11 = k(0.16) * self.imbalance_y;
-        let t12 = T::fused(-t9, T::fused(-t7, t4, t11 * t10), self.imbalance_z * t0);
-        let t13 = t7 * t11;
-        let t14 = T::fused(k(0.16), t10, t13);
-        let t15 = k(0.5) * (self.offset_z * t14);
-        let t16 = t15 - t12;
-        let t17 = T::fused(
+        let t4 = t3 * t1;
+        let t5 = T::fused(t2, self.derived[33], t4 * self.derived[34]);
+        let t6 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4066,8 +4235,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(
+        let t7 = k(2.0) * t6;
+        let t8 = T::fused(-t6, t7, k(1.0));
+        let t9 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4076,100 +4246,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t20 = t19 * t18;
-        let t21 = T::fused(-self.product_xy, t9, self.product_xz * t7);
-        let t22 = T::fused(-t17, t18, k(1.0));
-        let t23 = self.offset_y * t20;
-        let t24 = T::fused(self.offset_x, t22, t23);
-        let t25 = T::fused(-k(0.08), self.imbalance_z * t7, t0 * t9);
-        let t26 = T::fused(-t22, t21, t25 * t24);
-        let t27 = k(0.08) * self.offset_z;
-        let t28 = outer_ring_wz - inner_ring_wz;
-        let t29 = t28 * t28;
-        let t30 = inner_ring_wx - rotor_wx;
-        let t31 = T::fused(self.offset_z, t25, t3);
-        let t32 = t9 * T::fused(t9, t4, self.imbalance_z * t13);
-        let t33 = outer_ring_wy * T::fused(t20, T::fused(t20, t12, t26), t16);
-        let t34 = t1 + t32;
-        let t35 = self.offset_x * self.offset_x;
-        let t36 = T::fused(
-            k(0.08),
-            T::fused(self.offset_y, self.offset_y, -t35),
-            k(4e-6),
-        ) + t34;
-        let t37 = k(0.16) * self.offset_x;
-        let t38 = k(2.0) * T::fused(self.product_xy, t7, self.product_xz * t9);
-        let t39 = T::fused(self.offset_x, t14, t38);
-        let t40 = self.offset_y * t22;
-        let t41 = T::fused(-t20, t39, t14 * t40);
-        let t42 = k(0.08) * self.offset_y;
-        let t43 = T::fused(
-            -t20,
-            T::fused(-t22, t36, t37 * t23),
-            T::fused(-t20, t41, self.offset_x * t42),
+        let t10 = t9 * t7;
+        let t11 = self.parameters.offset_y * t10;
+        let t12 = T::fused(self.parameters.offset_x, t8, t11);
+        let t13 = self.parameters.imbalance_z * t4;
+        let t14 = t2 * self.derived[35];
+        let t15 = T::fused(k(0.16), t13, t14);
+        let t16 = T::fused(t8, t5, t15 * t12);
+        let t17 = T::fused(-self.derived[6], t2, self.derived[9] * t4);
+        let t18 = self.parameters.offset_z * t17;
+        let t19 = self.derived[36] + t18;
+        let t20 = T::fused(-k(0.5), t16, t10 * (self.derived[37] + t19));
+        let t21 = T::fused(
+            -self.parameters.product_xy,
+            t4,
+            self.parameters.product_xz * t2,
         );
-        let t44 = outer_ring_wy * T::fused(k(0.5), t39, -t43);
+        let t22 = T::fused(self.parameters.offset_x, t17, -t21);
+        let t23 = self.derived[38] * t22;
+        let t24 = self.parameters.offset_y * t8;
+        let t25 = T::fused(
+            -t2,
+            T::fused(-t4, self.derived[40], self.parameters.imbalance_z * t14),
+            self.derived[41],
+        );
+        let t26 = T::fused(self.derived[42], t15, t25);
+        let t27 = T::fused(
+            -(self.derived[39] + t17),
+            T::fused(-self.parameters.offset_x, t10, t24),
+            T::fused(-t10, t21, t8 * t26),
+        );
+        let t28 = T::fused(-t23, t20, t27);
+        let t29 = t2 * T::fused(t2, self.derived[40], self.derived[35] * t13);
+        let t30 = self.derived[43] + t29;
+        let t31 = k(1.0)
+            / T::fused(
+                t22,
+                t23,
+                -(self.derived[19]
+                    + (T::fused(-self.parameters.offset_y, t15, k(6e-6)) + t30)),
+            );
+        let t32 = t31 * t28;
+        let t33 = self.derived[38] * t20;
+        let t34 = k(4e-6) + (self.derived[44] + t30);
+        let t35 = T::fused(
+            self.derived[47],
+            T::fused(t8, t11, self.derived[46]),
+            -(t29 - T::fused(t10, T::fused(t10, t34, -t16), self.derived[45])),
+        );
+        let t36 = T::fused(self.parameters.offset_x, t15, t5);
+        let t37 = T::fused(-t10, t36, t15 * t24);
+        let t38 = T::fused(t8, T::fused(k(2.0), t30, k(1e-5)), -t37);
+        let t39 = outer_ring_wz - inner_ring_wz;
+        let t40 = t39 * T::fused(self.parameters.offset_y, t17, -t25);
+        let t41 = T::fused(-t8, t21, t17 * t12);
+        let t42 = outer_ring_wy * T::fused(t10, T::fused(-t10, t25, t41), t26);
+        let t43 = T::fused(
+            outer_ring_wy,
+            t42,
+            -T::fused(-t39, T::fused(-outer_ring_wy, t38, t40), k(10.0) * (t8 * t17)),
+        );
+        let t44 = inner_ring_wx - rotor_wx;
         let t45 = T::fused(
-            -t30,
-            T::fused(k(5e-6) - (t32 - t31), t28 * t22, t33),
-            t28 * t44,
+            -k(2.0),
+            t44 * T::fused(-k(0.25), t44 * t36, t40),
+            k(0.8) * t12,
         );
         let t46 = T::fused(
-            t29,
-            T::fused(t27, t24, T::fused(-t20, t16, t26)),
-            T::fused(-T::fused(t20, t15, t26), t30 * t30, k(2.0) * t45),
+            t10,
+            T::fused(-t8, t34, self.derived[47] * t11),
+            -T::fused(-t10, t37, self.derived[26]),
         );
-        let t47 = T::fused(self.offset_y, t25, t12);
-        let t48 = T::fused(t22, T::fused(k(2.0), t34, k(1e-5)), -t41);
+        let t47 = outer_ring_wy * T::fused(k(2.0), t46, t36);
+        let t48 = t10 * t15;
         let t49 = T::fused(
-            -t47,
-            t29,
-            T::fused(k(10.0), t22 * t25, outer_ring_wy * T::fused(t28, t48, -t33)),
+            k(5.0),
+            t48,
+            -T::fused(outer_ring_wy, T::fused(-k(0.5), t47, t44 * t38), t45),
         );
-        let t50 = T::fused(t14, t24, t22 * t38);
-        let t51 = k(1e-5) + t1;
-        let t52 = T::fused(-k(0.5), t50, t20 * (t51 + t31));
-        let t53 = k(1.0) / (t3 + t51);
-        let t54 = t53 * t52;
-        let t55 = T::fused(
-            outer_ring_wy,
-            T::fused(t30, t48, -t44),
-            T::fused(-k(5.0), t20 * t14, k(0.8) * t24),
-        );
-        let t56 = T::fused(
+        let t50 = T::fused(-t23, t43, t49);
+        let t51 = T::fused(
             k(2.0),
-            t30 * T::fused(-t28, t47, k(0.25) * (t30 * t39)),
-            t55,
+            T::fused(k(5e-6) - (t29 - t19), t39 * t8, t42),
+            t44 * T::fused(self.derived[42], t48, t41),
         );
-        let t57 = T::fused(self.offset_x, t25, -t21);
-        let t58 = t53 * t57;
-        let t59 = T::fused(t58, t49, -t56);
-        let t60 = T::fused(
-            t27 + t25,
-            T::fused(self.offset_x, t20, -t40),
-            T::fused(-t20, t21, t22 * t16),
+        let t52 = T::fused(
+            -t39,
+            T::fused(
+                t39,
+                T::fused(-t10, t26, T::fused(self.derived[39], t12, t41)),
+                t47,
+            ),
+            t44 * t51,
         );
-        let t61 = T::fused(t58, t52, -t60);
-        let t62 = T::fused(
-            t57,
-            t58,
-            -T::fused(k(0.08), t35, T::fused(self.offset_y, t42 - t14, k(6e-6) + t34)),
-        );
-        let t63 = k(1.0) / t62;
-        let t64 = t63 * t61;
-        let t65 = T::fused(
-            k(0.08),
-            T::fused(self.offset_z, T::fused(k(25.0), t25, self.offset_z), t2 + t35),
-            k(8e-6),
-        );
-        let t66 = t32
-            - T::fused(t20, T::fused(t20, t36, -T::fused(-t37, t40, t50)), t65);
-        let t67 = T::fused(t64, t59, -T::fused(t54, t49, t46))
-            / T::fused(t61, t64, -T::fused(t52, t54, t66));
-        let t68 = T::fused(-t63, t59, t64 * t67);
-        *out = [-t67, t68, T::fused(t58, t68, -T::fused(-t53, t49, t54 * t67))];
+        let t53 = T::fused(-t50, t32, T::fused(t43, t33, t52))
+            / T::fused(t28, t32, T::fused(-t20, t33, T::fused(k(2.0), t18, t35)));
+        let t54 = T::fused(t32, t53, t31 * t50);
+        *out = [
+            -t53,
+            -t54,
+            -T::fused(t23, t54, T::fused(t33, t53, self.derived[38] * t43)),
+        ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 366 operations (147 ±, 216 ×, 3 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 339 operations (140 ±, 197 ×, 2 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -4199,12 +4378,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = k(0.08) * self.imbalance_y;
-        let t2 = self.imbalance_y * t1;
-        let t3 = self.imbalance_z * self.imbalance_z;
-        let t4 = k(0.08) * t3;
-        let t5 = t4 - t2;
-        let t6 = T::fused(
+        let t1 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4213,9 +4387,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = k(2.0) * t6;
-        let t8 = T::fused(-t6, t7, k(1.0));
-        let t9 = T::fused(
+        let t2 = k(2.0) * t1;
+        let t3 = T::fused(-t1, t2, k(1.0));
+        let t4 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4224,15 +4398,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t10 = t9 * t7;
-        let t11 = self.imbalance_z * t10;
-        let t12 = k(0.16) * self.imbalance_y;
-        let t13 = T::fused(-t10, T::fused(-t8, t5, t12 * t11), self.imbalance_z * t1);
-        let t14 = t8 * t12;
-        let t15 = T::fused(k(0.16), t11, t14);
-        let t16 = k(0.5) * (self.offset_z * t15);
-        let t17 = t16 - t13;
-        let t18 = T::fused(
+        let t5 = t4 * t2;
+        let t6 = T::fused(t3, self.derived[33], t5 * self.derived[34]);
+        let t7 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4241,8 +4409,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4251,167 +4420,205 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t21 = t20 * t19;
-        let t22 = T::fused(-self.product_xy, t10, self.product_xz * t8);
-        let t23 = T::fused(-t18, t19, k(1.0));
-        let t24 = self.offset_y * t21;
-        let t25 = T::fused(self.offset_x, t23, t24);
-        let t26 = T::fused(-k(0.08), self.imbalance_z * t8, t1 * t10);
-        let t27 = T::fused(-t23, t22, t26 * t25);
-        let t28 = k(0.08) * self.offset_z;
-        let t29 = outer_ring_wz - inner_ring_wz;
-        let t30 = t29 * t29;
-        let t31 = inner_ring_wx - rotor_wx;
-        let t32 = T::fused(self.offset_z, t26, t4);
-        let t33 = t10 * T::fused(t10, t5, self.imbalance_z * t14);
-        let t34 = outer_ring_wy * T::fused(t21, T::fused(t21, t13, t27), t17);
-        let t35 = t2 + t33;
-        let t36 = self.offset_x * self.offset_x;
-        let t37 = T::fused(
-            k(0.08),
-            T::fused(self.offset_y, self.offset_y, -t36),
-            k(4e-6),
-        ) + t35;
-        let t38 = k(0.16) * self.offset_x;
-        let t39 = k(2.0) * T::fused(self.product_xy, t8, self.product_xz * t10);
-        let t40 = T::fused(self.offset_x, t15, t39);
-        let t41 = self.offset_y * t23;
-        let t42 = T::fused(-t21, t40, t15 * t41);
-        let t43 = k(0.08) * self.offset_y;
-        let t44 = T::fused(
-            -t21,
-            T::fused(-t23, t37, t38 * t24),
-            T::fused(-t21, t42, self.offset_x * t43),
+        let t11 = t10 * t8;
+        let t12 = self.parameters.offset_y * t11;
+        let t13 = T::fused(self.parameters.offset_x, t9, t12);
+        let t14 = self.parameters.imbalance_z * t5;
+        let t15 = t3 * self.derived[35];
+        let t16 = T::fused(k(0.16), t14, t15);
+        let t17 = T::fused(t9, t6, t16 * t13);
+        let t18 = T::fused(-self.derived[6], t3, self.derived[9] * t5);
+        let t19 = self.parameters.offset_z * t18;
+        let t20 = self.derived[36] + t19;
+        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[37] + t20));
+        let t22 = T::fused(
+            -self.parameters.product_xy,
+            t5,
+            self.parameters.product_xz * t3,
         );
-        let t45 = outer_ring_wy * T::fused(k(0.5), t40, -t44);
+        let t23 = T::fused(self.parameters.offset_x, t18, -t22);
+        let t24 = self.derived[38] * t23;
+        let t25 = self.parameters.offset_y * t9;
+        let t26 = T::fused(
+            -t3,
+            T::fused(-t5, self.derived[40], self.parameters.imbalance_z * t15),
+            self.derived[41],
+        );
+        let t27 = T::fused(self.derived[42], t16, t26);
+        let t28 = T::fused(
+            -(self.derived[39] + t18),
+            T::fused(-self.parameters.offset_x, t11, t25),
+            T::fused(-t11, t22, t9 * t27),
+        );
+        let t29 = T::fused(-t24, t21, t28);
+        let t30 = t3 * T::fused(t3, self.derived[40], self.derived[35] * t14);
+        let t31 = self.derived[43] + t30;
+        let t32 = k(1.0)
+            / T::fused(
+                t23,
+                t24,
+                -(self.derived[19]
+                    + (T::fused(-self.parameters.offset_y, t16, k(6e-6)) + t31)),
+            );
+        let t33 = t32 * t29;
+        let t34 = self.derived[38] * t21;
+        let t35 = k(4e-6) + (self.derived[44] + t31);
+        let t36 = T::fused(
+            self.derived[47],
+            T::fused(t9, t12, self.derived[46]),
+            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[45])),
+        );
+        let t37 = T::fused(self.parameters.offset_x, t16, t6);
+        let t38 = T::fused(-t11, t37, t16 * t25);
+        let t39 = T::fused(t9, T::fused(k(2.0), t31, k(1e-5)), -t38);
+        let t40 = outer_ring_wz - inner_ring_wz;
+        let t41 = t40 * T::fused(self.parameters.offset_y, t18, -t26);
+        let t42 = T::fused(-t9, t22, t18 * t13);
+        let t43 = outer_ring_wy * T::fused(t11, T::fused(-t11, t26, t42), t27);
+        let t44 = T::fused(
+            outer_ring_wy,
+            t43,
+            -T::fused(-t40, T::fused(-outer_ring_wy, t39, t41), k(10.0) * (t9 * t18)),
+        );
+        let t45 = inner_ring_wx - rotor_wx;
         let t46 = T::fused(
-            -t31,
-            T::fused(k(5e-6) - (t33 - t32), t29 * t23, t34),
-            t29 * t45,
+            -k(2.0),
+            t45 * T::fused(-k(0.25), t45 * t37, t41),
+            k(0.8) * t13,
         );
         let t47 = T::fused(
-            t30,
-            T::fused(t28, t25, T::fused(-t21, t17, t27)),
-            T::fused(-T::fused(t21, t16, t27), t31 * t31, k(2.0) * t46),
+            t11,
+            T::fused(-t9, t35, self.derived[47] * t12),
+            -T::fused(-t11, t38, self.derived[26]),
         );
-        let t48 = T::fused(self.offset_y, t26, t13);
-        let t49 = T::fused(t23, T::fused(k(2.0), t35, k(1e-5)), -t42);
+        let t48 = outer_ring_wy * T::fused(k(2.0), t47, t37);
+        let t49 = t11 * t16;
         let t50 = T::fused(
-            -t48,
-            t30,
-            T::fused(k(10.0), t23 * t26, outer_ring_wy * T::fused(t29, t49, -t34)),
+            k(5.0),
+            t49,
+            -T::fused(outer_ring_wy, T::fused(-k(0.5), t48, t45 * t39), t46),
         );
-        let t51 = T::fused(t15, t25, t23 * t39);
-        let t52 = k(1e-5) + t2;
-        let t53 = T::fused(-k(0.5), t51, t21 * (t52 + t32));
-        let t54 = k(1.0) / (t4 + t52);
-        let t55 = t54 * t53;
-        let t56 = T::fused(
-            outer_ring_wy,
-            T::fused(t31, t49, -t45),
-            T::fused(-k(5.0), t21 * t15, k(0.8) * t25),
-        );
-        let t57 = T::fused(
+        let t51 = T::fused(-t24, t44, t50);
+        let t52 = T::fused(
             k(2.0),
-            t31 * T::fused(-t29, t48, k(0.25) * (t31 * t40)),
-            t56,
+            T::fused(k(5e-6) - (t30 - t20), t40 * t9, t43),
+            t45 * T::fused(self.derived[42], t49, t42),
         );
-        let t58 = T::fused(self.offset_x, t26, -t22);
-        let t59 = t54 * t58;
-        let t60 = T::fused(t59, t50, -t57);
+        let t53 = T::fused(
+            -t40,
+            T::fused(
+                t40,
+                T::fused(-t11, t27, T::fused(self.derived[39], t13, t42)),
+                t48,
+            ),
+            t45 * t52,
+        );
+        let t54 = T::fused(-t51, t33, T::fused(t44, t34, t53))
+            / T::fused(t29, t33, T::fused(-t21, t34, T::fused(k(2.0), t19, t36)));
+        let t55 = outer_ring_wx * outer_ring_wy;
+        let t56 = T::fused(inner_ring_wy, t40, T::fused(-t11, t54, t0 * t9));
+        let t57 = T::fused(inner_ring_wx, t40, -T::fused(t9, t54, t0 * t11));
+        let t58 = T::fused(t33, t54, t32 * t51);
+        let t59 = t55 - t58;
+        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[38] * t44)) + t56;
         let t61 = T::fused(
-            t28 + t26,
-            T::fused(self.offset_x, t21, -t41),
-            T::fused(-t21, t22, t23 * t17),
+            self.parameters.offset_x,
+            t57,
+            self.parameters.offset_y * t56,
         );
-        let t62 = T::fused(t59, t53, -t61);
-        let t63 = T::fused(
-            t58,
+        let t62 = T::fused(
+            self.parameters.offset_x,
             t59,
-            -T::fused(k(0.08), t36, T::fused(self.offset_y, t43 - t15, k(6e-6) + t35)),
+            self.parameters.offset_z * t56,
         );
-        let t64 = k(1.0) / t63;
-        let t65 = t64 * t62;
+        let t63 = T::fused(
+            -inner_ring_wy,
+            self.parameters.offset_x,
+            inner_ring_wx * self.parameters.offset_y,
+        );
+        let t64 = T::fused(
+            -inner_ring_wz,
+            self.parameters.offset_y,
+            inner_ring_wy * self.parameters.offset_z,
+        );
+        let t65 = T::fused(-inner_ring_wx, t63, inner_ring_wz * t64);
         let t66 = T::fused(
-            k(0.08),
-            T::fused(self.offset_z, T::fused(k(25.0), t26, self.offset_z), t3 + t36),
-            k(8e-6),
+            -inner_ring_wx,
+            self.parameters.offset_z,
+            inner_ring_wz * self.parameters.offset_x,
         );
-        let t67 = t33
-            - T::fused(t21, T::fused(t21, t37, -T::fused(-t38, t41, t51)), t66);
-        let t68 = T::fused(t65, t60, -T::fused(t55, t50, t47))
-            / T::fused(t62, t65, -T::fused(t53, t55, t67));
-        let t69 = outer_ring_wx * outer_ring_wy;
-        let t70 = T::fused(inner_ring_wy, t29, T::fused(-t21, t68, t0 * t23));
-        let t71 = T::fused(inner_ring_wx, t29, -T::fused(t23, t68, t0 * t21));
-        let t72 = T::fused(-t64, t60, t65 * t68);
-        let t73 = t69 + t72;
-        let t74 = rotor_wx * self.imbalance_z;
-        let t75 = rotor_wx * self.imbalance_y;
-        let t76 = T::fused(-inner_ring_wx, self.offset_z, inner_ring_wz * self.offset_x);
-        let t77 = T::fused(-inner_ring_wy, self.offset_x, inner_ring_wx * self.offset_y);
-        let t78 = T::fused(-inner_ring_wz, t76, inner_ring_wy * t77)
-            - T::fused(rotor_wz, t74, rotor_wy * t75);
-        let t79 = T::fused(rotor_wz, t31, T::fused(-t8, t71, t10 * t73));
-        let t80 = T::fused(rotor_wy, t31, T::fused(t10, t71, t8 * t73));
-        let t81 = T::fused(self.imbalance_z, t79, self.imbalance_y * t80)
-            + (t78 - T::fused(-self.offset_z, t71, self.offset_y * t73));
-        let t82 = rotor_e0 * rotor_e0;
-        let t83 = T::fused(self.offset_z, t70, self.offset_x * t73);
-        let t84 = T::fused(self.offset_y, t70, self.offset_x * t71);
-        let t85 = T::fused(-inner_ring_wz, self.offset_y, inner_ring_wy * self.offset_z);
-        let t86 = T::fused(-inner_ring_wx, t77, inner_ring_wz * t85);
-        let t87 = T::fused(-inner_ring_wy, t85, inner_ring_wx * t76);
-        let t88 = T::fused(-rotor_wz, self.imbalance_y, rotor_wy * self.imbalance_z);
-        let t89 = T::fused(-rotor_wx, t75, rotor_wz * t88)
-            + T::fused(-t86, t8, t87 * t10);
-        let t90 = T::fused(t59, t72, -T::fused(-t54, t50, t55 * t68)) - t70;
-        let t91 = T::fused(self.imbalance_z, t90, -(t89 - T::fused(t8, t83, t10 * t84)));
-        let t92 = rotor_e0 * rotor_e3;
-        let t93 = rotor_e1 * rotor_e2;
-        let t94 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t82))),
-            t81,
-            k(2.0) * (t93 - t92) * t91,
+        let t67 = T::fused(-inner_ring_wy, t64, inner_ring_wx * t66);
+        let t68 = T::fused(
+            -rotor_wz,
+            self.parameters.imbalance_y,
+            rotor_wy * self.parameters.imbalance_z,
         );
-        let t95 = T::fused(rotor_wy, t88, rotor_wx * t74) + T::fused(t86, t10, t87 * t8);
-        let t96 = T::fused(
-            self.imbalance_y,
-            t90,
-            -(t95 - T::fused(-t10, t83, t8 * t84)),
+        let t69 = rotor_wx * self.parameters.imbalance_z;
+        let t70 = T::fused(rotor_wy, t68, rotor_wx * t69) + T::fused(t65, t5, t67 * t3);
+        let t71 = T::fused(
+            self.parameters.imbalance_y,
+            t60,
+            t70 + T::fused(-t3, t61, t5 * t62),
         );
-        let t97 = rotor_e0 * rotor_e2;
-        let t98 = rotor_e1 * rotor_e3;
-        let t99 = T::fused(
-            -(k(2.0) * (t93 + t92)),
-            t81,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t82)) * t91,
+        let t72 = rotor_e0 * rotor_e2;
+        let t73 = rotor_e1 * rotor_e3;
+        let t74 = rotor_wx * self.parameters.imbalance_y;
+        let t75 = T::fused(-rotor_wx, t74, rotor_wz * t68)
+            + T::fused(-t65, t3, t67 * t5);
+        let t76 = T::fused(
+            self.parameters.imbalance_z,
+            t60,
+            t75 - T::fused(t5, t61, t3 * t62),
         );
-        let t100 = rotor_e0 * rotor_e1;
-        let t101 = rotor_e2 * rotor_e3;
-        let t102 = T::fused(k(2.0) * (t98 - t97), t81, k(2.0) * (t101 + t100) * t91);
+        let t77 = rotor_e0 * rotor_e3;
+        let t78 = rotor_e1 * rotor_e2;
+        let t79 = T::fused(rotor_wy, t45, T::fused(t3, t59, t5 * t57));
+        let t80 = T::fused(rotor_wz, t45, -T::fused(-t5, t59, t3 * t57));
+        let t81 = T::fused(-inner_ring_wz, t66, inner_ring_wy * t63)
+            - T::fused(rotor_wz, t69, rotor_wy * t74);
+        let t82 = t81
+            + T::fused(-self.parameters.offset_y, t59, self.parameters.offset_z * t57)
+            + T::fused(
+                self.parameters.imbalance_y,
+                t79,
+                self.parameters.imbalance_z * t80,
+            );
+        let t83 = rotor_e0 * rotor_e0;
+        let t84 = T::fused(
+            k(2.0) * (t78 - t77),
+            t76,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t83)) * t82,
+        );
+        let t85 = rotor_e0 * rotor_e1;
+        let t86 = rotor_e2 * rotor_e3;
+        let t87 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t83)),
+            t76,
+            k(2.0) * (t78 + t77) * t82,
+        );
+        let t88 = T::fused(-(k(2.0) * (t86 + t85)), t76, k(2.0) * (t73 - t72) * t82);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t68,
-            t69,
+            -t54,
+            t55,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t70,
-            t71,
-            t73,
-            T::fused(-(k(2.0) * (t98 + t97)), t96, t94),
-            -T::fused(k(2.0) * (t101 - t100), t96, t99),
-            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t82)), t96, t102),
-            t90,
-            -t79,
-            t80,
+            -t56,
+            t57,
+            t59,
+            T::fused(k(2.0) * (t73 + t72), t71, -t84),
+            T::fused(k(2.0) * (t86 - t85), t71, t87),
+            T::fused(-(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t83))), t71, t88),
+            -t60,
+            -t80,
+            t79,
         ];
     }
-    /// Writes λ: 267 operations (106 ±, 161 ×, 0 ÷).
+    /// Writes λ: 261 operations (106 ±, 155 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -4463,37 +4670,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e3;
-        let t7 = rotor_e1 * rotor_e2;
-        let t8 = rotor_e0 * rotor_e2;
-        let t9 = rotor_e1 * rotor_e3;
+        let t6 = rotor_e0 * rotor_e0;
+        let t7 = rotor_e0 * rotor_e1;
+        let t8 = rotor_e2 * rotor_e3;
+        let t9 = T::fused(
+            k(0.5) - T::fused(rotor_e3, rotor_e3, t6),
+            self.derived[1],
+            (t8 + t7) * self.derived[0],
+        );
         let t10 = T::fused(
-            -(k(2.0) * (t7 - t6)),
-            self.imbalance_z,
-            k(2.0) * (t9 + t8) * self.imbalance_y,
+            t8 - t7,
+            self.derived[1],
+            (k(0.5) - T::fused(rotor_e2, rotor_e2, t6)) * self.derived[0],
         );
-        let t11 = rotor_e0 * rotor_e0;
-        let t12 = rotor_e0 * rotor_e1;
-        let t13 = rotor_e2 * rotor_e3;
-        let t14 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t11)),
-            self.imbalance_z,
-            k(2.0) * (t13 - t12) * self.imbalance_y,
-        );
+        let t11 = rotor_e0 * rotor_e2;
+        let t12 = rotor_e1 * rotor_e3;
+        let t13 = rotor_e0 * rotor_e3;
+        let t14 = rotor_e1 * rotor_e2;
         let t15 = T::fused(
-            k(2.0) * (t13 + t12),
-            self.imbalance_z,
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t11)) * self.imbalance_y,
+            -t2,
+            t10,
+            t0 * T::fused(-(t12 + t11), self.derived[1], (t14 - t13) * self.derived[0]),
         );
-        let t16 = rotor_wz * self.product_xy;
-        let t17 = rotor_wy * self.product_xz;
+        let t16 = rotor_wz * self.parameters.product_xy;
+        let t17 = rotor_wy * self.parameters.product_xz;
         let t18 = T::fused(
             rotor_wx,
             t17 - t16,
             T::fused(
-                self.product_xz,
+                self.parameters.product_xz,
                 rotor_dwz,
-                T::fused(self.product_xy, rotor_dwy, k(1e-5) * rotor_dwx),
+                T::fused(self.parameters.product_xy, rotor_dwy, k(1e-5) * rotor_dwx),
             ),
         );
         let t19 = inner_ring_e0 * inner_ring_e3;
@@ -4509,13 +4716,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t29 = k(2.0) * (t28 - t27);
         let t30 = T::fused(
             t0,
-            T::fused(-t21, self.offset_z, t24 * self.offset_y),
-            t2 * T::fused(t26, self.offset_z, t29 * self.offset_y),
+            T::fused(-t21, self.parameters.offset_z, t24 * self.parameters.offset_y),
+            t2 * T::fused(t26, self.parameters.offset_z, t29 * self.parameters.offset_y),
         );
         let t31 = k(2.0) * (t28 + t27);
         let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t25));
-        let t33 = T::fused(t4, T::fused(t31, self.offset_z, t32 * self.offset_y), -t30)
-            - (t18 + T::fused(t4, t15, -T::fused(t0, t10, t2 * t14)));
+        let t33 = T::fused(
+            t4,
+            T::fused(t31, self.parameters.offset_z, t32 * self.parameters.offset_y),
+            -t30,
+        ) - (t18 + T::fused(t4, t9, t15));
         let t34 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
@@ -4536,29 +4746,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t39 = k(2.0) * (t20 + t19);
         let t40 = T::fused(
             t0,
-            T::fused(t38, self.offset_z, t24 * self.offset_x),
-            t2 * T::fused(-t39, self.offset_z, t29 * self.offset_x),
+            T::fused(t38, self.parameters.offset_z, t24 * self.parameters.offset_x),
+            t2 * T::fused(-t39, self.parameters.offset_z, t29 * self.parameters.offset_x),
         );
         let t41 = k(2.0) * (t23 - t22);
-        let t42 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t11));
-        let t43 = k(2.0) * (t7 + t6);
-        let t44 = k(2.0) * (t9 - t8);
+        let t42 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
+        let t43 = k(2.0) * (t14 + t13);
+        let t44 = k(2.0) * (t12 - t11);
         let t45 = T::fused(
             t4,
-            t44 * self.imbalance_z,
-            T::fused(-t0, t42 * self.imbalance_z, t2 * (t43 * self.imbalance_z)),
+            t44 * self.parameters.imbalance_z,
+            T::fused(
+                -t0,
+                t42 * self.parameters.imbalance_z,
+                t2 * (t43 * self.parameters.imbalance_z),
+            ),
         );
         let t46 = rotor_wx * rotor_wx;
         let t47 = T::fused(
             rotor_wy,
             t16,
             T::fused(
-                self.product_xz,
+                self.parameters.product_xz,
                 T::fused(rotor_wz, rotor_wz, -t46),
                 k(5e-6) * (rotor_wx * rotor_wz),
             ),
         );
-        let t48 = t47 + T::fused(k(5e-6), rotor_dwy, self.product_xy * rotor_dwx) - t45;
+        let t48 = t47
+            + T::fused(k(5e-6), rotor_dwy, self.parameters.product_xy * rotor_dwx) - t45;
         let t49 = T::fused(
             inner_ring_e2,
             rotor_e3,
@@ -4572,19 +4787,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t51 = T::fused(-t49, t50, k(1.0));
         let t52 = T::fused(
             t4,
-            t44 * self.imbalance_y,
-            T::fused(-t0, t42 * self.imbalance_y, t2 * (t43 * self.imbalance_y)),
+            t44 * self.parameters.imbalance_y,
+            T::fused(
+                -t0,
+                t42 * self.parameters.imbalance_y,
+                t2 * (t43 * self.parameters.imbalance_y),
+            ),
         );
         let t53 = T::fused(
             rotor_wz,
             t17,
             T::fused(
-                self.product_xy,
+                self.parameters.product_xy,
                 T::fused(rotor_wy, rotor_wy, -t46),
                 k(5e-6) * (rotor_wx * rotor_wy),
             ),
         );
-        let t54 = t53 - T::fused(k(5e-6), rotor_dwz, self.product_xz * rotor_dwx) - t52;
+        let t54 = t53
+            - T::fused(k(5e-6), rotor_dwz, self.parameters.product_xz * rotor_dwx) - t52;
         let t55 = T::fused(
             inner_ring_e3,
             rotor_e3,
@@ -4600,7 +4820,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             k(2e-6),
             inner_ring_dwy,
             -(t57
-                - T::fused(t4, T::fused(t41, self.offset_z, t32 * self.offset_x), -t40)),
+                - T::fused(
+                    t4,
+                    T::fused(
+                        t41,
+                        self.parameters.offset_z,
+                        t32 * self.parameters.offset_x,
+                    ),
+                    -t40,
+                )),
         );
         let t59 = T::fused(
             outer_ring_e3,
@@ -4618,15 +4846,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t64 = T::fused(-outer_ring_e2, t63, k(1.0));
         let t65 = T::fused(
             -t0,
-            T::fused(t38, self.offset_y, t21 * self.offset_x),
-            t2 * T::fused(t39, self.offset_y, t26 * self.offset_x),
+            T::fused(t38, self.parameters.offset_y, t21 * self.parameters.offset_x),
+            t2 * T::fused(t39, self.parameters.offset_y, t26 * self.parameters.offset_x),
         );
         let t66 = T::fused(t56, t48, t51 * t54);
         let t67 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
             -(t66
-                - T::fused(t4, T::fused(-t41, self.offset_y, t31 * self.offset_x), -t65)),
+                - T::fused(
+                    t4,
+                    T::fused(
+                        -t41,
+                        self.parameters.offset_y,
+                        t31 * self.parameters.offset_x,
+                    ),
+                    -t65,
+                )),
         );
         let t68 = T::fused(
             k(1e-6),
@@ -4652,7 +4888,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             -t57,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 550 operations (219 ±, 328 ×, 3 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 523 operations (212 ±, 309 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4677,12 +4913,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let t0 = outer_ring_wy * outer_ring_wz;
-        let t1 = k(0.08) * self.imbalance_y;
-        let t2 = self.imbalance_y * t1;
-        let t3 = self.imbalance_z * self.imbalance_z;
-        let t4 = k(0.08) * t3;
-        let t5 = t4 - t2;
-        let t6 = T::fused(
+        let t1 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4691,9 +4922,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = k(2.0) * t6;
-        let t8 = T::fused(-t6, t7, k(1.0));
-        let t9 = T::fused(
+        let t2 = k(2.0) * t1;
+        let t3 = T::fused(-t1, t2, k(1.0));
+        let t4 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4702,15 +4933,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t10 = t9 * t7;
-        let t11 = self.imbalance_z * t10;
-        let t12 = k(0.16) * self.imbalance_y;
-        let t13 = T::fused(-t10, T::fused(-t8, t5, t12 * t11), self.imbalance_z * t1);
-        let t14 = t8 * t12;
-        let t15 = T::fused(k(0.16), t11, t14);
-        let t16 = k(0.5) * (self.offset_z * t15);
-        let t17 = t16 - t13;
-        let t18 = T::fused(
+        let t5 = t4 * t2;
+        let t6 = T::fused(t3, self.derived[33], t5 * self.derived[34]);
+        let t7 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4719,8 +4944,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4729,288 +4955,369 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t21 = t20 * t19;
-        let t22 = T::fused(-self.product_xy, t10, self.product_xz * t8);
-        let t23 = T::fused(-t18, t19, k(1.0));
-        let t24 = self.offset_y * t21;
-        let t25 = T::fused(self.offset_x, t23, t24);
-        let t26 = T::fused(-k(0.08), self.imbalance_z * t8, t1 * t10);
-        let t27 = T::fused(-t23, t22, t26 * t25);
-        let t28 = k(0.08) * self.offset_z;
-        let t29 = outer_ring_wz - inner_ring_wz;
-        let t30 = t29 * t29;
-        let t31 = inner_ring_wx - rotor_wx;
-        let t32 = T::fused(self.offset_z, t26, t4);
-        let t33 = t10 * T::fused(t10, t5, self.imbalance_z * t14);
-        let t34 = outer_ring_wy * T::fused(t21, T::fused(t21, t13, t27), t17);
-        let t35 = t2 + t33;
-        let t36 = self.offset_x * self.offset_x;
-        let t37 = T::fused(
-            k(0.08),
-            T::fused(self.offset_y, self.offset_y, -t36),
-            k(4e-6),
-        ) + t35;
-        let t38 = k(0.16) * self.offset_x;
-        let t39 = k(2.0) * T::fused(self.product_xy, t8, self.product_xz * t10);
-        let t40 = T::fused(self.offset_x, t15, t39);
-        let t41 = self.offset_y * t23;
-        let t42 = T::fused(-t21, t40, t15 * t41);
-        let t43 = k(0.08) * self.offset_y;
-        let t44 = T::fused(
-            -t21,
-            T::fused(-t23, t37, t38 * t24),
-            T::fused(-t21, t42, self.offset_x * t43),
+        let t11 = t10 * t8;
+        let t12 = self.parameters.offset_y * t11;
+        let t13 = T::fused(self.parameters.offset_x, t9, t12);
+        let t14 = self.parameters.imbalance_z * t5;
+        let t15 = t3 * self.derived[35];
+        let t16 = T::fused(k(0.16), t14, t15);
+        let t17 = T::fused(t9, t6, t16 * t13);
+        let t18 = T::fused(-self.derived[6], t3, self.derived[9] * t5);
+        let t19 = self.parameters.offset_z * t18;
+        let t20 = self.derived[36] + t19;
+        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[37] + t20));
+        let t22 = T::fused(
+            -self.parameters.product_xy,
+            t5,
+            self.parameters.product_xz * t3,
         );
-        let t45 = outer_ring_wy * T::fused(k(0.5), t40, -t44);
+        let t23 = T::fused(self.parameters.offset_x, t18, -t22);
+        let t24 = self.derived[38] * t23;
+        let t25 = self.parameters.offset_y * t9;
+        let t26 = T::fused(
+            -t3,
+            T::fused(-t5, self.derived[40], self.parameters.imbalance_z * t15),
+            self.derived[41],
+        );
+        let t27 = T::fused(self.derived[42], t16, t26);
+        let t28 = T::fused(
+            -(self.derived[39] + t18),
+            T::fused(-self.parameters.offset_x, t11, t25),
+            T::fused(-t11, t22, t9 * t27),
+        );
+        let t29 = T::fused(-t24, t21, t28);
+        let t30 = t3 * T::fused(t3, self.derived[40], self.derived[35] * t14);
+        let t31 = self.derived[43] + t30;
+        let t32 = k(1.0)
+            / T::fused(
+                t23,
+                t24,
+                -(self.derived[19]
+                    + (T::fused(-self.parameters.offset_y, t16, k(6e-6)) + t31)),
+            );
+        let t33 = t32 * t29;
+        let t34 = self.derived[38] * t21;
+        let t35 = k(4e-6) + (self.derived[44] + t31);
+        let t36 = T::fused(
+            self.derived[47],
+            T::fused(t9, t12, self.derived[46]),
+            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[45])),
+        );
+        let t37 = T::fused(self.parameters.offset_x, t16, t6);
+        let t38 = T::fused(-t11, t37, t16 * t25);
+        let t39 = T::fused(t9, T::fused(k(2.0), t31, k(1e-5)), -t38);
+        let t40 = outer_ring_wz - inner_ring_wz;
+        let t41 = t40 * T::fused(self.parameters.offset_y, t18, -t26);
+        let t42 = T::fused(-t9, t22, t18 * t13);
+        let t43 = outer_ring_wy * T::fused(t11, T::fused(-t11, t26, t42), t27);
+        let t44 = T::fused(
+            outer_ring_wy,
+            t43,
+            -T::fused(-t40, T::fused(-outer_ring_wy, t39, t41), k(10.0) * (t9 * t18)),
+        );
+        let t45 = inner_ring_wx - rotor_wx;
         let t46 = T::fused(
-            -t31,
-            T::fused(k(5e-6) - (t33 - t32), t29 * t23, t34),
-            t29 * t45,
+            -k(2.0),
+            t45 * T::fused(-k(0.25), t45 * t37, t41),
+            k(0.8) * t13,
         );
         let t47 = T::fused(
-            t30,
-            T::fused(t28, t25, T::fused(-t21, t17, t27)),
-            T::fused(-T::fused(t21, t16, t27), t31 * t31, k(2.0) * t46),
+            t11,
+            T::fused(-t9, t35, self.derived[47] * t12),
+            -T::fused(-t11, t38, self.derived[26]),
         );
-        let t48 = T::fused(self.offset_y, t26, t13);
-        let t49 = T::fused(t23, T::fused(k(2.0), t35, k(1e-5)), -t42);
+        let t48 = outer_ring_wy * T::fused(k(2.0), t47, t37);
+        let t49 = t11 * t16;
         let t50 = T::fused(
-            -t48,
-            t30,
-            T::fused(k(10.0), t23 * t26, outer_ring_wy * T::fused(t29, t49, -t34)),
+            k(5.0),
+            t49,
+            -T::fused(outer_ring_wy, T::fused(-k(0.5), t48, t45 * t39), t46),
         );
-        let t51 = T::fused(t15, t25, t23 * t39);
-        let t52 = k(1e-5) + t2;
-        let t53 = T::fused(-k(0.5), t51, t21 * (t52 + t32));
-        let t54 = k(1.0) / (t4 + t52);
-        let t55 = t54 * t53;
-        let t56 = T::fused(
-            outer_ring_wy,
-            T::fused(t31, t49, -t45),
-            T::fused(-k(5.0), t21 * t15, k(0.8) * t25),
-        );
-        let t57 = T::fused(
+        let t51 = T::fused(-t24, t44, t50);
+        let t52 = T::fused(
             k(2.0),
-            t31 * T::fused(-t29, t48, k(0.25) * (t31 * t40)),
-            t56,
+            T::fused(k(5e-6) - (t30 - t20), t40 * t9, t43),
+            t45 * T::fused(self.derived[42], t49, t42),
         );
-        let t58 = T::fused(self.offset_x, t26, -t22);
-        let t59 = t54 * t58;
-        let t60 = T::fused(t59, t50, -t57);
-        let t61 = T::fused(
-            t28 + t26,
-            T::fused(self.offset_x, t21, -t41),
-            T::fused(-t21, t22, t23 * t17),
-        );
-        let t62 = T::fused(t59, t53, -t61);
-        let t63 = T::fused(
-            t58,
-            t59,
-            -T::fused(k(0.08), t36, T::fused(self.offset_y, t43 - t15, k(6e-6) + t35)),
-        );
-        let t64 = k(1.0) / t63;
-        let t65 = t64 * t62;
-        let t66 = T::fused(
-            k(0.08),
-            T::fused(self.offset_z, T::fused(k(25.0), t26, self.offset_z), t3 + t36),
-            k(8e-6),
-        );
-        let t67 = t33
-            - T::fused(t21, T::fused(t21, t37, -T::fused(-t38, t41, t51)), t66);
-        let t68 = T::fused(t65, t60, -T::fused(t55, t50, t47))
-            / T::fused(t62, t65, -T::fused(t53, t55, t67));
-        let t69 = outer_ring_wx * outer_ring_wy;
-        let t70 = T::fused(inner_ring_wy, t29, T::fused(-t21, t68, t0 * t23));
-        let t71 = T::fused(inner_ring_wx, t29, -T::fused(t23, t68, t0 * t21));
-        let t72 = T::fused(-t64, t60, t65 * t68);
-        let t73 = t69 + t72;
-        let t74 = rotor_wx * self.imbalance_z;
-        let t75 = rotor_wx * self.imbalance_y;
-        let t76 = T::fused(-inner_ring_wx, self.offset_z, inner_ring_wz * self.offset_x);
-        let t77 = T::fused(-inner_ring_wy, self.offset_x, inner_ring_wx * self.offset_y);
-        let t78 = T::fused(-inner_ring_wz, t76, inner_ring_wy * t77)
-            - T::fused(rotor_wz, t74, rotor_wy * t75);
-        let t79 = T::fused(rotor_wz, t31, T::fused(-t8, t71, t10 * t73));
-        let t80 = T::fused(rotor_wy, t31, T::fused(t10, t71, t8 * t73));
-        let t81 = T::fused(self.imbalance_z, t79, self.imbalance_y * t80)
-            + (t78 - T::fused(-self.offset_z, t71, self.offset_y * t73));
-        let t82 = rotor_e0 * rotor_e0;
-        let t83 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t82));
-        let t84 = T::fused(self.offset_z, t70, self.offset_x * t73);
-        let t85 = T::fused(self.offset_y, t70, self.offset_x * t71);
-        let t86 = T::fused(-inner_ring_wz, self.offset_y, inner_ring_wy * self.offset_z);
-        let t87 = T::fused(-inner_ring_wx, t77, inner_ring_wz * t86);
-        let t88 = T::fused(-inner_ring_wy, t86, inner_ring_wx * t76);
-        let t89 = T::fused(-rotor_wz, self.imbalance_y, rotor_wy * self.imbalance_z);
-        let t90 = T::fused(-rotor_wx, t75, rotor_wz * t89)
-            + T::fused(-t87, t8, t88 * t10);
-        let t91 = T::fused(t59, t72, -T::fused(-t54, t50, t55 * t68)) - t70;
-        let t92 = T::fused(self.imbalance_z, t91, -(t90 - T::fused(t8, t84, t10 * t85)));
-        let t93 = rotor_e0 * rotor_e3;
-        let t94 = rotor_e1 * rotor_e2;
-        let t95 = k(2.0) * (t94 - t93);
-        let t96 = T::fused(rotor_wy, t89, rotor_wx * t74) + T::fused(t87, t10, t88 * t8);
-        let t97 = T::fused(
-            self.imbalance_y,
-            t91,
-            -(t96 - T::fused(-t10, t84, t8 * t85)),
-        );
-        let t98 = rotor_e0 * rotor_e2;
-        let t99 = rotor_e1 * rotor_e3;
-        let t100 = k(2.0) * (t99 + t98);
-        let t101 = T::fused(t100, t97, -T::fused(-t83, t81, t95 * t92));
-        let t102 = k(2.0) * (t94 + t93);
-        let t103 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t82));
-        let t104 = rotor_e0 * rotor_e1;
-        let t105 = rotor_e2 * rotor_e3;
-        let t106 = k(2.0) * (t105 - t104);
-        let t107 = T::fused(t106, t97, T::fused(-t102, t81, t103 * t92));
-        let t108 = k(2.0) * (t99 - t98);
-        let t109 = k(2.0) * (t105 + t104);
-        let t110 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t82));
-        let t111 = T::fused(t110, t97, T::fused(t108, t81, t109 * t92));
-        let t112 = k(0.08) * t101;
-        let t113 = T::fused(-k(0.08), t107, k(0.8));
-        let t114 = k(0.1) + t113;
-        let t115 = k(0.08) * t111;
-        let t116 = rotor_wx * rotor_wx;
-        let t117 = rotor_wy * self.product_xz;
-        let t118 = T::fused(
-            rotor_wz,
-            t117,
+        let t53 = T::fused(
+            -t40,
             T::fused(
-                self.product_xy,
-                T::fused(rotor_wy, rotor_wy, -t116),
-                k(5e-6) * (rotor_wx * rotor_wy),
+                t40,
+                T::fused(-t11, t27, T::fused(self.derived[39], t13, t42)),
+                t48,
+            ),
+            t45 * t52,
+        );
+        let t54 = T::fused(-t51, t33, T::fused(t44, t34, t53))
+            / T::fused(t29, t33, T::fused(-t21, t34, T::fused(k(2.0), t19, t36)));
+        let t55 = outer_ring_wx * outer_ring_wy;
+        let t56 = T::fused(inner_ring_wy, t40, T::fused(-t11, t54, t0 * t9));
+        let t57 = T::fused(inner_ring_wx, t40, -T::fused(t9, t54, t0 * t11));
+        let t58 = T::fused(t33, t54, t32 * t51);
+        let t59 = t55 - t58;
+        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[38] * t44)) + t56;
+        let t61 = T::fused(
+            self.parameters.offset_x,
+            t57,
+            self.parameters.offset_y * t56,
+        );
+        let t62 = T::fused(
+            self.parameters.offset_x,
+            t59,
+            self.parameters.offset_z * t56,
+        );
+        let t63 = T::fused(
+            -inner_ring_wy,
+            self.parameters.offset_x,
+            inner_ring_wx * self.parameters.offset_y,
+        );
+        let t64 = T::fused(
+            -inner_ring_wz,
+            self.parameters.offset_y,
+            inner_ring_wy * self.parameters.offset_z,
+        );
+        let t65 = T::fused(-inner_ring_wx, t63, inner_ring_wz * t64);
+        let t66 = T::fused(
+            -inner_ring_wx,
+            self.parameters.offset_z,
+            inner_ring_wz * self.parameters.offset_x,
+        );
+        let t67 = T::fused(-inner_ring_wy, t64, inner_ring_wx * t66);
+        let t68 = T::fused(
+            -rotor_wz,
+            self.parameters.imbalance_y,
+            rotor_wy * self.parameters.imbalance_z,
+        );
+        let t69 = rotor_wx * self.parameters.imbalance_z;
+        let t70 = T::fused(rotor_wy, t68, rotor_wx * t69) + T::fused(t65, t5, t67 * t3);
+        let t71 = T::fused(
+            self.parameters.imbalance_y,
+            t60,
+            t70 + T::fused(-t3, t61, t5 * t62),
+        );
+        let t72 = rotor_e0 * rotor_e2;
+        let t73 = rotor_e1 * rotor_e3;
+        let t74 = k(2.0) * (t73 + t72);
+        let t75 = rotor_wx * self.parameters.imbalance_y;
+        let t76 = T::fused(-rotor_wx, t75, rotor_wz * t68)
+            + T::fused(-t65, t3, t67 * t5);
+        let t77 = T::fused(
+            self.parameters.imbalance_z,
+            t60,
+            t76 - T::fused(t5, t61, t3 * t62),
+        );
+        let t78 = rotor_e0 * rotor_e3;
+        let t79 = rotor_e1 * rotor_e2;
+        let t80 = k(2.0) * (t79 - t78);
+        let t81 = T::fused(rotor_wy, t45, T::fused(t3, t59, t5 * t57));
+        let t82 = T::fused(rotor_wz, t45, -T::fused(-t5, t59, t3 * t57));
+        let t83 = T::fused(-inner_ring_wz, t66, inner_ring_wy * t63)
+            - T::fused(rotor_wz, t69, rotor_wy * t75);
+        let t84 = t83
+            + T::fused(-self.parameters.offset_y, t59, self.parameters.offset_z * t57)
+            + T::fused(
+                self.parameters.imbalance_y,
+                t81,
+                self.parameters.imbalance_z * t82,
+            );
+        let t85 = rotor_e0 * rotor_e0;
+        let t86 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t85));
+        let t87 = T::fused(-t74, t71, T::fused(t80, t77, t86 * t84));
+        let t88 = rotor_e0 * rotor_e1;
+        let t89 = rotor_e2 * rotor_e3;
+        let t90 = k(2.0) * (t89 - t88);
+        let t91 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t85));
+        let t92 = k(2.0) * (t79 + t78);
+        let t93 = T::fused(t90, t71, T::fused(t91, t77, t92 * t84));
+        let t94 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t85));
+        let t95 = k(2.0) * (t89 + t88);
+        let t96 = k(2.0) * (t73 - t72);
+        let t97 = T::fused(-t94, t71, T::fused(-t95, t77, t96 * t84));
+        let t98 = k(0.08) * t87;
+        let t99 = T::fused(k(0.08), t93, k(0.8));
+        let t100 = k(0.1) + t99;
+        let t101 = k(0.08) * t97;
+        let t102 = T::fused(
+            -T::fused(
+                -t80,
+                self.parameters.imbalance_z,
+                t74 * self.parameters.imbalance_y,
+            ),
+            t98,
+            T::fused(t91, self.parameters.imbalance_z, t90 * self.parameters.imbalance_y)
+                * t99,
+        );
+        let t103 = rotor_wz * self.parameters.product_xy;
+        let t104 = rotor_wy * self.parameters.product_xz;
+        let t105 = T::fused(
+            rotor_wx,
+            t104 - t103,
+            -T::fused(
+                -self.parameters.product_xz,
+                t81,
+                T::fused(self.parameters.product_xy, t82, k(1e-5) * t60),
             ),
         );
-        let t119 = T::fused(
-            t108 * self.imbalance_y,
-            t115,
-            T::fused(t102 * self.imbalance_y, t113, t83 * self.imbalance_y * t112),
+        let t106 = inner_ring_e0 * inner_ring_e3;
+        let t107 = inner_ring_e1 * inner_ring_e2;
+        let t108 = k(2.0) * (t107 - t106);
+        let t109 = inner_ring_e0 * inner_ring_e2;
+        let t110 = inner_ring_e1 * inner_ring_e3;
+        let t111 = k(2.0) * (t110 + t109);
+        let t112 = inner_ring_e0 * inner_ring_e0;
+        let t113 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t112));
+        let t114 = inner_ring_e0 * inner_ring_e1;
+        let t115 = inner_ring_e2 * inner_ring_e3;
+        let t116 = k(2.0) * (t115 - t114);
+        let t117 = T::fused(
+            -T::fused(-t108, self.parameters.offset_z, t111 * self.parameters.offset_y),
+            t98,
+            T::fused(t113, self.parameters.offset_z, t116 * self.parameters.offset_y)
+                * t99,
         );
-        let t120 = t119 - (t118 - T::fused(self.product_xz, t91, k(5e-6) * t80));
-        let t121 = rotor_wz * self.product_xy;
-        let t122 = T::fused(
-            rotor_wy,
-            t121,
+        let t118 = k(2.0) * (t115 + t114);
+        let t119 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t112));
+        let t120 = T::fused(
+            T::fused(t118, self.parameters.offset_z, t119 * self.parameters.offset_y),
+            t101,
+            -t117,
+        )
+            - (t105
+                + T::fused(
+                    T::fused(
+                        t95,
+                        self.parameters.imbalance_z,
+                        t94 * self.parameters.imbalance_y,
+                    ),
+                    t101,
+                    -t102,
+                ));
+        let t121 = T::fused(k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t56), t120);
+        let t122 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t112));
+        let t123 = k(2.0) * (t107 + t106);
+        let t124 = T::fused(
+            -T::fused(t122, self.parameters.offset_z, t111 * self.parameters.offset_x),
+            t98,
+            T::fused(-t123, self.parameters.offset_z, t116 * self.parameters.offset_x)
+                * t99,
+        );
+        let t125 = k(2.0) * (t110 - t109);
+        let t126 = T::fused(
+            t96 * self.parameters.imbalance_z,
+            t101,
             T::fused(
-                self.product_xz,
-                T::fused(rotor_wz, rotor_wz, -t116),
+                t86 * self.parameters.imbalance_z,
+                t98,
+                t92 * self.parameters.imbalance_z * t99,
+            ),
+        );
+        let t127 = rotor_wx * rotor_wx;
+        let t128 = T::fused(
+            rotor_wy,
+            t103,
+            T::fused(
+                self.parameters.product_xz,
+                T::fused(rotor_wz, rotor_wz, -t127),
                 k(5e-6) * (rotor_wx * rotor_wz),
             ),
         );
-        let t123 = T::fused(
-            t108 * self.imbalance_z,
-            t115,
-            T::fused(t102 * self.imbalance_z, t113, t83 * self.imbalance_z * t112),
-        );
-        let t124 = t123 - (t122 - T::fused(-self.product_xy, t91, k(5e-6) * t79));
-        let t125 = T::fused(t8, t120, t10 * t124);
-        let t126 = inner_ring_e0 * inner_ring_e2;
-        let t127 = inner_ring_e1 * inner_ring_e3;
-        let t128 = k(2.0) * (t127 - t126);
-        let t129 = inner_ring_e0 * inner_ring_e1;
-        let t130 = inner_ring_e2 * inner_ring_e3;
-        let t131 = k(2.0) * (t130 + t129);
-        let t132 = inner_ring_e0 * inner_ring_e3;
-        let t133 = inner_ring_e1 * inner_ring_e2;
-        let t134 = k(2.0) * (t133 + t132);
-        let t135 = inner_ring_e0 * inner_ring_e0;
-        let t136 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t135));
-        let t137 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t135));
-        let t138 = k(2.0) * (t133 - t132);
-        let t139 = T::fused(
-            T::fused(t134, self.offset_y, t136 * self.offset_x),
-            t113,
-            T::fused(t137, self.offset_y, t138 * self.offset_x) * t112,
-        );
-        let t140 = T::fused(
-            -k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t73),
-            T::fused(-T::fused(-t128, self.offset_y, t131 * self.offset_x), t115, t139)
-                - t125,
-        );
-        let t141 = k(2.0) * outer_ring_e2;
-        let t142 = outer_ring_e0 * t141;
-        let t143 = T::fused(-t10, t120, t8 * t124);
-        let t144 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t135));
-        let t145 = k(2.0) * (t130 - t129);
-        let t146 = k(2.0) * (t127 + t126);
-        let t147 = T::fused(
-            -T::fused(-t134, self.offset_z, t145 * self.offset_x),
-            t113,
-            T::fused(t137, self.offset_z, t146 * self.offset_x) * t112,
-        );
-        let t148 = T::fused(
-            k(2e-6),
-            t71,
-            T::fused(T::fused(t128, self.offset_z, t144 * self.offset_x), t115, t147)
-                - t143,
-        );
-        let t149 = T::fused(
-            -T::fused(t136, self.offset_z, t145 * self.offset_y),
-            t113,
-            T::fused(-t138, self.offset_z, t146 * self.offset_y) * t112,
-        );
-        let t150 = T::fused(
-            rotor_wx,
-            t117 - t121,
+        let t129 = t128 - T::fused(k(5e-6), t82, self.parameters.product_xy * t60)
+            - t126;
+        let t130 = T::fused(
+            t96 * self.parameters.imbalance_y,
+            t101,
             T::fused(
-                self.product_xz,
-                t80,
-                -T::fused(-k(1e-5), t91, self.product_xy * t79),
+                t86 * self.parameters.imbalance_y,
+                t98,
+                t92 * self.parameters.imbalance_y * t99,
             ),
         );
-        let t151 = T::fused(
-            -T::fused(t103, self.imbalance_z, t106 * self.imbalance_y),
-            t113,
-            T::fused(-t95, self.imbalance_z, t100 * self.imbalance_y) * t112,
+        let t131 = T::fused(
+            rotor_wz,
+            t104,
+            T::fused(
+                self.parameters.product_xy,
+                T::fused(rotor_wy, rotor_wy, -t127),
+                k(5e-6) * (rotor_wx * rotor_wy),
+            ),
         );
-        let t152 = T::fused(
-            T::fused(t109, self.imbalance_z, t110 * self.imbalance_y),
-            t115,
-            t151,
-        ) + t150
-            - T::fused(T::fused(t131, self.offset_z, t144 * self.offset_y), t115, t149);
-        let t153 = T::fused(-k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t70), t152);
-        let t154 = T::fused(t21, t148, t23 * t153);
-        let t155 = T::fused(-k(2e-6), t0, t154);
-        let t156 = T::fused(-outer_ring_e2, t141, k(1.0));
+        let t132 = t131 + T::fused(-k(5e-6), t81, self.parameters.product_xz * t60)
+            - t130;
+        let t133 = T::fused(-t3, t129, t5 * t132);
+        let t134 = T::fused(
+            k(2e-6),
+            t57,
+            -(t133
+                - T::fused(
+                    T::fused(
+                        t125,
+                        self.parameters.offset_z,
+                        t119 * self.parameters.offset_x,
+                    ),
+                    t101,
+                    -t124,
+                )),
+        );
+        let t135 = T::fused(-t9, t121, t11 * t134);
+        let t136 = T::fused(k(2e-6), t0, -t135);
+        let t137 = k(2.0) * outer_ring_e2;
+        let t138 = T::fused(-outer_ring_e2, t137, k(1.0));
+        let t139 = T::fused(
+            T::fused(t122, self.parameters.offset_y, t108 * self.parameters.offset_x),
+            t98,
+            T::fused(t123, self.parameters.offset_y, t113 * self.parameters.offset_x)
+                * t99,
+        );
+        let t140 = T::fused(t5, t129, t3 * t132);
+        let t141 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, t59),
+            -(t140
+                - T::fused(
+                    T::fused(
+                        -t125,
+                        self.parameters.offset_y,
+                        t118 * self.parameters.offset_x,
+                    ),
+                    t101,
+                    -t139,
+                )),
+        );
+        let t142 = outer_ring_e0 * t137;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t68,
-            t69,
+            -t54,
+            t55,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t70,
-            t71,
-            t73,
+            -t56,
+            t57,
+            t59,
+            -t87,
+            t93,
+            t97,
+            -t60,
+            -t82,
+            t81,
+            t98,
+            -(k(0.1) + t100),
             -t101,
-            -t107,
-            t111,
-            t91,
-            -t79,
-            t80,
-            t112,
-            -(k(0.1) + t114),
-            -t115,
-            T::fused(-t156, t155, t142 * t140),
-            -T::fused(t156, t140, t142 * t155),
-            t112,
-            -t114,
-            -t115,
-            T::fused(-t23, t148, t21 * t153),
-            t154,
-            t112,
-            -t113,
-            -t115,
-            -t125,
-            -t143,
+            T::fused(-t142, t141, t138 * t136),
+            T::fused(t142, t136, t138 * t141),
+            t98,
+            -t100,
+            -t101,
+            -T::fused(t11, t121, t9 * t134),
+            t135,
+            t98,
+            -t99,
+            -t101,
+            t140,
+            -t133,
         ];
     }
 }
@@ -5023,7 +5330,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 518 operations (204 ±, 311 ×, 3 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 496 operations (198 ±, 296 ×, 2 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -5037,246 +5344,230 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = k(0.08) * self.imbalance_y;
-        let t1 = self.imbalance_y * t0;
-        let t2 = self.imbalance_z * self.imbalance_z;
-        let t3 = k(0.08) * t2;
-        let t4 = t3 - t1;
-        let t5 = x2.sin();
-        let t6 = t5 * t4;
-        let t7 = k(0.16) * self.imbalance_y;
-        let t8 = x2.cos();
-        let t9 = t8 * t7;
-        let t10 = T::fused(self.imbalance_z, t9, -t6);
-        let t11 = t5 * t10;
-        let t12 = t1 - t11;
-        let t13 = T::fused(k(2.0), t12, k(1e-5));
-        let t14 = x1.sin();
-        let t15 = self.offset_y * t14;
-        let t16 = self.imbalance_z * t5;
-        let t17 = T::fused(-k(0.16), t16, t9);
-        let t18 = T::fused(-self.product_xy, t8, self.product_xz * t5);
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-self.offset_x, t17, t19);
-        let t21 = x1.cos();
-        let t22 = T::fused(t17, t15, t21 * t20);
-        let t23 = T::fused(-t14, t13, t22);
-        let t24 = t8 * t4;
-        let t25 = T::fused(t7, t16, t24);
-        let t26 = T::fused(-t5, t25, self.imbalance_z * t0);
-        let t27 = self.offset_y * t21;
-        let t28 = T::fused(self.offset_x, t14, t27);
-        let t29 = self.imbalance_z * t8;
-        let t30 = T::fused(k(0.08), t29, t0 * t5);
-        let t31 = T::fused(self.product_xy, t5, self.product_xz * t8);
-        let t32 = t14 * t31;
-        let t33 = T::fused(t30, t28, t32);
-        let t34 = t21 * t31;
-        let t35 = T::fused(-self.offset_x, t21, t15);
-        let t36 = T::fused(t30, t35, -t34);
-        let t37 = T::fused(t14, t26, -t36);
-        let t38 = u0 * T::fused(-t14, T::fused(-t21, t26, t33), t21 * t37);
-        let t39 = T::fused(-u0, T::fused(u1, t23, t38), k(10.0) * (t14 * t30));
-        let t40 = T::fused(self.offset_x, t30, t31);
-        let t41 = k(1e-5) + t1;
-        let t42 = k(1.0) / (t3 + t41);
-        let t43 = t42 * t40;
-        let t44 = T::fused(-t14, t20, t17 * t27);
-        let t45 = k(0.16) * self.offset_x;
-        let t46 = t45 * t27;
-        let t47 = self.offset_x * self.offset_x;
-        let t48 = T::fused(
-            k(0.08),
-            T::fused(self.offset_y, self.offset_y, -t47),
-            k(4e-6),
-        ) + t12;
-        let t49 = t14 * t48;
-        let t50 = t21 * t48;
-        let t51 = t45 * t15;
-        let t52 = t51 + t50;
-        let t53 = T::fused(-t14, t49 - t46, t21 * t52) - T::fused(-t14, t22, t21 * t44);
-        let t54 = u0 * t53;
-        let t55 = T::fused(
+        let t0 = x2.cos();
+        let t1 = t0 * self.derived[40];
+        let t2 = x2.sin();
+        let t3 = self.parameters.imbalance_z * t2;
+        let t4 = T::fused(self.derived[35], t3, -t1);
+        let t5 = t0 * t4;
+        let t6 = self.derived[43] - t5;
+        let t7 = T::fused(k(2.0), t6, k(1e-5));
+        let t8 = x1.sin();
+        let t9 = self.parameters.offset_y * t8;
+        let t10 = t0 * self.derived[35];
+        let t11 = T::fused(-k(0.16), t3, t10);
+        let t12 = T::fused(
+            -self.parameters.product_xy,
+            t0,
+            self.parameters.product_xz * t2,
+        );
+        let t13 = k(2.0) * t12;
+        let t14 = T::fused(-self.parameters.offset_x, t11, t13);
+        let t15 = x1.cos();
+        let t16 = T::fused(t11, t9, t15 * t14);
+        let t17 = T::fused(-t8, t7, t16);
+        let t18 = T::fused(self.derived[6], t0, self.derived[9] * t2);
+        let t19 = self.parameters.offset_y * t15;
+        let t20 = T::fused(self.parameters.offset_x, t8, t19);
+        let t21 = T::fused(
+            self.parameters.product_xy,
+            t2,
+            self.parameters.product_xz * t0,
+        );
+        let t22 = t8 * t21;
+        let t23 = T::fused(t18, t20, t22);
+        let t24 = t2 * self.derived[40];
+        let t25 = T::fused(self.parameters.imbalance_z, t10, t24);
+        let t26 = T::fused(-t0, t25, self.derived[41]);
+        let t27 = t15 * t21;
+        let t28 = T::fused(-self.parameters.offset_x, t15, t9);
+        let t29 = T::fused(t18, t28, -t27);
+        let t30 = T::fused(t8, t26, t29);
+        let t31 = u0 * T::fused(t8, T::fused(t15, t26, t23), t15 * t30);
+        let t32 = T::fused(u0, t31, T::fused(-u1, u0 * t17, k(10.0) * (t8 * t18)));
+        let t33 = T::fused(self.parameters.offset_x, t18, t21);
+        let t34 = self.derived[38] * t33;
+        let t35 = T::fused(-t8, t14, t11 * t19);
+        let t36 = k(4e-6) + (self.derived[44] + t6);
+        let t37 = t8 * t36;
+        let t38 = t15 * t36;
+        let t39 = T::fused(self.derived[47], t9, t38);
+        let t40 = T::fused(-t8, T::fused(-self.derived[47], t19, t37), t15 * t39)
+            - T::fused(-t8, t16, t15 * t35);
+        let t41 = u0 * (k(2.0) * t40);
+        let t42 = t15 * t11;
+        let t43 = T::fused(
+            k(5.0),
+            t42,
+            -T::fused(k(0.8), t20, u0 * T::fused(k(0.5), t41, u2 * t17)),
+        );
+        let t44 = T::fused(t34, t32, t43);
+        let t45 = self.derived[39] - t18;
+        let t46 = T::fused(self.derived[42], t11, t26);
+        let t47 = t15 * t46;
+        let t48 = T::fused(t11, t28, t15 * t13);
+        let t49 = self.parameters.offset_z * t18;
+        let t50 = self.derived[36] - t49;
+        let t51 = self.derived[37] + t50;
+        let t52 = T::fused(-k(0.5), t48, t8 * t51);
+        let t53 = T::fused(t34, t52, -T::fused(-t45, t20, t47 + t22));
+        let t54 = k(1.0)
+            / T::fused(
+                t33,
+                t34,
+                -(self.derived[19]
+                    + (T::fused(-self.parameters.offset_y, t11, k(6e-6)) + t6)),
+            );
+        let t55 = t54 * t53;
+        let t56 = T::fused(-t8, t13, t11 * t20);
+        let t57 = T::fused(-t15, t51, k(0.5) * t56);
+        let t58 = t8 * t46;
+        let t59 = T::fused(t34, t57, T::fused(t45, t28, t27 - t58));
+        let t60 = t54 * t59;
+        let t61 = t8 * t11;
+        let t62 = T::fused(t15, t7, -t35);
+        let t63 = T::fused(
+            k(2.0),
+            T::fused(-t8, t39, T::fused(t8, t35, self.derived[26])),
+            t14,
+        );
+        let t64 = u0 * t63;
+        let t65 = T::fused(-u2, t62, k(0.5) * t64);
+        let t66 = T::fused(self.parameters.offset_y, t18, t26);
+        let t67 = u1 * t66;
+        let t68 = T::fused(-k(0.25), u2 * t14, t67);
+        let t69 = T::fused(
+            k(5.0),
+            t61,
+            T::fused(u0, t65, T::fused(-k(0.8), t28, k(2.0) * (u2 * t68))),
+        );
+        let t70 = T::fused(-t8, t30, t46);
+        let t71 = u0 * t70;
+        let t72 = u0 * t62;
+        let t73 = t72 - t67;
+        let t74 = T::fused(u0, t71, T::fused(k(10.0), t15 * t18, u1 * t73));
+        let t75 = T::fused(t34, t74, -t69);
+        let t76 = self.derived[38] * t52;
+        let t77 = self.derived[38] * t57;
+        let t78 = k(5e-6) + (t5 + t50);
+        let t79 = T::fused(
+            -u2,
+            T::fused(-self.derived[42], t42, t23),
+            k(2.0) * T::fused(t78, u1 * t8, -t31),
+        );
+        let t80 = T::fused(
+            u1,
+            T::fused(u1, t47 + T::fused(-self.derived[39], t20, t23), -t41),
+            u2 * t79,
+        );
+        let t81 = t80 - T::fused(t76, t32, t74 * t77) + T::fused(t55, t44, t75 * t60);
+        let t82 = t48 - t37;
+        let t83 = T::fused(
+            self.derived[47],
+            T::fused(-t15, t9, self.derived[46]),
+            t5 + T::fused(-t8, t82, self.derived[45]),
+        );
+        let t84 = k(1.0)
+            / T::fused(t53, t55, -T::fused(t52, t76, -T::fused(-k(2.0), t49, t83)));
+        let t85 = T::fused(
+            self.derived[47],
+            T::fused(-t15, t19, t8 * t9),
+            -T::fused(-t8, t38 - t56, t15 * t82),
+        );
+        let t86 = t85 + T::fused(t52, t77, t76 * t57) - T::fused(t53, t60, t55 * t59);
+        let t87 = t84 * t84;
+        let t88 = u1 * t15;
+        let t89 = u2 * T::fused(-self.derived[42], t61, t29);
+        let t90 = T::fused(-k(2.0), T::fused(-t78, t88, t71), t89);
+        let t91 = u1 * (T::fused(-self.derived[39], t28, t29) + t58);
+        let t92 = t64 + t91;
+        let t93 = T::fused(t55, t75, -T::fused(t76, t74, T::fused(-u2, t90, u1 * t92)));
+        let t94 = T::fused(t84, t81, t93 * (t87 * t86));
+        let t95 = self.parameters.imbalance_z * t0;
+        let t96 = T::fused(-t0, T::fused(self.derived[35], t95, t24), t2 * t4);
+        let t97 = t2 * self.derived[35];
+        let t98 = T::fused(k(0.16), t95, t97);
+        let t99 = k(2.0) * t21;
+        let t100 = T::fused(self.parameters.offset_x, t98, t99);
+        let t101 = T::fused(t19, t98, t8 * t100);
+        let t102 = T::fused(t15, k(2.0) * t96, t101);
+        let t103 = T::fused(
+            -t0,
+            T::fused(-self.parameters.imbalance_z, t97, t1),
+            t2 * t25,
+        );
+        let t104 = T::fused(-self.derived[6], t2, self.derived[9] * t0);
+        let t105 = u1 * T::fused(self.parameters.offset_y, t104, t103);
+        let t106 = T::fused(-self.derived[42], t98, t103);
+        let t107 = T::fused(t104, t28, t15 * t12);
+        let t108 = u0 * T::fused(t8, T::fused(t8, t103, t107), -t106);
+        let t109 = T::fused(
             u0,
-            T::fused(u2, t23, t54),
-            -T::fused(-k(0.8), t28, k(5.0) * (t21 * t17)),
+            t108,
+            -T::fused(-u1, T::fused(-u0, t102, t105), k(10.0) * (t15 * t104)),
         );
-        let t56 = T::fused(-t43, t39, t55);
-        let t57 = k(0.08) * self.offset_z;
-        let t58 = t57 - t30;
-        let t59 = k(0.5) * (self.offset_z * t17);
-        let t60 = t59 - t26;
-        let t61 = t21 * t60;
-        let t62 = T::fused(t17, t35, t21 * t19);
-        let t63 = T::fused(-self.offset_z, t30, t3);
-        let t64 = t41 + t63;
-        let t65 = T::fused(-k(0.5), t62, t14 * t64);
-        let t66 = T::fused(t43, t65, -T::fused(-t58, t28, t61 + t32));
-        let t67 = k(0.08) * self.offset_y;
-        let t68 = T::fused(
-            t40,
-            t43,
-            -T::fused(k(0.08), t47, T::fused(self.offset_y, t67 - t17, k(6e-6) + t12)),
-        );
-        let t69 = k(1.0) / t68;
-        let t70 = t69 * t66;
-        let t71 = T::fused(-t14, t19, t17 * t28);
-        let t72 = T::fused(-t21, t64, k(0.5) * t71);
-        let t73 = t14 * t60;
-        let t74 = T::fused(t43, t72, T::fused(t35, t58, t34 - t73));
-        let t75 = t69 * t74;
-        let t76 = T::fused(-self.offset_y, t30, t26);
-        let t77 = T::fused(u1, t76, k(0.25) * (u2 * t20));
-        let t78 = T::fused(
-            k(0.5),
-            t20,
-            T::fused(-t14, t52, T::fused(t14, t44, self.offset_x * t67)),
-        );
-        let t79 = u0 * t78;
-        let t80 = T::fused(t21, t13, -t44);
-        let t81 = T::fused(u2, t80, -t79);
-        let t82 = T::fused(
-            k(2.0),
-            u2 * t77,
-            T::fused(u0, t81, T::fused(-k(5.0), t14 * t17, k(0.8) * t35)),
-        );
-        let t83 = u1 * u1;
-        let t84 = T::fused(t14, t37, t60);
-        let t85 = u0 * t84;
-        let t86 = T::fused(u1, t80, t85);
-        let t87 = T::fused(t83, t76, T::fused(k(10.0), t21 * t30, u0 * t86));
-        let t88 = T::fused(t43, t87, t82);
-        let t89 = t42 * t65;
-        let t90 = t42 * t72;
-        let t91 = k(5e-6) + (t11 + t63);
-        let t92 = u2 * u2;
-        let t93 = T::fused(
+        let t110 = T::fused(-self.parameters.offset_x, t104, t12);
+        let t111 = self.derived[38] * t110;
+        let t112 = u0 * T::fused(-k(2.0), T::fused(t8, t101, t8 * (t15 * t96)), t100);
+        let t113 = T::fused(
             -k(2.0),
-            T::fused(-u1, t54, u2 * T::fused(t91, u1 * t14, t38)),
-            t92 * T::fused(-t21, t59, t33),
+            u2 * T::fused(-k(0.25), u2 * t100, t105),
+            u0 * T::fused(-k(0.5), t112, u2 * t102),
         );
-        let t94 = T::fused(t83, T::fused(-t57, t28, t61 + t33), -t93)
-            - T::fused(t89, t39, t87 * t90);
-        let t95 = t49 - (t62 + t46);
-        let t96 = T::fused(
-            k(0.08),
-            T::fused(self.offset_z, T::fused(-k(25.0), t30, self.offset_z), t2 + t47),
-            k(8e-6),
+        let t114 = t8 * t98;
+        let t115 = T::fused(k(5.0), t114, t113) - T::fused(t34, t109, t74 * t111);
+        let t116 = self.parameters.offset_z * t104;
+        let t117 = T::fused(-t15, t99, t28 * t98);
+        let t118 = T::fused(-t8, t116, k(0.5) * t117);
+        let t119 = T::fused(t104, t20, -T::fused(-t15, t106, t8 * t12))
+            + T::fused(-t34, t118, t52 * t111);
+        let t120 = t54 * t54
+            * (T::fused(self.parameters.offset_y, t98, t96)
+                + T::fused(t33, t111, t34 * t110));
+        let t121 = T::fused(-t54, t119, t53 * t120);
+        let t122 = self.derived[38] * t118;
+        let t123 = T::fused(
+            -u2,
+            T::fused(self.derived[42], t114, t107),
+            k(2.0) * T::fused(t88, t116 + t96, -t108),
         );
-        let t97 = T::fused(
-            t66,
-            t70,
-            -T::fused(t65, t89, -(t11 + T::fused(t14, t95, t96))),
+        let t124 = T::fused(u1, T::fused(u1, T::fused(t8, t106, t107), t112), u2 * t123);
+        let t125 = t124 + T::fused(-t76, t109, t74 * t122)
+            - T::fused(t55, t115, t75 * t121);
+        let t126 = T::fused(k(2.0), t116, T::fused(-t8, T::fused(t8, t96, t117), t96))
+            + T::fused(t52, t122, t76 * t118);
+        let t127 = T::fused(
+            -t84,
+            t125,
+            t93 * (t87 * (t126 + T::fused(-t53, t121, t55 * t119))),
         );
-        let t98 = k(1.0) / t97;
-        let t99 = T::fused(t14, t50 + (t51 - t71), t21 * t95)
-            + T::fused(t65, t90, t89 * t72);
-        let t100 = t98 * t98;
-        let t101 = T::fused(t57, t35, -(t36 + t73));
-        let t102 = T::fused(-t14, t59, t36);
-        let t103 = u1 * t21;
-        let t104 = T::fused(-t91, t103, t85);
-        let t105 = T::fused(
-            -t83,
-            t101,
-            T::fused(-t92, t102, k(2.0) * T::fused(u2, t104, u1 * t79)),
+        let t128 = T::fused(u1, t62, k(2.0) * t71);
+        let t129 = T::fused(-t34, t128, T::fused(u0, k(0.5) * t63, t65));
+        let t130 = T::fused(
+            t55,
+            t129,
+            T::fused(t76, t128, T::fused(u1, t63, u2 * (k(2.0) * t70))),
         );
-        let t106 = T::fused(t70, t88, -T::fused(t89, t87, t105));
-        let t107 = T::fused(
-            t98,
-            t94 + T::fused(-t70, t56, t88 * t75),
-            t106 * (t100 * (t99 - T::fused(t66, t75, t70 * t74))),
+        let t131 = t84 * t130;
+        let t132 = t67 - t73;
+        let t133 = T::fused(t34, t132, k(2.0) * (u2 * t66));
+        let t134 = T::fused(t76, t132, T::fused(u2, k(2.0) * (t15 * t78), -(t91 + t92)));
+        let t135 = t84 * T::fused(-t55, t133, t134);
+        let t136 = T::fused(-k(2.0), T::fused(-u2, k(0.25) * t14, t68), t72);
+        let t137 = t84 * T::fused(t55, t136, t89 + t90);
+        let t138 = t84 * t93;
+        let t139 = T::fused(t54, t44, -T::fused(t55, t94, t138 * t60));
+        let t140 = T::fused(t54, t115, t75 * t120) - T::fused(t55, t127, t138 * t121);
+        let t141 = T::fused(-t55, t131, t54 * t129);
+        let t142 = T::fused(t55, t135, t54 * t133);
+        let t143 = T::fused(-t55, t137, t54 * t136);
+        let t144 = T::fused(
+            -t34,
+            t139,
+            T::fused(self.derived[38], t32, -T::fused(t76, t94, t138 * t77)),
         );
-        let t108 = t5 * t7;
-        let t109 = T::fused(-t5, T::fused(self.imbalance_z, t108, t24), t8 * t10);
-        let t110 = T::fused(k(0.16), t29, t108);
-        let t111 = k(2.0) * t31;
-        let t112 = T::fused(self.offset_x, t110, t111);
-        let t113 = T::fused(t27, t110, t14 * t112);
-        let t114 = T::fused(-t21, k(2.0) * t109, t113);
-        let t115 = T::fused(-t5, T::fused(-t7, t29, t6), t8 * t25);
-        let t116 = T::fused(-k(0.08), t16, t0 * t8);
-        let t117 = T::fused(t35, t116, t21 * t18);
-        let t118 = k(0.5) * (self.offset_z * t110);
-        let t119 = t115 - t118;
-        let t120 = u0 * T::fused(-t14, T::fused(t14, t115, t117), t119);
-        let t121 = T::fused(self.offset_y, t116, t115);
-        let t122 = T::fused(
-            t83,
-            t121,
-            -T::fused(u0, T::fused(u1, t114, t120), k(10.0) * (t21 * t116)),
-        );
-        let t123 = T::fused(-self.offset_x, t116, t18);
-        let t124 = t42 * t123;
-        let t125 = u0 * T::fused(k(0.5), t112, T::fused(-t14, t113, t14 * (t21 * t109)));
-        let t126 = T::fused(
-            k(2.0),
-            u2 * T::fused(-k(0.25), u2 * t112, u1 * t121),
-            T::fused(-k(5.0), t14 * t110, u0 * T::fused(-u2, t114, t125)),
-        );
-        let t127 = t126 + T::fused(t43, t122, t87 * t124);
-        let t128 = self.offset_z * t116;
-        let t129 = T::fused(-t21, t111, t35 * t110);
-        let t130 = T::fused(-t14, t128, k(0.5) * t129);
-        let t131 = T::fused(t28, t116, -T::fused(-t21, t119, t14 * t18))
-            + T::fused(-t43, t130, t65 * t124);
-        let t132 = t69 * t69
-            * (T::fused(-self.offset_y, t110, t109) - T::fused(t40, t124, t43 * t123));
-        let t133 = T::fused(t69, t131, t66 * t132);
-        let t134 = t42 * t130;
-        let t135 = T::fused(
-            -k(2.0),
-            T::fused(u1, t125, u2 * T::fused(t103, t128 - t109, t120)),
-            t92 * T::fused(t14, t118, t117),
-        );
-        let t136 = T::fused(t83, T::fused(t14, t119, t117), -t135)
-            + T::fused(-t89, t122, t87 * t134);
-        let t137 = T::fused(
-            -k(0.08),
-            self.offset_z * (k(25.0) * t116),
-            t14 * T::fused(-t14, t109, t129),
-        );
-        let t138 = t109 + t137 - T::fused(t65, t134, t89 * t130)
-            - T::fused(t66, t133, t70 * t131);
-        let t139 = T::fused(
-            t98,
-            t136 + T::fused(t70, t127, t88 * t133),
-            t106 * (t100 * t138),
-        );
-        let t140 = t85 + t86;
-        let t141 = T::fused(-t43, t140, t79 - t81);
-        let t142 = T::fused(
-            t70,
-            t141,
-            T::fused(t89, t140, k(2.0) * T::fused(u1, t78, u2 * t84)),
-        );
-        let t143 = t98 * t142;
-        let t144 = u0 * t80;
-        let t145 = k(2.0) * u1;
-        let t146 = T::fused(t76, t145, t144);
-        let t147 = T::fused(t43, t146, k(2.0) * (u2 * t76));
-        let t148 = T::fused(
-            -t89,
-            t146,
-            T::fused(-k(2.0), T::fused(-u2, t21 * t91, t79), t101 * t145),
-        );
-        let t149 = t98 * T::fused(t70, t147, t148);
-        let t150 = T::fused(k(2.0), T::fused(u2, k(0.25) * t20, t77), t144);
-        let t151 = t98
-            * T::fused(t70, t150, T::fused(-k(2.0), t104, t102 * (k(2.0) * u2)));
-        let t152 = t98 * t106;
-        let t153 = T::fused(t69, t56, T::fused(t70, t107, t152 * t75));
-        let t154 = T::fused(t69, t127, t88 * t132) - T::fused(t70, t139, t152 * t133);
-        let t155 = T::fused(-t70, t143, t69 * t141);
-        let t156 = T::fused(-t70, t149, t69 * t147);
-        let t157 = T::fused(-t70, t151, t69 * t150);
-        let t158 = T::fused(
-            t43,
-            t153,
-            T::fused(t42, t39, -T::fused(t89, t107, t152 * t90)),
-        );
-        let t159 = T::fused(t42, t122, T::fused(-t89, t139, t152 * t134))
-            + T::fused(-t43, t154, T::fused(-t69, t88, t70 * t152) * t124);
+        let t145 = T::fused(self.derived[38], t109, T::fused(t76, t127, t138 * t122))
+            + T::fused(t34, t140, T::fused(-t54, t75, t55 * t138) * t111);
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -5297,23 +5588,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
             k(0.0),
             k(1.0),
             k(0.0),
-            t107,
+            t94,
+            -t127,
+            t131,
+            -t135,
+            -t137,
+            k(0.0),
             t139,
-            t143,
-            -t149,
-            -t151,
+            -t140,
+            t141,
+            t142,
+            -t143,
             k(0.0),
-            -t153,
-            t154,
-            t155,
-            -t156,
-            -t157,
-            k(0.0),
-            t158,
-            t159,
-            -T::fused(t43, t155, T::fused(t89, t143, t42 * t140)),
-            T::fused(t43, t156, -T::fused(-t89, t149, t42 * t146)),
-            T::fused(t43, t157, t89 * t151),
+            t144,
+            t145,
+            -T::fused(t34, t141, T::fused(t76, t131, self.derived[38] * t128)),
+            T::fused(-t34, t142, T::fused(t76, t135, self.derived[38] * t132)),
+            T::fused(t34, t143, t76 * t137),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

@@ -11,42 +11,43 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 440 operations by relative Euler parameters; 460 operations by rotations of the bodies
-//! * project: 395 operations by relative Euler parameters; 400 operations by rotations of the bodies
-//! * joint_accelerations: 32 operations by normal form; 54 operations by recursion
-//! * joint_accelerations_at: 52 operations by normal form; 74 operations by recursion; 1 more compared
-//! * corrected_accelerations: 162 operations by normal form in the bodies' frames; 164 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 79 operations by derivatives of u̇, from its leaves; 79 operations by normal form of that; 7 more compared
+//! * accelerations: 436 operations by relative Euler parameters; 456 operations by rotations of the bodies
+//! * project: 393 operations by relative Euler parameters; 398 operations by rotations of the bodies
+//! * joint_accelerations: 22 operations by normal form; 47 operations by recursion
+//! * joint_accelerations_at: 42 operations by normal form; 67 operations by recursion; 1 more compared
+//! * corrected_accelerations: 152 operations by normal form in the bodies' frames; 154 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 66 operations by derivatives of the balance, from its leaves, normal form; 66 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 50 | 61 | 0 | 111 | 0 of 18 | 181 | 111 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 138 | 0 | 206 | 0 of 77 | 600 | 206 |
+//! | set_up | what depends on parameters alone | 14 | 28 | 1 | 43 | 0 of 21 | 99 | 43 |
+//! | phi | Φ | 50 | 58 | 0 | 108 | 0 of 18 | 178 | 108 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 | 599 | 205 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 | 546 | 169 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 | 1486 | 315 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
-//! | applied_force | (f, n' − w̃'J'w') | 1 | 14 | 0 | 15 | 9 of 18 | 19 | 15 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 262 | 5 | 440 | 7 of 18 | 506786 | 444 |
-//! | multipliers | λ, the accelerations being known | 115 | 191 | 3 | 309 | 0 of 15 | 3886 | 309 |
-//! | project | (δr, δπ') that changes the rows as given | 147 | 243 | 5 | 395 | 1 of 18 | 416144 | 396 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 172 | 259 | 5 | 436 | 7 of 18 | 505640 | 440 |
+//! | multipliers | λ, the accelerations being known | 114 | 190 | 3 | 307 | 0 of 15 | 3861 | 307 |
+//! | project | (δr, δπ') that changes the rows as given | 147 | 235 | 5 | 387 | 1 of 18 | 414000 | 388 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
-//! | energy | T and V | 19 | 36 | 0 | 55 | 0 of 2 | 56 | 55 |
+//! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
-//! | newton_step | dependent positions, one Newton step | 193 | 321 | 3 | 517 | 6 of 21 | 1.1e9 | 517 |
+//! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 | 1.1e9 | 514 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 10561 | 257 |
-//! | joint_accelerations | u̇ in joint coordinates | 11 | 19 | 2 | 32 | 0 of 3 | 70 | 34 |
+//! | joint_accelerations | u̇ in joint coordinates | 5 | 14 | 1 | 20 | 0 of 3 | 35 | 21 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
-//! | to_maximal | (q, v) of a joint state | 24 | 57 | 0 | 81 | 16 of 39 | 294 | 81 |
+//! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 291 | 78 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 20 | 30 | 2 | 52 | 0 of 3 | 276 | 54 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 62 | 98 | 2 | 162 | 6 of 18 | 2791 | 164 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 55 | 90 | 0 | 145 | 0 of 15 | 758 | 145 |
-//! | corrected_solution | both | 97 | 160 | 2 | 259 | 6 of 33 | 24351 | 261 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 18 | 59 | 2 | 79 | 28 of 42 | 361 | 79 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 25 | 1 | 40 | 0 of 3 | 241 | 41 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 93 | 1 | 150 | 6 of 18 | 2531 | 151 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 83 | 0 | 137 | 0 of 15 | 723 | 137 |
+//! | corrected_solution | both | 90 | 147 | 1 | 238 | 6 of 33 | 22171 | 239 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 14 | 48 | 1 | 63 | 28 of 42 | 173 | 63 |
 //!
 //! # Proof
 //!
@@ -69,21 +70,21 @@
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
-/// The mechanism `gyroscope_parameters`.
+/// Parameters of [`GyroscopeParameters`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GyroscopeParameters<T> {
-    /// Parameter; default 10.0.
+pub struct Parameters<T> {
+    /// Default 10.0.
     pub gravity: T,
-    /// Parameter; default 0.08.
+    /// Default 0.08.
     pub rotor_mass: T,
-    /// Parameter; default 0.000125.
+    /// Default 0.000125.
     pub rotor_offset: T,
-    /// Parameter; default 2e-6.
+    /// Default 2e-6.
     pub ring_axial_inertia: T,
-    /// Parameter; default 1e-6.
+    /// Default 1e-6.
     pub ring_diametral_inertia: T,
 }
-impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeParameters<T> {
+impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
     fn default() -> Self {
         Self {
             gravity: T::constant(10.0),
@@ -94,7 +95,19 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeParameters<T> {
         }
     }
 }
-impl<T> GyroscopeParameters<T> {
+/// The mechanism `gyroscope_parameters`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GyroscopeParameters<T> {
+    parameters: Parameters<T>,
+    /// What depends on parameters alone.
+    derived: [T; 21],
+}
+impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeParameters<T> {
+    fn default() -> Self {
+        Self::new(Parameters::default())
+    }
+}
+impl<T: gyro_sim::Scalar> GyroscopeParameters<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 5] = [
         "gravity",
@@ -103,17 +116,86 @@ impl<T> GyroscopeParameters<T> {
         "ring_axial_inertia",
         "ring_diametral_inertia",
     ];
+    /// The mechanism with these parameters.
+    pub fn new(parameters: Parameters<T>) -> Self {
+        let mut mechanism = Self {
+            parameters,
+            derived: [T::constant(0.0); 21],
+        };
+        mechanism.set_parameters(parameters);
+        mechanism
+    }
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters<T> {
+        &self.parameters
+    }
+    /// Sets all parameters, and computes what depends on them alone.
+    pub fn set_parameters(&mut self, parameters: Parameters<T>) {
+        self.parameters = parameters;
+        let mut derived = self.derived;
+        self.set_up(&mut derived);
+        self.derived = derived;
+    }
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
     pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
+        let mut parameters = self.parameters;
         match index {
-            0 => self.gravity = value,
-            1 => self.rotor_mass = value,
-            2 => self.rotor_offset = value,
-            3 => self.ring_axial_inertia = value,
-            4 => self.ring_diametral_inertia = value,
+            0 => parameters.gravity = value,
+            1 => parameters.rotor_mass = value,
+            2 => parameters.rotor_offset = value,
+            3 => parameters.ring_axial_inertia = value,
+            4 => parameters.ring_diametral_inertia = value,
             _ => return false,
         }
+        self.set_parameters(parameters);
         true
+    }
+    /// What depends on parameters alone: 43 operations (14 ±, 28 ×, 1 ÷).
+    fn set_up(&self, out: &mut [T; 21]) {
+        let k = T::constant;
+        let t0 = self.parameters.rotor_offset * self.parameters.rotor_mass;
+        let t1 = self.parameters.rotor_offset * t0;
+        let t2 = self.parameters.ring_axial_inertia + t1;
+        let t3 = self.parameters.ring_diametral_inertia - t2;
+        let t4 = k(1.0) / (self.parameters.ring_diametral_inertia + k(5e-6) + t1);
+        let t5 = T::fused(
+            t1,
+            T::fused(k(2.0), self.parameters.ring_axial_inertia, t1),
+            self.parameters.ring_diametral_inertia
+                * T::fused(-k(2.0), t2, self.parameters.ring_diametral_inertia),
+        );
+        let t6 = k(4.0) * t3;
+        *out = [
+            k(2.0) * self.parameters.rotor_offset,
+            k(4.0) * self.parameters.rotor_offset,
+            k(0.01) * self.parameters.gravity,
+            self.parameters.ring_axial_inertia - self.parameters.ring_diametral_inertia,
+            self.parameters.gravity * self.parameters.rotor_mass,
+            self.parameters.rotor_mass
+                * (self.parameters.rotor_offset * self.parameters.rotor_offset),
+            k(0.5) * self.parameters.rotor_mass,
+            k(0.5) * self.parameters.ring_diametral_inertia,
+            k(0.5) * self.parameters.ring_axial_inertia,
+            k(200000.0) * t3,
+            k(5e-6) - t3,
+            k(2.0) * self.parameters.ring_diametral_inertia,
+            (k(5e-6) + t3) * t4,
+            k(1e-5) * t4,
+            self.parameters.gravity * t0 * t4,
+            k(800000.0)
+                * (t5
+                    + T::fused(
+                        -k(5e-6),
+                        t3,
+                        self.parameters.ring_axial_inertia
+                            * self.parameters.ring_axial_inertia,
+                    )),
+            t6 - k(2e-5),
+            k(8.0) * self.parameters.ring_diametral_inertia,
+            t6,
+            (t6 + k(2e-5)) * (k(0.5) * t4),
+            t4,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ode for GyroscopeParameters<T> {
@@ -484,7 +566,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 111 operations (50 ±, 61 ×, 0 ÷).
+    /// Writes Φ: 108 operations (50 ±, 58 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -564,10 +646,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
                 t12,
             ),
             -t17,
-            rotor_rx
-                - T::fused(-(k(2.0) * (k(0.5) - t18)), self.rotor_offset, inner_ring_rx),
-            rotor_ry - T::fused(k(2.0) * (t20 + t19), self.rotor_offset, inner_ring_ry),
-            rotor_rz - T::fused(k(2.0) * (t5 - t4), self.rotor_offset, inner_ring_rz),
+            rotor_rx - T::fused(-(k(0.5) - t18), self.derived[0], inner_ring_rx),
+            rotor_ry - T::fused(t20 + t19, self.derived[0], inner_ring_ry),
+            rotor_rz - T::fused(t5 - t4, self.derived[0], inner_ring_rz),
             T::fused(k(2.0) * (t10 + t9), t26, -t25),
             T::fused(-t15, t26, T::fused(-t6, t22, t11 * t23)),
             T::fused(outer_ring_e3, outer_ring_e3, t8 + t16) - k(1.0),
@@ -709,19 +790,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
             t34 - t35,
             rotor_sx
                 - T::fused(
-                    self.rotor_offset,
+                    self.parameters.rotor_offset,
                     T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
                     inner_ring_sx,
                 ),
             rotor_sy
                 - T::fused(
-                    -self.rotor_offset,
+                    -self.parameters.rotor_offset,
                     T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
                     inner_ring_sy,
                 ),
             rotor_sz
                 - T::fused(
-                    self.rotor_offset,
+                    self.parameters.rotor_offset,
                     T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
                     inner_ring_sz,
                 ),
@@ -729,7 +810,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
             -(t56 + t55),
         ];
     }
-    /// Kinetic and potential energy: 55 operations (19 ±, 36 ×, 0 ÷).
+    /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -755,29 +836,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
         let rotor_wz = y[38];
         let t0 = T::fused(
             rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+            k(2.5e-6) * rotor_wz,
+            T::fused(rotor_wy, k(2.5e-6) * rotor_wy, rotor_wx * (k(5e-6) * rotor_wx)),
         );
         let t1 = T::fused(
-            self.rotor_mass,
             T::fused(
                 rotor_sz,
                 rotor_sz,
                 T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
             ),
+            self.derived[6],
             t0,
         );
         let t2 = T::fused(
             inner_ring_wz,
-            inner_ring_wz * self.ring_diametral_inertia,
+            inner_ring_wz * self.derived[7],
             T::fused(
                 inner_ring_wy,
-                inner_ring_wy * self.ring_axial_inertia,
-                inner_ring_wx * (inner_ring_wx * self.ring_diametral_inertia),
+                inner_ring_wy * self.derived[8],
+                inner_ring_wx * (inner_ring_wx * self.derived[7]),
             ),
         );
         let t3 = T::fused(
-            k(0.01),
+            k(0.005),
             T::fused(
                 inner_ring_sz,
                 inner_ring_sz,
@@ -787,15 +868,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
         );
         let t4 = T::fused(
             outer_ring_wz,
-            outer_ring_wz * self.ring_diametral_inertia,
+            outer_ring_wz * self.derived[7],
             T::fused(
                 outer_ring_wy,
-                outer_ring_wy * self.ring_diametral_inertia,
-                outer_ring_wx * (outer_ring_wx * self.ring_axial_inertia),
+                outer_ring_wy * self.derived[7],
+                outer_ring_wx * (outer_ring_wx * self.derived[8]),
             ),
         );
         let t5 = T::fused(
-            k(0.01),
+            k(0.005),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
@@ -803,13 +884,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeParameters<T> {
             ),
             t4,
         );
-        let t6 = k(0.01) * self.gravity;
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
+            kinetic: t5 + t3 + t1,
             potential: T::fused(
                 rotor_ry,
-                self.gravity * self.rotor_mass,
-                T::fused(inner_ring_ry, t6, outer_ring_ry * t6),
+                self.derived[4],
+                T::fused(inner_ring_ry, self.derived[2], outer_ring_ry * self.derived[2]),
             ),
         }
     }
@@ -1043,7 +1123,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeParameters<T> {
             [-rotor_e1, rotor_e0, rotor_e3, -rotor_e2],
         ]
     }
-    /// One Newton step of the dependent positions: 517 operations (193 ±, 321 ×, 3 ÷).
+    /// One Newton step of the dependent positions: 514 operations (193 ±, 318 ×, 3 ÷).
     fn newton_step_on(&self, _t: T, charts: &Self::Vectors, y: &mut Self::State) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1349,9 +1429,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeParameters<T> {
         y[11] = -t83;
         y[12] = -t84;
         y[13] = -t85;
-        y[14] = -(self.rotor_offset * (k(2.0) * (k(0.5) - T::fused(t83, t83, t86))));
-        y[15] = self.rotor_offset * (k(2.0) * (t88 + t87));
-        y[16] = -(self.rotor_offset * (k(2.0) * (t90 - t89)));
+        y[14] = -((k(0.5) - T::fused(t83, t83, t86)) * self.derived[0]);
+        y[15] = (t88 + t87) * self.derived[0];
+        y[16] = -((t90 - t89) * self.derived[0]);
         y[17] = -t140;
         y[18] = -t141;
         y[19] = -t142;
@@ -1480,9 +1560,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeParameters<T> {
         y[29] = k(0.0);
         y[30] = t46;
         y[31] = t47;
-        y[33] = -(self.rotor_offset * T::fused(-t28, inner_ring_wz, t38 * t47));
-        y[34] = -(self.rotor_offset * T::fused(t29, inner_ring_wz, t39 * t47));
-        y[35] = self.rotor_offset * T::fused(t33, inner_ring_wz, t40 * t47);
+        y[33] = -(self.parameters.rotor_offset
+            * T::fused(-t28, inner_ring_wz, t38 * t47));
+        y[34] = -(self.parameters.rotor_offset
+            * T::fused(t29, inner_ring_wz, t39 * t47));
+        y[35] = self.parameters.rotor_offset * T::fused(t33, inner_ring_wz, t40 * t47);
         y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
         y[38] = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
     }
@@ -1668,7 +1750,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 206 operations (68 ±, 138 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 205 operations (68 ±, 137 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1716,10 +1798,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
         let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
         let t29 = k(2.0) * (t19 - t18);
-        let t30 = self.rotor_offset * t25;
-        let t31 = self.rotor_offset * t21;
-        let t32 = self.rotor_offset * t17;
-        let t33 = self.rotor_offset * t24;
+        let t30 = self.parameters.rotor_offset * t25;
+        let t31 = self.parameters.rotor_offset * t21;
+        let t32 = self.parameters.rotor_offset * t17;
+        let t33 = self.parameters.rotor_offset * t24;
         let t34 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
         let t35 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
         let t36 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
@@ -1772,8 +1854,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             T::fused(-t28, t25, t29 * t24),
             T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
             k(-1.0),
-            -(self.rotor_offset * t15),
-            -(self.rotor_offset * (k(4.0) * inner_ring_e1)),
+            -(self.parameters.rotor_offset * t15),
+            -(inner_ring_e1 * self.derived[1]),
             k(1.0),
             k(-1.0),
             -t30,
@@ -1904,16 +1986,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             -T::fused(t22, t28, T::fused(t18, t26, t21 * t25)),
             T::fused(t22, t31, -T::fused(t21, t29, t18 * t30)),
             k(-1.0),
-            t16 * self.rotor_offset,
-            -(t25 * self.rotor_offset),
+            t16 * self.parameters.rotor_offset,
+            -(t25 * self.parameters.rotor_offset),
             k(1.0),
             k(-1.0),
-            t11 * self.rotor_offset,
-            t26 * self.rotor_offset,
+            t11 * self.parameters.rotor_offset,
+            t26 * self.parameters.rotor_offset,
             k(1.0),
             k(-1.0),
-            -(t8 * self.rotor_offset),
-            -(t28 * self.rotor_offset),
+            -(t8 * self.parameters.rotor_offset),
+            -(t28 * self.parameters.rotor_offset),
             k(1.0),
             T::fused(-t8, t39, T::fused(-t16, t33, t11 * t36)),
             -t40,
@@ -2110,14 +2192,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
             k(0.0),
             -(t50 + t31),
             -(t51 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
-            self.rotor_offset * T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
-            self.rotor_offset * T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
-            -(self.rotor_offset * T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54))),
+            self.parameters.rotor_offset
+                * T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
+            self.parameters.rotor_offset
+                * T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
+            -(self.parameters.rotor_offset
+                * T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54))),
             t83,
             -(t84 + T::fused(t49, t65, T::fused(t44, t63, t46 * t64))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 15 operations (1 ±, 14 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2129,30 +2214,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(0.01) * self.gravity;
-        let t1 = self.ring_axial_inertia - self.ring_diametral_inertia;
         *out = [
             k(0.0),
-            -t0,
+            -self.derived[2],
             k(0.0),
             k(0.0),
-            -(outer_ring_wx * outer_ring_wz * t1),
-            outer_ring_wx * outer_ring_wy * t1,
+            -(outer_ring_wx * outer_ring_wz * self.derived[3]),
+            outer_ring_wx * outer_ring_wy * self.derived[3],
             k(0.0),
-            -t0,
+            -self.derived[2],
             k(0.0),
-            inner_ring_wy * inner_ring_wz * t1,
+            inner_ring_wy * inner_ring_wz * self.derived[3],
             k(0.0),
-            -(inner_ring_wx * inner_ring_wy * t1),
+            -(inner_ring_wx * inner_ring_wy * self.derived[3]),
             k(0.0),
-            -(self.gravity * self.rotor_mass),
+            -self.derived[4],
             k(0.0),
             k(0.0),
             -(k(5e-6) * (rotor_wx * rotor_wz)),
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 440 operations (173 ±, 262 ×, 5 ÷).
+    /// Solves eq. (17): 436 operations (172 ±, 259 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2248,17 +2331,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t21 = k(0.5) - T::fused(t2, t2, t20);
         let t22 = k(2.0) * t21;
         let t23 = T::fused(-t19, t9, t22 * t14);
-        let t24 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
-        let t25 = self.ring_diametral_inertia
-            + (t24 + T::fused(t19, k(1e-5) * t18, t22 * (k(1e-5) * t21)));
-        let t26 = k(1.0) / t25;
-        let t27 = t26 * t23;
-        let t28 = T::fused(
+        let t24 = self.parameters.ring_diametral_inertia
+            + (self.derived[5] + T::fused(t19, k(1e-5) * t18, t22 * (k(1e-5) * t21)));
+        let t25 = k(1.0) / t24;
+        let t26 = t25 * t23;
+        let t27 = T::fused(
             t23,
-            t27,
-            -(self.ring_diametral_inertia + T::fused(t10, t9, t15 * t14)),
+            t26,
+            -(self.parameters.ring_diametral_inertia + T::fused(t10, t9, t15 * t14)),
         );
-        let t29 = T::fused(
+        let t28 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -2267,7 +2349,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t30 = T::fused(
+        let t29 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2276,8 +2358,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t31 = t30 * t29;
-        let t32 = T::fused(
+        let t30 = t29 * t28;
+        let t31 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2286,7 +2368,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t33 = T::fused(
+        let t32 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2295,175 +2377,180 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t34 = t33 * t32;
-        let t35 = k(2.0) * (t34 - t31);
-        let t36 = k(0.5) - T::fused(t5, t5, t20);
-        let t37 = k(2.0) * t36;
-        let t38 = t17 + t16;
-        let t39 = k(2.0) * t38;
-        let t40 = k(1e-5) * t36;
-        let t41 = k(1e-5) * t38;
-        let t42 = T::fused(t19, t40, t22 * t41);
-        let t43 = T::fused(t42, t27, -T::fused(-t37, t9, t39 * t14));
-        let t44 = t30 * t30;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t32, t32, t44));
-        let t46 = T::fused(-t35, t28, t45 * t43);
-        let t47 = T::fused(
-            t42,
-            t26 * t42,
-            -(self.ring_axial_inertia + (t24 + T::fused(t37, t40, t39 * t41))),
+        let t33 = t32 * t31;
+        let t34 = k(2.0) * (t33 - t30);
+        let t35 = k(0.5) - T::fused(t5, t5, t20);
+        let t36 = k(2.0) * t35;
+        let t37 = t17 + t16;
+        let t38 = k(2.0) * t37;
+        let t39 = k(1e-5) * t35;
+        let t40 = k(1e-5) * t37;
+        let t41 = T::fused(t19, t39, t22 * t40);
+        let t42 = T::fused(t41, t26, -T::fused(-t36, t9, t38 * t14));
+        let t43 = t29 * t29;
+        let t44 = k(2.0) * (k(0.5) - T::fused(t31, t31, t43));
+        let t45 = T::fused(-t34, t27, t44 * t42);
+        let t46 = T::fused(
+            t41,
+            t25 * t41,
+            -(self.parameters.ring_axial_inertia
+                + (self.derived[5] + T::fused(t36, t39, t38 * t40))),
         );
-        let t48 = T::fused(-t35, t43, t45 * t47);
-        let t49 = k(0.5) - T::fused(t6, t6, t20);
-        let t50 = T::fused(
+        let t47 = T::fused(-t34, t42, t44 * t46);
+        let t48 = k(0.5) - T::fused(t6, t6, t20);
+        let t49 = T::fused(
             inner_ring_wz,
             k(2.0) * (t12 + t11),
-            T::fused(-inner_ring_wx, k(2.0) * t49, inner_ring_wy * (k(2.0) * (t7 - t4))),
+            T::fused(-inner_ring_wx, k(2.0) * t48, inner_ring_wy * (k(2.0) * (t7 - t4))),
         );
-        let t51 = rotor_wx - t50;
-        let t52 = T::fused(
+        let t50 = rotor_wx - t49;
+        let t51 = T::fused(
             inner_ring_wz,
             t22,
-            -T::fused(inner_ring_wx, t15, inner_ring_wy * t39),
+            -T::fused(inner_ring_wx, t15, inner_ring_wy * t38),
         );
-        let t53 = rotor_wz + t52;
-        let t54 = T::fused(
+        let t52 = rotor_wz + t51;
+        let t53 = T::fused(
             inner_ring_wz,
             t19,
-            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t37),
+            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t36),
         );
-        let t55 = rotor_wy - t54;
-        let t56 = k(0.5) / t49 * T::fused(t53, t53, t55 * t55);
-        let t57 = T::fused(rotor_wx, t52, rotor_wz * t50)
-            + T::fused(-t53, t51, t15 * t56);
-        let t58 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t57);
-        let t59 = T::fused(-rotor_wy, t50, rotor_wx * t54)
-            - T::fused(-t55, t51, t10 * t56);
-        let t60 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t59);
-        let t61 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t62 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t63 = inner_ring_e0 * inner_ring_e0;
-        let t64 = inner_ring_wx * inner_ring_wy;
-        let t65 = inner_ring_e0 * inner_ring_e3;
-        let t66 = inner_ring_e1 * inner_ring_e2;
-        let t67 = k(2.0) * (t66 - t65);
-        let t68 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t63)),
-            t62,
-            t67 * t64,
+        let t54 = rotor_wy - t53;
+        let t55 = k(0.5) / t48 * T::fused(t52, t52, t54 * t54);
+        let t56 = T::fused(rotor_wx, t51, rotor_wz * t49)
+            + T::fused(-t52, t50, t15 * t55);
+        let t57 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t56);
+        let t58 = T::fused(-rotor_wy, t49, rotor_wx * t53)
+            - T::fused(-t54, t50, t10 * t55);
+        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t58);
+        let t60 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t61 = inner_ring_e0 * inner_ring_e0;
+        let t62 = inner_ring_wx * inner_ring_wy;
+        let t63 = inner_ring_e0 * inner_ring_e3;
+        let t64 = inner_ring_e1 * inner_ring_e2;
+        let t65 = k(2.0) * (t64 - t63);
+        let t66 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t61)),
+            t60,
+            t65 * t62,
         );
-        let t69 = inner_ring_wx * inner_ring_wz;
-        let t70 = inner_ring_e0 * inner_ring_e2;
-        let t71 = inner_ring_e1 * inner_ring_e3;
-        let t72 = k(2.0) * (t71 + t70);
-        let t73 = self.rotor_offset * T::fused(t72, t69, t68);
-        let t74 = self.rotor_mass * t73;
-        let t75 = t67 * self.rotor_offset;
-        let t76 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t63));
-        let t77 = inner_ring_e0 * inner_ring_e1;
-        let t78 = inner_ring_e2 * inner_ring_e3;
-        let t79 = k(2.0) * (t78 - t77);
-        let t80 = T::fused(t79, t69, -T::fused(k(2.0) * (t66 + t65), t62, t76 * t64));
-        let t81 = self.rotor_offset * t80;
-        let t82 = T::fused(self.rotor_mass, t81, self.gravity * self.rotor_mass);
-        let t83 = t76 * self.rotor_offset;
-        let t84 = k(2.0) * (t78 + t77);
-        let t85 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t63));
-        let t86 = T::fused(t85, t69, -T::fused(-(k(2.0) * (t71 - t70)), t62, t84 * t64));
-        let t87 = self.rotor_offset * t86;
-        let t88 = self.rotor_mass * t87;
-        let t89 = t84 * self.rotor_offset;
-        let t90 = T::fused(t89, t88, T::fused(-t75, t74, t83 * t82))
-            - T::fused(t19, t58, t22 * t60);
-        let t91 = T::fused(t64, t61, -t90);
-        let t92 = t26 * t91;
-        let t93 = T::fused(
+        let t67 = inner_ring_wx * inner_ring_wz;
+        let t68 = inner_ring_e0 * inner_ring_e2;
+        let t69 = inner_ring_e1 * inner_ring_e3;
+        let t70 = k(2.0) * (t69 + t68);
+        let t71 = self.parameters.rotor_offset * T::fused(t70, t67, t66);
+        let t72 = self.parameters.rotor_mass * t71;
+        let t73 = t65 * self.parameters.rotor_offset;
+        let t74 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t61));
+        let t75 = inner_ring_e0 * inner_ring_e1;
+        let t76 = inner_ring_e2 * inner_ring_e3;
+        let t77 = k(2.0) * (t76 - t75);
+        let t78 = T::fused(t77, t67, -T::fused(k(2.0) * (t64 + t63), t60, t74 * t62));
+        let t79 = self.parameters.rotor_offset * t78;
+        let t80 = T::fused(self.parameters.rotor_mass, t79, self.derived[4]);
+        let t81 = t74 * self.parameters.rotor_offset;
+        let t82 = k(2.0) * (t76 + t75);
+        let t83 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t61));
+        let t84 = T::fused(t83, t67, -T::fused(-(k(2.0) * (t69 - t68)), t60, t82 * t62));
+        let t85 = self.parameters.rotor_offset * t84;
+        let t86 = self.parameters.rotor_mass * t85;
+        let t87 = t82 * self.parameters.rotor_offset;
+        let t88 = T::fused(t87, t86, T::fused(-t73, t72, t81 * t80))
+            - T::fused(t19, t57, t22 * t59);
+        let t89 = T::fused(t62, self.derived[3], -t88);
+        let t90 = t25 * t89;
+        let t91 = T::fused(
             t23,
-            t92,
-            -T::fused(inner_ring_wy * inner_ring_wz, t61, T::fused(-t10, t58, t15 * t60)),
+            t90,
+            -T::fused(
+                inner_ring_wy * inner_ring_wz,
+                self.derived[3],
+                T::fused(-t10, t57, t15 * t59),
+            ),
         );
-        let t94 = t30 * t32;
-        let t95 = t33 * t29;
-        let t96 = t30 * t33;
-        let t97 = t32 * t29;
-        let t98 = T::fused(
+        let t92 = t29 * t31;
+        let t93 = t32 * t28;
+        let t94 = t29 * t32;
+        let t95 = t31 * t28;
+        let t96 = T::fused(
             outer_ring_wx,
-            k(2.0) * (t95 - t94),
-            outer_ring_wy * (k(2.0) * (t97 + t96)),
+            k(2.0) * (t93 - t92),
+            outer_ring_wy * (k(2.0) * (t95 + t94)),
         );
-        let t99 = k(0.5) - T::fused(t29, t29, t44);
-        let t100 = T::fused(outer_ring_wz, k(2.0) * t99, -t98);
-        let t101 = inner_ring_wz + t100;
-        let t102 = k(2.0) * (t34 + t31);
-        let t103 = k(2.0) * (t97 - t96);
-        let t104 = T::fused(
+        let t97 = k(0.5) - T::fused(t28, t28, t43);
+        let t98 = T::fused(outer_ring_wz, k(2.0) * t97, -t96);
+        let t99 = inner_ring_wz + t98;
+        let t100 = k(2.0) * (t33 + t30);
+        let t101 = k(2.0) * (t95 - t94);
+        let t102 = T::fused(
             outer_ring_wz,
-            t103,
-            -T::fused(-outer_ring_wx, t102, outer_ring_wy * t45),
+            t101,
+            -T::fused(-outer_ring_wx, t100, outer_ring_wy * t44),
         );
-        let t105 = inner_ring_wy - t104;
-        let t106 = k(2.0) * (k(0.5) - T::fused(t33, t33, t44));
-        let t107 = k(2.0) * (t95 + t94);
-        let t108 = T::fused(
+        let t103 = inner_ring_wy - t102;
+        let t104 = k(2.0) * (k(0.5) - T::fused(t32, t32, t43));
+        let t105 = k(2.0) * (t93 + t92);
+        let t106 = T::fused(
             outer_ring_wz,
-            t107,
-            T::fused(-outer_ring_wx, t106, outer_ring_wy * t35),
+            t105,
+            T::fused(-outer_ring_wx, t104, outer_ring_wy * t34),
         );
-        let t109 = inner_ring_wx - t108;
-        let t110 = k(0.5) / t99 * T::fused(t105, t105, t109 * t109);
-        let t111 = T::fused(inner_ring_wz, t104, inner_ring_wy * t100)
-            - T::fused(-t105, t101, t103 * t110);
-        let t112 = T::fused(inner_ring_wx, t100, inner_ring_wz * t108)
-            - T::fused(-t109, t101, t107 * t110);
-        let t113 = t72 * self.rotor_offset;
-        let t114 = t79 * self.rotor_offset;
-        let t115 = t85 * self.rotor_offset;
-        let t116 = T::fused(t115, t88, T::fused(t113, t74, t114 * t82))
-            + T::fused(t37, t58, t39 * t60);
+        let t107 = inner_ring_wx - t106;
+        let t108 = k(0.5) / t97 * T::fused(t103, t103, t107 * t107);
+        let t109 = T::fused(inner_ring_wz, t102, inner_ring_wy * t98)
+            - T::fused(-t103, t99, t101 * t108);
+        let t110 = T::fused(inner_ring_wx, t98, inner_ring_wz * t106)
+            - T::fused(-t107, t99, t105 * t108);
+        let t111 = t70 * self.parameters.rotor_offset;
+        let t112 = t77 * self.parameters.rotor_offset;
+        let t113 = t83 * self.parameters.rotor_offset;
+        let t114 = T::fused(t113, t86, T::fused(t111, t72, t112 * t80))
+            + T::fused(t36, t57, t38 * t59);
+        let t115 = T::fused(
+            -t34,
+            T::fused(-t27, t109, t42 * t110) + t91,
+            t44 * (T::fused(-t42, t109, t46 * t110) + T::fused(t41, t90, -t114)),
+        );
+        let t116 = T::fused(
+            -t34,
+            T::fused(-t104, t27, t100 * t42),
+            t44 * T::fused(-t104, t42, t100 * t46),
+        );
         let t117 = T::fused(
-            -t35,
-            T::fused(-t28, t111, t43 * t112) + t93,
-            t45 * (T::fused(-t43, t111, t47 * t112) + T::fused(t42, t92, -t116)),
-        );
-        let t118 = T::fused(
-            -t35,
-            T::fused(-t106, t28, t102 * t43),
-            t45 * T::fused(-t106, t43, t102 * t47),
-        );
-        let t119 = T::fused(
             -(k(2.0)
                 * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
             t0,
             outer_ring_wx * outer_ring_wy,
         );
-        let t120 = T::fused(-t1, t118, t119 * T::fused(t107, t46, t103 * t48))
-            + T::fused(outer_ring_wx * outer_ring_wz, t61, -t117);
-        let t121 = t120 / (self.ring_diametral_inertia - T::fused(-t35, t46, t45 * t48));
-        let t122 = t111 + T::fused(t119, t107, -T::fused(-t1, t106, t35 * t121));
-        let t123 = t112 - T::fused(t119, t103, T::fused(-t1, t102, t45 * t121));
-        let t124 = t26 * (t91 + T::fused(-t23, t122, t42 * t123));
+        let t118 = T::fused(-t1, t116, t117 * T::fused(t105, t45, t101 * t47))
+            + T::fused(outer_ring_wx * outer_ring_wz, self.derived[3], -t115);
+        let t119 = t118
+            / (self.parameters.ring_diametral_inertia - T::fused(-t34, t45, t44 * t47));
+        let t120 = t109 + T::fused(t117, t105, -T::fused(-t1, t104, t34 * t119));
+        let t121 = t110 - T::fused(t117, t101, T::fused(-t1, t100, t44 * t119));
+        let t122 = t25 * (t89 + T::fused(-t23, t120, t41 * t121));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t1,
+            -t119,
+            t117,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t120,
             -t121,
-            t119,
+            -t122,
+            t71 - T::fused(-t111, t121, t73 * t122),
+            t79 + T::fused(t112, t121, t81 * t122),
+            -(t85 + T::fused(t113, t121, t87 * t122)),
             k(0.0),
-            k(0.0),
-            k(0.0),
-            t122,
-            -t123,
-            -t124,
-            t73 - T::fused(-t113, t123, t75 * t124),
-            t81 + T::fused(t114, t123, t83 * t124),
-            -(t87 + T::fused(t115, t123, t89 * t124)),
-            k(0.0),
-            -(t57 + T::fused(t19, t124, -T::fused(t10, t122, t37 * t123))),
-            T::fused(t22, t124, -T::fused(-t15, t122, t39 * t123)) - t59,
+            -(t56 + T::fused(t19, t122, -T::fused(t10, t120, t36 * t121))),
+            T::fused(t22, t122, -T::fused(-t15, t120, t38 * t121)) - t58,
         ];
     }
-    /// Writes λ: 309 operations (115 ±, 191 ×, 3 ÷).
+    /// Writes λ: 307 operations (114 ±, 190 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2509,11 +2596,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = self.rotor_mass * rotor_dsx;
+        let t0 = self.parameters.rotor_mass * rotor_dsx;
         let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(self.rotor_mass, rotor_dsy, self.gravity * self.rotor_mass);
-        let t3 = T::fused(k(0.01), self.gravity + inner_ring_dsy, t2);
-        let t4 = self.rotor_mass * rotor_dsz;
+        let t2 = T::fused(self.parameters.rotor_mass, rotor_dsy, self.derived[4]);
+        let t3 = T::fused(k(0.01), self.parameters.gravity + inner_ring_dsy, t2);
+        let t4 = self.parameters.rotor_mass * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e0;
         let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
@@ -2548,115 +2635,122 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeParameters<T> {
         let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t6));
         let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
         let t34 = T::fused(t33, T::fused(t21, t32, -T::fused(-t9, t30, t15 * t31)), t29);
-        let t35 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t36 = T::fused(
-            -self.ring_diametral_inertia,
+        let t35 = T::fused(
+            -self.parameters.ring_diametral_inertia,
             inner_ring_dwx,
-            inner_ring_wy * inner_ring_wz * t35,
+            inner_ring_wy * inner_ring_wz * self.derived[3],
         ) - t34;
-        let t37 = outer_ring_e0 * outer_ring_e0;
-        let t38 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t37));
-        let t39 = outer_ring_e0 * outer_ring_e3;
-        let t40 = outer_ring_e1 * outer_ring_e2;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = outer_ring_e0 * outer_ring_e2;
-        let t43 = outer_ring_e1 * outer_ring_e3;
-        let t44 = k(2.0) * (t43 - t42);
-        let t45 = T::fused(t44, t21, T::fused(t38, t9, t41 * t15));
-        let t46 = k(2.0) * (t14 - t13);
-        let t47 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8));
-        let t48 = inner_ring_e0 * inner_ring_e1;
-        let t49 = inner_ring_e2 * inner_ring_e3;
-        let t50 = k(2.0) * (t49 + t48);
-        let t51 = T::fused(t50, t27, T::fused(t47, t24, t46 * t23));
-        let t52 = T::fused(
+        let t36 = outer_ring_e0 * outer_ring_e0;
+        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t36));
+        let t38 = outer_ring_e0 * outer_ring_e3;
+        let t39 = outer_ring_e1 * outer_ring_e2;
+        let t40 = k(2.0) * (t39 + t38);
+        let t41 = outer_ring_e0 * outer_ring_e2;
+        let t42 = outer_ring_e1 * outer_ring_e3;
+        let t43 = k(2.0) * (t42 - t41);
+        let t44 = T::fused(t43, t21, T::fused(t37, t9, t40 * t15));
+        let t45 = k(2.0) * (t14 - t13);
+        let t46 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8));
+        let t47 = inner_ring_e0 * inner_ring_e1;
+        let t48 = inner_ring_e2 * inner_ring_e3;
+        let t49 = k(2.0) * (t48 + t47);
+        let t50 = T::fused(t49, t27, T::fused(t46, t24, t45 * t23));
+        let t51 = T::fused(
             t22,
-            T::fused(t50, t18, -T::fused(t46, t7, t47 * t12)),
-            t28 * t51,
+            T::fused(t49, t18, -T::fused(t45, t7, t46 * t12)),
+            t28 * t50,
         );
-        let t53 = T::fused(t50, t32, -T::fused(-t47, t31, t46 * t30));
-        let t54 = k(2.0) * (t20 + t19);
-        let t55 = k(2.0) * (t49 - t48);
-        let t56 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8));
+        let t52 = T::fused(t49, t32, -T::fused(-t46, t31, t45 * t30));
+        let t53 = k(2.0) * (t20 + t19);
+        let t54 = k(2.0) * (t48 - t47);
+        let t55 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8));
+        let t56 = T::fused(
+            t4,
+            t55 * self.parameters.rotor_offset,
+            -T::fused(
+                t0,
+                t53 * self.parameters.rotor_offset,
+                t2 * (t54 * self.parameters.rotor_offset),
+            ),
+        );
         let t57 = T::fused(
-            t4,
-            t56 * self.rotor_offset,
-            -T::fused(t0, t54 * self.rotor_offset, t2 * (t55 * self.rotor_offset)),
-        );
-        let t58 = T::fused(
-            self.ring_axial_inertia,
+            self.parameters.ring_axial_inertia,
             inner_ring_dwy,
-            t57 + T::fused(t33, t53, t52),
+            t56 + T::fused(t33, t52, t51),
         );
-        let t59 = T::fused(t44, t50, -T::fused(t38, t46, t41 * t47));
-        let t60 = T::fused(t56, t27, -T::fused(-t55, t24, t54 * t23));
-        let t61 = T::fused(
+        let t58 = T::fused(t43, t49, -T::fused(t37, t45, t40 * t46));
+        let t59 = T::fused(t55, t27, -T::fused(-t54, t24, t53 * t23));
+        let t60 = T::fused(
             t22,
-            T::fused(t56, t18, -T::fused(-t54, t7, t55 * t12)),
-            t28 * t60,
+            T::fused(t55, t18, -T::fused(-t53, t7, t54 * t12)),
+            t28 * t59,
         );
-        let t62 = T::fused(t56, t32, T::fused(t55, t31, t54 * t30));
-        let t63 = T::fused(
+        let t61 = T::fused(t55, t32, T::fused(t54, t31, t53 * t30));
+        let t62 = T::fused(
             t4,
-            t50 * self.rotor_offset,
-            -T::fused(-t0, t46 * self.rotor_offset, t2 * (t47 * self.rotor_offset)),
+            t49 * self.parameters.rotor_offset,
+            -T::fused(
+                -t0,
+                t45 * self.parameters.rotor_offset,
+                t2 * (t46 * self.parameters.rotor_offset),
+            ),
         );
-        let t64 = T::fused(
-            self.ring_diametral_inertia,
+        let t63 = T::fused(
+            self.parameters.ring_diametral_inertia,
             inner_ring_dwz,
-            inner_ring_wx * inner_ring_wy * t35,
-        ) + (t63 - T::fused(t33, t62, t61));
-        let t65 = T::fused(
-            T::fused(t44, t56, -T::fused(-t38, t54, t41 * t55)),
-            t64,
-            -T::fused(-t45, t36, t59 * t58),
+            inner_ring_wx * inner_ring_wy * self.derived[3],
+        ) + (t62 - T::fused(t33, t61, t60));
+        let t64 = T::fused(
+            T::fused(t43, t55, -T::fused(-t37, t53, t40 * t54)),
+            t63,
+            -T::fused(-t44, t35, t58 * t57),
         );
-        let t66 = T::fused(self.ring_axial_inertia, outer_ring_dwx, -t65);
-        let t67 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t37));
-        let t68 = k(2.0) * (t43 + t42);
-        let t69 = k(1.0) / T::fused(-t38, t67, t68 * t44);
-        let t70 = outer_ring_e0 * outer_ring_e1;
-        let t71 = outer_ring_e2 * outer_ring_e3;
-        let t72 = k(2.0) * (t71 - t70);
-        let t73 = T::fused(
-            -T::fused(t67, t21, -T::fused(-t68, t9, t72 * t15)),
-            t36,
-            T::fused(t67, t50, -T::fused(-t72, t47, t68 * t46)) * t58,
+        let t65 = T::fused(self.parameters.ring_axial_inertia, outer_ring_dwx, -t64);
+        let t66 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t36));
+        let t67 = k(2.0) * (t42 + t41);
+        let t68 = k(1.0) / T::fused(-t37, t66, t67 * t43);
+        let t69 = outer_ring_e0 * outer_ring_e1;
+        let t70 = outer_ring_e2 * outer_ring_e3;
+        let t71 = k(2.0) * (t70 - t69);
+        let t72 = T::fused(
+            -T::fused(t66, t21, -T::fused(-t67, t9, t71 * t15)),
+            t35,
+            T::fused(t66, t49, -T::fused(-t71, t46, t67 * t45)) * t57,
         );
-        let t74 = T::fused(T::fused(t67, t56, T::fused(t72, t55, t68 * t54)), t64, -t73);
-        let t75 = T::fused(
-            -self.ring_diametral_inertia,
+        let t73 = T::fused(T::fused(t66, t55, T::fused(t71, t54, t67 * t53)), t63, -t72);
+        let t74 = T::fused(
+            -self.parameters.ring_diametral_inertia,
             outer_ring_dwz,
-            outer_ring_wx * outer_ring_wy * t35,
-        ) - t74;
-        let t76 = k(2.0) * (t40 - t39);
-        let t77 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t37));
-        let t78 = k(2.0) * (t71 + t70);
-        let t79 = T::fused(t78, t21, -T::fused(t76, t9, t77 * t15));
-        let t80 = T::fused(t78, t50, T::fused(t77, t47, t76 * t46));
-        let t81 = k(1.0) / T::fused(-t59, t79, t45 * t80);
-        let t82 = k(1.0) / T::fused(-t53, t60, t51 * t62);
+            outer_ring_wx * outer_ring_wy * self.derived[3],
+        ) - t73;
+        let t75 = k(2.0) * (t39 - t38);
+        let t76 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t36));
+        let t77 = k(2.0) * (t70 + t69);
+        let t78 = T::fused(t77, t21, -T::fused(t75, t9, t76 * t15));
+        let t79 = T::fused(t77, t49, T::fused(t76, t46, t75 * t45));
+        let t80 = k(1.0) / T::fused(-t58, t78, t44 * t79);
+        let t81 = k(1.0) / T::fused(-t52, t59, t50 * t61);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
-            -T::fused(k(0.01), self.gravity + outer_ring_dsy, t3),
+            -T::fused(k(0.01), self.parameters.gravity + outer_ring_dsy, t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t38 * t69, t66, t68 * t69 * t75),
-            -T::fused(t44 * t69, t66, t67 * t69 * t75),
+            -T::fused(t37 * t68, t65, t67 * t68 * t74),
+            -T::fused(t43 * t68, t65, t66 * t68 * t74),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t80 * t81), t58, t79 * t81 * t36),
-            T::fused(-(t45 * t81), t36, t59 * t81 * t58),
+            T::fused(-(t79 * t80), t57, t78 * t80 * t35),
+            T::fused(-(t44 * t80), t35, t58 * t80 * t57),
             -t0,
             -t2,
             -t4,
-            T::fused(t28, t60 * t82, t33 * (t62 * t82)),
-            T::fused(t28, t51 * t82, t33 * (t53 * t82)),
+            T::fused(t28, t59 * t81, t33 * (t61 * t81)),
+            T::fused(t28, t50 * t81, t33 * (t52 * t81)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 395 operations (147 ±, 243 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 387 operations (147 ±, 235 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2701,7 +2795,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
         let t6 = k(2.0) * (t4 + t3);
         let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
         let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
-        let t9 = T::fused(
+        let t9 = inner_ring_e0 * inner_ring_e0;
+        let t10 = (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t9))
+            * self.derived[0];
+        let t11 = inner_ring_e0 * inner_ring_e1;
+        let t12 = inner_ring_e2 * inner_ring_e3;
+        let t13 = (t12 + t11) * self.derived[0];
+        let t14 = self.parameters.rotor_mass * t13;
+        let t15 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2710,7 +2811,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t10 = T::fused(
+        let t16 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2719,8 +2820,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t11 = t10 * t9;
-        let t12 = T::fused(
+        let t17 = t16 * t15;
+        let t18 = T::fused(
             -inner_ring_e0,
             rotor_e3,
             T::fused(
@@ -2729,7 +2830,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
                 T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t13 = T::fused(
+        let t19 = T::fused(
             -inner_ring_e1,
             rotor_e3,
             T::fused(
@@ -2738,76 +2839,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
                 T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t14 = t13 * t12;
-        let t15 = t14 - t11;
-        let t16 = k(2.0) * t15;
-        let t17 = t14 + t11;
-        let t18 = k(2.0) * t17;
-        let t19 = t10 * t10;
-        let t20 = k(0.5) - T::fused(t12, t12, t19);
-        let t21 = k(2.0) * t20;
-        let t22 = k(0.5) - T::fused(t13, t13, t19);
-        let t23 = k(2.0) * t22;
-        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
-        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
-        let t26 = k(5e-6) * t25;
-        let t27 = T::fused(t10, t12, t9 * t13);
-        let t28 = k(2.0) * t27;
-        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
-        let t30 = k(5e-6) * t29;
-        let t31 = T::fused(-t10, t13, t9 * t12);
-        let t32 = k(2.0) * t31;
-        let t33 = self.rotor_mass * row10;
-        let t34 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-            * self.rotor_offset;
-        let t35 = self.rotor_mass * row11;
-        let t36 = inner_ring_e0 * inner_ring_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t36))
-            * self.rotor_offset;
-        let t38 = self.rotor_mass * row12;
-        let t39 = inner_ring_e0 * inner_ring_e1;
-        let t40 = inner_ring_e2 * inner_ring_e3;
-        let t41 = k(2.0) * (t40 + t39) * self.rotor_offset;
-        let t42 = T::fused(t41, t38, -T::fused(-t34, t33, t37 * t35))
-            + T::fused(t16, t26, t21 * t30);
-        let t43 = self.rotor_mass * (self.rotor_offset * self.rotor_offset);
-        let t44 = self.ring_diametral_inertia
-            + (t43 + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
-        let t45 = k(1.0) / t44;
-        let t46 = t45 * t42;
-        let t47 = k(1e-5) * t27;
-        let t48 = k(1e-5) * t31;
-        let t49 = T::fused(-t16, t47, t21 * t48);
-        let t50 = self.rotor_mass * t34;
-        let t51 = t45 * t50;
-        let t52 = t49 * t51;
-        let t53 = self.rotor_mass * t37;
-        let t54 = t45 * t53;
-        let t55 = t49 * t54;
-        let t56 = self.rotor_mass * t41;
-        let t57 = t45 * t56;
-        let t58 = t49 * t57;
-        let t59 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t60 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t61 = t60 * t59;
-        let t62 = T::fused(
+        let t20 = t19 * t18;
+        let t21 = t20 - t17;
+        let t22 = k(2.0) * t21;
+        let t23 = t16 * t16;
+        let t24 = k(0.5) - T::fused(t18, t18, t23);
+        let t25 = k(2.0) * t24;
+        let t26 = self.parameters.ring_diametral_inertia
+            + (self.derived[5] + T::fused(t22, k(1e-5) * t21, t25 * (k(1e-5) * t24)));
+        let t27 = k(1.0) / t26;
+        let t28 = t27 * t14;
+        let t29 = k(0.5) - T::fused(t19, t19, t23);
+        let t30 = k(1e-5) * t29;
+        let t31 = t20 + t17;
+        let t32 = k(1e-5) * t31;
+        let t33 = T::fused(t22, t30, t25 * t32);
+        let t34 = T::fused(self.parameters.rotor_mass, t10, t33 * t28);
+        let t35 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2816,7 +2864,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t63 = T::fused(
+        let t36 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t37 = t36 * t36;
+        let t38 = k(2.0) * (k(0.5) - T::fused(t35, t35, t37));
+        let t39 = T::fused(t16, t18, t15 * t19);
+        let t40 = k(1e-5) * t39;
+        let t41 = T::fused(-t16, t19, t15 * t18);
+        let t42 = k(1e-5) * t41;
+        let t43 = T::fused(-t22, t40, t25 * t42);
+        let t44 = t43 * t28;
+        let t45 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t46 = t36 * t45;
+        let t47 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2825,96 +2900,113 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeParameters<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t64 = t63 * t62;
-        let t65 = k(2.0) * (t64 - t61);
-        let t66 = k(2.0) * (t64 + t61);
-        let t67 = t60 * t60;
-        let t68 = k(2.0) * (k(0.5) - T::fused(t62, t62, t67));
-        let t69 = k(2.0) * (k(0.5) - T::fused(t63, t63, t67));
-        let t70 = k(1.0) / T::fused(-t66, t65, t69 * t68);
-        let t71 = T::fused(row8, t65 * t70, row9 * (t69 * t70));
-        let t72 = t45 * t49;
+        let t48 = t47 * t35;
+        let t49 = k(2.0) * (t48 - t46);
+        let t50 = (t12 - t11) * self.derived[0];
+        let t51 = (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t9))
+            * self.derived[0];
+        let t52 = self.parameters.rotor_mass * t51;
+        let t53 = t27 * t52;
+        let t54 = T::fused(self.parameters.rotor_mass, t50, t33 * t53);
+        let t55 = t43 * t53;
+        let t56 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
+            * self.derived[0];
+        let t57 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
+            * self.derived[0];
+        let t58 = self.parameters.rotor_mass * t57;
+        let t59 = t27 * t58;
+        let t60 = T::fused(-self.parameters.rotor_mass, t56, t33 * t59);
+        let t61 = t43 * t59;
+        let t62 = T::fused(
+            -row1,
+            T::fused(-t38, t54, t49 * t55),
+            row0 * T::fused(-t38, t60, t49 * t61),
+        );
+        let t63 = k(2.0) * t39;
+        let t64 = k(2.0) * t41;
+        let t65 = t27 * t43;
+        let t66 = T::fused(
+            t43,
+            t65,
+            -(self.parameters.ring_diametral_inertia + T::fused(t63, t40, t64 * t42)),
+        );
+        let t67 = k(2.0) * (k(0.5) - T::fused(t47, t47, t37));
+        let t68 = k(2.0) * t29;
+        let t69 = k(2.0) * t31;
+        let t70 = T::fused(t33, t65, -T::fused(-t68, t40, t69 * t42));
+        let t71 = k(2.0) * (t48 + t46);
+        let t72 = T::fused(
+            t33,
+            t27 * t33,
+            -(self.parameters.ring_axial_inertia
+                + (self.derived[5] + T::fused(t68, t30, t69 * t32))),
+        );
         let t73 = T::fused(
-            t49,
-            t72,
-            -(self.ring_diametral_inertia + T::fused(t28, t47, t32 * t48)),
+            -t49,
+            T::fused(-t67, t66, t71 * t70),
+            t38 * T::fused(-t67, t70, t71 * t72),
         );
-        let t74 = T::fused(row8, t68 * t70, row9 * (t66 * t70));
-        let t75 = k(1e-5) * t22;
-        let t76 = k(1e-5) * t17;
-        let t77 = T::fused(t16, t75, t21 * t76);
-        let t78 = T::fused(t77, t72, -T::fused(-t23, t47, t18 * t48));
-        let t79 = T::fused(-t73, t71, t78 * t74)
-            + T::fused(row7, t58, -T::fused(-row5, t52, row6 * t55));
-        let t80 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-            * self.rotor_offset;
-        let t81 = k(2.0) * (t40 - t39) * self.rotor_offset;
-        let t82 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t36))
-            * self.rotor_offset;
-        let t83 = T::fused(t82, t38, -T::fused(t80, t33, t81 * t35))
-            - T::fused(t23, t26, t18 * t30);
-        let t84 = T::fused(-t77, t51, self.rotor_mass * t80);
-        let t85 = T::fused(t77, t54, self.rotor_mass * t81);
-        let t86 = T::fused(t77, t57, self.rotor_mass * t82);
-        let t87 = T::fused(
-            t77,
-            t45 * t77,
-            -(self.ring_axial_inertia + (t43 + T::fused(t23, t75, t18 * t76))),
+        let t74 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+        let t75 = T::fused(-t49, t66, t38 * t70);
+        let t76 = k(2.0) * T::fused(t36, t35, t47 * t45);
+        let t77 = T::fused(-t49, t70, t38 * t72);
+        let t78 = k(2.0) * T::fused(-t36, t47, t35 * t45);
+        let t79 = T::fused(-t73, t8, T::fused(t76, t75, t78 * t77) * t74)
+            - T::fused(row2, T::fused(-t38, t34, t49 * t44), t62);
+        let t80 = k(1.0) / T::fused(-t71, t49, t67 * t38);
+        let t81 = T::fused(row8, t49 * t80, row9 * (t67 * t80));
+        let t82 = T::fused(row8, t38 * t80, row9 * (t71 * t80));
+        let t83 = T::fused(-t70, t81, t72 * t82)
+            + T::fused(row7, t34, T::fused(-row6, t54, row5 * t60));
+        let t84 = self.parameters.rotor_mass * row12;
+        let t85 = self.parameters.rotor_mass * row11;
+        let t86 = self.parameters.rotor_mass * row10;
+        let t87 = k(1.0) / T::fused(-t69, t22, t68 * t25);
+        let t88 = T::fused(row13, t22 * t87, row14 * (t68 * t87));
+        let t89 = k(5e-6) * t88;
+        let t90 = T::fused(row13, t25 * t87, row14 * (t69 * t87));
+        let t91 = k(5e-6) * t90;
+        let t92 = T::fused(t22, t89, t25 * t91)
+            + T::fused(t84, t13, T::fused(-t85, t51, t86 * t57));
+        let t93 = t27 * t92;
+        let t94 = T::fused(t68, t89, t69 * t91)
+            + T::fused(-t84, t10, T::fused(t85, t50, t86 * t56));
+        let t95 = T::fused(-t66, t81, t70 * t82)
+            + T::fused(row7, t44, T::fused(-row6, t55, row5 * t61));
+        let t96 = T::fused(
+            -t38,
+            T::fused(-t33, t93, t94) - t83,
+            t49 * (T::fused(-t43, t93, T::fused(-t63, t89, t64 * t91)) - t95),
         );
-        let t88 = T::fused(-t78, t71, t87 * t74)
-            + T::fused(row7, t86, -T::fused(row5, t84, row6 * t85));
-        let t89 = T::fused(
-            -t65,
-            t79 + T::fused(t49, t46, -T::fused(-t28, t26, t32 * t30)),
-            t68 * (t88 + T::fused(t77, t46, t83)),
-        );
-        let t90 = T::fused(
-            row0,
-            T::fused(t65, t52, t68 * t84),
-            row1 * T::fused(-t65, t55, t68 * t85),
-        );
-        let t91 = T::fused(
-            -t65,
-            T::fused(-t69, t73, t66 * t78),
-            t68 * T::fused(-t69, t78, t66 * t87),
-        );
-        let t92 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-        let t93 = T::fused(-t65, t73, t68 * t78);
-        let t94 = k(2.0) * T::fused(t60, t62, t63 * t59);
-        let t95 = T::fused(-t65, t78, t68 * t87);
-        let t96 = k(2.0) * T::fused(-t60, t63, t62 * t59);
-        let t97 = T::fused(-t91, t8, T::fused(t94, t93, t96 * t95) * t92)
-            + T::fused(row2, T::fused(-t65, t58, t68 * t86), -t90);
-        let t98 = (t97 + t89)
-            / (self.ring_diametral_inertia - T::fused(-t65, t93, t68 * t95));
-        let t99 = row0 + row5;
-        let t100 = row1 + row6;
-        let t101 = row2 + row7;
-        let t102 = t71 - T::fused(t94, t92, -T::fused(-t69, t8, t65 * t98));
-        let t103 = t74 + T::fused(t96, t92, T::fused(-t66, t8, t68 * t98));
-        let t104 = T::fused(t101, t56, -T::fused(-t99, t50, t100 * t53))
-            + T::fused(-t49, t102, t77 * t103);
-        let t105 = t45 * (t42 + t104);
+        let t97 = (t96 + t79)
+            / (self.parameters.ring_diametral_inertia - T::fused(-t49, t75, t38 * t77));
+        let t98 = row0 + row5;
+        let t99 = row1 + row6;
+        let t100 = row2 + row7;
+        let t101 = t81 - T::fused(t76, t74, T::fused(-t49, t97, t67 * t8));
+        let t102 = t82 + T::fused(t78, t74, -T::fused(-t38, t97, t71 * t8));
+        let t103 = T::fused(-t33, t102, t43 * t101)
+            - T::fused(t100, t14, T::fused(-t99, t52, t98 * t58));
+        let t104 = t27 * (t92 - t103);
         *out = [
             row0,
             row1,
             row2,
             t8,
+            t97,
+            -t74,
             t98,
-            -t92,
             t99,
             t100,
             t101,
-            t102,
-            -t103,
-            -t105,
-            row10 + (t99 - T::fused(-t80, t103, t34 * t105)),
-            row11 + (t100 + T::fused(t81, t103, t37 * t105)),
-            row12 + (t101 - T::fused(t82, t103, t41 * t105)),
+            -t102,
+            -t104,
+            row10 + (t98 + T::fused(-t57, t104, t56 * t102)),
+            row11 + (t99 + T::fused(t51, t104, t50 * t102)),
+            row12 + (t100 - T::fused(t13, t104, t10 * t102)),
             k(0.0),
-            t25 - T::fused(t16, t105, -T::fused(t28, t102, t23 * t103)),
-            T::fused(t21, t105, -T::fused(-t32, t102, t18 * t103)) - t29,
+            t88 + T::fused(-t22, t104, T::fused(t68, t102, t63 * t101)),
+            T::fused(t25, t104, T::fused(-t69, t102, t64 * t101)) - t90,
         ];
     }
 }
@@ -2932,31 +3024,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 32 operations (11 ±, 19 ×, 2 ÷) and 2 functions.
+    /// Writes u̇: 20 operations (5 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.cos();
-        let t1 = k(1e-5) * (u1 * t0);
-        let t2 = x1.sin();
-        let t3 = u0 * t2;
-        let t4 = self.rotor_offset * self.rotor_mass;
-        let t5 = self.rotor_offset * t4;
-        let t6 = self.ring_diametral_inertia - (self.ring_axial_inertia + t5);
-        let t7 = T::fused(k(200000.0), t6 * t3, u2) * t1
-            / T::fused(k(5e-6) - t6, t0 * t0, k(2.0) * self.ring_diametral_inertia);
-        let t8 = T::fused(
-            -u0,
-            T::fused(k(5e-6) + t6, t3, k(1e-5) * u2),
-            self.gravity * t4,
-        );
+        let t0 = x1.sin();
+        let t1 = u0 * t0;
+        let t2 = x1.cos();
+        let t3 = k(1e-5) * (u1 * t2);
+        let t4 = t3 * T::fused(t1, self.derived[9], u2)
+            / T::fused(self.derived[10], t2 * t2, self.derived[11]);
         *out = [
-            -t7,
-            -(t0 * t8 / (self.ring_diametral_inertia + k(5e-6) + t5)),
-            T::fused(-k(100000.0), u0 * t1, t2 * t7),
+            -t4,
+            -(t2
+                * T::fused(
+                    -u0,
+                    T::fused(t1, self.derived[12], u2 * self.derived[13]),
+                    self.derived[14],
+                )),
+            T::fused(-k(100000.0), u0 * t3, t0 * t4),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2968,7 +3057,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let u2 = x[5];
         *dx = [u0, u1, u2, rates[0], rates[1], rates[2]];
     }
-    /// Writes the maximal state of a joint state: 81 operations (24 ±, 57 ×, 0 ÷) and 6 functions.
+    /// Writes the maximal state of a joint state: 78 operations (24 ±, 54 ×, 0 ÷) and 6 functions.
     fn to_maximal(&self, _t: T, x: &Self::Joints, y: &mut Self::State) {
         let k = T::constant;
         let x0 = x[0];
@@ -2998,8 +3087,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let t18 = k(2.0) * t6;
         let t19 = u0 * (t4 * t18);
         let t20 = u0 * T::fused(-t6, t18, k(1.0));
-        let t21 = self.rotor_offset * t20;
-        let t22 = self.rotor_offset * u1;
+        let t21 = self.parameters.rotor_offset * t20;
+        let t22 = self.parameters.rotor_offset * u1;
         let t23 = T::fused(-(k(2.0) * (t14 + t13)), t21, k(2.0) * (t12 - t11) * t22);
         let t24 = t5 * t7;
         let t25 = t8 * t9;
@@ -3031,9 +3120,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             t7,
             t8,
             t9,
-            -(self.rotor_offset * (k(2.0) * (k(0.5) - T::fused(t7, t7, t10)))),
-            self.rotor_offset * (k(2.0) * (t12 + t11)),
-            self.rotor_offset * (k(2.0) * (t14 - t13)),
+            -((k(0.5) - T::fused(t7, t7, t10)) * self.derived[0]),
+            (t12 + t11) * self.derived[0],
+            (t14 - t13) * self.derived[0],
             T::fused(-t7, t16, t5 * t17),
             T::fused(t5, t16, t7 * t17),
             T::fused(t9, t16, t8 * t17),
@@ -3157,7 +3246,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 52 operations (20 ±, 30 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 40 operations (14 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3183,9 +3272,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             ),
         );
         let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = k(1e-5) * ((outer_ring_wz - inner_ring_wz) * t2);
-        let t4 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3194,26 +3281,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t5 = t4 * t1;
-        let t6 = outer_ring_wy * t5;
-        let t7 = self.rotor_offset * self.rotor_mass;
-        let t8 = self.rotor_offset * t7;
-        let t9 = self.ring_diametral_inertia - (self.ring_axial_inertia + t8);
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(k(200000.0), t9 * t6, t10) * t3
-            / T::fused(k(5e-6) - t9, t2 * t2, k(2.0) * self.ring_diametral_inertia);
-        let t12 = T::fused(
-            outer_ring_wy,
-            T::fused(k(1e-5), t10, (k(5e-6) + t9) * t6),
-            self.gravity * t7,
-        );
+        let t3 = t2 * t1;
+        let t4 = outer_ring_wy * t3;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = T::fused(-t0, t1, k(1.0));
+        let t7 = k(1e-5) * ((outer_ring_wz - inner_ring_wz) * t6);
+        let t8 = t7 * T::fused(t4, self.derived[9], t5)
+            / T::fused(self.derived[10], t6 * t6, self.derived[11]);
         *out = [
-            -t11,
-            -(t2 * t12 / (self.ring_diametral_inertia + k(5e-6) + t8)),
-            T::fused(-t5, t11, k(100000.0) * (outer_ring_wy * t3)),
+            -t8,
+            -(t6
+                * T::fused(
+                    outer_ring_wy,
+                    T::fused(t5, self.derived[13], t4 * self.derived[12]),
+                    self.derived[14],
+                )),
+            T::fused(-t3, t8, k(100000.0) * (outer_ring_wy * t7)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 162 operations (62 ±, 98 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (56 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3253,10 +3339,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             ),
         );
         let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = k(1e-5) * (t4 * t3);
-        let t6 = T::fused(
+        let t3 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3265,26 +3348,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = self.rotor_offset * self.rotor_mass;
-        let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_diametral_inertia - (self.ring_axial_inertia + t10);
-        let t12 = inner_ring_wx - rotor_wx;
-        let t13 = T::fused(k(200000.0), t11 * t8, t12) * t5
-            / T::fused(k(5e-6) - t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
-        let t14 = outer_ring_wx * outer_ring_wy;
-        let t15 = t7 * t13;
-        let t16 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t15));
-        let t17 = T::fused(inner_ring_wx, t4, -T::fused(t3, t13, t0 * t7));
-        let t18 = T::fused(
-            outer_ring_wy,
-            T::fused(k(1e-5), t12, (k(5e-6) + t11) * t8),
-            self.gravity * t9,
+        let t4 = t3 * t2;
+        let t5 = outer_ring_wy * t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = T::fused(-t1, t2, k(1.0));
+        let t8 = outer_ring_wz - inner_ring_wz;
+        let t9 = k(1e-5) * (t8 * t7);
+        let t10 = t9 * T::fused(t5, self.derived[9], t6)
+            / T::fused(self.derived[10], t7 * t7, self.derived[11]);
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t4 * t10;
+        let t13 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, -t12));
+        let t14 = T::fused(inner_ring_wx, t8, -T::fused(t7, t10, t0 * t4));
+        let t15 = T::fused(
+            -t7,
+            T::fused(
+                outer_ring_wy,
+                T::fused(t6, self.derived[13], t5 * self.derived[12]),
+                self.derived[14],
+            ),
+            t11,
         );
-        let t19 = t14 - t3 * t18 / (self.ring_diametral_inertia + k(5e-6) + t10);
-        let t20 = self.rotor_offset * t19;
-        let t21 = T::fused(
+        let t16 = self.parameters.rotor_offset * t14;
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3293,10 +3379,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t22 = k(2.0) * t21;
-        let t23 = T::fused(-t21, t22, k(1.0));
-        let t24 = self.rotor_offset * t17;
-        let t25 = T::fused(
+        let t18 = k(2.0) * t17;
+        let t19 = T::fused(-t17, t18, k(1.0));
+        let t20 = self.parameters.rotor_offset * t15;
+        let t21 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3305,54 +3391,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t26 = t25 * t22;
-        let t27 = inner_ring_wy * self.rotor_offset;
-        let t28 = inner_ring_wx * t27;
-        let t29 = inner_ring_wz * self.rotor_offset;
-        let t30 = inner_ring_wx * t29;
-        let t31 = T::fused(-t28, t23, t30 * t26) - T::fused(t23, t20, t26 * t24);
-        let t32 = rotor_e0 * rotor_e3;
-        let t33 = rotor_e1 * rotor_e2;
-        let t34 = T::fused(inner_ring_wz, t29, inner_ring_wy * t27);
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = T::fused(
-            -(k(2.0) * (t33 - t32)),
-            t31,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t35)) * t34,
+        let t22 = t21 * t18;
+        let t23 = inner_ring_wy * self.parameters.rotor_offset;
+        let t24 = inner_ring_wx * t23;
+        let t25 = inner_ring_wz * self.parameters.rotor_offset;
+        let t26 = inner_ring_wx * t25;
+        let t27 = T::fused(t24, t22, t26 * t19) + T::fused(-t19, t16, t22 * t20);
+        let t28 = rotor_e0 * rotor_e2;
+        let t29 = rotor_e1 * rotor_e3;
+        let t30 = T::fused(-t24, t19, t26 * t22) - T::fused(t22, t16, t19 * t20);
+        let t31 = rotor_e0 * rotor_e3;
+        let t32 = rotor_e1 * rotor_e2;
+        let t33 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = T::fused(
+            -(k(2.0) * (t32 - t31)),
+            t30,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
         );
-        let t37 = T::fused(t28, t26, t30 * t23) - T::fused(-t26, t20, t23 * t24);
-        let t38 = rotor_e0 * rotor_e2;
-        let t39 = rotor_e1 * rotor_e3;
-        let t40 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35))),
-            t31,
-            k(2.0) * (t33 + t32) * t34,
+        let t36 = rotor_e0 * rotor_e1;
+        let t37 = rotor_e2 * rotor_e3;
+        let t38 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
+            t30,
+            k(2.0) * (t32 + t31) * t33,
         );
-        let t41 = rotor_e0 * rotor_e1;
-        let t42 = rotor_e2 * rotor_e3;
-        let t43 = T::fused(k(2.0) * (t42 + t41), t31, k(2.0) * (t39 - t38) * t34);
+        let t39 = T::fused(k(2.0) * (t37 + t36), t30, k(2.0) * (t29 - t28) * t33);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            -t10,
+            t11,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             -t13,
             t14,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t16,
-            t17,
-            t19,
-            T::fused(k(2.0) * (t39 + t38), t37, t36),
-            T::fused(k(2.0) * (t42 - t41), t37, -t40),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t35)), t37, t43),
-            -(T::fused(-k(100000.0), outer_ring_wy * t5, t15) + t16),
-            -T::fused(rotor_wz, t12, T::fused(-t23, t17, t26 * t19)),
-            T::fused(rotor_wy, t12, T::fused(t26, t17, t23 * t19)),
+            t15,
+            T::fused(k(2.0) * (t29 + t28), t27, t35),
+            T::fused(k(2.0) * (t37 - t36), t27, -t38),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)), t27, t39),
+            T::fused(k(100000.0), outer_ring_wy * t9, -t12) - t13,
+            T::fused(-rotor_wz, t6, T::fused(-t22, t15, t19 * t14)),
+            T::fused(rotor_wy, t6, T::fused(t19, t15, t22 * t14)),
         ];
     }
-    /// Writes λ: 145 operations (55 ±, 90 ×, 0 ÷).
+    /// Writes λ: 137 operations (54 ±, 83 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3398,50 +3484,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = self.rotor_mass * rotor_dsx;
+        let t0 = self.parameters.rotor_mass * rotor_dsx;
         let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(self.rotor_mass, rotor_dsy, self.gravity * self.rotor_mass);
-        let t3 = T::fused(k(0.01), self.gravity + inner_ring_dsy, t2);
-        let t4 = self.rotor_mass * rotor_dsz;
+        let t2 = T::fused(self.parameters.rotor_mass, rotor_dsy, self.derived[4]);
+        let t3 = T::fused(k(0.01), self.parameters.gravity + inner_ring_dsy, t2);
+        let t4 = self.parameters.rotor_mass * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t7 = T::fused(
-            -k(1e-5),
-            rotor_dwx,
-            T::fused(
-                -self.ring_diametral_inertia,
-                inner_ring_dwx,
-                inner_ring_wy * inner_ring_wz * t6,
-            ),
+        let t6 = inner_ring_e0 * inner_ring_e1;
+        let t7 = inner_ring_e2 * inner_ring_e3;
+        let t8 = inner_ring_e0 * inner_ring_e0;
+        let t9 = T::fused(
+            -t2,
+            (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8)) * self.derived[0],
+            t0
+                * (T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
+                    * self.derived[0]),
         );
-        let t8 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t9 = k(2.0) * t8;
-        let t10 = T::fused(-t8, t9, k(1.0));
-        let t11 = inner_ring_e0 * inner_ring_e1;
-        let t12 = inner_ring_e2 * inner_ring_e3;
-        let t13 = T::fused(
-            t0,
-            k(2.0)
-                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * self.rotor_offset,
-            t2 * (k(2.0) * (t12 - t11) * self.rotor_offset),
-        );
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(
-            t4,
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t14))
-                * self.rotor_offset,
-            -t13,
-        );
-        let t16 = T::fused(
+        let t10 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3450,10 +3509,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t17 = k(2.0) * t16;
-        let t18 = T::fused(-t16, t17, k(1.0));
-        let t19 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t20 = T::fused(
+        let t11 = k(2.0) * t10;
+        let t12 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3462,11 +3519,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t21 = t20 * t17;
-        let t22 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t23 = T::fused(-t19, t18, t22 * t21);
-        let t24 = T::fused(self.ring_axial_inertia, inner_ring_dwy, -(t23 - t15));
-        let t25 = T::fused(
+        let t13 = t12 * t11;
+        let t14 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t15 = T::fused(-t10, t11, k(1.0));
+        let t16 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t17 = T::fused(t14, t13, t16 * t15);
+        let t18 = T::fused(
+            self.parameters.ring_diametral_inertia,
+            inner_ring_dwz,
+            inner_ring_wx * inner_ring_wy * self.derived[3],
+        ) - (t17 - T::fused(t4, (t7 + t6) * self.derived[0], t9));
+        let t19 = T::fused(
+            -self.parameters.ring_diametral_inertia,
+            outer_ring_dwz,
+            outer_ring_wx * outer_ring_wy * self.derived[3],
+        ) - t18;
+        let t20 = k(2.0) * outer_ring_e2;
+        let t21 = outer_ring_e0 * t20;
+        let t22 = T::fused(
+            t2,
+            (t7 - t6) * self.derived[0],
+            t0
+                * (T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
+                    * self.derived[0]),
+        );
+        let t23 = T::fused(-t14, t15, t16 * t13);
+        let t24 = t23
+            + T::fused(
+                -t4,
+                (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8)) * self.derived[0],
+                t22,
+            );
+        let t25 = T::fused(self.parameters.ring_axial_inertia, inner_ring_dwy, -t24);
+        let t26 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t27 = k(2.0) * t26;
+        let t28 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3475,51 +3570,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t26 = t25 * t9;
-        let t27 = T::fused(-t10, t7, t26 * t24);
-        let t28 = T::fused(self.ring_axial_inertia, outer_ring_dwx, t27);
-        let t29 = k(2.0) * outer_ring_e2;
-        let t30 = T::fused(-outer_ring_e2, t29, k(1.0));
-        let t31 = T::fused(
-            -t0,
-            k(2.0)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * self.rotor_offset,
-            t2
-                * (k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t14))
-                    * self.rotor_offset),
+        let t29 = t28 * t27;
+        let t30 = T::fused(
+            -k(1e-5),
+            rotor_dwx,
+            T::fused(
+                -self.parameters.ring_diametral_inertia,
+                inner_ring_dwx,
+                inner_ring_wy * inner_ring_wz * self.derived[3],
+            ),
         );
-        let t32 = T::fused(t19, t21, t22 * t18);
-        let t33 = T::fused(
-            self.ring_diametral_inertia,
-            inner_ring_dwz,
-            inner_ring_wx * inner_ring_wy * t6,
-        ) - (t32 - T::fused(t4, k(2.0) * (t12 + t11) * self.rotor_offset, -t31));
-        let t34 = T::fused(
-            -self.ring_diametral_inertia,
-            outer_ring_dwz,
-            outer_ring_wx * outer_ring_wy * t6,
-        ) - t33;
-        let t35 = outer_ring_e0 * t29;
+        let t31 = T::fused(-t26, t27, k(1.0));
+        let t32 = T::fused(-t29, t25, t31 * t30);
+        let t33 = T::fused(self.parameters.ring_axial_inertia, outer_ring_dwx, -t32);
+        let t34 = T::fused(-outer_ring_e2, t20, k(1.0));
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
-            -T::fused(k(0.01), self.gravity + outer_ring_dsy, t3),
+            -T::fused(k(0.01), self.parameters.gravity + outer_ring_dsy, t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t30, t28, t35 * t34),
-            -T::fused(t35, t28, t30 * t34),
+            T::fused(-t34, t33, t21 * t19),
+            -T::fused(t34, t19, t21 * t33),
             -t1,
             -t3,
             -t5,
-            -T::fused(t26, t7, t10 * t24),
-            t27,
+            -T::fused(t31, t25, t29 * t30),
+            -t32,
             -t0,
             -t2,
             -t4,
-            t32,
+            t17,
             -t23,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 259 operations (97 ±, 160 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 238 operations (90 ±, 147 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3554,10 +3637,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
             ),
         );
         let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = outer_ring_wz - inner_ring_wz;
-        let t5 = k(1e-5) * (t4 * t3);
-        let t6 = T::fused(
+        let t3 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3566,26 +3646,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t7 = t6 * t2;
-        let t8 = outer_ring_wy * t7;
-        let t9 = self.rotor_offset * self.rotor_mass;
-        let t10 = self.rotor_offset * t9;
-        let t11 = self.ring_diametral_inertia - (self.ring_axial_inertia + t10);
-        let t12 = inner_ring_wx - rotor_wx;
-        let t13 = T::fused(k(200000.0), t11 * t8, t12) * t5
-            / T::fused(k(5e-6) - t11, t3 * t3, k(2.0) * self.ring_diametral_inertia);
-        let t14 = outer_ring_wx * outer_ring_wy;
-        let t15 = t7 * t13;
-        let t16 = T::fused(inner_ring_wy, t4, -T::fused(-t0, t3, t15));
-        let t17 = T::fused(inner_ring_wx, t4, -T::fused(t3, t13, t0 * t7));
-        let t18 = T::fused(
-            outer_ring_wy,
-            T::fused(k(1e-5), t12, (k(5e-6) + t11) * t8),
-            self.gravity * t9,
+        let t4 = t3 * t2;
+        let t5 = outer_ring_wy * t4;
+        let t6 = inner_ring_wx - rotor_wx;
+        let t7 = T::fused(-t1, t2, k(1.0));
+        let t8 = outer_ring_wz - inner_ring_wz;
+        let t9 = k(1e-5) * (t8 * t7);
+        let t10 = t9 * T::fused(t5, self.derived[9], t6)
+            / T::fused(self.derived[10], t7 * t7, self.derived[11]);
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t4 * t10;
+        let t13 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, -t12));
+        let t14 = T::fused(inner_ring_wx, t8, -T::fused(t7, t10, t0 * t4));
+        let t15 = T::fused(
+            -t7,
+            T::fused(
+                outer_ring_wy,
+                T::fused(t6, self.derived[13], t5 * self.derived[12]),
+                self.derived[14],
+            ),
+            t11,
         );
-        let t19 = t14 - t3 * t18 / (self.ring_diametral_inertia + k(5e-6) + t10);
-        let t20 = self.rotor_offset * t19;
-        let t21 = T::fused(
+        let t16 = self.parameters.rotor_offset * t14;
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3594,10 +3677,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t22 = k(2.0) * t21;
-        let t23 = T::fused(-t21, t22, k(1.0));
-        let t24 = self.rotor_offset * t17;
-        let t25 = T::fused(
+        let t18 = k(2.0) * t17;
+        let t19 = T::fused(-t17, t18, k(1.0));
+        let t20 = self.parameters.rotor_offset * t15;
+        let t21 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3606,132 +3689,131 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeParameters<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t26 = t25 * t22;
-        let t27 = inner_ring_wy * self.rotor_offset;
-        let t28 = inner_ring_wx * t27;
-        let t29 = inner_ring_wz * self.rotor_offset;
-        let t30 = inner_ring_wx * t29;
-        let t31 = T::fused(-t28, t23, t30 * t26) - T::fused(t23, t20, t26 * t24);
-        let t32 = rotor_e0 * rotor_e3;
-        let t33 = rotor_e1 * rotor_e2;
-        let t34 = T::fused(inner_ring_wz, t29, inner_ring_wy * t27);
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = T::fused(
-            -(k(2.0) * (t33 - t32)),
-            t31,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t35)) * t34,
+        let t22 = t21 * t18;
+        let t23 = inner_ring_wy * self.parameters.rotor_offset;
+        let t24 = inner_ring_wx * t23;
+        let t25 = inner_ring_wz * self.parameters.rotor_offset;
+        let t26 = inner_ring_wx * t25;
+        let t27 = T::fused(t24, t22, t26 * t19) + T::fused(-t19, t16, t22 * t20);
+        let t28 = rotor_e0 * rotor_e2;
+        let t29 = rotor_e1 * rotor_e3;
+        let t30 = T::fused(-t24, t19, t26 * t22) - T::fused(t22, t16, t19 * t20);
+        let t31 = rotor_e0 * rotor_e3;
+        let t32 = rotor_e1 * rotor_e2;
+        let t33 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = T::fused(
+            -(k(2.0) * (t32 - t31)),
+            t30,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
         );
-        let t37 = T::fused(t28, t26, t30 * t23) - T::fused(-t26, t20, t23 * t24);
-        let t38 = rotor_e0 * rotor_e2;
-        let t39 = rotor_e1 * rotor_e3;
-        let t40 = T::fused(k(2.0) * (t39 + t38), t37, t36);
-        let t41 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35))),
-            t31,
-            k(2.0) * (t33 + t32) * t34,
+        let t36 = T::fused(k(2.0) * (t29 + t28), t27, t35);
+        let t37 = rotor_e0 * rotor_e1;
+        let t38 = rotor_e2 * rotor_e3;
+        let t39 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
+            t30,
+            k(2.0) * (t32 + t31) * t33,
         );
-        let t42 = rotor_e0 * rotor_e1;
-        let t43 = rotor_e2 * rotor_e3;
-        let t44 = T::fused(k(2.0) * (t43 - t42), t37, -t41);
-        let t45 = T::fused(k(2.0) * (t43 + t42), t31, k(2.0) * (t39 - t38) * t34);
-        let t46 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t35)),
-            t37,
-            t45,
+        let t40 = T::fused(-(k(2.0) * (t38 - t37)), t27, t39);
+        let t41 = T::fused(k(2.0) * (t38 + t37), t30, k(2.0) * (t29 - t28) * t33);
+        let t42 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)),
+            t27,
+            t41,
         );
-        let t47 = T::fused(-k(100000.0), outer_ring_wy * t5, t15) + t16;
-        let t48 = T::fused(rotor_wz, t12, T::fused(-t23, t17, t26 * t19));
-        let t49 = T::fused(rotor_wy, t12, T::fused(t26, t17, t23 * t19));
-        let t50 = self.rotor_mass * t40;
-        let t51 = T::fused(self.rotor_mass, t44, self.gravity * self.rotor_mass);
-        let t52 = k(0.01) * self.gravity;
-        let t53 = t52 + t51;
-        let t54 = self.rotor_mass * t46;
-        let t55 = self.ring_axial_inertia - self.ring_diametral_inertia;
-        let t56 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t49);
-        let t57 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t48);
-        let t58 = T::fused(t23, t56, t26 * t57);
-        let t59 = inner_ring_e0 * inner_ring_e1;
-        let t60 = inner_ring_e2 * inner_ring_e3;
-        let t61 = inner_ring_e0 * inner_ring_e0;
-        let t62 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t61))
-                * self.rotor_offset),
-            t51,
-            k(2.0)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * self.rotor_offset * t50,
-        );
-        let t63 = T::fused(-(k(2.0) * (t60 + t59) * self.rotor_offset), t54, t62) - t58
-            + T::fused(
-                self.ring_diametral_inertia,
-                t19,
-                inner_ring_wx * inner_ring_wy * t55,
-            );
-        let t64 = t63 - T::fused(-t14, self.ring_diametral_inertia, t14 * t55);
-        let t65 = k(2.0) * outer_ring_e2;
-        let t66 = outer_ring_e0 * t65;
-        let t67 = T::fused(-t26, t56, t23 * t57);
-        let t68 = T::fused(
-            k(2.0) * (t60 - t59) * self.rotor_offset,
-            t51,
-            k(2.0)
-                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * self.rotor_offset * t50,
-        );
-        let t69 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t61))
-                * self.rotor_offset,
-            t54,
-            t68,
-        );
-        let t70 = T::fused(-self.ring_axial_inertia, t17, t69 - t67);
-        let t71 = T::fused(
-            k(1e-5),
-            t47,
+        let t43 = T::fused(k(100000.0), outer_ring_wy * t9, -t12) - t13;
+        let t44 = T::fused(rotor_wz, t6, -T::fused(-t22, t15, t19 * t14));
+        let t45 = T::fused(rotor_wy, t6, T::fused(t19, t15, t22 * t14));
+        let t46 = self.parameters.rotor_mass * t36;
+        let t47 = T::fused(-self.parameters.rotor_mass, t40, self.derived[4]);
+        let t48 = self.derived[2] + t47;
+        let t49 = self.parameters.rotor_mass * t42;
+        let t50 = T::fused(
+            -k(1e-5),
+            t43,
             T::fused(
-                self.ring_diametral_inertia,
-                t16,
-                inner_ring_wy * inner_ring_wz * t55,
+                self.parameters.ring_diametral_inertia,
+                t13,
+                inner_ring_wy * inner_ring_wz * self.derived[3],
             ),
         );
-        let t72 = T::fused(t7, t70, t3 * t71);
-        let t73 = T::fused(t0, self.ring_axial_inertia, t72);
-        let t74 = T::fused(-outer_ring_e2, t65, k(1.0));
+        let t51 = inner_ring_e0 * inner_ring_e1;
+        let t52 = inner_ring_e2 * inner_ring_e3;
+        let t53 = T::fused(
+            T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
+                * self.derived[0],
+            t46,
+            (t52 - t51) * self.derived[0] * t47,
+        );
+        let t54 = inner_ring_e0 * inner_ring_e0;
+        let t55 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t44);
+        let t56 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t45);
+        let t57 = T::fused(-t19, t55, t22 * t56);
+        let t58 = t57
+            + T::fused(
+                (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t54)) * self.derived[0],
+                t49,
+                t53,
+            );
+        let t59 = T::fused(self.parameters.ring_axial_inertia, t14, -t58);
+        let t60 = T::fused(-t7, t50, t4 * t59);
+        let t61 = T::fused(t0, self.parameters.ring_axial_inertia, -t60);
+        let t62 = k(2.0) * outer_ring_e2;
+        let t63 = T::fused(-outer_ring_e2, t62, k(1.0));
+        let t64 = T::fused(
+            -(T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
+                * self.derived[0]),
+            t46,
+            (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t54)) * self.derived[0]
+                * t47,
+        );
+        let t65 = T::fused(t22, t55, t19 * t56);
+        let t66 = T::fused(
+            self.parameters.ring_diametral_inertia,
+            t15,
+            inner_ring_wx * inner_ring_wy * self.derived[3],
+        ) - (t65 + T::fused((t52 + t51) * self.derived[0], t49, t64));
+        let t67 = T::fused(
+            -t11,
+            self.parameters.ring_diametral_inertia,
+            t11 * self.derived[3],
+        ) - t66;
+        let t68 = outer_ring_e0 * t62;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            -t10,
+            t11,
+            k(0.0),
+            k(0.0),
+            k(0.0),
             -t13,
             t14,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t16,
-            t17,
-            t19,
-            t40,
-            t44,
+            t15,
+            t36,
+            -t40,
+            -t42,
+            t43,
+            -t44,
+            t45,
             -t46,
-            -t47,
+            -(self.derived[2] + t48),
+            t49,
+            T::fused(t63, t61, t68 * t67),
+            T::fused(-t63, t67, t68 * t61),
+            -t46,
             -t48,
             t49,
-            -t50,
-            -(t52 + t53),
-            t54,
-            T::fused(-t66, t64, t74 * t73),
-            T::fused(t74, t64, t66 * t73),
-            -t50,
-            -t53,
-            t54,
-            T::fused(-t7, t71, t3 * t70),
-            -t72,
-            -t50,
-            -t51,
-            t54,
-            t58,
-            t67,
+            -T::fused(t4, t50, t7 * t59),
+            t60,
+            -t46,
+            -t47,
+            t49,
+            t65,
+            -t57,
         ];
     }
 }
@@ -3744,7 +3826,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeParameters<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 79 operations (18 ±, 59 ×, 2 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 63 operations (14 ±, 48 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3757,38 +3839,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeParameters<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.sin();
-        let t1 = k(1e-5) * (u1 * t0);
-        let t2 = u0 * t0;
-        let t3 = self.rotor_offset * self.rotor_mass;
-        let t4 = self.rotor_offset * t3;
-        let t5 = self.ring_diametral_inertia - (self.ring_axial_inertia + t4);
-        let t6 = T::fused(k(200000.0), t5 * t2, u2);
-        let t7 = x1.cos();
-        let t8 = u0 * t7;
-        let t9 = u1 * t7;
-        let t10 = k(1e-5) * t9;
-        let t11 = k(5e-6) - t5;
-        let t12 = k(1.0) / T::fused(t11, t7 * t7, k(2.0) * self.ring_diametral_inertia);
-        let t13 = t6 * t10;
-        let t14 = T::fused(
-            t12,
-            T::fused(-t6, t1, t10 * (k(200000.0) * (t5 * t8))),
-            t13 * (t12 * t12 * (t11 * (k(2.0) * (t0 * t7)))),
+        let t0 = x1.cos();
+        let t1 = t0 * t0;
+        let t2 = x1.sin();
+        let t3 = u2 * t2;
+        let t4 = k(1.0) / T::fused(-t1, self.derived[16], self.derived[17]);
+        let t5 = t1 * (k(2e-5) * t4);
+        let t6 = u0 * (k(0.5) - t1);
+        let t7 = T::fused(
+            t5,
+            T::fused(
+                u0,
+                T::fused(-t1, self.derived[15], self.derived[15]),
+                self.derived[16] * t3,
+            ),
+            T::fused(self.derived[18], t6, k(1e-5) * t3),
         );
-        let t15 = t12 * (t10 * (k(200000.0) * (t0 * t5)));
-        let t16 = k(1e-5) * t7;
-        let t17 = t12 * (t6 * t16);
-        let t18 = t12 * t10;
-        let t19 = k(5e-6) + t5;
-        let t20 = T::fused(t19, t2, k(1e-5) * u2);
-        let t21 = T::fused(
-            t7,
-            u0 * (t19 * t8),
-            t0 * T::fused(-u0, t20, self.gravity * t3),
+        let t8 = k(4.0) * t4;
+        let t9 = t8 * (u1 * t7);
+        let t10 = k(0.5) * t0;
+        let t11 = u1 * t2 * self.derived[18] * t10 * t8;
+        let t12 = u0 * t2;
+        let t13 = T::fused(t12, self.derived[18], k(2e-5) * u2);
+        let t14 = t13 * t10 * t8;
+        let t15 = k(1e-5) * t0;
+        let t16 = u1 * t15;
+        let t17 = t16 * t8;
+        let t18 = T::fused(
+            -t6,
+            u0 * self.derived[19],
+            t2 * T::fused(-(u0 * u2), self.derived[13], self.derived[14]),
         );
-        let t22 = k(1.0) / (self.ring_diametral_inertia + k(5e-6) + t4);
-        let t23 = T::fused(k(100000.0), u0 * t1, T::fused(t0, t14, t7 * (t12 * t13)));
+        let t19 = u0 * t15;
+        let t20 = T::fused(
+            -t2,
+            t9,
+            k(100000.0) * (u1 * T::fused(t5, t13, k(1e-5) * t12)),
+        );
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3809,23 +3896,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeParameters<T> {
             k(0.0),
             k(1.0),
             k(0.0),
+            t9,
+            k(0.0),
+            -t11,
             -t14,
-            k(0.0),
-            -t15,
             -t17,
-            -t18,
             k(0.0),
-            t22 * t21,
+            t18,
             k(0.0),
-            t22 * (t7 * T::fused(u0, t0 * t19, t20)),
+            self.derived[20] * (t15 * T::fused(k(50000.0), t13, t12)),
             k(0.0),
-            t22 * (t7 * (k(1e-5) * u0)),
+            self.derived[20] * t19,
             k(0.0),
-            t23,
+            t20,
             k(0.0),
-            T::fused(t0, t15, -t9),
-            T::fused(-k(100000.0), u0 * t16, t0 * t17),
-            t0 * t18,
+            T::fused(-k(100000.0), t16, t2 * t11),
+            T::fused(-k(100000.0), t19, t2 * t14),
+            t2 * t17,
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

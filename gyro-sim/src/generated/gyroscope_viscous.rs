@@ -82,7 +82,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeViscous<T> {
         }
     }
 }
-impl<T> GyroscopeViscous<T> {
+impl<T: gyro_sim::Scalar> GyroscopeViscous<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

@@ -1,4 +1,4 @@
-//! Parameters and inputs: names with their default numbers. Both become fields of the generated mechanism.
+//! Parameters and inputs: names with their default numbers. Inputs become fields of the generated mechanism, parameters those of a type of their own.
 
 use std::ops::Range;
 
@@ -13,6 +13,9 @@ use super::section::{Item, Section, keyword, not_a_name};
 use crate::diagnostics::Related;
 use crate::validate::{Owner, Place};
 use crate::{Parameter, Rational};
+
+/// Fields that a generated mechanism has besides its inputs.
+const OWN_FIELDS: [&str; 2] = ["parameters", "derived"];
 
 /// Names that were met, with where they stand and in which table.
 type Seen = Vec<(String, Range<usize>, &'static str)>;
@@ -42,6 +45,9 @@ fn table(
     for (index, (key, value)) in entries.into_iter().enumerate() {
         let place = Place { owner: owner(index), key: "" };
         clash(reader, place, seen, key);
+        if title == "inputs" && OWN_FIELDS.contains(&key.get_ref().as_ref()) {
+            reader.wrong(place, key.span(), own_field(key.get_ref()));
+        }
         seen.push((key.get_ref().to_string(), key.span(), title));
         parameters.push(parameter(reader, place, key, value));
     }
@@ -56,9 +62,18 @@ fn clash(reader: &mut Reader<'_>, place: Place, seen: &Seen, key: &Spanned<DeStr
     let words = [
         format!("`{name}` is both a parameter and an input"),
         "used again".to_owned(),
-        "write another name: both become fields of the generated mechanism".to_owned(),
+        "write another name for one of them".to_owned(),
     ];
     reader.clash(place, key.span(), related, words);
+}
+
+/// The words for an input that would be such a field.
+fn own_field(name: &str) -> [String; 3] {
+    [
+        format!("the input `{name}` would be a field of the generated mechanism, which has one of this name"),
+        "cannot name an input".to_owned(),
+        format!("write another name, such as `{name}_0`"),
+    ]
 }
 
 fn parameter(

@@ -66,7 +66,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Cam<T> {
         }
     }
 }
-impl<T> Cam<T> {
+impl<T: gyro_sim::Scalar> Cam<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

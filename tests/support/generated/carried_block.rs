@@ -77,7 +77,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for CarriedBlock<T> {
         }
     }
 }
-impl<T> CarriedBlock<T> {
+impl<T: gyro_sim::Scalar> CarriedBlock<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

@@ -58,7 +58,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for DrivenFourBar<T> {
         }
     }
 }
-impl<T> DrivenFourBar<T> {
+impl<T: gyro_sim::Scalar> DrivenFourBar<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

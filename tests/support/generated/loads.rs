@@ -78,7 +78,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Loads<T> {
         }
     }
 }
-impl<T> Loads<T> {
+impl<T: gyro_sim::Scalar> Loads<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

@@ -83,7 +83,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Motor<T> {
         Self { torque: T::constant(0.0) }
     }
 }
-impl<T> Motor<T> {
+impl<T: gyro_sim::Scalar> Motor<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

@@ -59,7 +59,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parallelogram<T> {
         }
     }
 }
-impl<T> Parallelogram<T> {
+impl<T: gyro_sim::Scalar> Parallelogram<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

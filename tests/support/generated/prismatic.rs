@@ -78,7 +78,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Prismatic<T> {
         }
     }
 }
-impl<T> Prismatic<T> {
+impl<T: gyro_sim::Scalar> Prismatic<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

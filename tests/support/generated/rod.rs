@@ -58,7 +58,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Rod<T> {
         }
     }
 }
-impl<T> Rod<T> {
+impl<T: gyro_sim::Scalar> Rod<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

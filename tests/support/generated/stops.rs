@@ -78,7 +78,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Stops<T> {
         }
     }
 }
-impl<T> Stops<T> {
+impl<T: gyro_sim::Scalar> Stops<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

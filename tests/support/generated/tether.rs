@@ -73,7 +73,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Tether<T> {
         }
     }
 }
-impl<T> Tether<T> {
+impl<T: gyro_sim::Scalar> Tether<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

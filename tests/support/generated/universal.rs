@@ -77,7 +77,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Universal<T> {
         }
     }
 }
-impl<T> Universal<T> {
+impl<T: gyro_sim::Scalar> Universal<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

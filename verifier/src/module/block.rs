@@ -44,6 +44,7 @@ pub struct Sizes {
     pub joints: usize,
     pub charts: usize,
     pub tables: usize,
+    pub derived: usize,
 }
 
 /// How a function gives its results.

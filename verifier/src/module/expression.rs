@@ -3,10 +3,9 @@
 use super::block::{Known, Reader};
 use crate::program::{Function, Id, Node, Source};
 use crate::refusal::Refusal;
-use proc_macro2::Span;
 use quote::ToTokens;
 use syn::spanned::Spanned;
-use syn::{BinOp, Expr, ExprBinary, ExprCall, ExprIndex, ExprMethodCall, Lit, Member, UnOp};
+use syn::{BinOp, Expr, ExprBinary, ExprCall, ExprField, ExprIndex, ExprMethodCall, Lit, Member, UnOp};
 
 impl Reader<'_> {
     /// Reads an expression and gives the place of its value.
@@ -27,10 +26,7 @@ impl Reader<'_> {
             Expr::Call(call) => self.literal(call),
             Expr::MethodCall(call) => self.call(call),
             Expr::Index(index) => self.element(index),
-            Expr::Field(field) if is_name(&field.base, "self") => match &field.member {
-                Member::Named(name) => self.parameter(&name.to_string(), field.span()),
-                Member::Unnamed(_) => Err(refused(expression)),
-            },
+            Expr::Field(field) => self.field(field),
             _ => Err(refused(expression)),
         }
     }
@@ -86,9 +82,12 @@ impl Reader<'_> {
         Ok(self.push(Node::Call(function, receiver), call.method.span()))
     }
 
-    /// `table0[1]`, `accelerations[2]`.
+    /// `table0[1]`, `accelerations[2]`, `self.derived[3]`.
     fn element(&mut self, index: &ExprIndex) -> Result<Id, Refusal> {
         let place = integer(&index.index)?;
+        if text(&index.expr) == "self . derived" && place < self.sizes.derived {
+            return Ok(self.push(Node::Read(Source::SetUp(place)), index.span()));
+        }
         let node = match self.known(&index.expr)? {
             Known::Curve { table, time } if place < 3 => Node::Curve { table, order: place, time },
             Known::Accelerations if place < self.sizes.accelerations => {
@@ -99,14 +98,18 @@ impl Reader<'_> {
         Ok(self.push(node, index.span()))
     }
 
-    fn parameter(&mut self, name: &str, span: Span) -> Result<Id, Refusal> {
-        let at = |fields: &[gyro_model::Parameter]| fields.iter().position(|f| f.name == name);
-        let source = at(&self.model.parameters)
-            .map(Source::Parameter)
-            .or_else(|| at(&self.model.inputs).map(Source::Input));
+    /// `self.parameters.gravity`, `self.torque`.
+    fn field(&mut self, field: &ExprField) -> Result<Id, Refusal> {
+        let Member::Named(name) = &field.member else { return Err(refused(field)) };
+        let at = |fields: &[gyro_model::Parameter]| fields.iter().position(|f| name == &f.name);
+        let source = match text(&field.base).as_str() {
+            "self . parameters" => at(&self.model.parameters).map(Source::Parameter),
+            "self" => at(&self.model.inputs).map(Source::Input),
+            _ => return Err(refused(field)),
+        };
         match source {
-            Some(source) => Ok(self.push(Node::Read(source), span)),
-            None => Err(Refusal::at(span, format!("`{name}` is neither a parameter nor an input"))),
+            Some(source) => Ok(self.push(Node::Read(source), field.span())),
+            None => Err(Refusal::at(field.span(), format!("`{name}` is neither a parameter nor an input"))),
         }
     }
 }

@@ -16,25 +16,36 @@ pub enum Choice {
     Pivoting,
 }
 
+/// What the description leaves to choice.
+#[derive(Clone, Copy, Debug)]
+pub struct Has {
+    /// How the coordinate partition is chosen.
+    pub choice: Choice,
+    /// The Jacobian of the joint form.
+    pub jacobian: bool,
+    /// A function of what depends on parameters alone.
+    pub set_up: bool,
+}
+
 /// The expected text.
 pub fn text(
     model: &Model,
     type_name: &str,
     tables: &[Spline],
-    (choice, has_jacobian): (Choice, bool),
+    has: Has,
     joints: Option<&JointLayout>,
 ) -> String {
     [
         constants(tables),
-        definition(model, type_name),
+        definition(model, type_name, has.set_up),
         ode(model, type_name),
         mechanism(model, type_name, joints.is_some()),
-        partition(model, type_name, choice),
+        partition(model, type_name, has.choice),
         equations(model, type_name),
         projection(type_name),
         joints.map(|joints| joint_space(model, type_name, joints)).unwrap_or_default(),
         joints
-            .filter(|_| has_jacobian)
+            .filter(|_| has.jacobian)
             .map(|joints| joint_jacobian(model, type_name, joints))
             .unwrap_or_default(),
         ports(model, type_name),
@@ -46,7 +57,7 @@ pub fn text(
 pub fn type_name(name: &str) -> String {
     let words = name.split('_').filter(|word| !word.is_empty());
     let name: String = words.map(|word| word[..1].to_uppercase() + &word[1..]).collect();
-    if name == "Self" || name == "T" { name + "_" } else { name }
+    if ["Self", "T", "Parameters"].contains(&name.as_str()) { name + "_" } else { name }
 }
 
 fn list<T: Display>(items: impl IntoIterator<Item = T>) -> String {
@@ -74,44 +85,97 @@ fn constants(tables: &[Spline]) -> String {
     }))
 }
 
-/// `match` that sets one of some fields, or its refusal where there are none.
-fn setter(signature: &str, fields: &[Parameter]) -> String {
+/// `match` that sets one of some fields, or its refusal where there are none; what comes before and after it.
+fn setter(signature: &str, fields: &[Parameter], (of, before, after): (&str, &str, &str)) -> String {
     if fields.is_empty() {
         return format!("{signature}(&mut self, _index: usize, _value: T) -> bool {{ false }}");
     }
     let arms =
-        list(fields.iter().enumerate().map(|(k, field)| format!("{k} => self.{} = value", field.name)));
+        list(fields.iter().enumerate().map(|(k, field)| format!("{k} => {of}.{} = value", field.name)));
     format!(
         "{signature}(&mut self, index: usize, value: T) -> bool {{
+            {before}
             match index {{ {arms}, _ => return false, }}
+            {after}
             true
         }}"
     )
 }
 
-fn definition(model: &Model, name: &str) -> String {
-    let fields = || model.parameters.iter().chain(&model.inputs);
-    let is_empty = fields().next().is_none();
-    let (declared, defaults) = if is_empty {
+fn definition(model: &Model, name: &str, has_set_up: bool) -> String {
+    let (parameters, inputs) = (&model.parameters, &model.inputs);
+    let public =
+        |fields: &[Parameter]| fields.iter().map(|f| format!("pub {}: T", f.name)).collect::<Vec<_>>();
+    let default = |f: &Parameter| format!("{}: T::constant({:?})", f.name, to_f64(&f.value));
+    let defaults = |fields: &[Parameter]| fields.iter().map(default).collect::<Vec<_>>();
+    let (declared_inputs, default_inputs) = (public(inputs), defaults(inputs));
+    let count = parameters.len();
+    let names = names(parameters.iter().map(|p| &p.name));
+    let set_one = "pub fn set_parameter";
+    if parameters.is_empty() {
         let marker = "scalar: ::core::marker::PhantomData";
-        (format!("{marker}<T>"), marker.to_owned())
-    } else {
-        let default = |f: &Parameter| format!("{}: T::constant({:?})", f.name, to_f64(&f.value));
-        (list(fields().map(|f| format!("pub {}: T", f.name))), list(fields().map(default)))
+        let (declared, first) = if inputs.is_empty() {
+            (format!("{marker}<T>"), marker.to_owned())
+        } else {
+            (list(declared_inputs), list(default_inputs))
+        };
+        let set_one = setter(set_one, parameters, ("", "", ""));
+        return format!(
+            "#[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct {name}<T> {{ {declared} }}
+            impl<T: gyro_sim::Scalar> ::core::default::Default for {name}<T> {{
+                fn default() -> Self {{ Self {{ {first} }} }}
+            }}
+            impl<T: gyro_sim::Scalar> {name}<T> {{
+                pub const PARAMETERS: [&'static str; {count}] = [{names}];
+                {set_one}
+            }}",
+        );
+    }
+    let with_values = |own: &str, values: &str, inputs: Vec<String>| {
+        list([own, values].map(str::to_owned).into_iter().filter(|field| !field.is_empty()).chain(inputs))
     };
+    let [declared_values, first_values, set_up, set_up_values] = if has_set_up {
+        [
+            "derived: [T; INT_derived]",
+            "derived: [T::constant(0.0); INT_derived]",
+            "fn set_up(&self, ANY_out: &mut [T; INT_derived]) { HOLE_set_up }",
+            "let mut derived = self.derived; self.set_up(&mut derived); self.derived = derived;",
+        ]
+    } else {
+        [""; 4]
+    };
+    let fields = with_values("parameters: Parameters<T>", declared_values, declared_inputs);
+    let first = with_values("parameters", first_values, default_inputs);
+    let (declared, values) = (list(public(parameters)), list(defaults(parameters)));
+    let around = ("parameters", "let mut parameters = self.parameters;", "self.set_parameters(parameters);");
+    let set_one = setter(set_one, parameters, around);
     format!(
         "#[derive(Clone, Copy, Debug, PartialEq)]
-        pub struct {name}<T> {{ {declared} }}
-        impl<T: gyro_sim::Scalar> ::core::default::Default for {name}<T> {{
-            fn default() -> Self {{ Self {{ {defaults} }} }}
+        pub struct Parameters<T> {{ {declared} }}
+        impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {{
+            fn default() -> Self {{ Self {{ {values} }} }}
         }}
-        impl<T> {name}<T> {{
-            pub const PARAMETERS: [&'static str; {}] = [{}];
-            {}
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct {name}<T> {{ {fields} }}
+        impl<T: gyro_sim::Scalar> ::core::default::Default for {name}<T> {{
+            fn default() -> Self {{ Self::new(Parameters::default()) }}
+        }}
+        impl<T: gyro_sim::Scalar> {name}<T> {{
+            pub const PARAMETERS: [&'static str; {count}] = [{names}];
+            pub fn new(parameters: Parameters<T>) -> Self {{
+                let mut mechanism = Self {{ {first} }};
+                mechanism.set_parameters(parameters);
+                mechanism
+            }}
+            pub fn parameters(&self) -> &Parameters<T> {{ &self.parameters }}
+            pub fn set_parameters(&mut self, parameters: Parameters<T>) {{
+                self.parameters = parameters;
+                {set_up_values}
+            }}
+            {set_one}
+            {set_up}
         }}",
-        model.parameters.len(),
-        names(model.parameters.iter().map(|p| &p.name)),
-        setter("pub fn set_parameter", &model.parameters),
     )
 }
 
@@ -483,6 +547,6 @@ fn ports(model: &Model, name: &str) -> String {
         ),
         inputs.len(),
         name_lookup("input_name", "index", "INPUTS", &inputs),
-        setter("fn set_input", &model.inputs),
+        setter("fn set_input", &model.inputs, ("self", "", "")),
     )
 }

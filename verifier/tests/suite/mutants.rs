@@ -35,31 +35,55 @@ const SEED: u64 = 11;
 fn no_inequivalent_mutant_of_a_formula_survives() {
     let (mut count, mut equivalent, mut survivors) = (0, Vec::new(), Vec::new());
     let mut kinds = BTreeMap::<String, usize>::new();
-    for (name, mutants) in MUTATED {
-        let page = crate::support::page(name);
-        let module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
-        let prime: Prime<9> = prime(&page.model, &module, SEED).expect("room for all roots");
-        let decider = Decider::new(&page.model, prime);
-        for (function, fault) in sample(&module, mutants) {
-            let Some(mutant) = apply(&module, &function, &fault) else { continue };
-            count += 1;
-            *kinds
-                .entry(format!("{fault:?}").split('(').next().unwrap_or_default().to_owned())
-                .or_default() += 1;
-            if is_killed(&decider, &mutant, &function) {
-                continue;
-            }
-            let line = format!("{name}, {function}: {fault:?}");
-            match decider.agree([&module, &mutant], &function, SEED) {
-                Some(true) if module.phi_q_pattern == mutant.phi_q_pattern => equivalent.push(line),
-                _ => survivors.push(line),
-            }
-        }
+    let fates = std::thread::scope(|scope| {
+        let (left, right) = MUTATED.split_at(MUTATED.len() / 2);
+        let threads = [left, right].map(|pages| scope.spawn(|| pages.iter().map(fates).collect::<Vec<_>>()));
+        threads.map(|thread| thread.join().expect("no panic but of the verifier"))
+    });
+    for fates in fates.into_iter().flatten() {
+        count += fates.count;
+        equivalent.extend(fates.equivalent);
+        survivors.extend(fates.survivors);
+        fates.kinds.into_iter().for_each(|(kind, count)| *kinds.entry(kind).or_default() += count);
     }
     println!("{count} mutants of formulas: {kinds:?}");
     println!("{} compute the same function:\n{}", equivalent.len(), equivalent.join("\n"));
     assert!(survivors.is_empty(), "{} survivors:\n{}", survivors.len(), survivors.join("\n"));
     assert!(count >= 1000, "{count} are too few");
+}
+
+/// What became of the mutants of some modules.
+#[derive(Default)]
+struct Fates {
+    count: usize,
+    equivalent: Vec<String>,
+    survivors: Vec<String>,
+    kinds: BTreeMap<String, usize>,
+}
+
+fn fates(&(name, mutants): &(&str, usize)) -> Fates {
+    let mut fates = Fates::default();
+    let page = crate::support::page(name);
+    let module = Module::read(&page.model, &page.code, &page.constants).expect("the emitted subset");
+    let prime: Prime<9> = prime(&page.model, &module, SEED).expect("room for all roots");
+    let decider = Decider::new(&page.model, prime);
+    for (function, fault) in sample(&module, mutants) {
+        let Some(mutant) = apply(&module, &function, &fault) else { continue };
+        fates.count += 1;
+        *fates
+            .kinds
+            .entry(format!("{fault:?}").split('(').next().unwrap_or_default().to_owned())
+            .or_default() += 1;
+        if is_killed(&decider, &mutant, &function) {
+            continue;
+        }
+        let line = format!("{name}, {function}: {fault:?}");
+        match decider.agree([&module, &mutant], &function, SEED) {
+            Some(true) if module.phi_q_pattern == mutant.phi_q_pattern => fates.equivalent.push(line),
+            _ => fates.survivors.push(line),
+        }
+    }
+    fates
 }
 
 /// Whether a claim about the function is not proved, or a pattern found wrong.

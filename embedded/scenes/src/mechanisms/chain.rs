@@ -81,7 +81,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Chain<T> {
         }
     }
 }
-impl<T> Chain<T> {
+impl<T: gyro_sim::Scalar> Chain<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 0] = [];
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.

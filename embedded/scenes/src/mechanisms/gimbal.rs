@@ -10,44 +10,45 @@
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 439 operations by relative Euler parameters; 459 operations by rotations of the bodies
-//! * project: 388 operations by relative Euler parameters; 399 operations by rotations of the bodies
-//! * joint_accelerations: 29 operations by normal form; 48 operations by recursion
-//! * joint_accelerations_at: 49 operations by normal form; 68 operations by recursion; 1 more compared
-//! * corrected_accelerations: 159 operations by normal form in the bodies' frames; 161 operations by normal form in the global frame; 5 more compared
-//! * joint_jacobian: 78 operations by derivatives of u̇, from its leaves; 78 operations by derivatives of u̇, from its roots; 7 more compared
-//! * joint_input_jacobian: 6 operations by normal form of that; 7 operations by derivatives of u̇, from its leaves; 7 more compared
+//! * accelerations: 437 operations by relative Euler parameters; 457 operations by rotations of the bodies
+//! * project: 387 operations by relative Euler parameters; 398 operations by rotations of the bodies
+//! * joint_accelerations: 24 operations by normal form; 43 operations by recursion
+//! * joint_accelerations_at: 44 operations by normal form; 63 operations by recursion; 1 more compared
+//! * corrected_accelerations: 154 operations by normal form in the bodies' frames; 156 operations by normal form in the global frame; 5 more compared
+//! * joint_jacobian: 69 operations by derivatives of the balance, from its leaves, normal form; 69 operations by derivatives of the balance, from its roots, normal form; 7 more compared
+//! * joint_input_jacobian: 5 operations by derivatives of u̇, from its leaves; 5 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
+//! | set_up | what depends on parameters alone | 7 | 16 | 1 | 24 | 0 of 16 | 44 | 24 |
 //! | phi | Φ | 50 | 58 | 0 | 108 | 0 of 18 | 178 | 108 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 | 590 | 205 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 | 540 | 169 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
 //! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 | 1486 | 315 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
-//! | applied_force | (f, n' − w̃'J'w') | 1 | 13 | 0 | 14 | 9 of 18 | 14 | 14 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 261 | 5 | 439 | 7 of 18 | 506002 | 443 |
-//! | multipliers | λ, the accelerations being known | 114 | 188 | 3 | 305 | 0 of 15 | 3832 | 305 |
-//! | project | (δr, δπ') that changes the rows as given | 147 | 236 | 5 | 388 | 1 of 18 | 414754 | 389 |
+//! | applied_force | (f, n' − w̃'J'w') | 1 | 12 | 0 | 13 | 9 of 18 | 13 | 13 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 173 | 250 | 5 | 428 | 7 of 18 | 505221 | 432 |
+//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 | 3819 | 304 |
+//! | project | (δr, δπ') that changes the rows as given | 147 | 235 | 5 | 387 | 1 of 18 | 414000 | 388 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 49 | 0 | 73 | 0 of 22 | 73 | 73 |
-//! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 | 53 | 53 |
+//! | energy | T and V | 19 | 32 | 0 | 51 | 0 of 2 | 51 | 51 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 193 | 318 | 3 | 514 | 6 of 21 | 1.1e9 | 514 |
 //! | solve_velocities | dependent velocities, eq. (19) | 96 | 158 | 3 | 257 | 6 of 18 | 10561 | 257 |
-//! | joint_accelerations | u̇ in joint coordinates | 9 | 18 | 2 | 29 | 0 of 3 | 52 | 31 |
+//! | joint_accelerations | u̇ in joint coordinates | 6 | 14 | 1 | 21 | 0 of 3 | 37 | 22 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 1 | 0 | 1 | 0 of 4 | 1 | 1 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 291 | 78 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 18 | 29 | 2 | 49 | 0 of 3 | 258 | 51 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 60 | 97 | 2 | 159 | 6 of 18 | 2659 | 161 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 81 | 0 | 135 | 0 of 15 | 724 | 135 |
-//! | corrected_solution | both | 92 | 148 | 2 | 242 | 6 of 33 | 23224 | 244 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 16 | 60 | 2 | 78 | 41 of 56 | 255 | 78 |
-//! | joint_input_jacobian | ∂f/∂(inputs) | 2 | 3 | 1 | 6 | 4 of 7 | 13 | 7 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 | 243 | 42 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 6 of 18 | 2544 | 152 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 715 | 134 |
+//! | corrected_solution | both | 89 | 143 | 1 | 233 | 6 of 33 | 22252 | 234 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 16 | 46 | 1 | 63 | 41 of 56 | 161 | 63 |
+//! | joint_input_jacobian | ∂f/∂(inputs) | 1 | 3 | 1 | 5 | 4 of 7 | 9 | 5 |
 //!
 //! # Proof
 //!
@@ -70,32 +71,99 @@
 //! All of it holds but with a probability below 1e-144.
 //! Not proved: the size of rounding errors.
 
+/// Parameters of [`Gimbal`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Parameters<T> {
+    /// Default 0.08.
+    pub rotor_mass: T,
+}
+impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
+    fn default() -> Self {
+        Self {
+            rotor_mass: T::constant(0.08),
+        }
+    }
+}
 /// The mechanism `gimbal`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gimbal<T> {
-    /// Parameter; default 0.08.
-    pub rotor_mass: T,
+    parameters: Parameters<T>,
+    /// What depends on parameters alone.
+    derived: [T; 16],
     /// Input, set at every step; until then 0.0.
     pub torque: T,
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for Gimbal<T> {
     fn default() -> Self {
-        Self {
-            rotor_mass: T::constant(0.08),
-            torque: T::constant(0.0),
-        }
+        Self::new(Parameters::default())
     }
 }
-impl<T> Gimbal<T> {
+impl<T: gyro_sim::Scalar> Gimbal<T> {
     /// Names of the parameters.
     pub const PARAMETERS: [&'static str; 1] = ["rotor_mass"];
+    /// The mechanism with these parameters.
+    pub fn new(parameters: Parameters<T>) -> Self {
+        let mut mechanism = Self {
+            parameters,
+            derived: [T::constant(0.0); 16],
+            torque: T::constant(0.0),
+        };
+        mechanism.set_parameters(parameters);
+        mechanism
+    }
+    /// The parameters.
+    pub fn parameters(&self) -> &Parameters<T> {
+        &self.parameters
+    }
+    /// Sets all parameters, and computes what depends on them alone.
+    pub fn set_parameters(&mut self, parameters: Parameters<T>) {
+        self.parameters = parameters;
+        let mut derived = self.derived;
+        self.set_up(&mut derived);
+        self.derived = derived;
+    }
     /// Sets a parameter by its place in [`Self::PARAMETERS`]; returns whether there is one.
     pub fn set_parameter(&mut self, index: usize, value: T) -> bool {
+        let mut parameters = self.parameters;
         match index {
-            0 => self.rotor_mass = value,
+            0 => parameters.rotor_mass = value,
             _ => return false,
         }
+        self.set_parameters(parameters);
         true
+    }
+    /// What depends on parameters alone: 24 operations (7 ±, 16 ×, 1 ÷).
+    fn set_up(&self, out: &mut [T; 16]) {
+        let k = T::constant;
+        let t0 = k(1.5625e-8) * self.parameters.rotor_mass;
+        let t1 = t0 + k(6e-6);
+        let t2 = k(1.0) / t1;
+        let t3 = k(1.5625e-8) * t2;
+        let t4 = k(3.125e-8) * self.parameters.rotor_mass;
+        let t5 = k(2e-6) + t4;
+        *out = [
+            k(10.0) * self.parameters.rotor_mass,
+            t0,
+            k(0.5) * self.parameters.rotor_mass,
+            k(0.003125) * (self.parameters.rotor_mass + k(64.0)),
+            t1,
+            (self.parameters.rotor_mass - k(256.0)) * t3,
+            k(1e-5) * t2,
+            k(80000.0) * self.parameters.rotor_mass * t3,
+            k(200000.0) * t5,
+            k(2e-5) * t1,
+            k(9.765625e-16)
+                * T::fused(
+                    self.parameters.rotor_mass,
+                    self.parameters.rotor_mass + k(448.0),
+                    k(24576.0),
+                ),
+            k(2.0) * t1,
+            t5,
+            k(0.00125) * self.parameters.rotor_mass,
+            k(8e-6) - t4,
+            t2,
+        ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Ode for Gimbal<T> {
@@ -713,7 +781,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
             -(t56 + t55),
         ];
     }
-    /// Kinetic and potential energy: 53 operations (19 ±, 34 ×, 0 ÷).
+    /// Kinetic and potential energy: 51 operations (19 ±, 32 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let outer_ring_ry = y[1];
@@ -739,29 +807,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
         let rotor_wz = y[38];
         let t0 = T::fused(
             rotor_wz,
-            k(5e-6) * rotor_wz,
-            T::fused(rotor_wy, k(5e-6) * rotor_wy, rotor_wx * (k(1e-5) * rotor_wx)),
+            k(2.5e-6) * rotor_wz,
+            T::fused(rotor_wy, k(2.5e-6) * rotor_wy, rotor_wx * (k(5e-6) * rotor_wx)),
         );
         let t1 = T::fused(
-            self.rotor_mass,
             T::fused(
                 rotor_sz,
                 rotor_sz,
                 T::fused(rotor_sy, rotor_sy, rotor_sx * rotor_sx),
             ),
+            self.derived[2],
             t0,
         );
         let t2 = T::fused(
             inner_ring_wz,
-            k(1e-6) * inner_ring_wz,
+            k(5e-7) * inner_ring_wz,
             T::fused(
                 inner_ring_wy,
-                k(2e-6) * inner_ring_wy,
-                inner_ring_wx * (k(1e-6) * inner_ring_wx),
+                k(1e-6) * inner_ring_wy,
+                inner_ring_wx * (k(5e-7) * inner_ring_wx),
             ),
         );
         let t3 = T::fused(
-            k(0.01),
+            k(0.005),
             T::fused(
                 inner_ring_sz,
                 inner_ring_sz,
@@ -771,15 +839,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
         );
         let t4 = T::fused(
             outer_ring_wz,
-            k(1e-6) * outer_ring_wz,
+            k(5e-7) * outer_ring_wz,
             T::fused(
                 outer_ring_wy,
-                k(1e-6) * outer_ring_wy,
-                outer_ring_wx * (k(2e-6) * outer_ring_wx),
+                k(5e-7) * outer_ring_wy,
+                outer_ring_wx * (k(1e-6) * outer_ring_wx),
             ),
         );
         let t5 = T::fused(
-            k(0.01),
+            k(0.005),
             T::fused(
                 outer_ring_sz,
                 outer_ring_sz,
@@ -788,10 +856,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
             t4,
         );
         gyro_sim::Energy {
-            kinetic: k(0.5) * (t5 + t3 + t1),
+            kinetic: t5 + t3 + t1,
             potential: T::fused(
                 rotor_ry,
-                k(10.0) * self.rotor_mass,
+                self.derived[0],
                 k(0.1) * (outer_ring_ry + inner_ring_ry),
             ),
         }
@@ -2106,7 +2174,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
             -(t84 + T::fused(t49, t65, T::fused(t44, t63, t46 * t64))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 14 operations (1 ±, 13 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 13 operations (1 ±, 12 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2132,14 +2200,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
             k(0.0),
             -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
             k(0.0),
-            -(k(10.0) * self.rotor_mass),
+            -self.derived[0],
             k(0.0),
             k(0.0),
             -(k(5e-6) * (rotor_wx * rotor_wz)),
             k(5e-6) * (rotor_wx * rotor_wy),
         ];
     }
-    /// Solves eq. (17): 439 operations (173 ±, 261 ×, 5 ÷).
+    /// Solves eq. (17): 428 operations (173 ±, 250 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2181,35 +2249,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
             t0,
             outer_ring_wy * outer_ring_wz,
         );
-        let t2 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
+        let t2 = inner_ring_e0 * inner_ring_e2;
+        let t3 = inner_ring_e1 * inner_ring_e3;
+        let t4 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t5 = inner_ring_e0 * inner_ring_e1;
+        let t6 = inner_ring_e2 * inner_ring_e3;
+        let t7 = k(0.00025) * (t6 + t5);
+        let t8 = inner_ring_wx * inner_ring_wy;
+        let t9 = inner_ring_e0 * inner_ring_e0;
+        let t10 = k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t9));
+        let t11 = inner_ring_wx * inner_ring_wz;
+        let t12 = T::fused(t11, t10, -T::fused(-t4, k(0.00025) * (t3 - t2), t8 * t7));
+        let t13 = self.parameters.rotor_mass * t12;
+        let t14 = inner_ring_e0 * inner_ring_e3;
+        let t15 = inner_ring_e1 * inner_ring_e2;
+        let t16 = k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t9));
+        let t17 = k(0.00025) * (t6 - t5);
+        let t18 = T::fused(t11, t17, -T::fused(t4, k(0.00025) * (t15 + t14), t8 * t16));
+        let t19 = T::fused(self.parameters.rotor_mass, t18, self.derived[0]);
+        let t20 = k(0.00025) * (t15 - t14);
+        let t21 = T::fused(
+            t4,
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t9)),
+            t8 * t20,
         );
-        let t3 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t4 = t3 * t2;
-        let t5 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t6 = T::fused(
+        let t22 = k(0.00025) * (t3 + t2);
+        let t23 = T::fused(t11, t22, t21);
+        let t24 = self.parameters.rotor_mass * t23;
+        let t25 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2218,48 +2285,95 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = t6 * t5;
-        let t8 = t7 + t4;
-        let t9 = k(1e-5) * t8;
-        let t10 = k(2.0) * t8;
-        let t11 = t3 * t5;
-        let t12 = t6 * t2;
-        let t13 = t12 - t11;
-        let t14 = k(1e-5) * t13;
-        let t15 = k(2.0) * t13;
-        let t16 = t3 * t6;
-        let t17 = t5 * t2;
-        let t18 = t17 - t16;
-        let t19 = k(2.0) * t18;
-        let t20 = t3 * t3;
-        let t21 = k(0.5) - T::fused(t2, t2, t20);
-        let t22 = k(2.0) * t21;
-        let t23 = T::fused(-t19, t9, t22 * t14);
-        let t24 = k(1.5625e-8) * self.rotor_mass;
-        let t25 = k(1e-6) + (t24 + T::fused(t19, k(1e-5) * t18, t22 * (k(1e-5) * t21)));
-        let t26 = k(1.0) / t25;
-        let t27 = t26 * t23;
-        let t28 = T::fused(t23, t27, -(k(1e-6) + T::fused(t10, t9, t15 * t14)));
+        let t26 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
+        );
+        let t27 = t26 * t26;
+        let t28 = k(0.5) - T::fused(t25, t25, t27);
         let t29 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+            -inner_ring_e0,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t30 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
+        let t30 = t26 * t29;
+        let t31 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
             T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t31 = t30 * t29;
-        let t32 = T::fused(
+        let t32 = t25 * t31;
+        let t33 = t26 * t31;
+        let t34 = t25 * t29;
+        let t35 = T::fused(
+            inner_ring_wz,
+            k(2.0) * (t34 + t33),
+            T::fused(
+                -inner_ring_wx,
+                k(2.0) * t28,
+                inner_ring_wy * (k(2.0) * (t32 - t30)),
+            ),
+        );
+        let t36 = rotor_wx - t35;
+        let t37 = t34 - t33;
+        let t38 = k(2.0) * t37;
+        let t39 = t26 * t25;
+        let t40 = t31 * t29;
+        let t41 = t40 + t39;
+        let t42 = k(2.0) * t41;
+        let t43 = k(0.5) - T::fused(t29, t29, t27);
+        let t44 = k(2.0) * t43;
+        let t45 = T::fused(
+            inner_ring_wz,
+            t44,
+            -T::fused(inner_ring_wx, t38, inner_ring_wy * t42),
+        );
+        let t46 = rotor_wz + t45;
+        let t47 = t32 + t30;
+        let t48 = k(2.0) * t47;
+        let t49 = k(0.5) - T::fused(t31, t31, t27);
+        let t50 = k(2.0) * t49;
+        let t51 = t40 - t39;
+        let t52 = k(2.0) * t51;
+        let t53 = T::fused(
+            inner_ring_wz,
+            t52,
+            -T::fused(-inner_ring_wx, t48, inner_ring_wy * t50),
+        );
+        let t54 = rotor_wy - t53;
+        let t55 = k(0.5) / t28 * T::fused(t46, t46, t54 * t54);
+        let t56 = T::fused(rotor_wx, t45, rotor_wz * t35)
+            + T::fused(-t46, t36, t38 * t55);
+        let t57 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t56);
+        let t58 = T::fused(-rotor_wy, t35, rotor_wx * t53)
+            - T::fused(-t54, t36, t48 * t55);
+        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t58);
+        let t60 = T::fused(t52, t57, t44 * t59)
+            + T::fused(-t7, t13, T::fused(-t16, t19, t20 * t24));
+        let t61 = T::fused(k(1e-6), t8, t60);
+        let t62 = k(1e-6)
+            + (self.derived[1] + T::fused(t52, k(1e-5) * t51, t44 * (k(1e-5) * t43)));
+        let t63 = k(1.0) / t62;
+        let t64 = t63 * t61;
+        let t65 = k(1e-5) * t49;
+        let t66 = k(1e-5) * t41;
+        let t67 = T::fused(t52, t65, t44 * t66);
+        let t68 = T::fused(t50, t57, t42 * t59)
+            + T::fused(t10, t13, T::fused(t17, t19, t22 * t24));
+        let t69 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2268,7 +2382,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t33 = T::fused(
+        let t70 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t71 = t70 * t69;
+        let t72 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t73 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2277,186 +2410,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t34 = t33 * t32;
-        let t35 = k(2.0) * (t34 - t31);
-        let t36 = k(0.5) - T::fused(t5, t5, t20);
-        let t37 = k(2.0) * t36;
-        let t38 = t17 + t16;
-        let t39 = k(2.0) * t38;
-        let t40 = k(1e-5) * t36;
-        let t41 = k(1e-5) * t38;
-        let t42 = T::fused(t19, t40, t22 * t41);
-        let t43 = T::fused(t42, t27, -T::fused(-t37, t9, t39 * t14));
-        let t44 = t30 * t30;
-        let t45 = k(2.0) * (k(0.5) - T::fused(t32, t32, t44));
-        let t46 = T::fused(-t35, t28, t45 * t43);
-        let t47 = T::fused(
-            t42,
-            t26 * t42,
-            -(k(2e-6) + (t24 + T::fused(t37, t40, t39 * t41))),
+        let t74 = t73 * t72;
+        let t75 = t70 * t73;
+        let t76 = t69 * t72;
+        let t77 = T::fused(
+            outer_ring_wx,
+            k(2.0) * (t74 - t71),
+            outer_ring_wy * (k(2.0) * (t76 + t75)),
         );
-        let t48 = T::fused(-t35, t43, t45 * t47);
-        let t49 = k(0.5) - T::fused(t6, t6, t20);
-        let t50 = T::fused(
-            inner_ring_wz,
-            k(2.0) * (t12 + t11),
-            T::fused(-inner_ring_wx, k(2.0) * t49, inner_ring_wy * (k(2.0) * (t7 - t4))),
+        let t78 = t70 * t70;
+        let t79 = k(0.5) - T::fused(t72, t72, t78);
+        let t80 = T::fused(outer_ring_wz, k(2.0) * t79, -t77);
+        let t81 = inner_ring_wz + t80;
+        let t82 = t70 * t72;
+        let t83 = t73 * t69;
+        let t84 = k(2.0) * (t83 + t82);
+        let t85 = k(2.0) * (k(0.5) - T::fused(t69, t69, t78));
+        let t86 = k(2.0) * (t76 - t75);
+        let t87 = T::fused(
+            outer_ring_wz,
+            t86,
+            -T::fused(-outer_ring_wx, t84, outer_ring_wy * t85),
         );
-        let t51 = rotor_wx - t50;
-        let t52 = T::fused(
-            inner_ring_wz,
-            t22,
-            -T::fused(inner_ring_wx, t15, inner_ring_wy * t39),
-        );
-        let t53 = rotor_wz + t52;
-        let t54 = T::fused(
-            inner_ring_wz,
-            t19,
-            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t37),
-        );
-        let t55 = rotor_wy - t54;
-        let t56 = k(0.5) / t49 * T::fused(t53, t53, t55 * t55);
-        let t57 = T::fused(rotor_wx, t52, rotor_wz * t50)
-            + T::fused(-t53, t51, t15 * t56);
-        let t58 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t57);
-        let t59 = T::fused(-rotor_wy, t50, rotor_wx * t54)
-            - T::fused(-t55, t51, t10 * t56);
-        let t60 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t59);
-        let t61 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t62 = inner_ring_e0 * inner_ring_e0;
-        let t63 = inner_ring_wx * inner_ring_wy;
-        let t64 = inner_ring_e0 * inner_ring_e3;
-        let t65 = inner_ring_e1 * inner_ring_e2;
-        let t66 = t65 - t64;
-        let t67 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t62)),
-            t61,
-            k(2.0) * t66 * t63,
-        );
-        let t68 = inner_ring_wx * inner_ring_wz;
-        let t69 = inner_ring_e0 * inner_ring_e2;
-        let t70 = inner_ring_e1 * inner_ring_e3;
-        let t71 = t70 + t69;
-        let t72 = k(0.000125) * T::fused(k(2.0) * t71, t68, t67);
-        let t73 = self.rotor_mass * t72;
-        let t74 = k(0.00025) * t66;
-        let t75 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t62);
-        let t76 = inner_ring_e0 * inner_ring_e1;
-        let t77 = inner_ring_e2 * inner_ring_e3;
-        let t78 = t77 - t76;
-        let t79 = T::fused(
-            k(2.0) * t78,
-            t68,
-            -T::fused(k(2.0) * (t65 + t64), t61, k(2.0) * t75 * t63),
-        );
-        let t80 = k(0.000125) * t79;
-        let t81 = T::fused(self.rotor_mass, t80, k(10.0) * self.rotor_mass);
-        let t82 = k(0.00025) * t75;
-        let t83 = t77 + t76;
-        let t84 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t62);
-        let t85 = T::fused(
-            k(2.0) * t84,
-            t68,
-            -T::fused(-(k(2.0) * (t70 - t69)), t61, k(2.0) * t83 * t63),
-        );
-        let t86 = k(0.000125) * t85;
-        let t87 = self.rotor_mass * t86;
-        let t88 = k(0.00025) * t83;
-        let t89 = T::fused(t88, t87, T::fused(-t74, t73, t82 * t81))
-            - T::fused(t19, t58, t22 * t60);
-        let t90 = T::fused(k(1e-6), t63, -t89);
-        let t91 = t26 * t90;
+        let t88 = inner_ring_wy - t87;
+        let t89 = k(2.0) * (k(0.5) - T::fused(t73, t73, t78));
+        let t90 = k(2.0) * (t83 - t82);
+        let t91 = k(2.0) * (t74 + t71);
         let t92 = T::fused(
-            t23,
+            outer_ring_wz,
             t91,
-            -T::fused(
+            T::fused(-outer_ring_wx, t89, outer_ring_wy * t90),
+        );
+        let t93 = inner_ring_wx - t92;
+        let t94 = k(0.5) / t79 * T::fused(t88, t88, t93 * t93);
+        let t95 = T::fused(inner_ring_wz, t87, inner_ring_wy * t80)
+            - T::fused(-t88, t81, t86 * t94);
+        let t96 = k(1e-5) * t47;
+        let t97 = k(1e-5) * t37;
+        let t98 = T::fused(-t52, t96, t44 * t97);
+        let t99 = t63 * t98;
+        let t100 = T::fused(t67, t99, -T::fused(-t50, t96, t42 * t97));
+        let t101 = T::fused(inner_ring_wx, t80, inner_ring_wz * t92)
+            - T::fused(-t93, t81, t91 * t94);
+        let t102 = T::fused(
+            t67,
+            t63 * t67,
+            -(k(2e-6) + (self.derived[1] + T::fused(t50, t65, t42 * t66))),
+        );
+        let t103 = T::fused(
+            -t98,
+            t64,
+            T::fused(
                 k(1e-6),
                 inner_ring_wy * inner_ring_wz,
-                T::fused(-t10, t58, t15 * t60),
+                T::fused(-t48, t57, t38 * t59),
             ),
         );
-        let t93 = t30 * t32;
-        let t94 = t33 * t29;
-        let t95 = t30 * t33;
-        let t96 = t32 * t29;
-        let t97 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t94 - t93),
-            outer_ring_wy * (k(2.0) * (t96 + t95)),
+        let t104 = T::fused(t98, t99, -(k(1e-6) + T::fused(t48, t96, t38 * t97)));
+        let t105 = T::fused(
+            -t85,
+            T::fused(-t100, t95, t102 * t101) - T::fused(-t67, t64, t68),
+            t90 * (T::fused(-t104, t95, t100 * t101) - t103),
         );
-        let t98 = k(0.5) - T::fused(t29, t29, t44);
-        let t99 = T::fused(outer_ring_wz, k(2.0) * t98, -t97);
-        let t100 = inner_ring_wz + t99;
-        let t101 = k(2.0) * (t34 + t31);
-        let t102 = k(2.0) * (t96 - t95);
-        let t103 = T::fused(
-            outer_ring_wz,
-            t102,
-            -T::fused(-outer_ring_wx, t101, outer_ring_wy * t45),
+        let t106 = T::fused(
+            -t90,
+            T::fused(-t89, t104, t84 * t100),
+            t85 * T::fused(-t89, t100, t84 * t102),
         );
-        let t104 = inner_ring_wy - t103;
-        let t105 = k(2.0) * (k(0.5) - T::fused(t33, t33, t44));
-        let t106 = k(2.0) * (t94 + t93);
-        let t107 = T::fused(
-            outer_ring_wz,
-            t106,
-            T::fused(-outer_ring_wx, t105, outer_ring_wy * t35),
-        );
-        let t108 = inner_ring_wx - t107;
-        let t109 = k(0.5) / t98 * T::fused(t104, t104, t108 * t108);
-        let t110 = T::fused(inner_ring_wz, t103, inner_ring_wy * t99)
-            - T::fused(-t104, t100, t102 * t109);
-        let t111 = T::fused(inner_ring_wx, t99, inner_ring_wz * t107)
-            - T::fused(-t108, t100, t106 * t109);
-        let t112 = k(0.00025) * t71;
-        let t113 = k(0.00025) * t78;
-        let t114 = k(0.00025) * t84;
-        let t115 = T::fused(t114, t87, T::fused(t112, t73, t113 * t81))
-            + T::fused(t37, t58, t39 * t60);
-        let t116 = T::fused(
-            -t35,
-            T::fused(-t28, t110, t43 * t111) + t92,
-            t45 * (T::fused(-t43, t110, t47 * t111) + T::fused(t42, t91, -t115)),
-        );
-        let t117 = T::fused(
-            -t35,
-            T::fused(-t105, t28, t101 * t43),
-            t45 * T::fused(-t105, t43, t101 * t47),
-        );
-        let t118 = T::fused(
+        let t107 = T::fused(-t90, t104, t85 * t100);
+        let t108 = T::fused(-t90, t100, t85 * t102);
+        let t109 = T::fused(
             -(k(2.0)
                 * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
             t0,
             outer_ring_wx * outer_ring_wy,
         );
-        let t119 = T::fused(-t1, t117, t118 * T::fused(t106, t46, t102 * t48))
-            - (T::fused(-k(1e-6), outer_ring_wx * outer_ring_wz, self.torque) + t116);
-        let t120 = t119 / (k(1e-6) - T::fused(-t35, t46, t45 * t48));
-        let t121 = t110 + T::fused(t118, t106, -T::fused(-t1, t105, t35 * t120));
-        let t122 = t111 - T::fused(t118, t102, T::fused(-t1, t101, t45 * t120));
-        let t123 = t26 * (t90 + T::fused(-t23, t121, t42 * t122));
+        let t110 = T::fused(-t1, t106, t109 * T::fused(t91, t107, t86 * t108))
+            - (T::fused(-k(1e-6), outer_ring_wx * outer_ring_wz, self.torque) - t105);
+        let t111 = t110 / (k(1e-6) - T::fused(-t90, t107, t85 * t108));
+        let t112 = t95 + T::fused(t109, t91, T::fused(-t90, t111, t1 * t89));
+        let t113 = t101 - T::fused(t109, t86, -T::fused(-t85, t111, t1 * t84));
+        let t114 = t63 * (t61 - T::fused(-t67, t113, t98 * t112));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t1,
-            -t120,
-            t118,
+            -t111,
+            t109,
             k(0.0),
             k(0.0),
             k(0.0),
-            t121,
-            -t122,
-            -t123,
-            t72 - T::fused(-t112, t122, t74 * t123),
-            t80 + T::fused(t113, t122, t82 * t123),
-            -(t86 + T::fused(t114, t122, t88 * t123)),
+            t112,
+            -t113,
+            -t114,
+            t23 + T::fused(-t20, t114, t22 * t113),
+            t18 + T::fused(t16, t114, t17 * t113),
+            -(t12 + T::fused(t7, t114, t10 * t113)),
             k(0.0),
-            -(t57 + T::fused(t19, t123, -T::fused(t10, t121, t37 * t122))),
-            T::fused(t22, t123, -T::fused(-t15, t121, t39 * t122)) - t59,
+            T::fused(-t52, t114, T::fused(t50, t113, t48 * t112)) - t56,
+            T::fused(t44, t114, T::fused(-t42, t113, t38 * t112)) - t58,
         ];
     }
-    /// Writes λ: 305 operations (114 ±, 188 ×, 3 ÷).
+    /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2502,11 +2558,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = self.rotor_mass * rotor_dsx;
+        let t0 = self.parameters.rotor_mass * rotor_dsx;
         let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(self.rotor_mass, rotor_dsy, k(10.0) * self.rotor_mass);
+        let t2 = T::fused(self.parameters.rotor_mass, rotor_dsy, self.derived[0]);
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = self.rotor_mass * rotor_dsz;
+        let t4 = self.parameters.rotor_mass * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = rotor_e0 * rotor_e0;
         let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
@@ -2650,7 +2706,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gimbal<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gimbal<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 388 operations (147 ±, 236 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 387 operations (147 ±, 235 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2751,35 +2807,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gimbal<T> {
         let t30 = k(5e-6) * t29;
         let t31 = T::fused(-t10, t13, t9 * t12);
         let t32 = k(2.0) * t31;
-        let t33 = self.rotor_mass * row10;
+        let t33 = self.parameters.rotor_mass * row10;
         let t34 = k(0.00025)
             * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t35 = self.rotor_mass * row11;
+        let t35 = self.parameters.rotor_mass * row11;
         let t36 = inner_ring_e0 * inner_ring_e0;
         let t37 = k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t36));
-        let t38 = self.rotor_mass * row12;
+        let t38 = self.parameters.rotor_mass * row12;
         let t39 = inner_ring_e0 * inner_ring_e1;
         let t40 = inner_ring_e2 * inner_ring_e3;
         let t41 = k(0.00025) * (t40 + t39);
         let t42 = T::fused(t41, t38, -T::fused(-t34, t33, t37 * t35))
             + T::fused(t16, t26, t21 * t30);
-        let t43 = k(1.5625e-8) * self.rotor_mass;
-        let t44 = k(1e-6) + (t43 + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
-        let t45 = k(1.0) / t44;
-        let t46 = t45 * t42;
-        let t47 = k(1e-5) * t27;
-        let t48 = k(1e-5) * t31;
-        let t49 = T::fused(-t16, t47, t21 * t48);
-        let t50 = self.rotor_mass * t34;
-        let t51 = t45 * t50;
-        let t52 = t49 * t51;
-        let t53 = self.rotor_mass * t37;
-        let t54 = t45 * t53;
-        let t55 = t49 * t54;
-        let t56 = self.rotor_mass * t41;
-        let t57 = t45 * t56;
-        let t58 = t49 * t57;
-        let t59 = T::fused(
+        let t43 = k(1e-6)
+            + (self.derived[1] + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
+        let t44 = k(1.0) / t43;
+        let t45 = t44 * t42;
+        let t46 = k(1e-5) * t27;
+        let t47 = k(1e-5) * t31;
+        let t48 = T::fused(-t16, t46, t21 * t47);
+        let t49 = self.parameters.rotor_mass * t34;
+        let t50 = t44 * t49;
+        let t51 = t48 * t50;
+        let t52 = self.parameters.rotor_mass * t37;
+        let t53 = t44 * t52;
+        let t54 = t48 * t53;
+        let t55 = self.parameters.rotor_mass * t41;
+        let t56 = t44 * t55;
+        let t57 = t48 * t56;
+        let t58 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -2788,7 +2844,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gimbal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t60 = T::fused(
+        let t59 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2797,8 +2853,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gimbal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t61 = t60 * t59;
-        let t62 = T::fused(
+        let t60 = t59 * t58;
+        let t61 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2807,7 +2863,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gimbal<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t63 = T::fused(
+        let t62 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2816,89 +2872,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gimbal<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t64 = t63 * t62;
-        let t65 = k(2.0) * (t64 - t61);
-        let t66 = k(2.0) * (t64 + t61);
-        let t67 = t60 * t60;
-        let t68 = k(2.0) * (k(0.5) - T::fused(t62, t62, t67));
-        let t69 = k(2.0) * (k(0.5) - T::fused(t63, t63, t67));
-        let t70 = k(1.0) / T::fused(-t66, t65, t69 * t68);
-        let t71 = T::fused(row8, t65 * t70, row9 * (t69 * t70));
-        let t72 = t45 * t49;
-        let t73 = T::fused(t49, t72, -(k(1e-6) + T::fused(t28, t47, t32 * t48)));
-        let t74 = T::fused(row8, t68 * t70, row9 * (t66 * t70));
-        let t75 = k(1e-5) * t22;
-        let t76 = k(1e-5) * t17;
-        let t77 = T::fused(t16, t75, t21 * t76);
-        let t78 = T::fused(t77, t72, -T::fused(-t23, t47, t18 * t48));
-        let t79 = T::fused(-t73, t71, t78 * t74)
-            + T::fused(row7, t58, -T::fused(-row5, t52, row6 * t55));
-        let t80 = k(0.00025)
+        let t63 = t62 * t61;
+        let t64 = k(2.0) * (t63 - t60);
+        let t65 = k(2.0) * (t63 + t60);
+        let t66 = t59 * t59;
+        let t67 = k(2.0) * (k(0.5) - T::fused(t61, t61, t66));
+        let t68 = k(2.0) * (k(0.5) - T::fused(t62, t62, t66));
+        let t69 = k(1.0) / T::fused(-t65, t64, t68 * t67);
+        let t70 = T::fused(row8, t64 * t69, row9 * (t68 * t69));
+        let t71 = t44 * t48;
+        let t72 = T::fused(t48, t71, -(k(1e-6) + T::fused(t28, t46, t32 * t47)));
+        let t73 = T::fused(row8, t67 * t69, row9 * (t65 * t69));
+        let t74 = k(1e-5) * t22;
+        let t75 = k(1e-5) * t17;
+        let t76 = T::fused(t16, t74, t21 * t75);
+        let t77 = T::fused(t76, t71, -T::fused(-t23, t46, t18 * t47));
+        let t78 = T::fused(-t72, t70, t77 * t73)
+            + T::fused(row7, t57, -T::fused(-row5, t51, row6 * t54));
+        let t79 = k(0.00025)
             * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t81 = k(0.00025) * (t40 - t39);
-        let t82 = k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t36));
-        let t83 = T::fused(t82, t38, -T::fused(t80, t33, t81 * t35))
+        let t80 = k(0.00025) * (t40 - t39);
+        let t81 = k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t36));
+        let t82 = T::fused(t81, t38, -T::fused(t79, t33, t80 * t35))
             - T::fused(t23, t26, t18 * t30);
-        let t84 = T::fused(-t77, t51, self.rotor_mass * t80);
-        let t85 = T::fused(t77, t54, self.rotor_mass * t81);
-        let t86 = T::fused(t77, t57, self.rotor_mass * t82);
-        let t87 = T::fused(
-            t77,
-            t45 * t77,
-            -(k(2e-6) + (t43 + T::fused(t23, t75, t18 * t76))),
+        let t83 = T::fused(-t76, t50, self.parameters.rotor_mass * t79);
+        let t84 = T::fused(t76, t53, self.parameters.rotor_mass * t80);
+        let t85 = T::fused(t76, t56, self.parameters.rotor_mass * t81);
+        let t86 = T::fused(
+            t76,
+            t44 * t76,
+            -(k(2e-6) + (self.derived[1] + T::fused(t23, t74, t18 * t75))),
         );
-        let t88 = T::fused(-t78, t71, t87 * t74)
-            + T::fused(row7, t86, -T::fused(row5, t84, row6 * t85));
+        let t87 = T::fused(-t77, t70, t86 * t73)
+            + T::fused(row7, t85, -T::fused(row5, t83, row6 * t84));
+        let t88 = T::fused(
+            -t64,
+            t78 + T::fused(t48, t45, -T::fused(-t28, t26, t32 * t30)),
+            t67 * (t87 + T::fused(t76, t45, t82)),
+        );
         let t89 = T::fused(
-            -t65,
-            t79 + T::fused(t49, t46, -T::fused(-t28, t26, t32 * t30)),
-            t68 * (t88 + T::fused(t77, t46, t83)),
+            row0,
+            T::fused(t64, t51, t67 * t83),
+            row1 * T::fused(-t64, t54, t67 * t84),
         );
         let t90 = T::fused(
-            row0,
-            T::fused(t65, t52, t68 * t84),
-            row1 * T::fused(-t65, t55, t68 * t85),
+            -t64,
+            T::fused(-t68, t72, t65 * t77),
+            t67 * T::fused(-t68, t77, t65 * t86),
         );
-        let t91 = T::fused(
-            -t65,
-            T::fused(-t69, t73, t66 * t78),
-            t68 * T::fused(-t69, t78, t66 * t87),
-        );
-        let t92 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-        let t93 = T::fused(-t65, t73, t68 * t78);
-        let t94 = k(2.0) * T::fused(t60, t62, t63 * t59);
-        let t95 = T::fused(-t65, t78, t68 * t87);
-        let t96 = k(2.0) * T::fused(-t60, t63, t62 * t59);
-        let t97 = T::fused(-t91, t8, T::fused(t94, t93, t96 * t95) * t92)
-            + T::fused(row2, T::fused(-t65, t58, t68 * t86), -t90);
-        let t98 = (t97 + t89) / (k(1e-6) - T::fused(-t65, t93, t68 * t95));
-        let t99 = row0 + row5;
-        let t100 = row1 + row6;
-        let t101 = row2 + row7;
-        let t102 = t71 - T::fused(t94, t92, -T::fused(-t69, t8, t65 * t98));
-        let t103 = t74 + T::fused(t96, t92, T::fused(-t66, t8, t68 * t98));
-        let t104 = T::fused(t101, t56, -T::fused(-t99, t50, t100 * t53))
-            + T::fused(-t49, t102, t77 * t103);
-        let t105 = t45 * (t42 + t104);
+        let t91 = T::fused(t6 * t7, row3, t1 * t7 * row4);
+        let t92 = T::fused(-t64, t72, t67 * t77);
+        let t93 = k(2.0) * T::fused(t59, t61, t62 * t58);
+        let t94 = T::fused(-t64, t77, t67 * t86);
+        let t95 = k(2.0) * T::fused(-t59, t62, t61 * t58);
+        let t96 = T::fused(-t90, t8, T::fused(t93, t92, t95 * t94) * t91)
+            + T::fused(row2, T::fused(-t64, t57, t67 * t85), -t89);
+        let t97 = (t96 + t88) / (k(1e-6) - T::fused(-t64, t92, t67 * t94));
+        let t98 = row0 + row5;
+        let t99 = row1 + row6;
+        let t100 = row2 + row7;
+        let t101 = t70 - T::fused(t93, t91, -T::fused(-t68, t8, t64 * t97));
+        let t102 = t73 + T::fused(t95, t91, T::fused(-t65, t8, t67 * t97));
+        let t103 = T::fused(t100, t55, -T::fused(-t98, t49, t99 * t52))
+            + T::fused(-t48, t101, t76 * t102);
+        let t104 = t44 * (t42 + t103);
         *out = [
             row0,
             row1,
             row2,
             t8,
+            t97,
+            -t91,
             t98,
-            -t92,
             t99,
             t100,
             t101,
-            t102,
-            -t103,
-            -t105,
-            row10 + (t99 - T::fused(-t80, t103, t34 * t105)),
-            row11 + (t100 + T::fused(t81, t103, t37 * t105)),
-            row12 + (t101 - T::fused(t82, t103, t41 * t105)),
+            -t102,
+            -t104,
+            row10 + (t98 - T::fused(-t79, t102, t34 * t104)),
+            row11 + (t99 + T::fused(t80, t102, t37 * t104)),
+            row12 + (t100 - T::fused(t81, t102, t41 * t104)),
             k(0.0),
-            t25 - T::fused(t16, t105, -T::fused(t28, t102, t23 * t103)),
-            T::fused(t21, t105, -T::fused(-t32, t102, t18 * t103)) - t29,
+            t25 - T::fused(t16, t104, -T::fused(t28, t101, t23 * t102)),
+            T::fused(t21, t104, -T::fused(-t32, t101, t18 * t102)) - t29,
         ];
     }
 }
@@ -2916,7 +2972,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 29 operations (9 ±, 18 ×, 2 ÷) and 2 functions.
+    /// Writes u̇: 21 operations (6 ±, 14 ×, 1 ÷) and 2 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x1 = x[1];
@@ -2927,21 +2983,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         let t1 = u0 * t0;
         let t2 = x1.cos();
         let t3 = u1 * (k(1e-5) * t2);
-        let t4 = T::fused(k(1.5625e-8), self.rotor_mass, k(6e-6));
-        let t5 = T::fused(
-            -t3,
-            T::fused(-k(0.003125), (self.rotor_mass + k(64.0)) * t1, u2),
-            self.torque,
-        ) / T::fused(t4, t2 * t2, k(2e-6));
-        let t6 = T::fused(
-            -u0,
-            T::fused(-(self.rotor_mass - k(256.0)), t1, k(640.0) * u2),
-            k(80000.0) * self.rotor_mass,
-        );
+        let t4 = T::fused(-t3, T::fused(-t1, self.derived[3], u2), self.torque)
+            / T::fused(self.derived[4], t2 * t2, k(2e-6));
         *out = [
-            t5,
-            -(k(1.5625e-8) * (t2 * t6) / t4),
-            -T::fused(k(100000.0), u0 * t3, t0 * t5),
+            t4,
+            -(t2
+                * T::fused(
+                    -u0,
+                    T::fused(-t1, self.derived[5], u2 * self.derived[6]),
+                    self.derived[7],
+                )),
+            -T::fused(t0, t4, k(100000.0) * (u0 * t3)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 1 operations (0 ±, 1 ×, 0 ÷).
@@ -3144,7 +3196,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 49 operations (18 ±, 29 ×, 2 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 41 operations (15 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3184,24 +3236,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         let t5 = inner_ring_wx - rotor_wx;
         let t6 = T::fused(-t0, t1, k(1.0));
         let t7 = (outer_ring_wz - inner_ring_wz) * (k(1e-5) * t6);
-        let t8 = T::fused(k(1.5625e-8), self.rotor_mass, k(6e-6));
-        let t9 = T::fused(
-            -t7,
-            T::fused(-k(0.003125), (self.rotor_mass + k(64.0)) * t4, t5),
-            self.torque,
-        ) / T::fused(t8, t6 * t6, k(2e-6));
-        let t10 = T::fused(
-            -outer_ring_wy,
-            T::fused(-k(640.0), t5, (self.rotor_mass - k(256.0)) * t4),
-            k(80000.0) * self.rotor_mass,
-        );
+        let t8 = T::fused(-t7, T::fused(-t4, self.derived[3], t5), self.torque)
+            / T::fused(self.derived[4], t6 * t6, k(2e-6));
         *out = [
-            t9,
-            -(k(1.5625e-8) * (t6 * t10) / t8),
-            T::fused(k(100000.0), outer_ring_wy * t7, t3 * t9),
+            t8,
+            -(t6
+                * T::fused(
+                    -outer_ring_wy,
+                    T::fused(-t5, self.derived[6], t4 * self.derived[5]),
+                    self.derived[7],
+                )),
+            T::fused(t3, t8, k(100000.0) * (outer_ring_wy * t7)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 159 operations (60 ±, 97 ×, 2 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 151 operations (57 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3256,24 +3304,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         let t7 = T::fused(-t1, t2, k(1.0));
         let t8 = outer_ring_wz - inner_ring_wz;
         let t9 = t8 * (k(1e-5) * t7);
-        let t10 = T::fused(k(1.5625e-8), self.rotor_mass, k(6e-6));
-        let t11 = T::fused(
-            -t9,
-            T::fused(-k(0.003125), (self.rotor_mass + k(64.0)) * t5, t6),
-            self.torque,
-        ) / T::fused(t10, t7 * t7, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t4 * t11;
-        let t14 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, t13));
-        let t15 = T::fused(inner_ring_wx, t8, -T::fused(-t7, t11, t0 * t4));
-        let t16 = T::fused(
-            -outer_ring_wy,
-            T::fused(-k(640.0), t6, (self.rotor_mass - k(256.0)) * t5),
-            k(80000.0) * self.rotor_mass,
+        let t10 = T::fused(-t9, T::fused(-t5, self.derived[3], t6), self.torque)
+            / T::fused(self.derived[4], t7 * t7, k(2e-6));
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t4 * t10;
+        let t13 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, t12));
+        let t14 = T::fused(inner_ring_wx, t8, -T::fused(-t7, t10, t0 * t4));
+        let t15 = T::fused(
+            -t7,
+            T::fused(
+                -outer_ring_wy,
+                T::fused(-t6, self.derived[6], t5 * self.derived[5]),
+                self.derived[7],
+            ),
+            t11,
         );
-        let t17 = t12 - k(1.5625e-8) * (t7 * t16) / t10;
-        let t18 = k(0.000125) * t17;
-        let t19 = T::fused(
+        let t16 = k(0.000125) * t14;
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3282,10 +3329,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t20 = k(2.0) * t19;
-        let t21 = T::fused(-t19, t20, k(1.0));
-        let t22 = k(0.000125) * t15;
-        let t23 = T::fused(
+        let t18 = k(2.0) * t17;
+        let t19 = T::fused(-t17, t18, k(1.0));
+        let t20 = k(0.000125) * t15;
+        let t21 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3294,54 +3341,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t24 = t23 * t20;
-        let t25 = k(0.000125) * inner_ring_wy;
+        let t22 = t21 * t18;
+        let t23 = k(0.000125) * inner_ring_wy;
+        let t24 = inner_ring_wx * t23;
+        let t25 = k(0.000125) * inner_ring_wz;
         let t26 = inner_ring_wx * t25;
-        let t27 = k(0.000125) * inner_ring_wz;
-        let t28 = inner_ring_wx * t27;
-        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(t21, t18, t24 * t22);
-        let t30 = rotor_e0 * rotor_e3;
-        let t31 = rotor_e1 * rotor_e2;
-        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
-        let t33 = rotor_e0 * rotor_e0;
-        let t34 = T::fused(
-            -(k(2.0) * (t31 - t30)),
-            t29,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
+        let t27 = T::fused(t24, t22, t26 * t19) + T::fused(-t19, t16, t22 * t20);
+        let t28 = rotor_e0 * rotor_e2;
+        let t29 = rotor_e1 * rotor_e3;
+        let t30 = T::fused(-t24, t19, t26 * t22) - T::fused(t22, t16, t19 * t20);
+        let t31 = rotor_e0 * rotor_e3;
+        let t32 = rotor_e1 * rotor_e2;
+        let t33 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = T::fused(
+            -(k(2.0) * (t32 - t31)),
+            t30,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
         );
-        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(-t24, t18, t21 * t22);
-        let t36 = rotor_e0 * rotor_e2;
-        let t37 = rotor_e1 * rotor_e3;
+        let t36 = rotor_e0 * rotor_e1;
+        let t37 = rotor_e2 * rotor_e3;
         let t38 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
-            t29,
-            k(2.0) * (t31 + t30) * t32,
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
+            t30,
+            k(2.0) * (t32 + t31) * t33,
         );
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = T::fused(k(2.0) * (t40 + t39), t29, k(2.0) * (t37 - t36) * t32);
+        let t39 = T::fused(k(2.0) * (t37 + t36), t30, k(2.0) * (t29 - t28) * t33);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            t10,
             t11,
-            t12,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t13,
+            t14,
             t15,
-            t17,
-            T::fused(k(2.0) * (t37 + t36), t35, t34),
-            T::fused(k(2.0) * (t40 - t39), t35, -t38),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)), t35, t41),
-            T::fused(k(100000.0), outer_ring_wy * t9, t13) - t14,
-            -T::fused(rotor_wz, t6, T::fused(-t21, t15, t24 * t17)),
-            T::fused(rotor_wy, t6, T::fused(t24, t15, t21 * t17)),
+            T::fused(k(2.0) * (t29 + t28), t27, t35),
+            T::fused(k(2.0) * (t37 - t36), t27, -t38),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)), t27, t39),
+            T::fused(k(100000.0), outer_ring_wy * t9, t12) - t13,
+            T::fused(-rotor_wz, t6, T::fused(-t22, t15, t19 * t14)),
+            T::fused(rotor_wy, t6, T::fused(t19, t15, t22 * t14)),
         ];
     }
-    /// Writes λ: 135 operations (54 ±, 81 ×, 0 ÷).
+    /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3387,11 +3434,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = self.rotor_mass * rotor_dsx;
+        let t0 = self.parameters.rotor_mass * rotor_dsx;
         let t1 = T::fused(k(0.01), inner_ring_dsx, t0);
-        let t2 = T::fused(self.rotor_mass, rotor_dsy, k(10.0) * self.rotor_mass);
+        let t2 = T::fused(self.parameters.rotor_mass, rotor_dsy, self.derived[0]);
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
-        let t4 = self.rotor_mass * rotor_dsz;
+        let t4 = self.parameters.rotor_mass * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
         let t6 = T::fused(
             -k(1e-5),
@@ -3499,7 +3546,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 242 operations (92 ±, 148 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 233 operations (89 ±, 143 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3549,24 +3596,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         let t7 = T::fused(-t1, t2, k(1.0));
         let t8 = outer_ring_wz - inner_ring_wz;
         let t9 = t8 * (k(1e-5) * t7);
-        let t10 = T::fused(k(1.5625e-8), self.rotor_mass, k(6e-6));
-        let t11 = T::fused(
-            -t9,
-            T::fused(-k(0.003125), (self.rotor_mass + k(64.0)) * t5, t6),
-            self.torque,
-        ) / T::fused(t10, t7 * t7, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t4 * t11;
-        let t14 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, t13));
-        let t15 = T::fused(inner_ring_wx, t8, -T::fused(-t7, t11, t0 * t4));
-        let t16 = T::fused(
-            -outer_ring_wy,
-            T::fused(-k(640.0), t6, (self.rotor_mass - k(256.0)) * t5),
-            k(80000.0) * self.rotor_mass,
+        let t10 = T::fused(-t9, T::fused(-t5, self.derived[3], t6), self.torque)
+            / T::fused(self.derived[4], t7 * t7, k(2e-6));
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t4 * t10;
+        let t13 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, t12));
+        let t14 = T::fused(inner_ring_wx, t8, -T::fused(-t7, t10, t0 * t4));
+        let t15 = T::fused(
+            -t7,
+            T::fused(
+                -outer_ring_wy,
+                T::fused(-t6, self.derived[6], t5 * self.derived[5]),
+                self.derived[7],
+            ),
+            t11,
         );
-        let t17 = t12 - k(1.5625e-8) * (t7 * t16) / t10;
-        let t18 = k(0.000125) * t17;
-        let t19 = T::fused(
+        let t16 = k(0.000125) * t14;
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3575,10 +3621,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t20 = k(2.0) * t19;
-        let t21 = T::fused(-t19, t20, k(1.0));
-        let t22 = k(0.000125) * t15;
-        let t23 = T::fused(
+        let t18 = k(2.0) * t17;
+        let t19 = T::fused(-t17, t18, k(1.0));
+        let t20 = k(0.000125) * t15;
+        let t21 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3587,122 +3633,125 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t24 = t23 * t20;
-        let t25 = k(0.000125) * inner_ring_wy;
+        let t22 = t21 * t18;
+        let t23 = k(0.000125) * inner_ring_wy;
+        let t24 = inner_ring_wx * t23;
+        let t25 = k(0.000125) * inner_ring_wz;
         let t26 = inner_ring_wx * t25;
-        let t27 = k(0.000125) * inner_ring_wz;
-        let t28 = inner_ring_wx * t27;
-        let t29 = T::fused(-t26, t21, t28 * t24) - T::fused(t21, t18, t24 * t22);
-        let t30 = rotor_e0 * rotor_e3;
-        let t31 = rotor_e1 * rotor_e2;
-        let t32 = T::fused(inner_ring_wz, t27, inner_ring_wy * t25);
-        let t33 = rotor_e0 * rotor_e0;
-        let t34 = T::fused(
-            -(k(2.0) * (t31 - t30)),
-            t29,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t33)) * t32,
+        let t27 = T::fused(t24, t22, t26 * t19) + T::fused(-t19, t16, t22 * t20);
+        let t28 = rotor_e0 * rotor_e2;
+        let t29 = rotor_e1 * rotor_e3;
+        let t30 = T::fused(-t24, t19, t26 * t22) - T::fused(t22, t16, t19 * t20);
+        let t31 = rotor_e0 * rotor_e3;
+        let t32 = rotor_e1 * rotor_e2;
+        let t33 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
+        let t34 = rotor_e0 * rotor_e0;
+        let t35 = T::fused(
+            -(k(2.0) * (t32 - t31)),
+            t30,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
         );
-        let t35 = T::fused(t26, t24, t28 * t21) - T::fused(-t24, t18, t21 * t22);
-        let t36 = rotor_e0 * rotor_e2;
-        let t37 = rotor_e1 * rotor_e3;
-        let t38 = T::fused(k(2.0) * (t37 + t36), t35, t34);
+        let t36 = T::fused(k(2.0) * (t29 + t28), t27, t35);
+        let t37 = rotor_e0 * rotor_e1;
+        let t38 = rotor_e2 * rotor_e3;
         let t39 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t33))),
-            t29,
-            k(2.0) * (t31 + t30) * t32,
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
+            t30,
+            k(2.0) * (t32 + t31) * t33,
         );
-        let t40 = rotor_e0 * rotor_e1;
-        let t41 = rotor_e2 * rotor_e3;
-        let t42 = T::fused(k(2.0) * (t41 - t40), t35, -t39);
-        let t43 = T::fused(k(2.0) * (t41 + t40), t29, k(2.0) * (t37 - t36) * t32);
-        let t44 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t33)),
-            t35,
+        let t40 = T::fused(-(k(2.0) * (t38 - t37)), t27, t39);
+        let t41 = T::fused(k(2.0) * (t38 + t37), t30, k(2.0) * (t29 - t28) * t33);
+        let t42 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)),
+            t27,
+            t41,
+        );
+        let t43 = T::fused(k(100000.0), outer_ring_wy * t9, t12) - t13;
+        let t44 = T::fused(rotor_wz, t6, -T::fused(-t22, t15, t19 * t14));
+        let t45 = T::fused(rotor_wy, t6, T::fused(t19, t15, t22 * t14));
+        let t46 = self.parameters.rotor_mass * t36;
+        let t47 = T::fused(-self.parameters.rotor_mass, t40, self.derived[0]);
+        let t48 = k(0.1) + t47;
+        let t49 = self.parameters.rotor_mass * t42;
+        let t50 = T::fused(
+            -k(1e-5),
             t43,
+            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t13),
         );
-        let t45 = T::fused(k(100000.0), outer_ring_wy * t9, t13) - t14;
-        let t46 = T::fused(rotor_wz, t6, T::fused(-t21, t15, t24 * t17));
-        let t47 = T::fused(rotor_wy, t6, T::fused(t24, t15, t21 * t17));
-        let t48 = self.rotor_mass * t38;
-        let t49 = T::fused(self.rotor_mass, t42, k(10.0) * self.rotor_mass);
-        let t50 = k(0.1) + t49;
-        let t51 = self.rotor_mass * t44;
-        let t52 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t47);
-        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t46);
-        let t54 = T::fused(t21, t52, t24 * t53);
-        let t55 = inner_ring_e0 * inner_ring_e1;
-        let t56 = inner_ring_e2 * inner_ring_e3;
-        let t57 = inner_ring_e0 * inner_ring_e0;
-        let t58 = T::fused(
-            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t57))),
-            t49,
+        let t51 = inner_ring_e0 * inner_ring_e1;
+        let t52 = inner_ring_e2 * inner_ring_e3;
+        let t53 = T::fused(
             k(0.00025)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t48,
+                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3),
+            t46,
+            k(0.00025) * (t52 - t51) * t47,
         );
-        let t59 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t17),
-            T::fused(-(k(0.00025) * (t56 + t55)), t51, t58) - t54,
-        );
-        let t60 = k(2.0) * outer_ring_e2;
-        let t61 = outer_ring_e0 * t60;
-        let t62 = T::fused(-t24, t52, t21 * t53);
-        let t63 = T::fused(
-            k(0.00025) * (t56 - t55),
-            t49,
-            k(0.00025)
-                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t48,
-        );
+        let t54 = inner_ring_e0 * inner_ring_e0;
+        let t55 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t44);
+        let t56 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t45);
+        let t57 = T::fused(-t19, t55, t22 * t56);
+        let t58 = t57
+            + T::fused(
+                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t54)),
+                t49,
+                t53,
+            );
+        let t59 = T::fused(k(2e-6), t14, -t58);
+        let t60 = T::fused(-t7, t50, t4 * t59);
+        let t61 = T::fused(k(2e-6), t0, -t60);
+        let t62 = k(2.0) * outer_ring_e2;
+        let t63 = T::fused(-outer_ring_e2, t62, k(1.0));
         let t64 = T::fused(
-            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t57)),
-            t51,
-            t63,
-        ) - t62;
-        let t65 = T::fused(-k(2e-6), t15, t64);
-        let t66 = T::fused(
-            -k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t14),
-            k(1e-5) * t45,
+            -(k(0.00025)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_e3,
+                    inner_ring_e1 * inner_ring_e2,
+                )),
+            t46,
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t54)) * t47,
         );
-        let t67 = T::fused(-t4, t65, t7 * t66);
-        let t68 = T::fused(-k(2e-6), t0, t67);
-        let t69 = T::fused(-outer_ring_e2, t60, k(1.0));
+        let t65 = T::fused(t22, t55, t19 * t56);
+        let t66 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, t15),
+            -(t65 + T::fused(k(0.00025) * (t52 + t51), t49, t64)),
+        );
+        let t67 = outer_ring_e0 * t62;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            t10,
             t11,
-            t12,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t13,
+            t14,
             t15,
-            t17,
-            t38,
-            t42,
+            t36,
+            -t40,
+            -t42,
+            t43,
             -t44,
             t45,
             -t46,
-            t47,
+            -(k(0.1) + t48),
+            t49,
+            T::fused(-t67, t66, t63 * t61),
+            T::fused(t67, t61, t63 * t66),
+            -t46,
             -t48,
-            -(k(0.1) + t50),
-            t51,
-            -T::fused(t61, t59, t69 * t68),
-            T::fused(-t61, t68, t69 * t59),
-            -t48,
-            -t50,
-            t51,
-            T::fused(t7, t65, t4 * t66),
-            t67,
-            -t48,
-            -t49,
-            t51,
-            t54,
-            t62,
+            t49,
+            -T::fused(t4, t50, t7 * t59),
+            t60,
+            -t46,
+            -t47,
+            t49,
+            t65,
+            -t57,
         ];
     }
 }
@@ -3715,7 +3764,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 7]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 78 operations (16 ±, 60 ×, 2 ÷) and 2 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 63 operations (16 ±, 46 ×, 1 ÷) and 2 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3729,34 +3778,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x1.cos();
-        let t1 = u0 * t0;
-        let t2 = self.rotor_mass + k(64.0);
-        let t3 = k(1e-5) * t0;
-        let t4 = u1 * t3;
-        let t5 = x1.sin();
-        let t6 = u1 * (k(1e-5) * t5);
-        let t7 = u0 * t5;
-        let t8 = T::fused(-k(0.003125), t2 * t7, u2);
-        let t9 = T::fused(k(1.5625e-8), self.rotor_mass, k(6e-6));
-        let t10 = k(1.0) / T::fused(t9, t0 * t0, k(2e-6));
-        let t11 = T::fused(-t4, t8, self.torque);
-        let t12 = T::fused(
+        let t1 = t0 * t0;
+        let t2 = u0 * (k(0.5) - t1);
+        let t3 = x1.sin();
+        let t4 = u2 * t3;
+        let t5 = k(1e-5) * u1;
+        let t6 = u1 * t0;
+        let t7 = T::fused(
+            t6,
+            T::fused(-t4, self.derived[9], u0 * (k(1.0) - t1) * self.derived[10]),
+            self.torque * t3 * self.derived[11],
+        );
+        let t8 = k(1.0) / T::fused(self.derived[4], t1, k(2e-6));
+        let t9 = t0 * t8;
+        let t10 = t8 * T::fused(t5, T::fused(-t2, self.derived[8], t4), t9 * t7);
+        let t11 = t8 * (t6 * (t3 * self.derived[12]));
+        let t12 = u0 * t3;
+        let t13 = k(1e-5) * u2;
+        let t14 = T::fused(-t12, self.derived[12], t13);
+        let t15 = t8 * (t0 * t14);
+        let t16 = t8 * (k(1e-5) * t6);
+        let t17 = self.derived[15]
+            * T::fused(
+                -t3,
+                self.derived[13],
+                u0 * T::fused(self.derived[14], t2, t3 * t13),
+            );
+        let t18 = u0 * t0;
+        let t19 = T::fused(
+            -t3,
             t10,
-            T::fused(t4, k(0.003125) * (t2 * t1), t8 * t6),
-            t11 * (t10 * t10 * (t9 * (k(2.0) * (t5 * t0)))),
+            k(100000.0)
+                * T::fused(-k(1e-5), t9 * T::fused(-t6, t14, self.torque), t12 * t5),
         );
-        let t13 = t10 * (t4 * (k(0.003125) * (t5 * t2)));
-        let t14 = t10 * (t3 * t8);
-        let t15 = t10 * t4;
-        let t16 = self.rotor_mass - k(256.0);
-        let t17 = T::fused(-t16, t7, k(640.0) * u2);
-        let t18 = T::fused(
-            -t0,
-            u0 * (t16 * t1),
-            t5 * T::fused(-u0, t17, k(80000.0) * self.rotor_mass),
-        );
-        let t19 = k(1.0) / t9;
-        let t20 = T::fused(k(100000.0), u0 * t6, -T::fused(t5, t12, t0 * (t10 * t11)));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -3780,25 +3834,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
             k(1.0),
             k(0.0),
             k(0.0),
-            t12,
+            t10,
             k(0.0),
-            t13,
-            -t14,
+            t11,
             -t15,
+            -t16,
             k(0.0),
             k(0.0),
-            t19 * (k(1.5625e-8) * t18),
+            -t17,
             k(0.0),
-            t19 * (k(1.5625e-8) * (t0 * T::fused(-u0, t5 * t16, t17))),
+            self.derived[15] * (t0 * T::fused(t12, self.derived[14], t13)),
             k(0.0),
-            t19 * (k(1.5625e-8) * (t0 * (k(640.0) * u0))),
+            t18 * self.derived[6],
             k(0.0),
             k(0.0),
-            t20,
+            t19,
             k(0.0),
-            -T::fused(t5, t13, k(100000.0) * t4),
-            T::fused(-k(100000.0), u0 * t3, t5 * t14),
-            t5 * t15,
+            -T::fused(t3, t11, t6),
+            T::fused(t3, t15, -t18),
+            t3 * t16,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -3810,7 +3864,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes ∂f/∂(inputs): 6 operations (2 ±, 3 ×, 1 ÷) and 2 functions.
+    /// Writes ∂f/∂(inputs): 5 operations (1 ±, 3 ×, 1 ÷) and 2 functions.
     fn joint_input_jacobian(
         &self,
         _t: T,
@@ -3821,7 +3875,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Gimbal<T> {
         let x1 = x[1];
         let u0 = x[3];
         let t0 = x1.cos();
-        let t1 = k(64000000.0) / T::fused(t0 * t0, self.rotor_mass + k(384.0), k(128.0));
+        let t1 = k(1.0) / T::fused(self.derived[4], t0 * t0, k(2e-6));
         *out = [k(0.0), k(0.0), k(0.0), t1, k(0.0), -(x1.sin() * t1), u0];
     }
 }
