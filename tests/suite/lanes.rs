@@ -1,20 +1,12 @@
-//! Lanes against as many scalar runs of every shipped tree: the same bits, whatever happens in the other lanes.
+//! Lanes against as many scalar runs of shipped trees: the same bits, whatever happens in the other lanes.
 
 use gyro_sim::generated::{
-    compound_pendulum::CompoundPendulum,
     driven_gyroscope::DrivenGyroscope,
     free_body::FreeBody,
     gyroscope::Gyroscope,
-    gyroscope_combined_offsets::GyroscopeCombinedOffsets,
-    gyroscope_free_nutation::GyroscopeFreeNutation,
-    gyroscope_maximal::GyroscopeMaximal,
     gyroscope_parameters::{self, GyroscopeParameters},
-    gyroscope_radial_imbalance::GyroscopeRadialImbalance,
     gyroscope_viscous::GyroscopeViscous,
     heavy_top::HeavyTop,
-    pitching_gyroscope::PitchingGyroscope,
-    spinning_top::SpinningTop,
-    torsion::Torsion,
 };
 use gyro_sim::lanes::{self, Lanes, f32x8, f64x4, f64x8};
 use gyro_sim::{
@@ -137,23 +129,17 @@ where
     (P::Scalar::COUNT - solver.failures().count(), switches)
 }
 
+/// Free and on joints of each kind, at rest and on a base that moves, with friction, with parameters: not every page, as each costs its
+/// compilation.
 macro_rules! each_tree {
     ($check:ident) => {{
         let trees = [
-            each_tree!($check, CompoundPendulum),
             each_tree!($check, DrivenGyroscope),
             each_tree!($check, FreeBody),
             each_tree!($check, Gyroscope),
-            each_tree!($check, GyroscopeCombinedOffsets),
-            each_tree!($check, GyroscopeFreeNutation),
-            each_tree!($check, GyroscopeMaximal),
             each_tree!($check, GyroscopeParameters),
-            each_tree!($check, GyroscopeRadialImbalance),
             each_tree!($check, GyroscopeViscous),
             each_tree!($check, HeavyTop),
-            each_tree!($check, PitchingGyroscope),
-            each_tree!($check, SpinningTop),
-            each_tree!($check, Torsion),
         ];
         trees
     }};
@@ -172,7 +158,7 @@ fn corrected_lanes_are_scalar_runs() {
     let outcomes = each_tree!(corrected_runs_agree);
     // The broken lane has failed everywhere, two lanes have not, and charts have been left.
     assert!(outcomes.iter().all(|(running, _)| (2..4).contains(running)), "{outcomes:?}");
-    assert!(outcomes.iter().filter(|(_, switches)| *switches > 0).count() > 10, "{outcomes:?}");
+    assert!(outcomes.iter().filter(|(_, switches)| *switches > 0).count() > 3, "{outcomes:?}");
 }
 
 #[test]
