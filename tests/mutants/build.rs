@@ -17,10 +17,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     copy_folder(&source, &copy)?;
     let mut stale = Vec::new();
-    let (file, place, instead) = QUICKER;
-    let text = fs::read_to_string(copy.join(file))?;
-    fs::write(copy.join(file), text.replace(place, instead))?;
-    stale.extend((text.matches(place).count() != 1).then(|| format!("{file}: {place}")));
+    for (file, place, instead) in QUICKER {
+        let text = fs::read_to_string(copy.join(file))?;
+        fs::write(copy.join(file), text.replace(place, instead))?;
+        stale.extend((text.matches(place).count() != 1).then(|| format!("{file}: {place}")));
+    }
     for (index, fault) in FAULTS.iter().enumerate() {
         let path = copy.join(fault.file);
         let text = fs::read_to_string(&path).unwrap_or_default();

@@ -66,7 +66,7 @@ edition = \"2024\"
 [workspace]
 
 [dependencies]
-gyro-sim = {{ path = {gyro_sim:?} }}
+gyro-sim = {{ path = {gyro_sim:?}, default-features = false }}
 
 [build-dependencies]
 gyro-codegen = {{ path = {gyro_codegen:?} }}

@@ -20,7 +20,8 @@ const STEPS_PER_CORRECTION: u32 = 5;
 
 /// When a fixed choice of independent coordinates has long spoiled the motion, s.
 const T_RUINED: f64 = 40.0;
-const CORRECTIONS: u32 = 80_000;
+const STEPS_OF_A_FIXED_CHOICE: u32 = 20;
+const CORRECTIONS: u32 = 20_000;
 
 /// ‖Φ‖ and the energy's drift, as the issue asks.
 const VIOLATION: f64 = 1e-12;
@@ -59,27 +60,25 @@ fn the_partition_lasts_a_hundred_seconds() {
 }
 
 #[test]
-fn the_projection_lasts_a_hundred_seconds() {
-    let mechanism = Gyroscope::<f64>::default();
-    let y = mechanism.start();
-    let [by_rk4, by_tsit5] = [
-        projected(&mechanism, Kutta4::new(&y), &y).unwrap(),
-        projected(&mechanism, Tsit5::new(&y), &y).unwrap(),
-    ]
-    .map(|y| (alpha(&mechanism, &y, ALPHAS[1]) - ALPHAS[1]).abs());
-    println!("mass-weighted projection: errors of alpha {by_rk4:e} (RK4) and {by_tsit5:e} rad (Tsit5)");
-    assert!(by_rk4 <= ALPHA_PROJECTED[0] && by_tsit5 <= ALPHA_PROJECTED[1], "{by_rk4:e}, {by_tsit5:e}");
+fn the_projection_lasts_a_hundred_seconds_with_rk4() {
+    projected(Kutta4::new, ALPHA_PROJECTED[0]);
 }
 
-/// The state at the end, at the paper's step and with its corrections.
-fn projected<M>(mechanism: &Gyroscope<f64>, method: M, y: &[f64; 39]) -> Result<[f64; 39], Error>
-where
-    M: Method<Gyroscope<f64>>,
-{
+#[test]
+fn the_projection_lasts_a_hundred_seconds_with_tsit5() {
+    projected(Tsit5::new, ALPHA_PROJECTED[1]);
+}
+
+/// At the paper's step and with its corrections.
+fn projected<M: Method<Gyroscope<f64>>>(method: impl Fn(&[f64; 39]) -> M, limit: f64) {
+    let mechanism = Gyroscope::<f64>::default();
+    let y = mechanism.start();
     let control = Control { when: When::Steps(STEPS_PER_CORRECTION), ..Control::default() };
-    let mut solver = Solver::new(method, MassWeighted::new(mechanism), 0.0, y).with_control(control);
-    solver.advance(mechanism, STEP, 1_000_000)?;
-    Ok(*solver.state())
+    let mut solver = Solver::new(method(&y), MassWeighted::new(&mechanism), 0.0, &y).with_control(control);
+    solver.advance(&mechanism, STEP, 1_000_000).unwrap();
+    let error = (alpha(&mechanism, solver.state(), ALPHAS[1]) - ALPHAS[1]).abs();
+    println!("mass-weighted projection: error of alpha {error:e} rad");
+    assert!(error <= limit, "{error:e}");
 }
 
 /// α of a state, as near as can be to what is expected.
@@ -113,9 +112,9 @@ fn fixed_choice(mechanism: &Gyroscope<f64>) -> Result<[f64; 39], Error> {
     let mut direct = Direct::new(&y);
     let mut partitioned = Partitioned::with_independent(&paper, &corrected, choice);
     for interval in 0..CORRECTIONS {
-        let step = interval * STEPS_PER_CORRECTION;
-        direct.advance(mechanism, f64::from(step) * STEP, STEP, STEPS_PER_CORRECTION, &mut y)?;
-        let t = f64::from(step + STEPS_PER_CORRECTION) * STEP;
+        let step = interval * STEPS_OF_A_FIXED_CHOICE;
+        direct.advance(mechanism, f64::from(step) * STEP, STEP, STEPS_OF_A_FIXED_CHOICE, &mut y)?;
+        let t = f64::from(step + STEPS_OF_A_FIXED_CHOICE) * STEP;
         corrected.copy_from_slice(&y);
         partitioned.correct_with_current_choice(&paper, t, &mut corrected)?;
         y.copy_from_slice(&corrected);
