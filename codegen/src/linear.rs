@@ -44,6 +44,22 @@ impl Graph {
         self.cross(w, &speed)
     }
 
+    /// `w̃w̃ + ẇ̃`.
+    pub fn relative_acceleration(&mut self, w: &Vec3, w_dot: &Vec3) -> Mat3 {
+        let squares = w.map(|w| self.mul(w, w));
+        let turning = self.tilde(w_dot);
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| {
+                if row == column {
+                    let sum = self.add(squares[(row + 1) % 3], squares[(row + 2) % 3]);
+                    return self.neg(sum);
+                }
+                let product = self.mul(w[row], w[column]);
+                self.add(product, turning[row][column])
+            })
+        })
+    }
+
     pub fn add_vec<const N: usize>(&mut self, a: &[ExprId; N], b: &[ExprId; N]) -> [ExprId; N] {
         std::array::from_fn(|k| self.add(a[k], b[k]))
     }

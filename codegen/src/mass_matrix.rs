@@ -5,7 +5,7 @@ use crate::dynamics::Dynamics;
 use crate::freedom::{Freedom, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::ldl::Elimination;
-use crate::linear::{Mat3, UNIT3, Vec3};
+use crate::linear::{Mat3, UNIT3, Vec3, ZERO3};
 use crate::null_space::minus_applied_force;
 use crate::system::System;
 use std::collections::BTreeMap;
@@ -19,6 +19,15 @@ struct Body {
     rest: Mat3,
     /// From the body's frame to the global one.
     a: Mat3,
+    /// Angular velocity, in the body's frame.
+    w: Vec3,
+}
+
+/// A joint point from the mass centres of the two bodies that meet there, global frame; nothing of a body at rest.
+#[derive(Clone, Copy, Debug)]
+struct HeldPoint {
+    on_body: Vec3,
+    on_parent: Option<Vec3>,
 }
 
 /// A tree with all that is needed for any right-hand side.
@@ -26,6 +35,8 @@ struct Body {
 pub struct ReducedTree {
     /// In the global frame, root first.
     freedoms: Vec<Freedom>,
+    /// Of those of them that hold a joint point to a body at rest or with coordinates.
+    held: Vec<Option<HeldPoint>>,
     /// Of each slot.
     bodies: Vec<Body>,
     /// Of each slot how it moves at unit rates of those free twists that move it.
@@ -52,7 +63,8 @@ impl ReducedTree {
             columns[freedom.slot] = carried.into_iter().chain(free).collect();
             axes.extend(own.free.iter().map(|twist| twist.rho));
         }
-        let mut tree = Self { freedoms, bodies, columns, matrix: BTreeMap::new(), n_rates: axes.len() };
+        let held = own.iter().map(|own| HeldPoint::of(graph, &bodies, own)).collect();
+        let mut tree = Self { freedoms, held, bodies, columns, matrix: BTreeMap::new(), n_rates: axes.len() };
         tree.matrix = tree.mass_matrix(graph, &axes);
         tree
     }
@@ -96,23 +108,51 @@ impl ReducedTree {
     pub fn accelerations(&self, system: &mut System, dynamics: &Dynamics) -> Vec<Twist> {
         let bias: Vec<_> =
             (0..self.bodies.len()).map(|slot| minus_applied_force(system, dynamics, slot)).collect();
-        let forced: Vec<_> = self.freedoms.iter().map(|freedom| freedom.bias).collect();
-        self.respond(&mut system.graph, &bias, &forced)
+        let motions = self.unforced(&mut system.graph);
+        self.respond(&mut system.graph, &bias, motions)
+    }
+
+    /// How each mass centre accelerates while no rate changes. What is fixed to a body at s from its mass centre accelerates by (w̃w̃ + ẇ̃) s more than
+    /// that: one matrix serves all joint points of a body.
+    fn unforced(&self, graph: &mut Graph) -> Vec<Twist> {
+        let mut motions = vec![Twist::ZERO; self.bodies.len()];
+        let mut of_points = vec![[ZERO3; 3]; self.bodies.len()];
+        for (freedom, held) in self.freedoms.iter().zip(&self.held) {
+            let of_parent = freedom.parent.map(|parent| motions[parent.slot]);
+            let rho = of_parent
+                .map_or(freedom.bias.rho, |of_parent| graph.add_vec(&of_parent.rho, &freedom.bias.rho));
+            let body = &self.bodies[freedom.slot];
+            let w = graph.mat_vec(&body.a, &body.w);
+            let of_point = graph.relative_acceleration(&w, &rho);
+            let t = match held {
+                Some(HeldPoint { on_body, on_parent }) => {
+                    let centre = graph.mat_vec(&of_point, on_body);
+                    let point = freedom.parent.zip(*on_parent).map_or(ZERO3, |(parent, arm)| {
+                        let of_arm = graph.mat_vec(&of_points[parent.slot], &arm);
+                        graph.add_vec(&motions[parent.slot].t, &of_arm)
+                    });
+                    graph.sub_vec(&point, &centre)
+                }
+                None => freedom.on_parent(graph, &motions, &freedom.bias).t,
+            };
+            motions[freedom.slot] = Twist { t, rho };
+            of_points[freedom.slot] = of_point;
+        }
+        motions
     }
 
     /// The smallest motions that change the rows as given.
     pub fn project(&self, graph: &mut Graph, changes: &[ExprId]) -> Vec<Twist> {
-        let forced: Vec<_> = self.freedoms.iter().map(|freedom| freedom.forced_by(graph, changes)).collect();
-        self.respond(graph, &vec![Twist::ZERO; self.bodies.len()], &forced)
+        let mut motions = vec![Twist::ZERO; self.bodies.len()];
+        for freedom in &self.freedoms {
+            let forced = freedom.forced_by(graph, changes);
+            motions[freedom.slot] = freedom.on_parent(graph, &motions, &forced);
+        }
+        self.respond(graph, &vec![Twist::ZERO; self.bodies.len()], motions)
     }
 
-    /// How each mass centre moves under minus these wrenches, and what is forced upon each joint, root first.
-    fn respond(&self, graph: &mut Graph, bias: &[Twist], forced: &[Twist]) -> Vec<Twist> {
-        let mut motions = vec![Twist::ZERO; self.bodies.len()];
-        for (freedom, forced) in self.freedoms.iter().zip(forced) {
-            let carried = freedom.parent.map(|parent| parent.twist(graph, &motions[parent.slot]));
-            motions[freedom.slot] = carried.map_or(*forced, |carried| carried.plus(graph, forced));
-        }
+    /// How each mass centre moves under minus these wrenches, where with no rate changing it would move like this.
+    fn respond(&self, graph: &mut Graph, bias: &[Twist], mut motions: Vec<Twist>) -> Vec<Twist> {
         let mut taken: Vec<_> = (self.bodies.iter().zip(&motions).zip(bias))
             .map(|((body, motion), bias)| body.taken(graph, motion, bias))
             .collect();
@@ -148,15 +188,36 @@ impl ReducedTree {
     }
 }
 
+impl Freedom {
+    /// What its parent carries over to it, and what is forced upon it.
+    fn on_parent(&self, graph: &mut Graph, motions: &[Twist], forced: &Twist) -> Twist {
+        let carried = self.parent.map(|parent| parent.twist(graph, &motions[parent.slot]));
+        carried.map_or(*forced, |carried| carried.plus(graph, forced))
+    }
+}
+
+impl HeldPoint {
+    /// `own` has its points in the frames of its bodies.
+    fn of(graph: &mut Graph, bodies: &[Body], own: &Freedom) -> Option<Self> {
+        let steering = own.steering.as_ref().filter(|steering| steering.holds_point)?;
+        if own.parent.is_none() && !steering.first_rests {
+            return None;
+        }
+        let on_body = graph.mat_vec(&bodies[own.slot].a, &own.point);
+        let on_parent = own.parent.map(|parent| graph.mat_vec(&bodies[parent.slot].a, &parent.point));
+        Some(Self { on_body, on_parent })
+    }
+}
+
 impl Body {
     fn of(system: &mut System, slot: usize) -> Self {
-        let (mass, inertia, a) =
-            (system.mass(slot), system.inertia(slot), system.poses[system.slots[slot]].a);
+        let (mass, inertia, pose) =
+            (system.mass(slot), system.inertia(slot), system.poses[system.slots[slot]]);
         let often = |k: &usize| (0..3).filter(|&l| inertia[l][l] == inertia[*k][*k]).count();
         let most = (0..3).rev().max_by_key(often).expect("three moments");
         let even = inertia[most][most];
         let evenly = UNIT3.map(|row| system.graph.scale_vec(even, &row));
-        Self { mass, even, rest: system.graph.sub_mat(&inertia, &evenly), a }
+        Self { mass, even, rest: system.graph.sub_mat(&inertia, &evenly), a: pose.a, w: pose.w }
     }
 
     /// What a motion takes, and a wrench with a torque in the body's frame; in the global frame.

@@ -4,7 +4,7 @@ use crate::graph::Graph;
 use crate::linear::{Mat3, Vec3, ZERO3};
 use crate::outputs::time_derivative;
 use crate::system::{JointFrames, System};
-use gyro_model::JointKind;
+use gyro_model::{JointKind, Support};
 
 /// What γ times the right inverse amounts to where the rows are those of a joint point and an axis, in a few operations.
 ///
@@ -20,6 +20,8 @@ use gyro_model::JointKind;
 pub struct Steering {
     /// Whether the joint point is held too.
     pub holds_point: bool,
+    /// Whether the first body is at rest.
+    pub first_rests: bool,
     /// A of the first body.
     pub frame_of_first: Mat3,
     /// Angular velocity and axis of the first body, in its frame, and its angular acceleration if that is prescribed.
@@ -41,6 +43,7 @@ impl Steering {
         let holds_point = joint.kind == JointKind::Revolute;
         Some(Self {
             holds_point,
+            first_rests: system.model.bodies[joint.first.body].support == Support::Fixed,
             frame_of_first: i.a,
             first: [i.w, joint.first.h, prescribed],
             second: [j.w, joint.second.h],

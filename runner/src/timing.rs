@@ -3,7 +3,7 @@
 use crate::motion::Kit;
 use crate::run::{scheduled, state};
 use crate::{Approach, Failure, Schedule, Settings, Start, describe_in};
-use gyro_sim::{Error, Partition, Ports, Statistics};
+use gyro_sim::{Error, Partition, Ports, Real, Scalar, Statistics};
 use gyro_yardstick::{Measured, beside};
 use std::time::Duration;
 
@@ -35,8 +35,10 @@ pub fn time_by<M: Partition + Ports + 'static>(
         let mut motion = kit.begin(mechanism, approach, &y).map_err(Failure::Run)?;
         let in_words = |error: Error| Failure::Run(describe_in(mechanism, approach.coordinates, &error));
         if approach.tolerance.is_some() {
-            while motion.time() < settings.t_end {
-                motion.step_towards(mechanism, settings.t_end).map_err(in_words)?;
+            // As the motion counts time: in single precision the end may come before this number.
+            let t_end = M::Scalar::constant(settings.t_end).to_f64();
+            while motion.time() < t_end {
+                motion.step_towards(mechanism, t_end).map_err(in_words)?;
             }
         } else {
             for segment in &segments {

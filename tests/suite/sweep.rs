@@ -1,4 +1,5 @@
 //! Every extreme scene, integrator, correction and tolerance: the right answer, or an error that says what, where and when.
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 #![allow(clippy::print_stdout, reason = "the measured figures, for runs with --nocapture")]
 
 use crate::estimate::{Deviation, deviations, estimate, expected};
@@ -6,11 +7,12 @@ use gyro_reference::JointRow;
 use gyro_runner::motion::Kit;
 use gyro_runner::{
     Approach, Coordinates, Correction, Difference, Failure, Integrator, Sample, Settings, Start, Summary,
-    differences,
+    differences, time_by,
 };
 use gyro_sim::Real;
 use gyro_sim_suite::{Engine, duals, extreme, model, moved, start_of};
 use std::collections::{BTreeMap, HashMap};
+use std::time::Duration;
 
 /// Samples of a run.
 const SAMPLES: f64 = 10.0;
@@ -362,4 +364,16 @@ fn another_answer_is_not_right() {
     assert!(tally.right == 0 && !tally.wrong.is_empty(), "{} right", tally.right);
     assert_eq!(reason("at t = 0.5 s the orientation is no longer finite", 1.0), None);
     assert_eq!(reason("at t = 2 s the budget of 3 steps is used up", 1.0), None);
+}
+
+/// The end of a run may be no number of single precision: 0.01 is rounded down, and a clock that waits for it would wait for ever.
+#[test]
+fn a_run_in_single_precision_is_timed_to_its_end() {
+    let scene = Scene { page: "gyroscope", t_end: 0.01, step: 1e-4 };
+    let stand = Stand::<f32>::new(scene.page, &start_of(&model(scene.page)));
+    assert!(f64::from(0.01_f32) < scene.t_end, "rounded down");
+    let approach = Approach { integrator: Integrator::Tsit5, tolerance: Some(1e-4), ..Approach::default() };
+    let plan = (&scene.settings(1.0), &approach);
+    let timing = time_by(&stand.engine, &*stand.kit, plan, &stand.start, Duration::ZERO).unwrap();
+    assert!(timing.statistics.accepted > 0 && timing.measured.runs == 1, "{timing:?}");
 }

@@ -1,6 +1,6 @@
 //! A model without one of its elements, or with more of its numbers tunable: what an element costs is the difference.
 
-use gyro_model::{Joint, JointEnd, Model, Number, Parameter, Rational, Support, analyse};
+use gyro_model::{Joint, JointEnd, Model, Number, Parameter, Support, analyse};
 
 /// A model with one thing changed.
 #[derive(Debug)]
@@ -89,21 +89,23 @@ impl Changes<'_> {
         }
     }
 
-    /// Numbers that are not zero become parameters.
+    /// Numbers become parameters: those that are not zero, so that what the model is built like stays; of the geometry all, too.
     fn with_free_numbers(&mut self) {
         self.add("with free masses and inertias".to_owned(), |model| {
             let bodies = model.bodies.iter_mut().filter(|body| body.support.has_coordinates());
             let numbers = bodies.flat_map(|body| [&mut body.mass].into_iter().chain(&mut body.inertia));
-            free(numbers, &mut model.parameters);
+            free(numbers.filter(|number| !number.is_zero()), &mut model.parameters);
         });
         self.add("with free joint points".to_owned(), |model| {
             let ends = model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]);
-            free(ends.flat_map(|end| &mut end.point), &mut model.parameters);
+            let numbers = ends.flat_map(|end| &mut end.point);
+            free(numbers.filter(|number| !number.is_zero()), &mut model.parameters);
         });
         self.add("with a free geometry".to_owned(), |model| {
-            let ends = model.joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]);
-            let vectors = ends.flat_map(|end| [&mut end.point, &mut end.axis, &mut end.zero]);
-            free(vectors.flatten(), &mut model.parameters);
+            free(geometry(&mut model.joints).filter(|number| !number.is_zero()), &mut model.parameters);
+        });
+        self.add("with a free geometry, zeros too".to_owned(), |model| {
+            free(geometry(&mut model.joints), &mut model.parameters);
         });
     }
 }
@@ -116,13 +118,16 @@ fn are_zero(numbers: &[Number]) -> bool {
     numbers.iter().all(Number::is_zero)
 }
 
-/// Each number that is written out, and not zero, becomes a parameter of its own.
+/// The numbers of all joint points and frames.
+fn geometry(joints: &mut [Joint]) -> impl Iterator<Item = &mut Number> {
+    let ends = joints.iter_mut().flat_map(|joint| [&mut joint.first, &mut joint.second]);
+    ends.flat_map(|end| [&mut end.point, &mut end.axis, &mut end.zero]).flatten()
+}
+
+/// Each number that is written out becomes a parameter of its own.
 fn free<'a>(numbers: impl Iterator<Item = &'a mut Number>, parameters: &mut Vec<Parameter>) {
     for number in numbers {
         let Number::Exact(value) = number else { continue };
-        if *value == Rational::default() {
-            continue;
-        }
         let (index, value) = (parameters.len(), value.clone());
         parameters.push(Parameter { name: format!("free_{index}"), value });
         *number = Number::Parameter { index, negated: false };
@@ -150,6 +155,7 @@ mod tests {
             "without the offset of `phi` on `inner_ring`",
             "with free masses and inertias",
             "with a free geometry",
+            "with a free geometry, zeros too",
         ] {
             assert!(of_viscous.iter().any(|known| known == what), "{what}: {of_viscous:?}");
         }

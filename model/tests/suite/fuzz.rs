@@ -250,7 +250,7 @@ fn check_references(model: &Model) {
 
 proptest! {
     // Fewer of these: one in seven is good, and is assembled and searched for redundant rows.
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(150))]
 
     #[test]
     fn random_pages_are_read_or_refused(page in crate::support::random_page::page(), table in crate::support::random_page::table()) {

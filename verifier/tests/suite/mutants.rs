@@ -14,11 +14,11 @@ use std::collections::BTreeMap;
 
 /// Pages whose modules are mutated, and how many mutants of each are tried.
 const MUTATED: [(&str, usize); 12] = [
-    ("gyroscope", 150),
+    ("gyroscope", 100),
     ("gyroscope-maximal", 100),
     ("gyroscope-parameters", 100),
-    ("gyroscope-viscous", 100),
-    ("pitching-gyroscope", 100),
+    ("gyroscope-viscous", 80),
+    ("pitching-gyroscope", 70),
     ("driven-gyroscope", 100),
     ("torsion", 100),
     ("free-body", 100),
