@@ -120,7 +120,10 @@ fn choices(study: &Study, page: &mut Page) {
     let mut head = vec!["error at most"];
     head.extend(CHOICES.iter().map(|(name, _)| *name));
     page.table(&head, rows.collect());
-    page.text("CPU time, in brackets over the hand-derived second; then what takes it.");
+    page.text(
+        "CPU time, in brackets over the hand-derived second; then what takes it. Not reached: not by runs of up to a few times the cheapest \
+         good one; longer ones are not made.",
+    );
     let single = |is_joint: bool| {
         let ours = study.points.iter().filter(|p| {
             is_ours(p, Precision::F32)
