@@ -8,7 +8,7 @@ const wasm = new WebAssembly.Instance(module).exports;
 
 // As in gimbal.h.
 const status = { ok: 0, badPointer: 1, notInitialised: 2, outOfRange: 3, badNumber: 4 };
-const words = 210, massOfRotor = 0, torqueOfMotor = 0;
+const words = 226, massOfRotor = 0, torqueOfMotor = 0;
 
 // Memory beyond all that the module itself uses.
 const gimbal = (wasm.__heap_base.value + 7) & ~7;

@@ -9,7 +9,7 @@
 /**
  * Words of a `Gimbal`.
  */
-#define GIMBAL_WORDS 210
+#define GIMBAL_WORDS 226
 
 /**
  * How a call ended.

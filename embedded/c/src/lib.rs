@@ -15,7 +15,7 @@ fn panic(_: &PanicInfo<'_>) -> ! {
 }
 
 /// Words of a `Gimbal`.
-pub const GIMBAL_WORDS: usize = 210;
+pub const GIMBAL_WORDS: usize = 226;
 
 /// A gimbal, in memory of the caller's. What is in it is nobody's business.
 ///
