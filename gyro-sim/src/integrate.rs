@@ -81,8 +81,8 @@ pub struct Work {
 fn combine<T: Scalar, S: Storage<T>, const N: usize>(out: &mut S, y: &S, h: T, terms: [(f64, &S); N]) {
     let terms = terms.map(|(a, k)| (T::constant(a), k.as_ref()));
     let y = y.as_ref();
-    for (i, out) in out.as_mut().iter_mut().enumerate() {
-        *out = T::fused(h, sum(&terms, i), y[i]);
+    for (i, (out, y)) in (0..y.len()).zip(out.as_mut().iter_mut().zip(y)) {
+        *out = T::fused(h, sum(&terms, i), *y);
     }
 }
 
@@ -94,9 +94,10 @@ fn sum_at<T: Scalar, S: Storage<T>, const N: usize>(terms: [(f64, &S); N], i: us
 
 #[inline(always)]
 fn sum<T: Scalar, const N: usize>(terms: &[(T, &[T]); N], i: usize) -> T {
-    let mut sum = T::constant(0.0);
-    for (index, (a, k)) in terms.iter().enumerate() {
-        sum = if index == 0 { *a * k[i] } else { T::fused(*a, k[i], sum) };
+    let (a, k) = terms[0];
+    let mut sum = a * k[i];
+    for (a, k) in &terms[1..] {
+        sum = T::fused(*a, k[i], sum);
     }
     sum
 }

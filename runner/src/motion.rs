@@ -4,8 +4,8 @@ use crate::approach::{Approach, Coordinates, Correction as Keeping, Integrator};
 use crate::pivots;
 use gyro_sim::integrate::{Embedded, Method};
 use gyro_sim::{
-    Baumgarte, ByDuals, ClosedForm, Control, Coordinate, Corrected, Correction, Differentiable, Dop853, Dual,
-    Error, JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
+    Baumgarte, ByDuals, ClosedForm, Control, Coordinate, Correction, Differentiable, Dop853, Dual, Error,
+    JointForm, JointJacobian, JointSpace, Kutta4, MassWeighted, Maximal, Mechanism, Ode, Partition,
     Partitioning, Ports, Projection, Real, Rodas4, Scalar, Solver, Statistics, Storage, Tsit5, Uncorrected,
     When,
 };
@@ -121,8 +121,8 @@ impl<M: Partition + Ports + 'static> Kit<M> for Any {
         only_maximal(approach)?;
         only_explicit(approach)?;
         match approach.correction {
-            Keeping::Partition => Ok(explicit(Cheap, partitioning(mechanism, y), approach, y)),
-            Keeping::None => Ok(explicit(Plain, Boxed(Box::new(Uncorrected)), approach, y)),
+            Keeping::Partition => Ok(explicit(Slopes::corrected(), partitioning(mechanism, y), approach, y)),
+            Keeping::None => Ok(explicit(Slopes::exact(), Boxed(Box::new(Uncorrected)), approach, y)),
             other => {
                 Err(format!("the correction {other} needs a projection, which this mechanism does not have"))
             }
@@ -323,9 +323,6 @@ fn copy<M: Mechanism>(from: &M::State, to: &mut M::State) {
     to.as_mut().copy_from_slice(from.as_ref());
 }
 
-/// Exact on the constraints and off them.
-struct Plain;
-
 /// A mechanism as a system of its own.
 struct Exact<'a, M>(&'a M);
 
@@ -349,42 +346,61 @@ impl<M: Mechanism> Maximal for Exact<'_, M> {
     }
 }
 
-impl<M: Mechanism<State: 'static> + 'static> Lens<M> for Plain {
-    type State = M::State;
-    type System<'a> = Exact<'a, M>;
+type Derivative<M> = dyn Fn(&M, <M as Ode>::Scalar, &<M as Ode>::State, &mut <M as Ode>::State);
 
-    fn system<'a>(&'a self, mechanism: &'a M) -> Exact<'a, M> {
-        Exact(mechanism)
+/// Maximal coordinates: one of the right-hand sides that a mechanism has there. Boxed, like corrections, so that integrators are not
+/// compiled anew for each.
+struct Slopes<M: Mechanism>(Box<Derivative<M>>);
+
+impl<M: Mechanism> Slopes<M> {
+    /// Exact on the constraints and off them.
+    fn exact() -> Self {
+        Self(Box::new(|mechanism, t, y, dy| mechanism.derivative(t, y, dy)))
     }
-    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
-        copy::<M>(from, to);
-    }
-}
-
-/// For states that are corrected every few steps.
-struct Cheap;
-
-impl<M: Mechanism<State: 'static> + 'static> Lens<M> for Cheap {
-    type State = M::State;
-    type System<'a> = Corrected<'a, M>;
-
-    fn system<'a>(&'a self, mechanism: &'a M) -> Corrected<'a, M> {
-        Corrected(mechanism)
-    }
-    fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
-        copy::<M>(from, to);
+    /// For states that are corrected every few steps.
+    fn corrected() -> Self {
+        Self(Box::new(|mechanism, t, y, dy| mechanism.corrected_derivative(t, y, dy)))
     }
 }
 
-/// Baumgarte's rate.
-struct Steered(f64);
+impl<M: Projection> Slopes<M> {
+    /// Baumgarte's, at this rate.
+    fn steered(rate: f64) -> Self {
+        Self(Box::new(move |mechanism, t, y, dy| {
+            Baumgarte { mechanism, rate: Scalar::constant(rate) }.derivative(t, y, dy);
+        }))
+    }
+}
 
-impl<M: Projection<State: 'static> + 'static> Lens<M> for Steered {
+/// A mechanism with one of its right-hand sides.
+struct Sloped<'a, M: Mechanism>(&'a M, &'a Derivative<M>);
+
+impl<M: Mechanism> Ode for Sloped<'_, M> {
+    type Scalar = M::Scalar;
     type State = M::State;
-    type System<'a> = Baumgarte<'a, M>;
 
-    fn system<'a>(&'a self, mechanism: &'a M) -> Baumgarte<'a, M> {
-        Baumgarte { mechanism, rate: Scalar::constant(self.0) }
+    fn start(&self) -> M::State {
+        self.0.start()
+    }
+    fn derivative(&self, t: M::Scalar, y: &M::State, dy: &mut M::State) {
+        self.1(self.0, t, y, dy);
+    }
+}
+
+impl<M: Mechanism> Maximal for Sloped<'_, M> {
+    type Mechanism = M;
+
+    fn mechanism(&self) -> &M {
+        self.0
+    }
+}
+
+impl<M: Mechanism<Scalar: 'static, State: 'static> + 'static> Lens<M> for Slopes<M> {
+    type State = M::State;
+    type System<'a> = Sloped<'a, M>;
+
+    fn system<'a>(&'a self, mechanism: &'a M) -> Sloped<'a, M> {
+        Sloped(mechanism, &*self.0)
     }
     fn show(&self, _: &M, _: M::Scalar, from: &M::State, to: &mut M::State) {
         copy::<M>(from, to);
@@ -527,12 +543,13 @@ fn maximal<M>(approach: &Approach, correction: Boxed<M>, y: &M::State) -> Box<dy
 where
     M: Partition + Projection + 'static,
 {
-    match approach.correction {
+    let slopes = match approach.correction {
         // The projection is as good as it is only with accelerations that are exact off the constraints.
-        Keeping::None | Keeping::MassWeighted => explicit(Plain, correction, approach, y),
-        Keeping::Baumgarte(rate) => explicit(Steered(rate), correction, approach, y),
-        _ => explicit(Cheap, correction, approach, y),
-    }
+        Keeping::None | Keeping::MassWeighted => Slopes::exact(),
+        Keeping::Baumgarte(rate) => Slopes::steered(rate),
+        _ => Slopes::corrected(),
+    };
+    explicit(slopes, correction, approach, y)
 }
 
 /// Rodas in maximal coordinates.

@@ -114,11 +114,9 @@ fn extreme_scenes_by_the_partition() {
 
 /// RK4 in joint coordinates, and the partition as a program has it that knows its mechanism: between corrections it integrates by
 /// the short way that only corrected states have.
-fn check_compiled<M>(page: &str, mechanism: &M)
-where
-    M: JointSpace<Scalar = f64> + Partition<Scalar = f64>,
-{
-    let Extreme { t_end, step, .. } = *extreme(page);
+fn check_compiled(extreme: &Extreme) {
+    let Extreme { page, t_end, step, .. } = *extreme;
+    let mechanism = &generated(page);
     let n_steps = (t_end / step).round() as u32;
     let interval = n_steps / SAMPLES;
     let form = JointForm(mechanism);
@@ -156,19 +154,7 @@ fn joint_row<M: JointSpace<Scalar = f64>>(mechanism: &M, t: f64, x: &M::Joints) 
 
 #[test]
 fn extreme_scenes_in_joint_coordinates_and_at_corrected_states() {
-    check_compiled("gyroscope-fast", &shipped::gyroscope_fast::GyroscopeFast::default());
-    check_compiled("gyroscope-at-rest", &shipped::gyroscope_at_rest::GyroscopeAtRest::default());
-    check_compiled("gyroscope-light-rings", &shipped::gyroscope_light_rings::GyroscopeLightRings::default());
-    check_compiled("gyroscope-heavy-rotor", &shipped::gyroscope_heavy_rotor::GyroscopeHeavyRotor::default());
-    check_compiled("gyroscope-gimbal-lock", &shipped::gyroscope_gimbal_lock::GyroscopeGimbalLock::default());
-    check_compiled("gyroscope-stiff", &shipped::gyroscope_stiff::GyroscopeStiff::default());
-    check_compiled("gyroscope-overdamped", &shipped::gyroscope_overdamped::GyroscopeOverdamped::default());
-    check_compiled("gyroscope-coulomb", &shipped::gyroscope_coulomb::GyroscopeCoulomb::default());
-    check_compiled(
-        "gyroscope-rolling-base",
-        &shipped::gyroscope_rolling_base::GyroscopeRollingBase::default(),
-    );
-    check_compiled("gyroscope-long", &shipped::gyroscope_long::GyroscopeLong::default());
+    EXTREMES.iter().for_each(check_compiled);
 }
 
 #[test]

@@ -5,6 +5,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::LazyLock;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -23,6 +24,9 @@ fn json(args: &[&str]) -> Value {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }
+
+/// The paper's scene, inspected once for all tests.
+static GYROSCOPE: LazyLock<Value> = LazyLock::new(|| json(&[&model("gyroscope.toml"), "--no-compile"]));
 
 fn functions(inspection: &Value) -> &Vec<Value> {
     inspection["functions"].as_array().unwrap()
@@ -43,10 +47,10 @@ fn without(inspection: &Value, what: &str, name: &str) -> i64 {
 
 #[test]
 fn the_paper_s_scene_is_shown_pass_by_pass_and_element_by_element() {
-    let found = json(&[&model("gyroscope.toml"), "--no-compile"]);
+    let found = &*GYROSCOPE;
     let numbers = ["coordinates", "constraints", "degrees_of_freedom", "unknowns"];
     assert_eq!(numbers.map(|key| found[key].as_u64().unwrap()), [21, 18, 3, 33]);
-    for function in functions(&found) {
+    for function in functions(found) {
         let pass = |name: &str| function["passes"][name].as_u64().unwrap();
         let passes = ["written_out", "shared", "emitted"].map(pass);
         assert!(passes.is_sorted_by(|a, b| a >= b), "{function}");
@@ -57,14 +61,14 @@ fn the_paper_s_scene_is_shown_pass_by_pass_and_element_by_element() {
         assert!(taken.iter().all(|form| form["operations"] == function["operations"]), "{function}");
         assert!(function["machine_code_bytes"].is_null());
     }
-    let accelerations = |what| without(&found, what, "accelerations");
+    let accelerations = |what| without(found, what, "accelerations");
     assert!(accelerations("without the offset of `phi` on `inner_ring`") < 0);
     assert!(accelerations("without gravity") < 0);
-    assert!(without(&found, "with free masses and inertias", "joint_accelerations") > 0);
+    assert!(without(found, "with free masses and inertias", "joint_accelerations") > 0);
     let of_geometry = accelerations("with a free geometry");
     assert!(of_geometry > accelerations("with free joint points"));
     assert!(accelerations("with a free geometry, zeros too") > of_geometry);
-    assert_eq!(without(&found, "without gravity", "phi"), 0);
+    assert_eq!(without(found, "without gravity", "phi"), 0);
     let left_out: Vec<&str> =
         found["left_out"].as_array().unwrap().iter().map(|words| words.as_str().unwrap()).collect();
     assert!(left_out.iter().any(|what| what.contains("`base`")), "{left_out:?}");
@@ -73,11 +77,11 @@ fn the_paper_s_scene_is_shown_pass_by_pass_and_element_by_element() {
 
 #[test]
 fn the_head_of_a_generated_file_says_the_same() {
-    let found = json(&[&model("gyroscope.toml"), "--no-compile"]);
+    let found = &*GYROSCOPE;
     let file = root().join("gyro-sim/src/generated/gyroscope.rs");
     let text = fs::read_to_string(file).unwrap();
     let head: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("//! ")).collect();
-    for function in functions(&found) {
+    for function in functions(found) {
         let begin = format!("| {} |", function["name"].as_str().unwrap());
         let row = head.iter().find(|line| line.starts_with(&begin)).unwrap();
         let cells: Vec<&str> = row.split(" | ").collect();

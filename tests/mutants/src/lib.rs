@@ -1,4 +1,5 @@
-//! The generator's own text with faults in it, of which one at a time is switched on: see `faults.rs`.
+//! The generator's own text with faults in it, of which one at a time is switched on: see `faults.rs`. All but the list of stale places
+//! needs the feature `faults`.
 #![allow(warnings, clippy::all, reason = "a copy with faults is not written to be read")]
 
 use std::cell::Cell;
@@ -19,4 +20,5 @@ fn fault() -> usize {
 /// Faults whose place in the generator's text was not found exactly once.
 pub const STALE: &[&str] = include!(concat!(env!("OUT_DIR"), "/stale.rs"));
 
+#[cfg(feature = "faults")]
 include!(concat!(env!("OUT_DIR"), "/codegen/lib.rs"));

@@ -243,7 +243,7 @@ fn energy_comes_from_the_base_and_goes_into_the_dampers() {
     const RELATIVE: f64 = 1e-15;
     let carried = [moving_base::rolling(), moving_base::rolling_and_pitching(), moving_base::rolling_fast()];
     let check = |chain: Chain<3>| {
-        for sample in chain.solve(&[0.1, 0.35, 0.6]) {
+        for sample in chain.solve(&[0.1, 0.35]) {
             let (gain, work) = (sample.energy_gain, sample.base_work + sample.damping_work);
             let size = sample.base_work.abs() + sample.damping_work.abs();
             assert!(size > 1e-9, "the base does something");
