@@ -9,7 +9,7 @@ use crate::symbol::Symbol;
 use rustc_hash::FxHashMap as HashMap;
 
 /// What symbols stand for.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Definitions {
     expressions: HashMap<Symbol, ExprId>,
     /// Sine and cosine of each continuous angle, up to a common factor.

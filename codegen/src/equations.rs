@@ -7,6 +7,7 @@ use crate::dynamics::Dynamics;
 use crate::graph::{ExprId, Graph};
 use crate::joint_space::JointSpace;
 use crate::kinematics::{Kinematics, Matrix, non_zeros};
+use crate::linear::{Mat3, Vec4};
 use crate::normal_form::vanishes;
 use crate::null_space::Trees;
 use crate::outputs::{self, Sources};
@@ -96,60 +97,62 @@ impl<'m> Equations<'m> {
         let readings = readings::readings(&mut system);
         let partition = Partition::covers(&system).then(|| Partition::derive(&mut system, &kinematics));
         let position_rates = position_rates(&mut system);
+        let doubled = rotations_by_doubles(&mut system);
+        let relative = relative_rotations(&mut system, Graph::rotation);
+        let mut doubled_relative = relative_rotations(&mut system, Graph::rotation_by_doubles);
+        doubled_relative.extend(doubled.clone());
+        let definitions = system.definitions.clone();
+        let mut rotations = Rotations(
+            [
+                ("rotations of the bodies", HashMap::default()),
+                ("rotations of the bodies, doubled", doubled),
+                ("relative Euler parameters", relative),
+                ("relative Euler parameters, doubled", doubled_relative),
+            ]
+            .map(|(name, values)| (name, Expansion::with_values(&definitions, values))),
+        );
+        let solved: Vec<_> = solution.accelerations.iter().chain(&solution.closing).copied().collect();
+        let (mut solved, forms) = rotations.of_unit_parameters(&mut system.graph, &solved);
+        let closing = solved.split_off(solution.accelerations.len());
         let joint_space = JointSpace::covers(&system).then(|| {
             let power = model.has_work().then_some(power);
-            JointSpace::derive(&mut system, &kinematics, &dynamics, &solution.accelerations, power, start)
+            JointSpace::derive(&mut system, &kinematics, &dynamics, &solved, power, start)
         });
-
-        let by_euler_parameters = relative_rotations(&mut system);
-        let definitions = std::mem::take(&mut system.definitions);
-        let mut expansion = Expansion::new(&definitions);
         let euler = euler_parameters(&mut system.graph, system.slots.len());
         let graph = &mut system.graph;
-        let mut phi_pi = non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_pi));
+        let mut phi_pi = non_zeros(&rotations.matrix(graph, &kinematics.phi_pi));
         // A product of two vectors of one body does not change as the body turns.
         let n_derived = phi_pi.len();
         phi_pi.retain(|&(.., entry)| !vanishes(graph, &euler, entry));
-        let solved: Vec<_> = solution.accelerations.iter().chain(&solution.closing).copied().collect();
-        let mut relative = Expansion::with_values(&definitions, by_euler_parameters);
-        let candidates = vec![
-            ("rotations of the bodies".to_owned(), expansion.all(graph, &solved)),
-            ("relative Euler parameters".to_owned(), relative.all(graph, &solved)),
-        ];
-        let (mut solved, forms) = cheapest(graph, candidates);
-        let closing = solved.split_off(solution.accelerations.len());
         let projected = trees.project(graph, &kinematics);
-        let candidates = vec![
-            ("rotations of the bodies".to_owned(), expansion.all(graph, &projected)),
-            ("relative Euler parameters".to_owned(), relative.all(graph, &projected)),
-        ];
-        let (projection, forms_of_projection) = cheapest(graph, candidates);
+        let (projection, forms_of_projection) = rotations.of_unit_parameters(graph, &projected);
         let all_phi: Vec<_> = kinematics.phi.iter().chain(&kinematics.normalisations).copied().collect();
+        let energy = rotations.all(graph, &[dynamics.kinetic, dynamics.potential]);
         Self {
             model,
-            phi: expansion.all(graph, &all_phi),
-            phi_q: non_zeros(&expand_matrix(&mut expansion, graph, &kinematics.phi_q)),
+            phi: rotations.all(graph, &all_phi),
+            phi_q: non_zeros(&rotations.matrix(graph, &kinematics.phi_q)),
             n_vanishing: n_derived - phi_pi.len(),
             phi_pi,
-            nu: expansion.all(graph, &kinematics.nu),
-            gamma: expansion.all(graph, &kinematics.gamma),
-            velocity_residual: expansion.all(graph, &kinematics.velocity_residual),
-            applied_force: expansion.all(graph, &dynamics.applied_force),
+            nu: rotations.all(graph, &kinematics.nu),
+            gamma: rotations.all(graph, &kinematics.gamma),
+            velocity_residual: rotations.all(graph, &kinematics.velocity_residual),
+            applied_force: rotations.all(graph, &dynamics.applied_force),
             accelerations: solved,
             forms,
             projection,
             forms_of_projection,
             closing,
-            lambda: expansion.all(graph, &solution.lambda),
+            lambda: rotations.all(graph, &solution.lambda),
             position_rates,
-            power: model.has_work().then(|| expansion.of(graph, power)),
-            turn_rates: expansion.all(graph, &turn_rates),
-            kinetic: expansion.of(graph, dynamics.kinetic),
-            potential: expansion.of(graph, dynamics.potential),
-            readings: expansion.all(graph, &readings),
-            outputs: expansion.all(graph, &outputs),
+            power: model.has_work().then(|| rotations.all(graph, &[power])[0]),
+            turn_rates: rotations.all(graph, &turn_rates),
+            kinetic: energy[0],
+            potential: energy[1],
+            readings: rotations.all(graph, &readings),
+            outputs: rotations.all(graph, &outputs),
             joint_space,
-            charts: partition.map(|partition| Charts::expand(&mut expansion, graph, &partition)),
+            charts: partition.map(|partition| Charts::expand(&mut rotations, graph, &partition)),
             tables: system.tables,
             graph: system.graph,
         }
@@ -168,13 +171,42 @@ impl<'m> Equations<'m> {
     }
 }
 
+/// The ways of writing rotation matrices: by Euler parameters or their doubles, of bodies or of one body relative to another.
+struct Rotations<'d>([(&'static str, Expansion<'d>); 4]);
+
+impl Rotations<'_> {
+    /// The cheaper of those that mean the same for any p.
+    fn all(&mut self, graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
+        self.cheapest(graph, roots, 2).0
+    }
+
+    fn matrix(&mut self, graph: &mut Graph, matrix: &Matrix) -> Matrix {
+        let entries = self.all(graph, &matrix.concat());
+        let mut rest = &entries[..];
+        let row = |row: &Vec<ExprId>| rest.split_off(..row.len()).unwrap_or_default().to_vec();
+        matrix.iter().map(row).collect()
+    }
+
+    /// The cheapest of all, and what each would have taken.
+    fn of_unit_parameters(&mut self, graph: &mut Graph, roots: &[ExprId]) -> (Vec<ExprId>, Vec<Form>) {
+        self.cheapest(graph, roots, 4)
+    }
+
+    fn cheapest(&mut self, graph: &mut Graph, roots: &[ExprId], n: usize) -> (Vec<ExprId>, Vec<Form>) {
+        let ways = self.0[..n].iter_mut();
+        let candidates = ways.map(|(name, way)| ((*name).to_owned(), way.all(graph, roots)));
+        let candidates = candidates.collect();
+        cheapest(graph, candidates)
+    }
+}
+
 impl Charts {
-    fn expand(expansion: &mut Expansion, graph: &mut Graph, partition: &Partition) -> Self {
+    fn expand(rotations: &mut Rotations<'_>, graph: &mut Graph, partition: &Partition) -> Self {
         let vectors: Vec<_> = partition.chart_vectors.iter().flatten().copied().collect();
         Self {
-            vectors: expansion.all(graph, &vectors),
-            newton_positions: expansion.all(graph, &partition.positions),
-            solved_velocities: expansion.all(graph, &partition.velocities),
+            vectors: rotations.all(graph, &vectors),
+            newton_positions: rotations.all(graph, &partition.positions),
+            solved_velocities: rotations.all(graph, &partition.velocities),
         }
     }
 }
@@ -194,24 +226,37 @@ fn position_rates(system: &mut System) -> Vec<ExprId> {
     rates.collect()
 }
 
+/// A(p) of each slot by way of 2p.
+fn rotations_by_doubles(system: &mut System) -> HashMap<Symbol, ExprId> {
+    let mut values = HashMap::default();
+    for (slot, &body) in system.slots.iter().enumerate() {
+        let rotation = system.graph.rotation_by_doubles(&system.poses[body].p);
+        insert(&mut values, &rotation, |row, column| Symbol::Rotation { slot, row, column });
+    }
+    values
+}
+
 /// `A_iᵀ A_j = A(p_i* p_j)` of each joint: eq. (4) for unit p, in fewer operations where A_i and A_j are not needed anyhow.
-fn relative_rotations(system: &mut System) -> HashMap<Symbol, ExprId> {
+fn relative_rotations(
+    system: &mut System,
+    rotation: fn(&mut Graph, &Vec4) -> Mat3,
+) -> HashMap<Symbol, ExprId> {
     let mut values = HashMap::default();
     if !closing_rows(system).is_empty() {
         return values;
     }
     for (joint, frames) in system.joints.clone().iter().enumerate() {
         let p = readings::relative_euler(system, frames);
-        let rotation = system.graph.rotation(&p);
-        for (row, entries) in rotation.iter().enumerate() {
-            for (column, &entry) in entries.iter().enumerate() {
-                values.insert(Symbol::Relative { joint, row, column }, entry);
-            }
-        }
+        let rotation = rotation(&mut system.graph, &p);
+        insert(&mut values, &rotation, |row, column| Symbol::Relative { joint, row, column });
     }
     values
 }
 
-fn expand_matrix(expansion: &mut Expansion, graph: &mut Graph, matrix: &Matrix) -> Matrix {
-    matrix.iter().map(|row| expansion.all(graph, row)).collect()
+fn insert(values: &mut HashMap<Symbol, ExprId>, rotation: &Mat3, symbol: impl Fn(usize, usize) -> Symbol) {
+    for (row, entries) in rotation.iter().enumerate() {
+        for (column, &entry) in entries.iter().enumerate() {
+            values.insert(symbol(row, column), entry);
+        }
+    }
 }

@@ -64,6 +64,7 @@ mod null_space;
 mod outputs;
 mod partition;
 mod readings;
+mod reassociate;
 mod saddle;
 mod schedule;
 mod set_up;

@@ -54,7 +54,11 @@ const FAULTS: &[Fault] = &[
     // Rotations and their rates.
     fault("linear.rs", "bob", "let sum = self.dot(&[g[0][k], g[1][k], g[2][k]], w);\n            «self.mul(half, sum)»", "sum"),
     fault("linear.rs", "bob", "[«[n1, e0, e3, n2]», [n2", "[n1, e0, n3, e2]"),
-    fault("linear.rs", "bob", "«self.sub(symmetric, skew)»", "self.add(symmetric, skew)"),
+    fault("linear.rs", "bob", "== 1 {\n                        «self.sub(symmetric, skew)»", "self.add(symmetric, skew)"),
+    fault("linear.rs", "chain", "== 1 {\n                    «self.sub(symmetric, skew)»", "self.add(symmetric, skew)"),
+    fault("linear.rs", "chain", "let shared = «self.sub(shared, Self::ONE)»;", "shared"),
+    fault("reassociate.rs", "chain", "«if x == factor { y } else { x }»", "x"),
+    fault("reassociate.rs", "chain", "«graph.mul(constant, memo[&factor])»", "memo[&factor]"),
     fault("system.rs", "bob", "let a_rate = «self.graph.mat_mul(&pose.a, &tilde)»;", "self.graph.mat_mul(&tilde, &pose.a)"),
     fault("system.rs", "bob", "let square = «self.graph.mat_mul(&tilde, &tilde)»;", "[ZERO3; 3]"),
     fault("system.rs", "pair", "let rate = «self.graph.sub_mat(&turned, &carried)»;", "turned"),

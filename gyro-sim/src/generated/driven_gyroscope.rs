@@ -11,11 +11,11 @@
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 485 operations by relative Euler parameters; 486 operations by rotations of the bodies
-//! * project: 403 operations by relative Euler parameters; 406 operations by rotations of the bodies
+//! * accelerations: 455 operations by relative Euler parameters, doubled; 465 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 389 operations by rotations of the bodies, doubled; 396 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 68 operations by normal form; 84 operations by recursion
 //! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 1 more compared
-//! * corrected_accelerations: 486 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * corrected_accelerations: 455 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
 //! * joint_jacobian: 1406 operations by derivatives of u̇, from its roots; 1406 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -23,16 +23,16 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 51 | 62 | 0 | 113 | 0 of 18 | 190 | 113 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 70 | 145 | 0 | 215 | 0 of 77 | 612 | 215 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 66 | 111 | 0 | 177 | 0 of 41 | 562 | 177 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 130 | 0 | 198 | 0 of 77 | 692 | 198 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 60 | 96 | 0 | 156 | 0 of 41 | 676 | 156 |
 //! | nu | ν | 4 | 13 | 0 | 17 | 14 of 15 | 22 | 17 |
-//! | gamma | γ | 135 | 216 | 0 | 351 | 6 of 15 | 1631 | 351 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 94 | 139 | 0 | 233 | 0 of 15 | 636 | 233 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 192 | 288 | 5 | 485 | 7 of 18 | 514002 | 489 |
-//! | multipliers | λ, the accelerations being known | 116 | 193 | 3 | 312 | 0 of 15 | 3929 | 312 |
-//! | project | (δr, δπ') that changes the rows as given | 151 | 247 | 5 | 403 | 1 of 18 | 418426 | 404 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 121 | 210 | 1 | 332 | 0 of 22 | 1141 | 332 |
+//! | gamma | γ | 129 | 201 | 0 | 330 | 6 of 15 | 1899 | 330 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 88 | 124 | 0 | 212 | 0 of 15 | 746 | 212 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 184 | 266 | 5 | 455 | 7 of 18 | 533802 | 459 |
+//! | multipliers | λ, the accelerations being known | 110 | 178 | 3 | 291 | 0 of 15 | 4619 | 291 |
+//! | project | (δr, δπ') that changes the rows as given | 146 | 238 | 5 | 389 | 1 of 18 | 479963 | 390 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 115 | 196 | 1 | 312 | 0 of 22 | 1325 | 312 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 56 | 65 | 0 | 121 | 0 of 9 | 227 | 121 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
@@ -42,11 +42,11 @@
 //! | joint_derivative | ẋ but for u̇ | 159 | 286 | 2 | 447 | 0 of 4 | 23620 | 448 |
 //! | to_maximal | (q, v) of a joint state | 32 | 72 | 0 | 104 | 12 of 39 | 962 | 104 |
 //! | to_joints | (x, u) of a maximal state | 65 | 77 | 0 | 142 | 0 of 6 | 473 | 142 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 70 | 1 | 105 | 0 of 3 | 697 | 106 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 192 | 289 | 5 | 486 | 7 of 18 | 497223 | 490 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 34 | 69 | 1 | 104 | 0 of 3 | 697 | 105 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 184 | 266 | 5 | 455 | 7 of 18 | 533802 | 459 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 56 | 86 | 0 | 142 | 0 of 15 | 771 | 142 |
-//! | corrected_solution | both | 233 | 348 | 5 | 586 | 7 of 33 | 4.1e6 | 590 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 528 | 876 | 2 | 1406 | 29 of 56 | 8.8e6 | 1406 |
+//! | corrected_solution | both | 221 | 320 | 5 | 546 | 7 of 33 | 4.4e6 | 550 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 528 | 873 | 2 | 1403 | 29 of 56 | 8.8e6 | 1403 |
 //!
 //! # Proof
 //!
@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 332 operations (121 ±, 210 ×, 1 ÷) and 4 functions.
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 312 operations (115 ±, 196 ×, 1 ÷) and 4 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -185,146 +185,144 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = rotor_e0 * rotor_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t0));
-        let t2 = inner_ring_e0 * inner_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t2));
-        let t4 = rotor_e0 * rotor_e3;
-        let t5 = rotor_e1 * rotor_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = rotor_e0 * rotor_e2;
-        let t11 = rotor_e1 * rotor_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(1e-5) * rotor_dwx;
-        let t17 = k(2.0) * (t5 - t4);
-        let t18 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t0));
-        let t19 = rotor_e0 * rotor_e1;
-        let t20 = rotor_e2 * rotor_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t23 = T::fused(
-            t16,
-            T::fused(t15, t12, T::fused(t3, t1, t9 * t6)),
-            t22 * T::fused(t15, t21, -T::fused(t3, t17, t9 * t18)),
+        let t0 = k(2.0) * rotor_e1;
+        let t1 = k(2.0) * rotor_e0;
+        let t2 = T::fused(-rotor_e0, t1, k(1.0));
+        let t3 = T::fused(-rotor_e1, t0, t2);
+        let t4 = k(2.0) * inner_ring_e1;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e1, t4, t6);
+        let t8 = rotor_e3 * t1;
+        let t9 = rotor_e2 * t0;
+        let t10 = t9 + t8;
+        let t11 = inner_ring_e3 * t5;
+        let t12 = inner_ring_e2 * t4;
+        let t13 = t12 + t11;
+        let t14 = rotor_e2 * t1;
+        let t15 = rotor_e3 * t0;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e2 * t5;
+        let t18 = inner_ring_e3 * t4;
+        let t19 = t18 - t17;
+        let t20 = k(1e-5) * rotor_dwx;
+        let t21 = t9 - t8;
+        let t22 = k(2.0) * rotor_e2;
+        let t23 = T::fused(-rotor_e2, t22, t2);
+        let t24 = rotor_e1 * t1;
+        let t25 = rotor_e3 * t22;
+        let t26 = t25 + t24;
+        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t28 = T::fused(
+            t20,
+            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
+            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
         );
-        let t24 = k(2.0) * (t11 + t10);
-        let t25 = k(2.0) * (t20 - t19);
-        let t26 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t0));
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t28 = T::fused(t27, T::fused(t15, t26, -T::fused(-t3, t24, t9 * t25)), t23);
-        let t29 = T::fused(
+        let t29 = t15 + t14;
+        let t30 = t25 - t24;
+        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
+        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
+        let t34 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t28,
+            -t33,
         );
-        let t30 = outer_ring_e0 * outer_ring_e0;
-        let t31 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t30));
-        let t32 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
-        let t33 = outer_ring_e0 * outer_ring_e2;
-        let t34 = outer_ring_e1 * outer_ring_e3;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = t8 - t7;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t2);
-        let t39 = k(2.0) * t38;
-        let t40 = inner_ring_e0 * inner_ring_e1;
-        let t41 = inner_ring_e2 * inner_ring_e3;
-        let t42 = t41 + t40;
-        let t43 = k(2.0) * t42;
-        let t44 = T::fused(
-            t16,
-            T::fused(t43, t12, -T::fused(t37, t1, t39 * t6)),
-            t22 * T::fused(t43, t21, T::fused(t39, t18, t37 * t17)),
+        let t35 = k(2.0) * outer_ring_e1;
+        let t36 = k(2.0) * outer_ring_e0;
+        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
+        let t38 = T::fused(-outer_ring_e1, t35, t37);
+        let t39 = T::fused(outer_ring_e3, t36, outer_ring_e2 * t35);
+        let t40 = outer_ring_e2 * t36;
+        let t41 = outer_ring_e3 * t35;
+        let t42 = t41 - t40;
+        let t43 = t12 - t11;
+        let t44 = k(2.0) * inner_ring_e2;
+        let t45 = T::fused(-inner_ring_e2, t44, t6);
+        let t46 = inner_ring_e1 * t5;
+        let t47 = inner_ring_e3 * t44;
+        let t48 = t47 + t46;
+        let t49 = T::fused(
+            t20,
+            T::fused(t48, t16, -T::fused(t43, t3, t45 * t10)),
+            t27 * T::fused(t48, t26, T::fused(t43, t21, t45 * t23)),
         );
-        let t45 = T::fused(
-            t27,
-            T::fused(t43, t26, -T::fused(-t39, t25, t37 * t24)),
-            t44,
+        let t50 = T::fused(t32, T::fused(t48, t31, T::fused(-t43, t29, t45 * t30)), t49);
+        let t51 = t18 + t17;
+        let t52 = k(0.08) * rotor_dsx;
+        let t53 = t47 - t46;
+        let t54 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t55 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
+        let t56 = k(0.08) * rotor_dsz;
+        let t57 = T::fused(
+            t56,
+            k(0.000125) * t55,
+            -T::fused(t52, k(0.000125) * t51, t54 * (k(0.000125) * t53)),
         );
-        let t46 = t14 + t13;
-        let t47 = k(0.08) * rotor_dsx;
-        let t48 = t41 - t40;
-        let t49 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t50 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t2);
-        let t51 = k(0.08) * rotor_dsz;
-        let t52 = T::fused(
-            t51,
-            k(0.00025) * t50,
-            -T::fused(t47, k(0.00025) * t46, t49 * (k(0.00025) * t48)),
+        let t58 = T::fused(k(2e-6), inner_ring_dwy, t57 + t50);
+        let t59 = T::fused(
+            -T::fused(t42, t19, T::fused(t38, t7, t39 * t13)),
+            t34,
+            T::fused(t42, t48, -T::fused(t38, t43, t39 * t45)) * t58,
         );
-        let t53 = T::fused(k(2e-6), inner_ring_dwy, t52 + t45);
-        let t54 = T::fused(
-            -T::fused(t35, t15, T::fused(t31, t3, t32 * t9)),
-            t29,
-            T::fused(t35, t43, -T::fused(t31, t37, t32 * t39)) * t53,
-        );
-        let t55 = k(2.0) * t46;
-        let t56 = k(2.0) * t48;
-        let t57 = k(2.0) * t50;
-        let t58 = T::fused(
-            t16,
-            T::fused(t57, t12, -T::fused(-t55, t1, t56 * t6)),
-            t22 * T::fused(t57, t21, -T::fused(-t56, t18, t55 * t17)),
-        );
-        let t59 = T::fused(t27, T::fused(t57, t26, T::fused(t56, t25, t55 * t24)), t58);
         let t60 = T::fused(
-            t51,
-            k(0.00025) * t42,
-            -T::fused(-t47, k(0.00025) * t36, t49 * (k(0.00025) * t38)),
+            t20,
+            T::fused(t55, t16, -T::fused(-t51, t3, t53 * t10)),
+            t27 * T::fused(t55, t26, T::fused(-t51, t21, t53 * t23)),
         );
-        let t61 = T::fused(
+        let t61 = T::fused(t32, T::fused(t55, t31, T::fused(t51, t29, t53 * t30)), t60);
+        let t62 = T::fused(
+            t56,
+            k(0.000125) * t48,
+            -T::fused(-t52, k(0.000125) * t43, t54 * (k(0.000125) * t45)),
+        );
+        let t63 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t60 - t59,
+            t62 - t61,
         );
-        let t62 = T::fused(
-            T::fused(t35, t57, -T::fused(-t31, t55, t32 * t56)),
-            t61,
-            -t54,
+        let t64 = T::fused(
+            T::fused(t42, t55, -T::fused(-t38, t51, t39 * t53)),
+            t63,
+            -t59,
         );
-        let t63 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t30));
-        let t64 = k(12.566370614359172) * t;
-        let t65 = k(0.1) * t64.sin();
-        let t66 = t65.cos();
-        let t67 = outer_ring_e0 * outer_ring_e1;
-        let t68 = outer_ring_e2 * outer_ring_e3;
-        let t69 = k(2.0) * (t68 - t67);
-        let t70 = t65.sin();
-        let t71 = k(2.0) * (t34 + t33);
-        let t72 = T::fused(
-            t31,
-            T::fused(t66, t63, t70 * t69),
-            t71 * T::fused(-t66, t35, t70 * t32),
+        let t65 = outer_ring_e1 * t36;
+        let t66 = k(2.0) * outer_ring_e2;
+        let t67 = outer_ring_e3 * t66;
+        let t68 = t67 - t65;
+        let t69 = k(12.566370614359172) * t;
+        let t70 = k(0.1) * t69.sin();
+        let t71 = t70.sin();
+        let t72 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
+        let t73 = t70.cos();
+        let t74 = t41 + t40;
+        let t75 = T::fused(
+            -t38,
+            T::fused(t71, t68, t73 * t72),
+            t74 * T::fused(-t71, t39, t73 * t42),
         );
-        let t73 = k(1.0) / t72;
-        let t74 = T::fused(
-            -T::fused(t63, t15, -T::fused(-t71, t3, t69 * t9)),
-            t29,
-            T::fused(t63, t43, -T::fused(-t69, t39, t71 * t37)) * t53,
+        let t76 = k(1.0) / t75;
+        let t77 = T::fused(
+            -T::fused(t72, t19, -T::fused(-t74, t7, t68 * t13)),
+            t34,
+            T::fused(t72, t48, T::fused(-t74, t43, t68 * t45)) * t58,
         );
-        let t75 = T::fused(T::fused(t63, t57, T::fused(t69, t56, t71 * t55)), t61, -t74);
-        let t76 = T::fused(
-            t31 * t73,
-            T::fused(k(2e-6), outer_ring_dwx, -t62),
-            t71 * t73
+        let t78 = T::fused(T::fused(t72, t55, T::fused(t74, t51, t68 * t53)), t63, -t77);
+        let t79 = T::fused(
+            t38 * t76,
+            T::fused(k(2e-6), outer_ring_dwx, -t64),
+            t74 * t76
                 * T::fused(
                     k(1e-6),
                     T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-                    -t75,
+                    -t78,
                 ),
         );
-        let t77 = k(1.2566370614359172) * t64.cos();
-        let t78 = T::fused(
-            -(k(2.0) * (t68 + t67)),
-            t77 * t70,
-            k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t30)) * (t77 * t66),
+        let t80 = k(1.2566370614359172) * t69.cos();
+        let t81 = T::fused(
+            -(t80 * t71),
+            t67 + t65,
+            t80 * t73 * T::fused(-outer_ring_e2, t66, t37),
         );
         *dy = [
             outer_ring_sx,
@@ -442,7 +440,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for DrivenGyroscope<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            t78 * t76,
+            -(t81 * t79),
         ];
     }
 }
@@ -459,7 +457,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 332 operations (121 ±, 210 ×, 1 ÷) and 4 functions.
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 312 operations (115 ±, 196 ×, 1 ÷) and 4 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -505,146 +503,144 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = rotor_e0 * rotor_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t0));
-        let t2 = inner_ring_e0 * inner_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t2));
-        let t4 = rotor_e0 * rotor_e3;
-        let t5 = rotor_e1 * rotor_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = rotor_e0 * rotor_e2;
-        let t11 = rotor_e1 * rotor_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(1e-5) * rotor_dwx;
-        let t17 = k(2.0) * (t5 - t4);
-        let t18 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t0));
-        let t19 = rotor_e0 * rotor_e1;
-        let t20 = rotor_e2 * rotor_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t23 = T::fused(
-            t16,
-            T::fused(t15, t12, T::fused(t3, t1, t9 * t6)),
-            t22 * T::fused(t15, t21, -T::fused(t3, t17, t9 * t18)),
+        let t0 = k(2.0) * rotor_e1;
+        let t1 = k(2.0) * rotor_e0;
+        let t2 = T::fused(-rotor_e0, t1, k(1.0));
+        let t3 = T::fused(-rotor_e1, t0, t2);
+        let t4 = k(2.0) * inner_ring_e1;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e1, t4, t6);
+        let t8 = rotor_e3 * t1;
+        let t9 = rotor_e2 * t0;
+        let t10 = t9 + t8;
+        let t11 = inner_ring_e3 * t5;
+        let t12 = inner_ring_e2 * t4;
+        let t13 = t12 + t11;
+        let t14 = rotor_e2 * t1;
+        let t15 = rotor_e3 * t0;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e2 * t5;
+        let t18 = inner_ring_e3 * t4;
+        let t19 = t18 - t17;
+        let t20 = k(1e-5) * rotor_dwx;
+        let t21 = t9 - t8;
+        let t22 = k(2.0) * rotor_e2;
+        let t23 = T::fused(-rotor_e2, t22, t2);
+        let t24 = rotor_e1 * t1;
+        let t25 = rotor_e3 * t22;
+        let t26 = t25 + t24;
+        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t28 = T::fused(
+            t20,
+            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
+            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
         );
-        let t24 = k(2.0) * (t11 + t10);
-        let t25 = k(2.0) * (t20 - t19);
-        let t26 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t0));
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t28 = T::fused(t27, T::fused(t15, t26, -T::fused(-t3, t24, t9 * t25)), t23);
-        let t29 = T::fused(
+        let t29 = t15 + t14;
+        let t30 = t25 - t24;
+        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
+        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
+        let t34 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t28,
+            -t33,
         );
-        let t30 = outer_ring_e0 * outer_ring_e0;
-        let t31 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t30));
-        let t32 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
-        let t33 = outer_ring_e0 * outer_ring_e2;
-        let t34 = outer_ring_e1 * outer_ring_e3;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = t8 - t7;
-        let t37 = k(2.0) * t36;
-        let t38 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t2);
-        let t39 = k(2.0) * t38;
-        let t40 = inner_ring_e0 * inner_ring_e1;
-        let t41 = inner_ring_e2 * inner_ring_e3;
-        let t42 = t41 + t40;
-        let t43 = k(2.0) * t42;
-        let t44 = T::fused(
-            t16,
-            T::fused(t43, t12, -T::fused(t37, t1, t39 * t6)),
-            t22 * T::fused(t43, t21, T::fused(t39, t18, t37 * t17)),
+        let t35 = k(2.0) * outer_ring_e1;
+        let t36 = k(2.0) * outer_ring_e0;
+        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
+        let t38 = T::fused(-outer_ring_e1, t35, t37);
+        let t39 = T::fused(outer_ring_e3, t36, outer_ring_e2 * t35);
+        let t40 = outer_ring_e2 * t36;
+        let t41 = outer_ring_e3 * t35;
+        let t42 = t41 - t40;
+        let t43 = t12 - t11;
+        let t44 = k(2.0) * inner_ring_e2;
+        let t45 = T::fused(-inner_ring_e2, t44, t6);
+        let t46 = inner_ring_e1 * t5;
+        let t47 = inner_ring_e3 * t44;
+        let t48 = t47 + t46;
+        let t49 = T::fused(
+            t20,
+            T::fused(t48, t16, -T::fused(t43, t3, t45 * t10)),
+            t27 * T::fused(t48, t26, T::fused(t43, t21, t45 * t23)),
         );
-        let t45 = T::fused(
-            t27,
-            T::fused(t43, t26, -T::fused(-t39, t25, t37 * t24)),
-            t44,
+        let t50 = T::fused(t32, T::fused(t48, t31, T::fused(-t43, t29, t45 * t30)), t49);
+        let t51 = t18 + t17;
+        let t52 = k(0.08) * rotor_dsx;
+        let t53 = t47 - t46;
+        let t54 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t55 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
+        let t56 = k(0.08) * rotor_dsz;
+        let t57 = T::fused(
+            t56,
+            k(0.000125) * t55,
+            -T::fused(t52, k(0.000125) * t51, t54 * (k(0.000125) * t53)),
         );
-        let t46 = t14 + t13;
-        let t47 = k(0.08) * rotor_dsx;
-        let t48 = t41 - t40;
-        let t49 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t50 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t2);
-        let t51 = k(0.08) * rotor_dsz;
-        let t52 = T::fused(
-            t51,
-            k(0.00025) * t50,
-            -T::fused(t47, k(0.00025) * t46, t49 * (k(0.00025) * t48)),
+        let t58 = T::fused(k(2e-6), inner_ring_dwy, t57 + t50);
+        let t59 = T::fused(
+            -T::fused(t42, t19, T::fused(t38, t7, t39 * t13)),
+            t34,
+            T::fused(t42, t48, -T::fused(t38, t43, t39 * t45)) * t58,
         );
-        let t53 = T::fused(k(2e-6), inner_ring_dwy, t52 + t45);
-        let t54 = T::fused(
-            -T::fused(t35, t15, T::fused(t31, t3, t32 * t9)),
-            t29,
-            T::fused(t35, t43, -T::fused(t31, t37, t32 * t39)) * t53,
-        );
-        let t55 = k(2.0) * t46;
-        let t56 = k(2.0) * t48;
-        let t57 = k(2.0) * t50;
-        let t58 = T::fused(
-            t16,
-            T::fused(t57, t12, -T::fused(-t55, t1, t56 * t6)),
-            t22 * T::fused(t57, t21, -T::fused(-t56, t18, t55 * t17)),
-        );
-        let t59 = T::fused(t27, T::fused(t57, t26, T::fused(t56, t25, t55 * t24)), t58);
         let t60 = T::fused(
-            t51,
-            k(0.00025) * t42,
-            -T::fused(-t47, k(0.00025) * t36, t49 * (k(0.00025) * t38)),
+            t20,
+            T::fused(t55, t16, -T::fused(-t51, t3, t53 * t10)),
+            t27 * T::fused(t55, t26, T::fused(-t51, t21, t53 * t23)),
         );
-        let t61 = T::fused(
+        let t61 = T::fused(t32, T::fused(t55, t31, T::fused(t51, t29, t53 * t30)), t60);
+        let t62 = T::fused(
+            t56,
+            k(0.000125) * t48,
+            -T::fused(-t52, k(0.000125) * t43, t54 * (k(0.000125) * t45)),
+        );
+        let t63 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t60 - t59,
+            t62 - t61,
         );
-        let t62 = T::fused(
-            T::fused(t35, t57, -T::fused(-t31, t55, t32 * t56)),
-            t61,
-            -t54,
+        let t64 = T::fused(
+            T::fused(t42, t55, -T::fused(-t38, t51, t39 * t53)),
+            t63,
+            -t59,
         );
-        let t63 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t30));
-        let t64 = k(12.566370614359172) * t;
-        let t65 = k(0.1) * t64.sin();
-        let t66 = t65.cos();
-        let t67 = outer_ring_e0 * outer_ring_e1;
-        let t68 = outer_ring_e2 * outer_ring_e3;
-        let t69 = k(2.0) * (t68 - t67);
-        let t70 = t65.sin();
-        let t71 = k(2.0) * (t34 + t33);
-        let t72 = T::fused(
-            t31,
-            T::fused(t66, t63, t70 * t69),
-            t71 * T::fused(-t66, t35, t70 * t32),
+        let t65 = outer_ring_e1 * t36;
+        let t66 = k(2.0) * outer_ring_e2;
+        let t67 = outer_ring_e3 * t66;
+        let t68 = t67 - t65;
+        let t69 = k(12.566370614359172) * t;
+        let t70 = k(0.1) * t69.sin();
+        let t71 = t70.sin();
+        let t72 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
+        let t73 = t70.cos();
+        let t74 = t41 + t40;
+        let t75 = T::fused(
+            -t38,
+            T::fused(t71, t68, t73 * t72),
+            t74 * T::fused(-t71, t39, t73 * t42),
         );
-        let t73 = k(1.0) / t72;
-        let t74 = T::fused(
-            -T::fused(t63, t15, -T::fused(-t71, t3, t69 * t9)),
-            t29,
-            T::fused(t63, t43, -T::fused(-t69, t39, t71 * t37)) * t53,
+        let t76 = k(1.0) / t75;
+        let t77 = T::fused(
+            -T::fused(t72, t19, -T::fused(-t74, t7, t68 * t13)),
+            t34,
+            T::fused(t72, t48, T::fused(-t74, t43, t68 * t45)) * t58,
         );
-        let t75 = T::fused(T::fused(t63, t57, T::fused(t69, t56, t71 * t55)), t61, -t74);
-        let t76 = T::fused(
-            t31 * t73,
-            T::fused(k(2e-6), outer_ring_dwx, -t62),
-            t71 * t73
+        let t78 = T::fused(T::fused(t72, t55, T::fused(t74, t51, t68 * t53)), t63, -t77);
+        let t79 = T::fused(
+            t38 * t76,
+            T::fused(k(2e-6), outer_ring_dwx, -t64),
+            t74 * t76
                 * T::fused(
                     k(1e-6),
                     T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-                    -t75,
+                    -t78,
                 ),
         );
-        let t77 = k(1.2566370614359172) * t64.cos();
-        let t78 = T::fused(
-            -(k(2.0) * (t68 + t67)),
-            t77 * t70,
-            k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t30)) * (t77 * t66),
+        let t80 = k(1.2566370614359172) * t69.cos();
+        let t81 = T::fused(
+            -(t80 * t71),
+            t67 + t65,
+            t80 * t73 * T::fused(-outer_ring_e2, t66, t37),
         );
         *dy = [
             outer_ring_sx,
@@ -762,7 +758,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            t78 * t76,
+            -(t81 * t79),
         ];
     }
     /// Writes Φ: 113 operations (51 ±, 62 ×, 0 ÷) and 3 functions.
@@ -852,7 +848,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
             T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t22)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 233 operations (94 ±, 139 ×, 0 ÷) and 4 functions.
+    /// Writes Φ_r s + Φ_π' w' − ν: 212 operations (88 ±, 124 ×, 0 ÷) and 4 functions.
     fn velocity_residual(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -884,142 +880,151 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenGyroscope<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(12.566370614359172) * t;
-        let t1 = k(0.1) * t0.sin();
-        let t2 = t1.sin();
-        let t3 = k(1.2566370614359172) * t0.cos();
-        let t4 = outer_ring_e0 * outer_ring_e1;
-        let t5 = outer_ring_e2 * outer_ring_e3;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = outer_ring_e0 * outer_ring_e2;
-        let t8 = outer_ring_e1 * outer_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
-        let t12 = t1.cos();
-        let t13 = T::fused(
-            t6,
-            t3 * t2,
-            t12 * T::fused(t9, outer_ring_wz, t11 * outer_ring_wx),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t7 = k(12.566370614359172) * t;
+        let t8 = k(0.1) * t7.sin();
+        let t9 = t8.cos();
+        let t10 = outer_ring_e1 * t0;
+        let t11 = k(2.0) * outer_ring_e2;
+        let t12 = outer_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = t8.sin();
+        let t15 = k(1.2566370614359172) * t7.cos();
+        let t16 = T::fused(
+            t9,
+            T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
+            t15 * t14 * t13,
         );
-        let t14 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
-        let t15 = outer_ring_e0 * outer_ring_e3;
-        let t16 = outer_ring_e1 * outer_ring_e2;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = k(2.0) * (t5 - t4);
-        let t19 = T::fused(
+        let t17 = outer_ring_e3 * t0;
+        let t18 = outer_ring_e2 * t2;
+        let t19 = t18 + t17;
+        let t20 = t12 - t10;
+        let t21 = T::fused(-outer_ring_e2, t11, t5);
+        let t22 = T::fused(
             -t14,
-            t3 * t12,
-            t2 * T::fused(-t17, outer_ring_wz, t18 * outer_ring_wx),
+            T::fused(-outer_ring_wz, t19, outer_ring_wx * t20),
+            t15 * t9 * t21,
         );
-        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
-        let t21 = k(2.0) * (t8 + t7);
-        let t22 = inner_ring_e0 * inner_ring_e1;
-        let t23 = inner_ring_e2 * inner_ring_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = inner_ring_e0 * inner_ring_e2;
-        let t26 = inner_ring_e1 * inner_ring_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t16 - t15);
-        let t29 = inner_ring_e0 * inner_ring_e0;
-        let t30 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t29));
-        let t31 = T::fused(t11, t30, T::fused(t18, t24, t21 * t27));
-        let t32 = T::fused(
+        let t23 = T::fused(-outer_ring_e1, t2, t5);
+        let t24 = t3 + t1;
+        let t25 = k(2.0) * inner_ring_e0;
+        let t26 = inner_ring_e2 * t25;
+        let t27 = k(2.0) * inner_ring_e1;
+        let t28 = inner_ring_e3 * t27;
+        let t29 = t28 + t26;
+        let t30 = t18 - t17;
+        let t31 = inner_ring_e1 * t25;
+        let t32 = k(2.0) * inner_ring_e2;
+        let t33 = inner_ring_e3 * t32;
+        let t34 = t33 - t31;
+        let t35 = T::fused(-inner_ring_e0, t25, k(1.0));
+        let t36 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t35);
+        let t37 = T::fused(t6, t36, T::fused(t24, t29, t20 * t34));
+        let t38 = T::fused(
             outer_ring_wz,
-            T::fused(t6, t30, -T::fused(-t14, t24, t28 * t27)),
-            outer_ring_wy * t31,
+            T::fused(t13, t36, T::fused(-t30, t29, t21 * t34)),
+            outer_ring_wy * t37,
         );
-        let t33 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t29));
-        let t34 = inner_ring_e0 * inner_ring_e3;
-        let t35 = inner_ring_e1 * inner_ring_e2;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(2.0) * (t26 - t25);
-        let t38 = k(2.0) * (t35 - t34);
-        let t39 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t29));
-        let t40 = k(2.0) * (t23 + t22);
-        let t41 = T::fused(
+        let t39 = T::fused(-inner_ring_e1, t27, t35);
+        let t40 = inner_ring_e3 * t25;
+        let t41 = inner_ring_e2 * t27;
+        let t42 = t41 + t40;
+        let t43 = t28 - t26;
+        let t44 = t41 - t40;
+        let t45 = T::fused(-inner_ring_e2, t32, t35);
+        let t46 = t33 + t31;
+        let t47 = T::fused(
             -inner_ring_wy,
-            T::fused(t9, t37, T::fused(t20, t33, t17 * t36)),
-            inner_ring_wx * T::fused(t9, t40, -T::fused(t20, t38, t17 * t39)),
+            T::fused(t4, t43, T::fused(t23, t39, t19 * t42)),
+            inner_ring_wx * T::fused(t4, t46, -T::fused(t23, t44, t19 * t45)),
         );
-        let t42 = T::fused(
+        let t48 = T::fused(
             outer_ring_wz,
-            T::fused(t9, t30, -T::fused(-t20, t27, t17 * t24)),
-            outer_ring_wx * t31,
+            T::fused(t4, t36, -T::fused(-t23, t29, t19 * t34)),
+            outer_ring_wx * t37,
         );
-        let t43 = T::fused(
+        let t49 = T::fused(
             -inner_ring_wy,
-            T::fused(t6, t37, -T::fused(t28, t33, t14 * t36)),
-            inner_ring_wx * T::fused(t6, t40, T::fused(t14, t39, t28 * t38)),
+            T::fused(t13, t43, -T::fused(t30, t39, t21 * t42)),
+            inner_ring_wx * T::fused(t13, t46, T::fused(t30, t44, t21 * t45)),
         );
-        let t44 = rotor_e0 * rotor_e0;
-        let t45 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t44));
-        let t46 = rotor_e0 * rotor_e3;
-        let t47 = rotor_e1 * rotor_e2;
-        let t48 = k(2.0) * (t47 + t46);
-        let t49 = rotor_e0 * rotor_e2;
-        let t50 = rotor_e1 * rotor_e3;
-        let t51 = k(2.0) * (t50 - t49);
-        let t52 = T::fused(t37, t51, T::fused(t33, t45, t36 * t48));
-        let t53 = T::fused(
-            inner_ring_wx,
-            T::fused(t30, t51, -T::fused(-t27, t45, t24 * t48)),
-            inner_ring_wz * t52,
+        let t50 = k(2.0) * rotor_e1;
+        let t51 = k(2.0) * rotor_e0;
+        let t52 = T::fused(-rotor_e0, t51, k(1.0));
+        let t53 = T::fused(-rotor_e1, t50, t52);
+        let t54 = rotor_e3 * t51;
+        let t55 = rotor_e2 * t50;
+        let t56 = t55 + t54;
+        let t57 = rotor_e2 * t51;
+        let t58 = rotor_e3 * t50;
+        let t59 = t58 - t57;
+        let t60 = T::fused(t43, t59, T::fused(t39, t53, t42 * t56));
+        let t61 = T::fused(
+            inner_ring_wz,
+            t60,
+            inner_ring_wx * T::fused(t36, t59, -T::fused(-t29, t53, t34 * t56)),
         );
-        let t54 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t44));
-        let t55 = k(2.0) * (t47 - t46);
-        let t56 = rotor_e0 * rotor_e1;
-        let t57 = rotor_e2 * rotor_e3;
-        let t58 = k(2.0) * (t57 + t56);
-        let t59 = k(2.0) * (t57 - t56);
-        let t60 = k(2.0) * (t50 + t49);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t44));
-        let t62 = T::fused(
+        let t62 = t55 - t54;
+        let t63 = k(2.0) * rotor_e2;
+        let t64 = T::fused(-rotor_e2, t63, t52);
+        let t65 = rotor_e1 * t51;
+        let t66 = rotor_e3 * t63;
+        let t67 = t66 + t65;
+        let t68 = t58 + t57;
+        let t69 = t66 - t65;
+        let t70 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t52);
+        let t71 = T::fused(
             rotor_wz,
-            T::fused(t40, t58, T::fused(t39, t54, t38 * t55)),
-            rotor_wy * T::fused(t40, t61, -T::fused(-t39, t59, t38 * t60)),
+            T::fused(t46, t67, T::fused(t44, t62, t45 * t64)),
+            rotor_wy * T::fused(t46, t70, T::fused(-t44, t68, t45 * t69)),
         );
-        let t63 = T::fused(
+        let t72 = T::fused(
             -inner_ring_wy,
-            t52,
-            inner_ring_wx * T::fused(t40, t51, -T::fused(t38, t45, t39 * t48)),
+            t60,
+            inner_ring_wx * T::fused(t46, t59, -T::fused(t44, t53, t45 * t56)),
         );
-        let t64 = T::fused(
+        let t73 = T::fused(
             rotor_wz,
-            T::fused(t30, t58, -T::fused(-t24, t54, t27 * t55)),
-            rotor_wy * T::fused(t30, t61, T::fused(t24, t59, t27 * t60)),
+            T::fused(t36, t67, T::fused(-t29, t62, t34 * t64)),
+            rotor_wy * T::fused(t36, t70, T::fused(t29, t68, t34 * t69)),
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -(t19 + t13),
-            T::fused(t20, outer_ring_wz, t21 * outer_ring_wx),
+            t22 - t16,
+            T::fused(outer_ring_wz, t23, outer_ring_wx * t24),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t41 + t32),
-            t42 - t43,
+            -(t47 + t38),
+            t48 - t49,
             rotor_sx
                 - T::fused(
-                    k(0.000125),
-                    T::fused(-t27, inner_ring_wy, t38 * inner_ring_wz),
+                    -k(0.000125),
+                    T::fused(-inner_ring_wz, t44, inner_ring_wy * t29),
                     inner_ring_sx,
                 ),
             rotor_sy
                 - T::fused(
                     -k(0.000125),
-                    T::fused(t24, inner_ring_wy, t39 * inner_ring_wz),
+                    T::fused(inner_ring_wz, t45, inner_ring_wy * t34),
                     inner_ring_sy,
                 ),
             rotor_sz
                 - T::fused(
                     k(0.000125),
-                    T::fused(t30, inner_ring_wy, t40 * inner_ring_wz),
+                    T::fused(inner_ring_wz, t46, inner_ring_wy * t36),
                     inner_ring_sz,
                 ),
-            t62 - t53,
-            -(t64 + t63),
+            t71 - t61,
+            -(t73 + t72),
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -1993,7 +1998,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 215 operations (70 ±, 145 ×, 0 ÷) and 3 functions.
+    /// Writes the non-zeros of Φ_q: 198 operations (68 ±, 130 ×, 0 ÷) and 3 functions.
     fn phi_q(&self, t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2017,55 +2022,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let t6 = k(4.0) * outer_ring_e2;
         let t7 = k(2.0) * outer_ring_e3;
         let t8 = k(2.0) * outer_ring_e2;
-        let t9 = inner_ring_e0 * inner_ring_e0;
-        let t10 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t9));
-        let t11 = t10 * t8;
-        let t12 = inner_ring_e0 * inner_ring_e1;
-        let t13 = inner_ring_e2 * inner_ring_e3;
-        let t14 = k(2.0) * (t13 - t12);
-        let t15 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t16 = t10 * t7;
-        let t17 = t10 * t5;
-        let t18 = t10 * t3;
-        let t19 = k(4.0) * inner_ring_e0;
-        let t20 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
-        let t21 = k(2.0) * inner_ring_e1;
-        let t22 = outer_ring_e0 * outer_ring_e3;
-        let t23 = outer_ring_e1 * outer_ring_e2;
-        let t24 = k(2.0) * (t23 + t22);
-        let t25 = k(2.0) * inner_ring_e2;
-        let t26 = outer_ring_e0 * outer_ring_e0;
-        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t26));
-        let t28 = k(2.0) * inner_ring_e0;
-        let t29 = k(2.0) * inner_ring_e3;
+        let t9 = k(2.0) * inner_ring_e3;
+        let t10 = k(2.0) * inner_ring_e0;
+        let t11 = T::fused(-inner_ring_e0, t10, k(1.0));
+        let t12 = T::fused(-inner_ring_e3, t9, t11);
+        let t13 = t8 * t12;
+        let t14 = inner_ring_e1 * t10;
+        let t15 = k(2.0) * inner_ring_e2;
+        let t16 = inner_ring_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = k(2.0) * inner_ring_e1;
+        let t19 = T::fused(inner_ring_e2, t10, inner_ring_e3 * t18);
+        let t20 = t7 * t12;
+        let t21 = t5 * t12;
+        let t22 = t3 * t12;
+        let t23 = T::fused(-outer_ring_e2, t5, outer_ring_e3 * t3);
+        let t24 = k(4.0) * inner_ring_e0;
+        let t25 = outer_ring_e3 * t5;
+        let t26 = outer_ring_e2 * t3;
+        let t27 = t26 + t25;
+        let t28 = T::fused(-outer_ring_e0, t5, k(1.0));
+        let t29 = T::fused(-outer_ring_e1, t3, t28);
         let t30 = k(4.0) * inner_ring_e3;
-        let t31 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t32 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t26));
-        let t33 = k(2.0) * (t23 - t22);
+        let t31 = T::fused(outer_ring_e1, t5, outer_ring_e3 * t8);
+        let t32 = T::fused(-outer_ring_e2, t8, t28);
+        let t33 = t26 - t25;
         let t34 = k(0.00025) * inner_ring_e3;
         let t35 = k(0.00025) * inner_ring_e2;
         let t36 = k(0.00025) * inner_ring_e1;
         let t37 = k(0.00025) * inner_ring_e0;
-        let t38 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
-        let t39 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t40 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
-        let t41 = t40 * t29;
-        let t42 = t40 * t25;
-        let t43 = t40 * t21;
-        let t44 = t40 * t28;
-        let t45 = k(2.0) * rotor_e2;
-        let t46 = k(2.0) * (t13 + t12);
-        let t47 = k(2.0) * rotor_e3;
-        let t48 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t9));
-        let t49 = k(4.0) * rotor_e0;
-        let t50 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t51 = k(4.0) * rotor_e1;
-        let t52 = k(2.0) * rotor_e0;
-        let t53 = k(2.0) * rotor_e1;
+        let t38 = k(2.0) * rotor_e0;
+        let t39 = k(2.0) * rotor_e1;
+        let t40 = T::fused(-rotor_e2, t38, rotor_e3 * t39);
+        let t41 = T::fused(rotor_e3, t38, rotor_e2 * t39);
+        let t42 = T::fused(-rotor_e1, t39, T::fused(-rotor_e0, t38, k(1.0)));
+        let t43 = t9 * t42;
+        let t44 = t15 * t42;
+        let t45 = t18 * t42;
+        let t46 = t10 * t42;
+        let t47 = t16 + t14;
+        let t48 = k(2.0) * rotor_e2;
+        let t49 = T::fused(-inner_ring_e2, t15, t11);
+        let t50 = k(2.0) * rotor_e3;
+        let t51 = T::fused(-inner_ring_e3, t10, inner_ring_e2 * t18);
+        let t52 = k(4.0) * rotor_e0;
+        let t53 = k(4.0) * rotor_e1;
         *out = [
             k(1.0),
             k(1.0),
@@ -2084,22 +2085,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t14, t7, t15 * t0) + t11,
-            T::fused(t14, t8, t15 * (k(4.0) * outer_ring_e1)) - t16,
-            T::fused(t14, t3, t17),
-            T::fused(t14, t5, -t18),
-            T::fused(t20, t19, -T::fused(t24, t21, t27 * t25)),
-            -T::fused(t24, t28, t27 * t29),
-            T::fused(-t27, t28, t24 * t29),
-            T::fused(t20, t30, -T::fused(-t24, t25, t27 * t21)),
-            -(t18 + T::fused(-t14, t0, t15 * t7)),
-            T::fused(t15, t8, -t17),
-            T::fused(t14, t6, t15 * t3) - t16,
-            -T::fused(t15, t5, t11),
-            T::fused(t31, t19, T::fused(t32, t21, t33 * t25)),
-            T::fused(t32, t28, t33 * t29),
-            T::fused(-t32, t29, t33 * t28),
-            T::fused(t31, t30, T::fused(-t32, t25, t33 * t21)),
+            T::fused(t7, t17, t0 * t19) + t13,
+            T::fused(t8, t17, k(4.0) * outer_ring_e1 * t19) - t20,
+            T::fused(t3, t17, t21),
+            T::fused(t5, t17, -t22),
+            T::fused(t24, t23, -T::fused(t18, t27, t15 * t29)),
+            -T::fused(t10, t27, t9 * t29),
+            T::fused(-t10, t29, t9 * t27),
+            T::fused(t30, t23, -T::fused(-t15, t27, t18 * t29)),
+            -(t22 + T::fused(-t0, t17, t7 * t19)),
+            T::fused(t8, t19, -t21),
+            T::fused(t6, t17, t3 * t19) - t20,
+            -T::fused(t5, t19, t13),
+            T::fused(t24, t31, T::fused(t18, t32, t15 * t33)),
+            T::fused(t10, t32, t9 * t33),
+            T::fused(-t9, t32, t10 * t33),
+            T::fused(t30, t31, T::fused(-t15, t32, t18 * t33)),
             k(-1.0),
             -(k(0.0005) * inner_ring_e0),
             -(k(0.0005) * inner_ring_e1),
@@ -2116,37 +2117,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             t37,
             -t36,
             k(1.0),
-            T::fused(t38, t21, T::fused(t39, t19, t41)),
-            T::fused(t38, t28, -t42),
-            T::fused(t38, t29, -T::fused(-t39, k(4.0) * inner_ring_e2, t43)),
-            T::fused(t38, t25, t44),
-            T::fused(-t46, t45, T::fused(-t48, t47, t50 * t49)),
-            T::fused(t46, t47, T::fused(-t48, t45, t50 * t51)),
-            -T::fused(t46, t52, t48 * t53),
-            T::fused(-t48, t52, t46 * t53),
-            T::fused(t38, t19, -T::fused(t39, t21, t42)),
-            -T::fused(t39, t28, t41),
-            T::fused(t39, t29, -t44),
-            T::fused(t38, t30, -T::fused(-t39, t25, t43)),
-            T::fused(t10, t45, T::fused(t14, t47, t15 * t49)),
-            T::fused(-t10, t47, T::fused(t14, t45, t15 * t51)),
-            T::fused(t10, t52, t14 * t53),
-            T::fused(-t10, t53, t14 * t52),
+            T::fused(t18, t40, T::fused(t24, t41, t43)),
+            T::fused(t10, t40, -t44),
+            T::fused(t9, t40, -T::fused(-(k(4.0) * inner_ring_e2), t41, t45)),
+            T::fused(t15, t40, t46),
+            T::fused(-t48, t47, T::fused(-t50, t49, t52 * t51)),
+            T::fused(t50, t47, T::fused(-t48, t49, t53 * t51)),
+            -T::fused(t38, t47, t39 * t49),
+            T::fused(-t38, t49, t39 * t47),
+            T::fused(t24, t40, -T::fused(t18, t41, t44)),
+            -T::fused(t10, t41, t43),
+            T::fused(t9, t41, -t46),
+            T::fused(t30, t40, -T::fused(-t15, t41, t45)),
+            T::fused(t48, t12, T::fused(t50, t17, t52 * t19)),
+            T::fused(-t50, t12, T::fused(t48, t17, t53 * t19)),
+            T::fused(t38, t12, t39 * t17),
+            T::fused(-t39, t12, t38 * t17),
             t5,
             t3,
             t8,
             t7,
-            t28,
-            t21,
-            t25,
-            t29,
-            t52,
-            t53,
-            t45,
-            t47,
+            t10,
+            t18,
+            t15,
+            t9,
+            t38,
+            t39,
+            t48,
+            t50,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 177 operations (66 ±, 111 ×, 0 ÷) and 3 functions.
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 156 operations (60 ±, 96 ×, 0 ÷) and 3 functions.
     fn phi_pi(&self, t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2161,107 +2162,110 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t3 = t2.cos();
-        let t4 = outer_ring_e0 * outer_ring_e1;
-        let t5 = outer_ring_e2 * outer_ring_e3;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = t2.sin();
-        let t8 = outer_ring_e0 * outer_ring_e2;
-        let t9 = outer_ring_e1 * outer_ring_e3;
-        let t10 = k(2.0) * (t9 - t8);
-        let t11 = outer_ring_e0 * outer_ring_e3;
-        let t12 = outer_ring_e1 * outer_ring_e2;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(2.0) * (t9 + t8);
-        let t15 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t16 = inner_ring_e0 * inner_ring_e0;
-        let t17 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t16);
-        let t18 = k(2.0) * t17;
-        let t19 = inner_ring_e0 * inner_ring_e1;
-        let t20 = inner_ring_e2 * inner_ring_e3;
-        let t21 = t20 - t19;
-        let t22 = k(2.0) * t21;
-        let t23 = inner_ring_e0 * inner_ring_e2;
-        let t24 = inner_ring_e1 * inner_ring_e3;
-        let t25 = t24 + t23;
-        let t26 = k(2.0) * t25;
-        let t27 = T::fused(t1, t18, T::fused(t6, t22, t14 * t26));
-        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t29 = k(2.0) * (t12 - t11);
-        let t30 = k(2.0) * (t5 + t4);
-        let t31 = inner_ring_e0 * inner_ring_e3;
-        let t32 = inner_ring_e1 * inner_ring_e2;
-        let t33 = t32 - t31;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t16);
-        let t36 = k(2.0) * t35;
-        let t37 = t20 + t19;
-        let t38 = k(2.0) * t37;
-        let t39 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t16));
-        let t40 = k(2.0) * (t32 + t31);
-        let t41 = k(2.0) * (t24 - t23);
-        let t42 = rotor_e0 * rotor_e0;
-        let t43 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t42));
-        let t44 = rotor_e0 * rotor_e3;
-        let t45 = rotor_e1 * rotor_e2;
-        let t46 = k(2.0) * (t45 + t44);
-        let t47 = rotor_e0 * rotor_e2;
-        let t48 = rotor_e1 * rotor_e3;
-        let t49 = k(2.0) * (t48 - t47);
-        let t50 = T::fused(t41, t49, T::fused(t39, t43, t40 * t46));
-        let t51 = rotor_e0 * rotor_e1;
-        let t52 = rotor_e2 * rotor_e3;
-        let t53 = k(2.0) * (t52 - t51);
-        let t54 = k(2.0) * (t48 + t47);
-        let t55 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t42));
-        let t56 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t42));
-        let t57 = k(2.0) * (t45 - t44);
-        let t58 = k(2.0) * (t52 + t51);
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e1 * t0;
+        let t2 = k(2.0) * outer_ring_e2;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t6 = t5.sin();
+        let t7 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t8 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t7);
+        let t9 = t5.cos();
+        let t10 = outer_ring_e3 * t0;
+        let t11 = k(2.0) * outer_ring_e1;
+        let t12 = outer_ring_e2 * t11;
+        let t13 = t12 + t10;
+        let t14 = outer_ring_e2 * t0;
+        let t15 = outer_ring_e3 * t11;
+        let t16 = t15 - t14;
+        let t17 = t15 + t14;
+        let t18 = T::fused(-outer_ring_e1, t11, t7);
+        let t19 = k(2.0) * inner_ring_e0;
+        let t20 = inner_ring_e2 * t19;
+        let t21 = k(2.0) * inner_ring_e1;
+        let t22 = inner_ring_e3 * t21;
+        let t23 = t22 + t20;
+        let t24 = inner_ring_e1 * t19;
+        let t25 = k(2.0) * inner_ring_e2;
+        let t26 = inner_ring_e3 * t25;
+        let t27 = t26 - t24;
+        let t28 = T::fused(-inner_ring_e0, t19, k(1.0));
+        let t29 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t28);
+        let t30 = T::fused(t8, t29, T::fused(t17, t23, t4 * t27));
+        let t31 = t12 - t10;
+        let t32 = T::fused(-outer_ring_e2, t2, t7);
+        let t33 = t3 + t1;
+        let t34 = inner_ring_e3 * t19;
+        let t35 = inner_ring_e2 * t21;
+        let t36 = t35 - t34;
+        let t37 = T::fused(-inner_ring_e2, t25, t28);
+        let t38 = t26 + t24;
+        let t39 = T::fused(-inner_ring_e1, t21, t28);
+        let t40 = t35 + t34;
+        let t41 = t22 - t20;
+        let t42 = k(2.0) * rotor_e1;
+        let t43 = k(2.0) * rotor_e0;
+        let t44 = T::fused(-rotor_e0, t43, k(1.0));
+        let t45 = T::fused(-rotor_e1, t42, t44);
+        let t46 = rotor_e3 * t43;
+        let t47 = rotor_e2 * t42;
+        let t48 = t47 + t46;
+        let t49 = rotor_e2 * t43;
+        let t50 = rotor_e3 * t42;
+        let t51 = t50 - t49;
+        let t52 = T::fused(t41, t51, T::fused(t39, t45, t40 * t48));
+        let t53 = t50 + t49;
+        let t54 = rotor_e1 * t43;
+        let t55 = k(2.0) * rotor_e2;
+        let t56 = rotor_e3 * t55;
+        let t57 = t56 - t54;
+        let t58 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
+        let t59 = t47 - t46;
+        let t60 = T::fused(-rotor_e2, t55, t44);
+        let t61 = t56 + t54;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -T::fused(t3, t1, t7 * t6),
-            T::fused(-t3, t10, t7 * t13),
-            t14,
-            t15,
+            -T::fused(t6, t4, t9 * t8),
+            T::fused(-t9, t16, t6 * t13),
+            t17,
+            t18,
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            -t27,
-            T::fused(-t30, t18, T::fused(-t28, t22, t29 * t26)),
-            T::fused(-t10, t38, T::fused(t15, t34, t13 * t36)),
-            T::fused(t10, t41, T::fused(t15, t39, t13 * t40)),
-            t27,
-            T::fused(t10, t18, -T::fused(-t15, t26, t13 * t22)),
-            -T::fused(t30, t38, T::fused(t28, t36, t29 * t34)),
-            T::fused(t30, t41, -T::fused(t29, t39, t28 * t40)),
+            -t30,
+            -T::fused(t33, t29, T::fused(-t31, t23, t32 * t27)),
+            T::fused(-t16, t38, T::fused(t18, t36, t13 * t37)),
+            T::fused(t16, t41, T::fused(t18, t39, t13 * t40)),
+            t30,
+            T::fused(t16, t29, -T::fused(-t18, t23, t13 * t27)),
+            -T::fused(t33, t38, T::fused(t31, t36, t32 * t37)),
+            T::fused(t33, t41, -T::fused(t31, t39, t32 * t40)),
             k(-1.0),
-            k(0.00025) * t25,
-            -(k(0.00025) * t33),
+            k(0.000125) * t23,
+            -(k(0.000125) * t36),
             k(1.0),
             k(-1.0),
-            k(0.00025) * t21,
-            k(0.00025) * t35,
+            k(0.000125) * t27,
+            k(0.000125) * t37,
             k(1.0),
             k(-1.0),
-            -(k(0.00025) * t17),
-            -(k(0.00025) * t37),
+            -(k(0.000125) * t29),
+            -(k(0.000125) * t38),
             k(1.0),
-            T::fused(-t18, t49, T::fused(-t26, t43, t22 * t46)),
-            -t50,
-            T::fused(t38, t55, -T::fused(-t36, t53, t34 * t54)),
-            T::fused(t38, t58, T::fused(t36, t56, t34 * t57)),
-            T::fused(-t38, t49, T::fused(t34, t43, t36 * t46)),
-            t50,
-            -T::fused(t18, t55, T::fused(t22, t53, t26 * t54)),
-            T::fused(-t18, t58, T::fused(-t22, t56, t26 * t57)),
+            T::fused(-t29, t51, T::fused(-t23, t45, t27 * t48)),
+            -t52,
+            T::fused(t38, t58, T::fused(-t36, t53, t37 * t57)),
+            T::fused(t38, t61, T::fused(t36, t59, t37 * t60)),
+            T::fused(-t38, t51, T::fused(t36, t45, t37 * t48)),
+            t52,
+            -T::fused(t29, t58, T::fused(t23, t53, t27 * t57)),
+            -T::fused(t29, t61, T::fused(-t23, t59, t27 * t60)),
         ];
     }
     /// Writes ν: 17 operations (4 ±, 13 ×, 0 ÷) and 4 functions.
@@ -2304,7 +2308,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 351 operations (135 ±, 216 ×, 0 ÷) and 4 functions.
+    /// Writes γ: 330 operations (129 ±, 201 ×, 0 ÷) and 4 functions.
     fn gamma(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2328,169 +2332,178 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e3;
-        let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t6));
-        let t8 = outer_ring_wy * outer_ring_wz;
-        let t9 = outer_ring_e0 * outer_ring_e1;
-        let t10 = outer_ring_e2 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(12.566370614359172) * t;
-        let t13 = t12.sin();
-        let t14 = k(0.1) * t13;
-        let t15 = t14.sin();
-        let t16 = t14.cos();
-        let t17 = k(1.2566370614359172) * t12.cos();
-        let t18 = t17 * t16;
-        let t19 = t18 * T::fused(-t3, outer_ring_wz, t11 * outer_ring_wx);
-        let t20 = T::fused(t15, T::fused(t11, t8, T::fused(t3, t0, t7 * t5)), t19);
-        let t21 = t17 * t15;
-        let t22 = k(15.791367041742975) * t13;
-        let t23 = outer_ring_e0 * outer_ring_e2;
-        let t24 = outer_ring_e1 * outer_ring_e3;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (t10 + t9);
-        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t6));
-        let t28 = t21 * T::fused(t25, outer_ring_wz, t27 * outer_ring_wx);
-        let t29 = T::fused(-t16, T::fused(t27, t8, T::fused(-t25, t0, t26 * t5)), t28);
-        let t30 = T::fused(t26, T::fused(-t17, t18, t15 * t22), t28) + t29
-            - (T::fused(t7, T::fused(t17, t21, t16 * t22), t19) + t20);
-        let t31 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t6));
-        let t32 = k(2.0) * (t2 - t1);
-        let t33 = k(2.0) * (t24 + t23);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = inner_ring_e0 * inner_ring_e1;
-        let t38 = inner_ring_e2 * inner_ring_e3;
-        let t39 = k(2.0) * (t38 - t37);
-        let t40 = inner_ring_e0 * inner_ring_e0;
-        let t41 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t40));
-        let t42 = T::fused(t25, t41, -T::fused(-t31, t36, t3 * t39));
-        let t43 = T::fused(t26, t41, -T::fused(-t7, t39, t32 * t36));
-        let t44 = T::fused(t27, t41, T::fused(t11, t39, t33 * t36));
-        let t45 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = outer_ring_wx * outer_ring_wy;
+        let t6 = k(2.0) * outer_ring_e2;
+        let t7 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t8 = T::fused(-outer_ring_e2, t6, t7);
+        let t9 = outer_ring_wz * outer_ring_wz;
+        let t10 = T::fused(outer_ring_wx, outer_ring_wx, t9);
+        let t11 = outer_ring_e1 * t0;
+        let t12 = outer_ring_e3 * t6;
+        let t13 = t12 - t11;
+        let t14 = outer_ring_wy * outer_ring_wz;
+        let t15 = k(12.566370614359172) * t;
+        let t16 = t15.sin();
+        let t17 = k(0.1) * t16;
+        let t18 = t17.sin();
+        let t19 = t17.cos();
+        let t20 = k(1.2566370614359172) * t15.cos();
+        let t21 = t20 * t19;
+        let t22 = t21 * T::fused(-outer_ring_wz, t4, outer_ring_wx * t13);
+        let t23 = T::fused(t18, T::fused(t14, t13, T::fused(t5, t4, t10 * t8)), t22);
+        let t24 = t20 * t18;
+        let t25 = k(15.791367041742975) * t16;
+        let t26 = outer_ring_e2 * t0;
+        let t27 = outer_ring_e3 * t2;
+        let t28 = t27 - t26;
+        let t29 = t12 + t11;
+        let t30 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t7);
+        let t31 = t24 * T::fused(outer_ring_wz, t28, outer_ring_wx * t30);
+        let t32 = T::fused(-t19, T::fused(t14, t30, T::fused(-t5, t28, t10 * t29)), t31);
+        let t33 = T::fused(T::fused(-t20, t21, t18 * t25), t29, t31) + t32
+            - (T::fused(T::fused(t20, t24, t19 * t25), t8, t22) + t23);
+        let t34 = T::fused(-outer_ring_e1, t2, t7);
+        let t35 = t3 - t1;
+        let t36 = t27 + t26;
+        let t37 = k(2.0) * inner_ring_e0;
+        let t38 = inner_ring_e2 * t37;
+        let t39 = k(2.0) * inner_ring_e1;
+        let t40 = inner_ring_e3 * t39;
+        let t41 = t40 + t38;
+        let t42 = inner_ring_e1 * t37;
+        let t43 = k(2.0) * inner_ring_e2;
+        let t44 = inner_ring_e3 * t43;
+        let t45 = t44 - t42;
+        let t46 = T::fused(-inner_ring_e0, t37, k(1.0));
+        let t47 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t46);
+        let t48 = T::fused(t28, t47, -T::fused(-t34, t41, t4 * t45));
+        let t49 = T::fused(t29, t47, T::fused(-t35, t41, t8 * t45));
+        let t50 = T::fused(t30, t47, T::fused(t36, t41, t13 * t45));
+        let t51 = T::fused(
             outer_ring_wx * outer_ring_wz,
-            t44,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t42, t0 * t43),
+            t50,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t9), t48, t5 * t49),
         );
-        let t46 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t40));
-        let t47 = inner_ring_e0 * inner_ring_e3;
-        let t48 = inner_ring_e1 * inner_ring_e2;
-        let t49 = k(2.0) * (t48 + t47);
-        let t50 = k(2.0) * (t35 - t34);
-        let t51 = T::fused(t26, t50, -T::fused(t32, t46, t7 * t49));
-        let t52 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t40));
-        let t53 = k(2.0) * (t48 - t47);
-        let t54 = k(2.0) * (t38 + t37);
-        let t55 = T::fused(t26, t54, T::fused(t7, t52, t32 * t53));
-        let t56 = T::fused(
+        let t52 = T::fused(-inner_ring_e1, t39, t46);
+        let t53 = inner_ring_e3 * t37;
+        let t54 = inner_ring_e2 * t39;
+        let t55 = t54 + t53;
+        let t56 = t40 - t38;
+        let t57 = T::fused(t29, t56, -T::fused(t35, t52, t8 * t55));
+        let t58 = t54 - t53;
+        let t59 = T::fused(-inner_ring_e2, t43, t46);
+        let t60 = t44 + t42;
+        let t61 = T::fused(t29, t60, T::fused(t35, t58, t8 * t59));
+        let t62 = T::fused(
             -inner_ring_wy,
-            T::fused(t27, t50, -T::fused(-t33, t46, t11 * t49)),
-            inner_ring_wx * T::fused(t27, t54, -T::fused(-t11, t52, t33 * t53)),
+            T::fused(t30, t56, -T::fused(-t36, t52, t13 * t55)),
+            inner_ring_wx * T::fused(t30, t60, T::fused(-t36, t58, t13 * t59)),
         );
-        let t57 = T::fused(t25, t50, T::fused(t31, t46, t3 * t49));
-        let t58 = inner_ring_wx * inner_ring_wz;
-        let t59 = T::fused(t25, t54, -T::fused(t31, t53, t3 * t52));
-        let t60 = inner_ring_wy * inner_ring_wz;
-        let t61 = inner_ring_wx * inner_ring_wx;
-        let t62 = inner_ring_wy * inner_ring_wy;
-        let t63 = t62 + t61;
-        let t64 = T::fused(
+        let t63 = T::fused(t28, t56, T::fused(t34, t52, t4 * t55));
+        let t64 = inner_ring_wx * inner_ring_wz;
+        let t65 = T::fused(t28, t60, -T::fused(t34, t58, t4 * t59));
+        let t66 = inner_ring_wy * inner_ring_wz;
+        let t67 = inner_ring_wx * inner_ring_wx;
+        let t68 = inner_ring_wy * inner_ring_wy;
+        let t69 = t68 + t67;
+        let t70 = T::fused(
             -k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t51, inner_ring_wx * t55),
-                outer_ring_wy * t56,
+                T::fused(-inner_ring_wy, t57, inner_ring_wx * t61),
+                outer_ring_wy * t62,
             ),
-            T::fused(t63, t42, T::fused(t58, t57, t60 * t59)),
+            T::fused(t69, t48, T::fused(t64, t63, t66 * t65)),
         );
-        let t65 = T::fused(
+        let t71 = T::fused(
             k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t57, inner_ring_wx * t59),
-                outer_ring_wx * t56,
+                T::fused(-inner_ring_wy, t63, inner_ring_wx * t65),
+                outer_ring_wx * t62,
             ),
-            T::fused(t63, t43, T::fused(t58, t51, t60 * t55)),
+            T::fused(t69, t49, T::fused(t64, t57, t66 * t61)),
         );
-        let t66 = inner_ring_wz * inner_ring_wz;
-        let t67 = t66 + t62;
-        let t68 = inner_ring_wx * inner_ring_wy;
-        let t69 = rotor_e0 * rotor_e0;
-        let t70 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t69));
-        let t71 = rotor_e0 * rotor_e3;
-        let t72 = rotor_e1 * rotor_e2;
-        let t73 = k(2.0) * (t72 + t71);
-        let t74 = rotor_e0 * rotor_e2;
-        let t75 = rotor_e1 * rotor_e3;
-        let t76 = k(2.0) * (t75 - t74);
-        let t77 = T::fused(t50, t76, T::fused(t46, t70, t49 * t73));
-        let t78 = T::fused(t54, t76, -T::fused(t53, t70, t52 * t73));
-        let t79 = T::fused(t41, t76, -T::fused(-t36, t70, t39 * t73));
-        let t80 = k(2.0) * (t72 - t71);
-        let t81 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t69));
-        let t82 = rotor_e0 * rotor_e1;
-        let t83 = rotor_e2 * rotor_e3;
-        let t84 = k(2.0) * (t83 + t82);
-        let t85 = k(2.0) * (t75 + t74);
-        let t86 = k(2.0) * (t83 - t82);
-        let t87 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t69));
-        let t88 = T::fused(
+        let t72 = inner_ring_wz * inner_ring_wz;
+        let t73 = t72 + t68;
+        let t74 = inner_ring_wx * inner_ring_wy;
+        let t75 = k(2.0) * rotor_e1;
+        let t76 = k(2.0) * rotor_e0;
+        let t77 = T::fused(-rotor_e0, t76, k(1.0));
+        let t78 = T::fused(-rotor_e1, t75, t77);
+        let t79 = rotor_e3 * t76;
+        let t80 = rotor_e2 * t75;
+        let t81 = t80 + t79;
+        let t82 = rotor_e2 * t76;
+        let t83 = rotor_e3 * t75;
+        let t84 = t83 - t82;
+        let t85 = T::fused(t56, t84, T::fused(t52, t78, t55 * t81));
+        let t86 = T::fused(t60, t84, -T::fused(t58, t78, t59 * t81));
+        let t87 = T::fused(t47, t84, -T::fused(-t41, t78, t45 * t81));
+        let t88 = t80 - t79;
+        let t89 = k(2.0) * rotor_e2;
+        let t90 = T::fused(-rotor_e2, t89, t77);
+        let t91 = rotor_e1 * t76;
+        let t92 = rotor_e3 * t89;
+        let t93 = t92 + t91;
+        let t94 = t83 + t82;
+        let t95 = t92 - t91;
+        let t96 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t77);
+        let t97 = T::fused(
             rotor_wz,
-            T::fused(t50, t84, -T::fused(t46, t80, t49 * t81)),
-            rotor_wy * T::fused(t50, t87, -T::fused(-t46, t85, t49 * t86)),
+            T::fused(t56, t93, -T::fused(t52, t88, t55 * t90)),
+            rotor_wy * T::fused(t56, t96, -T::fused(-t52, t94, t55 * t95)),
         );
-        let t89 = T::fused(t41, t84, -T::fused(-t39, t81, t36 * t80));
-        let t90 = T::fused(t41, t87, T::fused(t39, t86, t36 * t85));
-        let t91 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t92 = T::fused(t54, t84, T::fused(t52, t81, t53 * t80));
-        let t93 = rotor_wx * rotor_wy;
-        let t94 = T::fused(t54, t87, -T::fused(-t52, t86, t53 * t85));
-        let t95 = rotor_wx * rotor_wz;
-        let t96 = T::fused(
+        let t98 = T::fused(t47, t93, T::fused(-t41, t88, t45 * t90));
+        let t99 = T::fused(t47, t96, T::fused(t41, t94, t45 * t95));
+        let t100 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t101 = T::fused(t60, t93, T::fused(t58, t88, t59 * t90));
+        let t102 = rotor_wx * rotor_wy;
+        let t103 = T::fused(t60, t96, T::fused(-t58, t94, t59 * t95));
+        let t104 = rotor_wx * rotor_wz;
+        let t105 = T::fused(
             k(2.0),
             T::fused(
                 inner_ring_wz,
-                t88,
-                inner_ring_wx * T::fused(rotor_wz, t89, rotor_wy * t90),
+                t97,
+                inner_ring_wx * T::fused(rotor_wz, t98, rotor_wy * t99),
             ),
-            T::fused(t95, t94, -T::fused(-t91, t78, t93 * t92)),
+            T::fused(t104, t103, -T::fused(-t100, t86, t102 * t101)),
         );
-        let t97 = t96 + T::fused(t60, t79, T::fused(-t68, t77, (t66 + t61) * t78));
-        let t98 = T::fused(
+        let t106 = t105 + T::fused(t66, t87, T::fused(-t74, t85, (t72 + t67) * t86));
+        let t107 = T::fused(
             -k(2.0),
             T::fused(
                 -inner_ring_wy,
-                t88,
-                inner_ring_wx * T::fused(rotor_wz, t92, rotor_wy * t94),
+                t97,
+                inner_ring_wx * T::fused(rotor_wz, t101, rotor_wy * t103),
             ),
-            T::fused(t95, t90, -T::fused(-t91, t79, t93 * t89)),
+            T::fused(t104, t99, -T::fused(-t100, t87, t102 * t98)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t30,
-            T::fused(-t33, t8, T::fused(t31, t0, t32 * t5)),
+            -t33,
+            T::fused(-t14, t36, T::fused(t5, t34, t10 * t35)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t64 + t45),
-            -(t65 + T::fused(t8, t44, T::fused(-t0, t42, t5 * t43))),
-            k(0.000125) * T::fused(t36, t58, T::fused(t46, t67, t53 * t68)),
-            k(0.000125) * T::fused(t39, t58, -T::fused(t49, t67, t52 * t68)),
-            -(k(0.000125) * T::fused(t41, t58, -T::fused(-t50, t67, t54 * t68))),
-            t97,
-            -(t98 + T::fused(t63, t79, T::fused(t58, t77, t60 * t78))),
+            -(t70 + t51),
+            -(t71 + T::fused(t14, t50, T::fused(-t5, t48, t10 * t49))),
+            k(0.000125) * T::fused(t64, t41, T::fused(t73, t52, t74 * t58)),
+            k(0.000125) * T::fused(t64, t45, -T::fused(t73, t55, t74 * t59)),
+            -(k(0.000125) * T::fused(t64, t47, -T::fused(-t73, t56, t74 * t60))),
+            t106,
+            -(t107 + T::fused(t69, t87, T::fused(t64, t85, t66 * t86))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2502,28 +2515,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
         *out = [
             k(0.0),
             k(-0.1),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
             k(0.0),
             k(-0.1),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz),
+            inner_ring_wz * t1,
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
+            -(inner_ring_wx * t1),
             k(0.0),
             k(-0.8),
             k(0.0),
             k(0.0),
-            -(k(5e-6) * (rotor_wx * rotor_wz)),
-            k(5e-6) * (rotor_wx * rotor_wy),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 485 operations (192 ±, 288 ×, 5 ÷) and 4 functions.
+    /// Solves eq. (17): 455 operations (184 ±, 266 ×, 5 ÷) and 4 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2547,51 +2563,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e3;
-        let t1 = outer_ring_e1 * outer_ring_e2;
-        let t2 = k(12.566370614359172) * t;
-        let t3 = k(1.2566370614359172) * t2.cos();
-        let t4 = t3 * (k(2.0) * (t1 - t0));
-        let t5 = outer_ring_wy - t4;
-        let t6 = outer_ring_e0 * outer_ring_e2;
-        let t7 = outer_ring_e1 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = t3 * t8;
-        let t10 = outer_ring_wz - t9;
-        let t11 = outer_ring_e0 * outer_ring_e0;
-        let t12 = t2.sin();
-        let t13 = k(0.1) * t12;
-        let t14 = t13.sin();
-        let t15 = outer_ring_e0 * outer_ring_e1;
-        let t16 = outer_ring_e2 * outer_ring_e3;
-        let t17 = t13.cos();
-        let t18 = T::fused(
-            -t14,
-            k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t11)),
-            t17 * (k(2.0) * (t16 - t15)),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = k(12.566370614359172) * t;
+        let t5 = k(1.2566370614359172) * t4.cos();
+        let t6 = t5 * (t3 - t1);
+        let t7 = outer_ring_wy - t6;
+        let t8 = outer_ring_e2 * t0;
+        let t9 = outer_ring_e3 * t2;
+        let t10 = t9 + t8;
+        let t11 = t5 * t10;
+        let t12 = outer_ring_wz - t11;
+        let t13 = outer_ring_e1 * t0;
+        let t14 = k(2.0) * outer_ring_e2;
+        let t15 = outer_ring_e3 * t14;
+        let t16 = t4.sin();
+        let t17 = k(0.1) * t16;
+        let t18 = t17.cos();
+        let t19 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t20 = t17.sin();
+        let t21 = T::fused(
+            -t18,
+            t15 - t13,
+            t20 * T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t19),
         );
-        let t19 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t11));
-        let t20 = t3 * t19;
-        let t21 = outer_ring_wx + t20;
-        let t22 = T::fused(
-            -t17,
-            k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t11)),
-            t14 * (k(2.0) * (t16 + t15)),
-        );
-        let t23 = T::fused(t10, t10, t21 * t21) / t22;
-        let t24 = k(15.791367041742975) * t12;
-        let t25 = T::fused(-t19, t24, T::fused(-outer_ring_wz, t4, outer_ring_wy * t9))
-            + T::fused(t10, t5, t23 * t18);
-        let t26 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t27 = T::fused(
+        let t22 = T::fused(-outer_ring_e1, t2, t19);
+        let t23 = t5 * t22;
+        let t24 = outer_ring_wx + t23;
+        let t25 = T::fused(t12, t12, t24 * t24)
+            / T::fused(-t18, T::fused(-outer_ring_e2, t14, t19), t20 * (t15 + t13));
+        let t26 = k(15.791367041742975) * t16;
+        let t27 = T::fused(-t26, t22, T::fused(-outer_ring_wz, t6, outer_ring_wy * t11))
+            - T::fused(-t12, t7, t25 * t21);
+        let t28 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2600,17 +2606,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t28 = t27 * t26;
-        let t29 = T::fused(
-            -inner_ring_e1,
+        let t29 = k(2.0) * t28;
+        let t30 = T::fused(
+            -inner_ring_e0,
             rotor_e3,
             T::fused(
-                -inner_ring_e0,
+                inner_ring_e1,
                 rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t30 = T::fused(
+        let t31 = t30 * t29;
+        let t32 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2619,37 +2626,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t31 = t30 * t29;
-        let t32 = t31 + t28;
-        let t33 = k(1e-5) * t32;
-        let t34 = k(2.0) * t32;
-        let t35 = t27 * t29;
-        let t36 = t30 * t26;
-        let t37 = t36 - t35;
-        let t38 = k(1e-5) * t37;
-        let t39 = k(2.0) * t37;
-        let t40 = t27 * t30;
-        let t41 = t29 * t26;
-        let t42 = t41 - t40;
-        let t43 = k(2.0) * t42;
-        let t44 = t27 * t27;
-        let t45 = k(0.5) - T::fused(t26, t26, t44);
-        let t46 = k(2.0) * t45;
-        let t47 = T::fused(-t43, t33, t46 * t38);
-        let t48 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t43, k(1e-5) * t42, t46 * (k(1e-5) * t45)));
-        let t49 = k(1.0) / t48;
-        let t50 = t49 * t47;
-        let t51 = T::fused(t47, t50, -(k(1e-6) + T::fused(t34, t33, t39 * t38)));
-        let t52 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+        let t33 = k(2.0) * t32;
+        let t34 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
+        let t35 = t34 * t33;
+        let t36 = t35 + t31;
+        let t37 = k(5e-6) * t36;
+        let t38 = t34 * t29;
+        let t39 = t30 * t33;
+        let t40 = t39 - t38;
+        let t41 = k(5e-6) * t40;
+        let t42 = t32 * t29;
+        let t43 = k(2.0) * t34;
+        let t44 = t30 * t43;
+        let t45 = t44 - t42;
+        let t46 = T::fused(-t28, t29, k(1.0));
+        let t47 = T::fused(-t30, k(2.0) * t30, t46);
+        let t48 = T::fused(-t45, t37, t47 * t41);
+        let t49 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t45, k(5e-6) * t45, t47 * (k(5e-6) * t47)));
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * t48;
+        let t52 = T::fused(t48, t51, -(k(1e-6) + T::fused(t36, t37, t40 * t41)));
         let t53 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
@@ -2659,17 +2664,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t54 = t53 * t52;
+        let t54 = k(2.0) * t53;
         let t55 = T::fused(
-            -outer_ring_e1,
+            -outer_ring_e0,
             inner_ring_e3,
             T::fused(
-                -outer_ring_e0,
+                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t56 = T::fused(
+        let t56 = t55 * t54;
+        let t57 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2678,185 +2684,183 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t57 = t56 * t55;
-        let t58 = k(2.0) * (t57 - t54);
-        let t59 = k(0.5) - T::fused(t29, t29, t44);
-        let t60 = k(2.0) * t59;
-        let t61 = t41 + t40;
-        let t62 = k(2.0) * t61;
-        let t63 = k(1e-5) * t59;
-        let t64 = k(1e-5) * t61;
-        let t65 = T::fused(t43, t63, t46 * t64);
-        let t66 = T::fused(t65, t50, -T::fused(-t60, t33, t62 * t38));
-        let t67 = t53 * t53;
-        let t68 = k(2.0) * (k(0.5) - T::fused(t55, t55, t67));
-        let t69 = T::fused(-t58, t51, t68 * t66);
-        let t70 = T::fused(
-            t65,
-            t49 * t65,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t60, t63, t62 * t64))),
-        );
-        let t71 = T::fused(-t58, t66, t68 * t70);
-        let t72 = k(0.5) - T::fused(t30, t30, t44);
-        let t73 = T::fused(
-            inner_ring_wz,
-            k(2.0) * (t36 + t35),
+        let t58 = k(2.0) * t57;
+        let t59 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
             T::fused(
-                -inner_ring_wx,
-                k(2.0) * t72,
-                inner_ring_wy * (k(2.0) * (t31 - t28)),
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t74 = rotor_wx - t73;
+        let t60 = t59 * t58;
+        let t61 = t60 - t56;
+        let t62 = T::fused(-t34, t43, t46);
+        let t63 = t44 + t42;
+        let t64 = k(5e-6) * t62;
+        let t65 = k(5e-6) * t63;
+        let t66 = T::fused(t45, t64, t47 * t65);
+        let t67 = T::fused(t66, t51, -T::fused(-t62, t37, t63 * t41));
+        let t68 = k(2.0) * t59;
+        let t69 = T::fused(-t53, t54, k(1.0));
+        let t70 = T::fused(-t59, t68, t69);
+        let t71 = T::fused(-t61, t52, t70 * t67);
+        let t72 = T::fused(
+            t66,
+            t50 * t66,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t62, t64, t63 * t65))),
+        );
+        let t73 = T::fused(-t61, t67, t70 * t72);
+        let t74 = T::fused(-t32, t33, t46);
         let t75 = T::fused(
             inner_ring_wz,
-            t46,
-            -T::fused(inner_ring_wx, t39, inner_ring_wy * t62),
+            t39 + t38,
+            T::fused(-inner_ring_wx, t74, inner_ring_wy * (t35 - t31)),
         );
-        let t76 = rotor_wz + t75;
+        let t76 = rotor_wx - t75;
         let t77 = T::fused(
             inner_ring_wz,
-            t43,
-            -T::fused(-inner_ring_wx, t34, inner_ring_wy * t60),
-        );
-        let t78 = rotor_wy - t77;
-        let t79 = k(0.5) / t72 * T::fused(t76, t76, t78 * t78);
-        let t80 = T::fused(rotor_wx, t75, rotor_wz * t73)
-            + T::fused(-t76, t74, t39 * t79);
-        let t81 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t80);
-        let t82 = T::fused(-rotor_wy, t73, rotor_wx * t77)
-            - T::fused(-t78, t74, t34 * t79);
-        let t83 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t82);
-        let t84 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t85 = inner_ring_e0 * inner_ring_e0;
-        let t86 = inner_ring_wx * inner_ring_wy;
-        let t87 = inner_ring_e0 * inner_ring_e3;
-        let t88 = inner_ring_e1 * inner_ring_e2;
-        let t89 = t88 - t87;
-        let t90 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t85)),
-            t84,
-            k(2.0) * t89 * t86,
-        );
-        let t91 = inner_ring_wx * inner_ring_wz;
-        let t92 = inner_ring_e0 * inner_ring_e2;
-        let t93 = inner_ring_e1 * inner_ring_e3;
-        let t94 = t93 + t92;
-        let t95 = T::fused(k(2.0) * t94, t91, t90);
-        let t96 = k(1e-5) * t95;
-        let t97 = k(0.00025) * t89;
-        let t98 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t85);
-        let t99 = inner_ring_e0 * inner_ring_e1;
-        let t100 = inner_ring_e2 * inner_ring_e3;
-        let t101 = t100 - t99;
-        let t102 = T::fused(
-            k(2.0) * t101,
-            t91,
-            -T::fused(k(2.0) * (t88 + t87), t84, k(2.0) * t98 * t86),
-        );
-        let t103 = T::fused(k(1e-5), t102, k(0.8));
-        let t104 = k(0.00025) * t98;
-        let t105 = t100 + t99;
-        let t106 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t85);
-        let t107 = T::fused(
-            k(2.0) * t106,
-            t91,
-            -T::fused(-(k(2.0) * (t93 - t92)), t84, k(2.0) * t105 * t86),
-        );
-        let t108 = k(1e-5) * t107;
-        let t109 = k(0.00025) * t105;
-        let t110 = T::fused(t109, t108, T::fused(-t97, t96, t104 * t103))
-            - T::fused(t43, t81, t46 * t83);
-        let t111 = T::fused(k(1e-6), t86, -t110);
-        let t112 = t49 * t111;
-        let t113 = T::fused(
             t47,
-            t112,
+            -T::fused(inner_ring_wx, t40, inner_ring_wy * t63),
+        );
+        let t78 = rotor_wz + t77;
+        let t79 = T::fused(
+            inner_ring_wz,
+            t45,
+            -T::fused(-inner_ring_wx, t36, inner_ring_wy * t62),
+        );
+        let t80 = rotor_wy - t79;
+        let t81 = T::fused(t78, t78, t80 * t80) / t74;
+        let t82 = T::fused(rotor_wx, t77, rotor_wz * t75)
+            + T::fused(-t78, t76, t40 * t81);
+        let t83 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t82);
+        let t84 = T::fused(-rotor_wy, t75, rotor_wx * t79)
+            - T::fused(-t80, t76, t36 * t81);
+        let t85 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t84);
+        let t86 = k(2.0) * inner_ring_e0;
+        let t87 = inner_ring_e3 * t86;
+        let t88 = k(2.0) * inner_ring_e1;
+        let t89 = inner_ring_e2 * t88;
+        let t90 = t89 - t87;
+        let t91 = k(0.000125) * t90;
+        let t92 = T::fused(-inner_ring_e0, t86, k(1.0));
+        let t93 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t94 = inner_ring_wx * inner_ring_wy;
+        let t95 = inner_ring_e2 * t86;
+        let t96 = inner_ring_e3 * t88;
+        let t97 = t96 + t95;
+        let t98 = inner_ring_wx * inner_ring_wz;
+        let t99 = T::fused(
+            t98,
+            t97,
+            T::fused(t93, T::fused(-inner_ring_e1, t88, t92), t94 * t90),
+        );
+        let t100 = k(1e-5) * t99;
+        let t101 = k(2.0) * inner_ring_e2;
+        let t102 = T::fused(-inner_ring_e2, t101, t92);
+        let t103 = k(0.000125) * t102;
+        let t104 = inner_ring_e1 * t86;
+        let t105 = inner_ring_e3 * t101;
+        let t106 = t105 - t104;
+        let t107 = T::fused(t98, t106, -T::fused(t93, t89 + t87, t94 * t102));
+        let t108 = T::fused(k(1e-5), t107, k(0.8));
+        let t109 = t105 + t104;
+        let t110 = k(0.000125) * t109;
+        let t111 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t92);
+        let t112 = T::fused(t98, t111, -T::fused(-t93, t96 - t95, t94 * t109));
+        let t113 = k(1e-5) * t112;
+        let t114 = T::fused(t113, t110, T::fused(-t100, t91, t108 * t103))
+            - T::fused(t45, t83, t47 * t85);
+        let t115 = T::fused(k(1e-6), t94, -t114);
+        let t116 = t50 * t115;
+        let t117 = T::fused(
+            t48,
+            t116,
             -T::fused(
                 k(1e-6),
                 inner_ring_wy * inner_ring_wz,
-                T::fused(-t34, t81, t39 * t83),
+                T::fused(-t36, t83, t40 * t85),
             ),
         );
-        let t114 = t53 * t55;
-        let t115 = t56 * t52;
-        let t116 = t53 * t56;
-        let t117 = t55 * t52;
-        let t118 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t115 - t114),
-            outer_ring_wy * (k(2.0) * (t117 + t116)),
-        );
-        let t119 = k(0.5) - T::fused(t52, t52, t67);
-        let t120 = T::fused(outer_ring_wz, k(2.0) * t119, -t118);
-        let t121 = inner_ring_wz + t120;
-        let t122 = k(2.0) * (t57 + t54);
-        let t123 = k(2.0) * (t117 - t116);
-        let t124 = T::fused(
+        let t118 = t59 * t54;
+        let t119 = t55 * t58;
+        let t120 = t57 * t54;
+        let t121 = t55 * t68;
+        let t122 = T::fused(-t55, k(2.0) * t55, t69);
+        let t123 = T::fused(
             outer_ring_wz,
-            t123,
-            -T::fused(-outer_ring_wx, t122, outer_ring_wy * t68),
+            t122,
+            -T::fused(outer_ring_wx, t119 - t118, outer_ring_wy * (t121 + t120)),
         );
-        let t125 = inner_ring_wy - t124;
-        let t126 = k(2.0) * (k(0.5) - T::fused(t56, t56, t67));
-        let t127 = k(2.0) * (t115 + t114);
-        let t128 = T::fused(
+        let t124 = inner_ring_wz + t123;
+        let t125 = t60 + t56;
+        let t126 = t121 - t120;
+        let t127 = T::fused(
             outer_ring_wz,
-            t127,
-            T::fused(-outer_ring_wx, t126, outer_ring_wy * t58),
+            t126,
+            -T::fused(-outer_ring_wx, t125, outer_ring_wy * t70),
         );
-        let t129 = inner_ring_wx - t128;
-        let t130 = k(0.5) / t119 * T::fused(t125, t125, t129 * t129);
-        let t131 = T::fused(inner_ring_wz, t124, inner_ring_wy * t120)
-            - T::fused(-t125, t121, t123 * t130);
-        let t132 = T::fused(inner_ring_wx, t120, inner_ring_wz * t128)
-            - T::fused(-t129, t121, t127 * t130);
-        let t133 = k(0.00025) * t94;
-        let t134 = k(0.00025) * t101;
-        let t135 = k(0.00025) * t106;
-        let t136 = T::fused(t135, t108, T::fused(t133, t96, t134 * t103))
-            + T::fused(t60, t81, t62 * t83);
-        let t137 = T::fused(
-            -t58,
-            T::fused(-t51, t131, t66 * t132) + t113,
-            t68 * (T::fused(-t66, t131, t70 * t132) + T::fused(t65, t112, -t136)),
+        let t128 = inner_ring_wy - t127;
+        let t129 = T::fused(-t57, t58, t69);
+        let t130 = t119 + t118;
+        let t131 = T::fused(
+            outer_ring_wz,
+            t130,
+            T::fused(-outer_ring_wx, t129, outer_ring_wy * t61),
         );
-        let t138 = T::fused(
-            -t58,
-            T::fused(-t126, t51, t122 * t66),
-            t68 * T::fused(-t126, t66, t122 * t70),
+        let t132 = inner_ring_wx - t131;
+        let t133 = T::fused(t128, t128, t132 * t132) / t122;
+        let t134 = T::fused(inner_ring_wz, t127, inner_ring_wy * t123)
+            - T::fused(-t128, t124, t126 * t133);
+        let t135 = T::fused(inner_ring_wx, t123, inner_ring_wz * t131)
+            - T::fused(-t132, t124, t130 * t133);
+        let t136 = k(0.000125) * t97;
+        let t137 = k(0.000125) * t106;
+        let t138 = k(0.000125) * t111;
+        let t139 = T::fused(t113, t138, T::fused(t100, t136, t108 * t137))
+            + T::fused(t62, t83, t63 * t85);
+        let t140 = T::fused(
+            -t61,
+            T::fused(-t52, t134, t67 * t135) + t117,
+            t70 * (T::fused(-t67, t134, t72 * t135) + T::fused(t66, t116, -t139)),
         );
-        let t139 = T::fused(t14, k(2.0) * (t7 - t6), t17 * (k(2.0) * (t1 + t0)));
-        let t140 = T::fused(t8, t24, T::fused(outer_ring_wy, t20, outer_ring_wx * t4))
-            - T::fused(t21, t5, t139 * t23);
-        let t141 = T::fused(t25, t138, t140 * T::fused(t127, t69, t123 * t71))
-            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t137);
-        let t142 = t141 / (k(1e-6) - T::fused(-t58, t69, t68 * t71));
-        let t143 = t131 - T::fused(t140, t127, -T::fused(t25, t126, t58 * t142));
-        let t144 = t132 + T::fused(t140, t123, T::fused(t25, t122, t68 * t142));
-        let t145 = t49 * (t111 + T::fused(-t47, t143, t65 * t144));
+        let t141 = T::fused(
+            -t61,
+            T::fused(-t129, t52, t125 * t67),
+            t70 * T::fused(-t129, t67, t125 * t72),
+        );
+        let t142 = T::fused(t24, t7, t25 * T::fused(t18, t3 + t1, t20 * (t9 - t8)));
+        let t143 = T::fused(t26, t10, T::fused(outer_ring_wy, t23, outer_ring_wx * t6))
+            - t142;
+        let t144 = T::fused(t27, t141, t143 * T::fused(t130, t71, t126 * t73))
+            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t140);
+        let t145 = t144 / (k(1e-6) - T::fused(-t61, t71, t70 * t73));
+        let t146 = t134 - T::fused(t130, t143, -T::fused(t129, t27, t61 * t145));
+        let t147 = t135 + T::fused(t126, t143, T::fused(t125, t27, t70 * t145));
+        let t148 = t50 * (t115 + T::fused(-t48, t146, t66 * t147));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t25,
-            t142,
-            -t140,
+            -t27,
+            t145,
+            -t143,
             k(0.0),
             k(0.0),
             k(0.0),
-            t143,
-            -t144,
-            -t145,
-            T::fused(k(0.000125), t95, -T::fused(-t133, t144, t97 * t145)),
-            T::fused(k(0.000125), t102, T::fused(t134, t144, t104 * t145)),
-            -T::fused(k(0.000125), t107, T::fused(t135, t144, t109 * t145)),
+            t146,
+            -t147,
+            -t148,
+            T::fused(k(0.000125), t99, -T::fused(-t136, t147, t91 * t148)),
+            T::fused(k(0.000125), t107, T::fused(t137, t147, t103 * t148)),
+            -T::fused(k(0.000125), t112, T::fused(t138, t147, t110 * t148)),
             k(0.0),
-            -(t80 + T::fused(t43, t145, -T::fused(t34, t143, t60 * t144))),
-            T::fused(t46, t145, -T::fused(-t39, t143, t62 * t144)) - t82,
+            -(t82 + T::fused(t45, t148, -T::fused(t36, t146, t62 * t147))),
+            T::fused(t47, t148, -T::fused(-t40, t146, t63 * t147)) - t84,
         ];
     }
-    /// Writes λ: 312 operations (116 ±, 193 ×, 3 ÷) and 3 functions.
+    /// Writes λ: 291 operations (110 ±, 178 ×, 3 ÷) and 3 functions.
     fn multipliers(
         &self,
         t: T,
@@ -2908,154 +2912,161 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenGyroscope<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
-        let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t8));
-        let t10 = rotor_e0 * rotor_e3;
-        let t11 = rotor_e1 * rotor_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e0 * inner_ring_e3;
-        let t14 = inner_ring_e1 * inner_ring_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = rotor_e0 * rotor_e2;
-        let t17 = rotor_e1 * rotor_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = inner_ring_e0 * inner_ring_e2;
-        let t20 = inner_ring_e1 * inner_ring_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(1e-5) * rotor_dwx;
-        let t23 = k(2.0) * (t11 - t10);
-        let t24 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t6));
-        let t25 = rotor_e0 * rotor_e1;
-        let t26 = rotor_e2 * rotor_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t29 = T::fused(
-            t22,
-            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
-            t28 * T::fused(t21, t27, -T::fused(t9, t23, t15 * t24)),
+        let t6 = k(2.0) * rotor_e1;
+        let t7 = k(2.0) * rotor_e0;
+        let t8 = T::fused(-rotor_e0, t7, k(1.0));
+        let t9 = T::fused(-rotor_e1, t6, t8);
+        let t10 = k(2.0) * inner_ring_e1;
+        let t11 = k(2.0) * inner_ring_e0;
+        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
+        let t13 = T::fused(-inner_ring_e1, t10, t12);
+        let t14 = rotor_e3 * t7;
+        let t15 = rotor_e2 * t6;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e3 * t11;
+        let t18 = inner_ring_e2 * t10;
+        let t19 = t18 + t17;
+        let t20 = rotor_e2 * t7;
+        let t21 = rotor_e3 * t6;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e2 * t11;
+        let t24 = inner_ring_e3 * t10;
+        let t25 = t24 - t23;
+        let t26 = k(1e-5) * rotor_dwx;
+        let t27 = t15 - t14;
+        let t28 = k(2.0) * rotor_e2;
+        let t29 = T::fused(-rotor_e2, t28, t8);
+        let t30 = rotor_e1 * t7;
+        let t31 = rotor_e3 * t28;
+        let t32 = t31 + t30;
+        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t34 = T::fused(
+            t26,
+            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
+            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
         );
-        let t30 = k(2.0) * (t17 + t16);
-        let t31 = k(2.0) * (t26 - t25);
-        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t6));
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t34 = T::fused(t33, T::fused(t21, t32, -T::fused(-t9, t30, t15 * t31)), t29);
-        let t35 = T::fused(
+        let t35 = t21 + t20;
+        let t36 = t31 - t30;
+        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
+        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t39 = T::fused(
+            t38,
+            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
+            t34,
+        );
+        let t40 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t34,
+            -t39,
         );
-        let t36 = outer_ring_e0 * outer_ring_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t36));
-        let t38 = outer_ring_e0 * outer_ring_e3;
-        let t39 = outer_ring_e1 * outer_ring_e2;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = outer_ring_e0 * outer_ring_e2;
-        let t42 = outer_ring_e1 * outer_ring_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = T::fused(t43, t21, T::fused(t37, t9, t40 * t15));
-        let t45 = t14 - t13;
-        let t46 = k(2.0) * t45;
-        let t47 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8);
-        let t48 = k(2.0) * t47;
-        let t49 = inner_ring_e0 * inner_ring_e1;
-        let t50 = inner_ring_e2 * inner_ring_e3;
-        let t51 = t50 + t49;
-        let t52 = k(2.0) * t51;
-        let t53 = T::fused(t52, t27, T::fused(t48, t24, t46 * t23));
-        let t54 = T::fused(
-            t22,
-            T::fused(t52, t18, -T::fused(t46, t7, t48 * t12)),
-            t28 * t53,
-        );
-        let t55 = T::fused(t52, t32, -T::fused(-t48, t31, t46 * t30));
-        let t56 = t20 + t19;
-        let t57 = t50 - t49;
-        let t58 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8);
+        let t41 = k(2.0) * outer_ring_e1;
+        let t42 = k(2.0) * outer_ring_e0;
+        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
+        let t44 = T::fused(-outer_ring_e1, t41, t43);
+        let t45 = outer_ring_e3 * t42;
+        let t46 = outer_ring_e2 * t41;
+        let t47 = t46 + t45;
+        let t48 = outer_ring_e2 * t42;
+        let t49 = outer_ring_e3 * t41;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
+        let t52 = t18 - t17;
+        let t53 = k(2.0) * inner_ring_e2;
+        let t54 = T::fused(-inner_ring_e2, t53, t12);
+        let t55 = inner_ring_e1 * t11;
+        let t56 = inner_ring_e3 * t53;
+        let t57 = t56 + t55;
+        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
         let t59 = T::fused(
+            t26,
+            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
+            t33 * t58,
+        );
+        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
+        let t61 = t24 + t23;
+        let t62 = t56 - t55;
+        let t63 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
+        let t64 = T::fused(
             t4,
-            k(0.00025) * t58,
-            -T::fused(t0, k(0.00025) * t56, t2 * (k(0.00025) * t57)),
+            k(0.000125) * t63,
+            -T::fused(t0, k(0.000125) * t61, t2 * (k(0.000125) * t62)),
         );
-        let t60 = T::fused(k(2e-6), inner_ring_dwy, t59 + T::fused(t33, t55, t54));
-        let t61 = T::fused(t43, t52, -T::fused(t37, t46, t40 * t48));
-        let t62 = k(2.0) * t56;
-        let t63 = k(2.0) * t57;
-        let t64 = k(2.0) * t58;
-        let t65 = T::fused(t64, t27, -T::fused(-t63, t24, t62 * t23));
-        let t66 = T::fused(
-            t22,
-            T::fused(t64, t18, -T::fused(-t62, t7, t63 * t12)),
-            t28 * t65,
-        );
-        let t67 = T::fused(t64, t32, T::fused(t63, t31, t62 * t30));
+        let t65 = T::fused(k(2e-6), inner_ring_dwy, t64 + T::fused(t38, t60, t59));
+        let t66 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
+        let t67 = T::fused(t63, t32, T::fused(-t61, t27, t62 * t29));
         let t68 = T::fused(
-            t4,
-            k(0.00025) * t51,
-            -T::fused(-t0, k(0.00025) * t45, t2 * (k(0.00025) * t47)),
+            t26,
+            T::fused(t63, t22, -T::fused(-t61, t9, t62 * t16)),
+            t33 * t67,
         );
-        let t69 = T::fused(
+        let t69 = T::fused(t63, t37, T::fused(t61, t35, t62 * t36));
+        let t70 = T::fused(
+            t4,
+            k(0.000125) * t57,
+            -T::fused(-t0, k(0.000125) * t52, t2 * (k(0.000125) * t54)),
+        );
+        let t71 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t68 - T::fused(t33, t67, t66),
+            t70 - T::fused(t38, t69, t68),
         );
-        let t70 = T::fused(
-            T::fused(t43, t64, -T::fused(-t37, t62, t40 * t63)),
-            t69,
-            -T::fused(-t44, t35, t61 * t60),
+        let t72 = T::fused(
+            T::fused(t50, t63, -T::fused(-t44, t61, t47 * t62)),
+            t71,
+            -T::fused(-t51, t40, t66 * t65),
         );
-        let t71 = T::fused(k(2e-6), outer_ring_dwx, -t70);
-        let t72 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t36));
-        let t73 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t74 = t73.cos();
-        let t75 = outer_ring_e0 * outer_ring_e1;
-        let t76 = outer_ring_e2 * outer_ring_e3;
-        let t77 = k(2.0) * (t76 - t75);
-        let t78 = t73.sin();
-        let t79 = T::fused(t74, t72, t78 * t77);
-        let t80 = T::fused(-t74, t43, t78 * t40);
-        let t81 = k(2.0) * (t42 + t41);
-        let t82 = k(1.0) / T::fused(t37, t79, t81 * t80);
-        let t83 = T::fused(
-            -T::fused(t72, t21, -T::fused(-t81, t9, t77 * t15)),
-            t35,
-            T::fused(t72, t52, -T::fused(-t77, t48, t81 * t46)) * t60,
+        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
+        let t74 = outer_ring_e1 * t42;
+        let t75 = k(2.0) * outer_ring_e2;
+        let t76 = outer_ring_e3 * t75;
+        let t77 = t76 - t74;
+        let t78 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t79 = t78.sin();
+        let t80 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
+        let t81 = t78.cos();
+        let t82 = T::fused(t79, t77, t81 * t80);
+        let t83 = T::fused(-t79, t47, t81 * t50);
+        let t84 = t49 + t48;
+        let t85 = k(1.0) / T::fused(-t44, t82, t84 * t83);
+        let t86 = T::fused(
+            -T::fused(t80, t25, -T::fused(-t84, t13, t77 * t19)),
+            t40,
+            T::fused(t80, t57, T::fused(-t84, t52, t77 * t54)) * t65,
         );
-        let t84 = T::fused(T::fused(t72, t64, T::fused(t77, t63, t81 * t62)), t69, -t83);
-        let t85 = T::fused(
+        let t87 = T::fused(T::fused(t80, t63, T::fused(t84, t61, t77 * t62)), t71, -t86);
+        let t88 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t84,
+            -t87,
         );
-        let t86 = k(2.0) * (t39 - t38);
-        let t87 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t36));
-        let t88 = k(2.0) * (t76 + t75);
-        let t89 = T::fused(t88, t21, -T::fused(t86, t9, t87 * t15));
-        let t90 = T::fused(t88, t52, T::fused(t87, t48, t86 * t46));
-        let t91 = k(1.0) / T::fused(-t61, t89, t44 * t90);
-        let t92 = k(1.0) / T::fused(-t55, t65, t53 * t67);
+        let t89 = t46 - t45;
+        let t90 = T::fused(-outer_ring_e2, t75, t43);
+        let t91 = t76 + t74;
+        let t92 = T::fused(t91, t25, -T::fused(t89, t13, t90 * t19));
+        let t93 = T::fused(t91, t57, T::fused(t89, t52, t90 * t54));
+        let t94 = k(1.0) / T::fused(-t92, t66, t93 * t51);
+        let t95 = k(1.0) / T::fused(-t67, t60, t69 * t58);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(t37 * t82, t71, t81 * t82 * t85),
-            T::fused(-(t80 * t82), t71, t79 * t82 * t85),
+            -T::fused(t44 * t85, t73, t84 * t85 * t88),
+            -T::fused(t83 * t85, t73, t82 * t85 * t88),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t90 * t91), t60, t89 * t91 * t35),
-            T::fused(-(t44 * t91), t35, t61 * t91 * t60),
+            T::fused(-(t93 * t94), t65, t92 * t94 * t40),
+            T::fused(-(t51 * t94), t40, t66 * t94 * t65),
             -t0,
             -t2,
             -t4,
-            T::fused(t28, t65 * t92, t33 * (t67 * t92)),
-            T::fused(t28, t53 * t92, t33 * (t55 * t92)),
+            T::fused(t33, t67 * t95, t38 * (t69 * t95)),
+            T::fused(t33, t58 * t95, t38 * (t60 * t95)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenGyroscope<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 403 operations (151 ±, 247 ×, 5 ÷) and 3 functions.
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 389 operations (146 ±, 238 ×, 5 ÷) and 3 functions.
     fn project(
         &self,
         t: T,
@@ -3091,246 +3102,178 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenGyroscope<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t2 = t1.cos();
-        let t3 = t1.sin();
-        let t4 = T::fused(
-            t2,
-            k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0)),
-            t3
-                * (k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e1,
-                        outer_ring_e2 * outer_ring_e3,
-                    )),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e1 * t0;
+        let t2 = k(2.0) * outer_ring_e2;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t6 = t5.sin();
+        let t7 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t8 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t7);
+        let t9 = t5.cos();
+        let t10 = T::fused(t6, t4, t9 * t8);
+        let t11 = k(2.0) * outer_ring_e1;
+        let t12 = T::fused(-outer_ring_e1, t11, t7);
+        let t13 = outer_ring_e3 * t0;
+        let t14 = outer_ring_e2 * t11;
+        let t15 = t14 + t13;
+        let t16 = outer_ring_e2 * t0;
+        let t17 = outer_ring_e3 * t11;
+        let t18 = t17 - t16;
+        let t19 = T::fused(-t6, t15, t9 * t18);
+        let t20 = t17 + t16;
+        let t21 = k(1.0) / T::fused(-t12, t10, t20 * t19);
+        let t22 = T::fused(row3, t12 * t21, row4 * (t19 * t21));
+        let t23 = k(2.0) * rotor_e0;
+        let t24 = k(2.0) * rotor_e1;
+        let t25 = T::fused(rotor_e2, t23, rotor_e3 * t24);
+        let t26 = k(2.0) * inner_ring_e0;
+        let t27 = inner_ring_e3 * t26;
+        let t28 = k(2.0) * inner_ring_e1;
+        let t29 = inner_ring_e2 * t28;
+        let t30 = t29 - t27;
+        let t31 = rotor_e1 * t23;
+        let t32 = k(2.0) * rotor_e2;
+        let t33 = rotor_e3 * t32;
+        let t34 = t33 - t31;
+        let t35 = k(2.0) * inner_ring_e2;
+        let t36 = T::fused(-inner_ring_e0, t26, k(1.0));
+        let t37 = T::fused(-inner_ring_e2, t35, t36);
+        let t38 = T::fused(-rotor_e0, t23, k(1.0));
+        let t39 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t38);
+        let t40 = inner_ring_e1 * t26;
+        let t41 = inner_ring_e3 * t35;
+        let t42 = t41 + t40;
+        let t43 = T::fused(t42, t39, T::fused(-t30, t25, t37 * t34));
+        let t44 = T::fused(-rotor_e3, t23, rotor_e2 * t24);
+        let t45 = inner_ring_e2 * t26;
+        let t46 = inner_ring_e3 * t28;
+        let t47 = t46 + t45;
+        let t48 = T::fused(-rotor_e2, t32, t38);
+        let t49 = t41 - t40;
+        let t50 = t33 + t31;
+        let t51 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t36);
+        let t52 = T::fused(t51, t50, T::fused(-t47, t44, t49 * t48));
+        let t53 = T::fused(t42, t50, T::fused(t30, t44, t37 * t48));
+        let t54 = T::fused(t51, t39, T::fused(t47, t25, t49 * t34));
+        let t55 = k(1.0) / T::fused(-t52, t43, t54 * t53);
+        let t56 = T::fused(row13, t52 * t55, row14 * (t53 * t55));
+        let t57 = k(5e-6) * t56;
+        let t58 = T::fused(-inner_ring_e1, t28, t36);
+        let t59 = t29 + t27;
+        let t60 = t46 - t45;
+        let t61 = T::fused(t60, t50, -T::fused(t58, t44, t59 * t48));
+        let t62 = T::fused(row13, t54 * t55, row14 * (t43 * t55));
+        let t63 = k(5e-6) * t62;
+        let t64 = T::fused(t60, t39, -T::fused(-t58, t25, t59 * t34));
+        let t65 = k(0.08) * row10;
+        let t66 = k(0.000125) * t30;
+        let t67 = k(0.08) * row11;
+        let t68 = k(0.000125) * t37;
+        let t69 = k(0.08) * row12;
+        let t70 = k(0.000125) * t42;
+        let t71 = T::fused(t70, t69, -T::fused(-t66, t65, t68 * t67))
+            + T::fused(t52, t57, t54 * t63);
+        let t72 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t52, k(5e-6) * t52, t54 * (k(5e-6) * t54)));
+        let t73 = k(1.0) / t72;
+        let t74 = t73 * t71;
+        let t75 = k(5e-6) * t61;
+        let t76 = k(5e-6) * t64;
+        let t77 = T::fused(t52, t75, t54 * t76);
+        let t78 = k(1e-5) * t30;
+        let t79 = t73 * t78;
+        let t80 = t77 * t79;
+        let t81 = k(1e-5) * t37;
+        let t82 = t73 * t81;
+        let t83 = t77 * t82;
+        let t84 = k(1e-5) * t42;
+        let t85 = t73 * t84;
+        let t86 = t77 * t85;
+        let t87 = T::fused(t18, t42, -T::fused(t12, t30, t15 * t37));
+        let t88 = t14 - t13;
+        let t89 = T::fused(-outer_ring_e2, t2, t7);
+        let t90 = t3 + t1;
+        let t91 = T::fused(t90, t60, -T::fused(t88, t58, t89 * t59));
+        let t92 = T::fused(t18, t60, T::fused(t12, t58, t15 * t59));
+        let t93 = T::fused(t90, t42, T::fused(t88, t30, t89 * t37));
+        let t94 = k(1.0) / T::fused(-t91, t87, t93 * t92);
+        let t95 = T::fused(-row8, t91 * t94, row9 * (t92 * t94));
+        let t96 = t73 * t77;
+        let t97 = T::fused(t77, t96, -(k(1e-6) + T::fused(t61, t75, t64 * t76)));
+        let t98 = T::fused(-row8, t93 * t94, row9 * (t87 * t94));
+        let t99 = k(5e-6) * t53;
+        let t100 = k(5e-6) * t43;
+        let t101 = T::fused(t52, t99, t54 * t100);
+        let t102 = T::fused(t101, t96, -T::fused(t53, t75, t43 * t76));
+        let t103 = T::fused(t97, t95, t102 * t98)
+            + T::fused(row7, t86, -T::fused(-row5, t80, row6 * t83));
+        let t104 = k(0.000125) * t47;
+        let t105 = k(0.000125) * t49;
+        let t106 = k(0.000125) * t51;
+        let t107 = T::fused(t106, t69, -T::fused(t104, t65, t105 * t67))
+            - T::fused(t53, t57, t43 * t63);
+        let t108 = T::fused(-k(1e-5), t47, t101 * t79);
+        let t109 = T::fused(k(1e-5), t49, t101 * t82);
+        let t110 = T::fused(k(1e-5), t51, t101 * t85);
+        let t111 = T::fused(
+            t101,
+            t73 * t101,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t53, t99, t43 * t100))),
         );
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t6 = outer_ring_e0 * outer_ring_e2;
-        let t7 = outer_ring_e1 * outer_ring_e3;
-        let t8 = T::fused(
-            -t2,
-            k(2.0) * (t7 - t6),
-            t3
-                * (k(2.0)
-                    * T::fused(
-                        outer_ring_e0,
-                        outer_ring_e3,
-                        outer_ring_e1 * outer_ring_e2,
-                    )),
+        let t112 = T::fused(t102, t95, t111 * t98)
+            + T::fused(row7, t110, -T::fused(-row5, t108, row6 * t109));
+        let t113 = T::fused(
+            t91,
+            t103 + T::fused(t77, t74, -T::fused(t61, t57, t64 * t63)),
+            t93 * (t112 + T::fused(t101, t74, t107)),
         );
-        let t9 = k(2.0) * (t7 + t6);
-        let t10 = k(1.0) / T::fused(t5, t4, t9 * t8);
-        let t11 = T::fused(-(t5 * t10), row3, t8 * t10 * row4);
-        let t12 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
+        let t114 = T::fused(
+            -row0,
+            T::fused(t91, t80, t93 * t108),
+            row1 * T::fused(t91, t83, t93 * t109),
         );
-        let t13 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
+        let t115 = T::fused(
+            t91,
+            T::fused(t97, t92, t102 * t87),
+            t93 * T::fused(t102, t92, t111 * t87),
         );
-        let t14 = t13 * t12;
-        let t15 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t16 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t17 = t16 * t15;
-        let t18 = t17 - t14;
-        let t19 = k(2.0) * t18;
-        let t20 = t17 + t14;
-        let t21 = k(2.0) * t20;
-        let t22 = t13 * t13;
-        let t23 = k(0.5) - T::fused(t15, t15, t22);
-        let t24 = k(2.0) * t23;
-        let t25 = k(0.5) - T::fused(t16, t16, t22);
-        let t26 = k(2.0) * t25;
-        let t27 = k(1.0) / T::fused(-t21, t19, t26 * t24);
-        let t28 = T::fused(row13, t19 * t27, row14 * (t26 * t27));
-        let t29 = k(5e-6) * t28;
-        let t30 = T::fused(t13, t15, t12 * t16);
-        let t31 = k(2.0) * t30;
-        let t32 = T::fused(row13, t24 * t27, row14 * (t21 * t27));
-        let t33 = k(5e-6) * t32;
-        let t34 = T::fused(-t13, t16, t12 * t15);
-        let t35 = k(2.0) * t34;
-        let t36 = k(0.08) * row10;
-        let t37 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t38 = k(0.00025) * t37;
-        let t39 = k(0.08) * row11;
-        let t40 = inner_ring_e0 * inner_ring_e0;
-        let t41 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t40);
-        let t42 = k(0.00025) * t41;
-        let t43 = k(0.08) * row12;
-        let t44 = inner_ring_e0 * inner_ring_e1;
-        let t45 = inner_ring_e2 * inner_ring_e3;
-        let t46 = t45 + t44;
-        let t47 = k(0.00025) * t46;
-        let t48 = T::fused(t47, t43, -T::fused(-t38, t36, t42 * t39))
-            + T::fused(t19, t29, t24 * t33);
-        let t49 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t19, k(1e-5) * t18, t24 * (k(1e-5) * t23)));
-        let t50 = k(1.0) / t49;
-        let t51 = t50 * t48;
-        let t52 = k(1e-5) * t30;
-        let t53 = k(1e-5) * t34;
-        let t54 = T::fused(-t19, t52, t24 * t53);
-        let t55 = k(2e-5) * t37;
-        let t56 = t50 * t55;
-        let t57 = t54 * t56;
-        let t58 = k(2e-5) * t41;
-        let t59 = t50 * t58;
-        let t60 = t54 * t59;
-        let t61 = k(2e-5) * t46;
-        let t62 = t50 * t61;
-        let t63 = t54 * t62;
-        let t64 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t65 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t66 = t65 * t64;
-        let t67 = T::fused(
-            -outer_ring_e1,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e0,
-                inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
-            ),
-        );
-        let t68 = T::fused(
-            outer_ring_e2,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e3,
-                inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
-            ),
-        );
-        let t69 = t68 * t67;
-        let t70 = k(2.0) * (t69 - t66);
-        let t71 = k(2.0) * (t69 + t66);
-        let t72 = t65 * t65;
-        let t73 = k(2.0) * (k(0.5) - T::fused(t67, t67, t72));
-        let t74 = k(2.0) * (k(0.5) - T::fused(t68, t68, t72));
-        let t75 = k(1.0) / T::fused(-t71, t70, t74 * t73);
-        let t76 = T::fused(row8, t70 * t75, row9 * (t74 * t75));
-        let t77 = t50 * t54;
-        let t78 = T::fused(t54, t77, -(k(1e-6) + T::fused(t31, t52, t35 * t53)));
-        let t79 = T::fused(row8, t73 * t75, row9 * (t71 * t75));
-        let t80 = k(1e-5) * t25;
-        let t81 = k(1e-5) * t20;
-        let t82 = T::fused(t19, t80, t24 * t81);
-        let t83 = T::fused(t82, t77, -T::fused(-t26, t52, t21 * t53));
-        let t84 = T::fused(-t78, t76, t83 * t79)
-            + T::fused(row7, t63, -T::fused(-row5, t57, row6 * t60));
-        let t85 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t86 = k(0.00025) * t85;
-        let t87 = t45 - t44;
-        let t88 = k(0.00025) * t87;
-        let t89 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t40);
-        let t90 = k(0.00025) * t89;
-        let t91 = T::fused(t90, t43, -T::fused(t86, t36, t88 * t39))
-            - T::fused(t26, t29, t21 * t33);
-        let t92 = T::fused(-t82, t56, k(2e-5) * t85);
-        let t93 = T::fused(t82, t59, k(2e-5) * t87);
-        let t94 = T::fused(t82, t62, k(2e-5) * t89);
-        let t95 = T::fused(
-            t82,
-            t50 * t82,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t26, t80, t21 * t81))),
-        );
-        let t96 = T::fused(-t83, t76, t95 * t79)
-            + T::fused(row7, t94, -T::fused(row5, t92, row6 * t93));
-        let t97 = T::fused(
-            -t70,
-            t84 + T::fused(t54, t51, -T::fused(-t31, t29, t35 * t33)),
-            t73 * (t96 + T::fused(t82, t51, t91)),
-        );
-        let t98 = T::fused(
-            row0,
-            T::fused(t70, t57, t73 * t92),
-            row1 * T::fused(-t70, t60, t73 * t93),
-        );
-        let t99 = T::fused(
-            -t70,
-            T::fused(-t74, t78, t71 * t83),
-            t73 * T::fused(-t74, t83, t71 * t95),
-        );
-        let t100 = T::fused(t9 * t10, row3, t4 * t10 * row4);
-        let t101 = T::fused(-t70, t78, t73 * t83);
-        let t102 = k(2.0) * T::fused(t65, t67, t68 * t64);
-        let t103 = T::fused(-t70, t83, t73 * t95);
-        let t104 = k(2.0) * T::fused(-t65, t68, t67 * t64);
-        let t105 = T::fused(t99, t11, T::fused(t102, t101, t104 * t103) * t100)
-            - T::fused(row2, T::fused(-t70, t63, t73 * t94), -t98);
-        let t106 = (t105 - t97) / (k(1e-6) - T::fused(-t70, t101, t73 * t103));
-        let t107 = row0 + row5;
-        let t108 = row1 + row6;
-        let t109 = row2 + row7;
-        let t110 = t76 + T::fused(t102, t100, -T::fused(t74, t11, t70 * t106));
-        let t111 = t79 - T::fused(t104, t100, T::fused(t71, t11, t73 * t106));
-        let t112 = T::fused(t109, t61, -T::fused(-t107, t55, t108 * t58))
-            + T::fused(-t54, t110, t82 * t111);
-        let t113 = t50 * (t48 + t112);
+        let t116 = T::fused(row3, t20 * t21, row4 * (t10 * t21));
+        let t117 = T::fused(t8, t60, -T::fused(-t20, t58, t4 * t59));
+        let t118 = T::fused(t91, t97, t93 * t102);
+        let t119 = T::fused(t8, t42, T::fused(-t20, t30, t4 * t37));
+        let t120 = T::fused(t102, t91, t111 * t93);
+        let t121 = T::fused(t115, t22, T::fused(t118, t117, t120 * t119) * t116)
+            - T::fused(row2, T::fused(t91, t86, t93 * t110), -t114);
+        let t122 = (t121 - t113) / (k(1e-6) - T::fused(t91, t118, t93 * t120));
+        let t123 = row0 + row5;
+        let t124 = row1 + row6;
+        let t125 = row2 + row7;
+        let t126 = t95 - T::fused(t117, t116, T::fused(t92, t22, t91 * t122));
+        let t127 = t98 - T::fused(t119, t116, T::fused(t87, t22, t93 * t122));
+        let t128 = T::fused(t77, t126, t101 * t127)
+            + T::fused(t125, t84, -T::fused(-t123, t78, t124 * t81));
+        let t129 = t73 * (t71 + t128);
         *out = [
             row0,
             row1,
             row2,
-            t11,
-            -t106,
-            t100,
-            t107,
-            t108,
-            t109,
-            t110,
-            -t111,
-            -t113,
-            row10 + (t107 - T::fused(-t86, t111, t38 * t113)),
-            row11 + (t108 + T::fused(t88, t111, t42 * t113)),
-            row12 + (t109 - T::fused(t90, t111, t47 * t113)),
+            t22,
+            t122,
+            -t116,
+            t123,
+            t124,
+            t125,
+            -t126,
+            -t127,
+            -t129,
+            row10 + (t123 - T::fused(-t104, t127, t66 * t129)),
+            row11 + (t124 + T::fused(t105, t127, t68 * t129)),
+            row12 + (t125 - T::fused(t106, t127, t70 * t129)),
             k(0.0),
-            t28 - T::fused(t19, t113, -T::fused(t31, t110, t26 * t111)),
-            T::fused(t24, t113, -T::fused(-t35, t110, t21 * t111)) - t32,
+            T::fused(t52, t129, -T::fused(t61, t126, t53 * t127)) - t56,
+            t62 - T::fused(t54, t129, -T::fused(t64, t126, t43 * t127)),
         ];
     }
 }
@@ -3921,7 +3864,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 105 operations (34 ±, 70 ×, 1 ÷) and 5 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 104 operations (34 ±, 69 ×, 1 ÷) and 5 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3939,9 +3882,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let inner_ring_wy = y[31];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = outer_ring_wz - inner_ring_wz;
-        let t1 = inner_ring_wy * t0;
-        let t2 = T::fused(
+        let t0 = k(1e-5) * inner_ring_wx;
+        let t1 = inner_ring_wx - rotor_wx;
+        let t2 = inner_ring_wx - t1;
+        let t3 = T::fused(
+            -(k(0.000125) * inner_ring_wz),
+            t0,
+            k(5e-6) * T::fused(-inner_ring_wz, t1, inner_ring_wz * t2),
+        );
+        let t4 = outer_ring_wz - inner_ring_wz;
+        let t5 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -3950,8 +3900,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t3 = k(2.0) * t2;
-        let t4 = T::fused(
+        let t6 = k(2.0) * t5;
+        let t7 = T::fused(-t5, t6, k(1.0));
+        let t8 = inner_ring_wy * t4;
+        let t9 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3960,60 +3912,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t5 = t4 * t3;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = inner_ring_wx - t6;
-        let t8 = T::fused(
-            -k(5e-6),
-            T::fused(-inner_ring_wz, t6, inner_ring_wz * t7),
-            k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wz)),
+        let t10 = t9 * t6;
+        let t11 = T::fused(
+            t7,
+            T::fused(k(7.00125e-6), inner_ring_wx * t4, t3),
+            t10 * (k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t8)),
         );
-        let t9 = T::fused(-t2, t3, k(1.0));
-        let t10 = T::fused(
-            t5,
-            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t1),
-            t9 * T::fused(k(7.00125e-6), inner_ring_wx * t0, -t8),
+        let t12 = (k(12.566370614359172) * t).sin();
+        let t13 = k(0.05) * t12;
+        let t14 = t13.sin();
+        let t15 = t13.cos();
+        let t16 = T::fused(t14, outer_ring_e3, t15 * outer_ring_e2);
+        let t17 = k(2.0) * t16;
+        let t18 = T::fused(-t16, t17, k(1.0));
+        let t19 = k(15.791367041742975) * t12;
+        let t20 = T::fused(t19, t18, outer_ring_wy * outer_ring_wz);
+        let t21 = k(0.1) * t12;
+        let t22 = k(10.0) * t21.sin();
+        let t23 = T::fused(
+            -T::fused(-t10, k(1e-6) * t7, t7 * (k(7.00125e-6) * t10)),
+            t20,
+            k(1e-5) * t7 * (t18 * t22),
         );
-        let t11 = (k(12.566370614359172) * t).sin();
-        let t12 = k(0.05) * t11;
-        let t13 = t12.sin();
-        let t14 = t12.cos();
-        let t15 = T::fused(t13, outer_ring_e3, t14 * outer_ring_e2);
-        let t16 = k(2.0) * t15;
-        let t17 = T::fused(-t15, t16, k(1.0));
-        let t18 = k(15.791367041742975) * t11;
-        let t19 = T::fused(t18, t17, outer_ring_wy * outer_ring_wz);
-        let t20 = k(0.1) * t11;
-        let t21 = k(10.0) * t20.sin();
-        let t22 = T::fused(
-            -T::fused(-t5, k(1e-6) * t9, t9 * (k(7.00125e-6) * t5)),
-            t19,
-            k(1e-5) * t9 * (t17 * t21),
-        );
-        let t23 = (t22 + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t10))
-            / (k(1e-6) + T::fused(t5, k(1e-6) * t5, t9 * (k(7.00125e-6) * t9)));
-        let t24 = T::fused(t13, outer_ring_e1, t14 * outer_ring_e0) * t16;
+        let t24 = (t23 + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t11))
+            / (k(1e-6) + T::fused(t10, k(1e-6) * t10, t7 * (k(7.00125e-6) * t7)));
         let t25 = T::fused(
-            -k(5e-6),
-            T::fused(-inner_ring_wy, t6, inner_ring_wy * t7),
-            k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy)),
+            -(k(0.000125) * inner_ring_wy),
+            t0,
+            k(5e-6) * T::fused(-inner_ring_wy, t1, inner_ring_wy * t2),
         );
-        let t26 = T::fused(
+        let t26 = T::fused(t14, outer_ring_e1, t15 * outer_ring_e0) * t17;
+        let t27 = T::fused(
             k(1e-5),
-            T::fused(t5, t24 * t21, t9 * (k(10.0) * t20.cos())),
-            T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, t25),
+            T::fused(t10, t26 * t22, t7 * (k(10.0) * t21.cos())),
+            T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, -t25),
         );
         *out = [
-            -t23,
+            -t24,
             -T::fused(
                 k(166631.95167673402),
-                t26,
-                T::fused(-t18, t24, outer_ring_wx * outer_ring_wy),
+                t27,
+                T::fused(-t19, t26, outer_ring_wx * outer_ring_wy),
             ),
-            t1 - T::fused(-t9, t19, t5 * t23),
+            t8 + T::fused(-t10, t24, t7 * t20),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 486 operations (192 ±, 289 ×, 5 ÷) and 4 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 455 operations (184 ±, 266 ×, 5 ÷) and 4 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -4042,230 +3986,301 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e3;
-        let t1 = outer_ring_e1 * outer_ring_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = k(12.566370614359172) * t;
-        let t4 = k(1.2566370614359172) * t3.cos();
-        let t5 = t4 * t2;
-        let t6 = outer_ring_wy - t5;
-        let t7 = outer_ring_e0 * outer_ring_e2;
-        let t8 = outer_ring_e1 * outer_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = t4 * t9;
-        let t11 = outer_ring_wz - t10;
-        let t12 = outer_ring_e0 * outer_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t12));
-        let t14 = t3.sin();
-        let t15 = k(0.1) * t14;
-        let t16 = t15.sin();
-        let t17 = outer_ring_e0 * outer_ring_e1;
-        let t18 = outer_ring_e2 * outer_ring_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t15.cos();
-        let t21 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t12));
-        let t22 = t4 * t21;
-        let t23 = outer_ring_wx + t22;
-        let t24 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t12));
-        let t25 = k(2.0) * (t18 + t17);
-        let t26 = T::fused(t11, t11, t23 * t23) / T::fused(-t20, t24, t16 * t25);
-        let t27 = k(15.791367041742975) * t14;
-        let t28 = T::fused(-t21, t27, T::fused(-outer_ring_wz, t5, outer_ring_wy * t10))
-            + T::fused(t11, t6, t26 * T::fused(-t16, t13, t20 * t19));
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = k(2.0) * (t30 - t29);
-        let t32 = inner_ring_e0 * inner_ring_e0;
-        let t33 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t32));
-        let t34 = rotor_e0 * rotor_e0;
-        let t35 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34));
-        let t36 = inner_ring_e0 * inner_ring_e3;
-        let t37 = inner_ring_e1 * inner_ring_e2;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = inner_ring_e0 * inner_ring_e2;
-        let t43 = inner_ring_e1 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 - t42);
-        let t45 = T::fused(t44, t41, -T::fused(t33, t31, t38 * t35));
-        let t46 = k(5e-6) * t45;
-        let t47 = rotor_e0 * rotor_e2;
-        let t48 = rotor_e1 * rotor_e3;
-        let t49 = k(2.0) * (t48 + t47);
-        let t50 = k(2.0) * (t40 - t39);
-        let t51 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34));
-        let t52 = T::fused(t44, t51, -T::fused(-t33, t49, t38 * t50));
-        let t53 = k(5e-6) * t52;
-        let t54 = inner_ring_e0 * inner_ring_e1;
-        let t55 = inner_ring_e2 * inner_ring_e3;
-        let t56 = t55 - t54;
-        let t57 = k(2.0) * t56;
-        let t58 = t43 + t42;
-        let t59 = k(2.0) * t58;
-        let t60 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t32);
-        let t61 = k(2.0) * t60;
-        let t62 = T::fused(t61, t41, -T::fused(-t57, t35, t59 * t31));
-        let t63 = T::fused(t61, t51, T::fused(t57, t50, t59 * t49));
-        let t64 = T::fused(t62, t46, t63 * t53);
-        let t65 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t62, k(5e-6) * t62, t63 * (k(5e-6) * t63)));
-        let t66 = k(1.0) / t65;
-        let t67 = t66 * t64;
-        let t68 = T::fused(t64, t67, -(k(1e-6) + T::fused(t45, t46, t52 * t53)));
-        let t69 = T::fused(t25, t44, -T::fused(t2, t33, t24 * t38));
-        let t70 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t32);
-        let t71 = k(2.0) * t70;
-        let t72 = t37 - t36;
-        let t73 = k(2.0) * t72;
-        let t74 = t55 + t54;
-        let t75 = k(2.0) * t74;
-        let t76 = T::fused(t75, t41, T::fused(t71, t35, t73 * t31));
-        let t77 = T::fused(t75, t51, -T::fused(-t71, t50, t73 * t49));
-        let t78 = k(5e-6) * t76;
-        let t79 = k(5e-6) * t77;
-        let t80 = T::fused(t62, t78, t63 * t79);
-        let t81 = T::fused(t80, t67, -T::fused(t76, t46, t77 * t53));
-        let t82 = T::fused(t25, t75, T::fused(t24, t71, t2 * t73));
-        let t83 = T::fused(t69, t68, t82 * t81);
-        let t84 = T::fused(
-            t80,
-            t66 * t80,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t76, t78, t77 * t79))),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = k(12.566370614359172) * t;
+        let t5 = k(1.2566370614359172) * t4.cos();
+        let t6 = t5 * (t3 - t1);
+        let t7 = outer_ring_wy - t6;
+        let t8 = outer_ring_e2 * t0;
+        let t9 = outer_ring_e3 * t2;
+        let t10 = t9 + t8;
+        let t11 = t5 * t10;
+        let t12 = outer_ring_wz - t11;
+        let t13 = outer_ring_e1 * t0;
+        let t14 = k(2.0) * outer_ring_e2;
+        let t15 = outer_ring_e3 * t14;
+        let t16 = t4.sin();
+        let t17 = k(0.1) * t16;
+        let t18 = t17.cos();
+        let t19 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t20 = t17.sin();
+        let t21 = T::fused(
+            -t18,
+            t15 - t13,
+            t20 * T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t19),
         );
-        let t85 = T::fused(t69, t81, t82 * t84);
-        let t86 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34));
-        let t87 = k(2.0) * (t30 + t29);
-        let t88 = k(2.0) * (t48 - t47);
-        let t89 = T::fused(t44, t88, T::fused(t33, t86, t38 * t87));
-        let t90 = T::fused(
-            inner_ring_wx,
-            t89,
-            inner_ring_wy * T::fused(t75, t88, -T::fused(t73, t86, t71 * t87)),
+        let t22 = T::fused(-outer_ring_e1, t2, t19);
+        let t23 = t5 * t22;
+        let t24 = outer_ring_wx + t23;
+        let t25 = T::fused(t12, t12, t24 * t24)
+            / T::fused(-t18, T::fused(-outer_ring_e2, t14, t19), t20 * (t15 + t13));
+        let t26 = k(15.791367041742975) * t16;
+        let t27 = T::fused(-t26, t22, T::fused(-outer_ring_wz, t6, outer_ring_wy * t11))
+            - T::fused(-t12, t7, t25 * t21);
+        let t28 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
         );
-        let t91 = T::fused(
+        let t29 = k(2.0) * t28;
+        let t30 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t31 = t30 * t29;
+        let t32 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t33 = k(2.0) * t32;
+        let t34 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t35 = t34 * t33;
+        let t36 = t35 + t31;
+        let t37 = k(5e-6) * t36;
+        let t38 = t34 * t29;
+        let t39 = t30 * t33;
+        let t40 = t39 - t38;
+        let t41 = k(5e-6) * t40;
+        let t42 = t32 * t29;
+        let t43 = k(2.0) * t34;
+        let t44 = t30 * t43;
+        let t45 = t44 - t42;
+        let t46 = T::fused(-t28, t29, k(1.0));
+        let t47 = T::fused(-t30, k(2.0) * t30, t46);
+        let t48 = T::fused(-t45, t37, t47 * t41);
+        let t49 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t45, k(5e-6) * t45, t47 * (k(5e-6) * t47)));
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * t48;
+        let t52 = T::fused(t48, t51, -(k(1e-6) + T::fused(t36, t37, t40 * t41)));
+        let t53 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t54 = k(2.0) * t53;
+        let t55 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t56 = t55 * t54;
+        let t57 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t58 = k(2.0) * t57;
+        let t59 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t60 = t59 * t58;
+        let t61 = t60 - t56;
+        let t62 = T::fused(-t34, t43, t46);
+        let t63 = t44 + t42;
+        let t64 = k(5e-6) * t62;
+        let t65 = k(5e-6) * t63;
+        let t66 = T::fused(t45, t64, t47 * t65);
+        let t67 = T::fused(t66, t51, -T::fused(-t62, t37, t63 * t41));
+        let t68 = k(2.0) * t59;
+        let t69 = T::fused(-t53, t54, k(1.0));
+        let t70 = T::fused(-t59, t68, t69);
+        let t71 = T::fused(-t61, t52, t70 * t67);
+        let t72 = T::fused(
+            t66,
+            t50 * t66,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t62, t64, t63 * t65))),
+        );
+        let t73 = T::fused(-t61, t67, t70 * t72);
+        let t74 = T::fused(-t32, t33, t46);
+        let t75 = T::fused(
             inner_ring_wz,
-            T::fused(t61, t88, -T::fused(-t59, t86, t57 * t87)),
-            -t90,
+            t39 + t38,
+            T::fused(-inner_ring_wx, t74, inner_ring_wy * (t35 - t31)),
         );
-        let t92 = rotor_wx + t91;
-        let t93 = T::fused(
+        let t76 = rotor_wx - t75;
+        let t77 = T::fused(
             inner_ring_wz,
-            t63,
-            -T::fused(inner_ring_wx, t52, inner_ring_wy * t77),
+            t47,
+            -T::fused(inner_ring_wx, t40, inner_ring_wy * t63),
         );
-        let t94 = rotor_wz - t93;
-        let t95 = T::fused(
+        let t78 = rotor_wz + t77;
+        let t79 = T::fused(
             inner_ring_wz,
-            t62,
-            -T::fused(inner_ring_wx, t45, inner_ring_wy * t76),
+            t45,
+            -T::fused(-inner_ring_wx, t36, inner_ring_wy * t62),
         );
-        let t96 = rotor_wy + t95;
-        let t97 = T::fused(t94, t94, t96 * t96) / t89;
-        let t98 = T::fused(rotor_wx, t93, rotor_wz * t91)
-            - T::fused(-t94, t92, t52 * t97);
-        let t99 = k(5e-6) * T::fused(rotor_wx, rotor_wz, t98);
-        let t100 = T::fused(-rotor_wy, t91, rotor_wx * t95)
-            - T::fused(t96, t92, t45 * t97);
-        let t101 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t100);
-        let t102 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t103 = inner_ring_wx * inner_ring_wy;
-        let t104 = inner_ring_wx * inner_ring_wz;
-        let t105 = T::fused(t59, t104, T::fused(t33, t102, t73 * t103));
-        let t106 = k(1e-5) * t105;
-        let t107 = k(0.00025) * t72;
-        let t108 = T::fused(t57, t104, -T::fused(t38, t102, t71 * t103));
-        let t109 = T::fused(k(1e-5), t108, k(0.8));
-        let t110 = k(0.00025) * t70;
-        let t111 = T::fused(t61, t104, -T::fused(-t44, t102, t75 * t103));
-        let t112 = k(1e-5) * t111;
-        let t113 = k(0.00025) * t74;
-        let t114 = T::fused(t113, t112, T::fused(-t107, t106, t110 * t109))
-            + T::fused(t62, t99, t63 * t101);
-        let t115 = T::fused(k(1e-6), t103, -t114);
-        let t116 = t66 * t115;
+        let t80 = rotor_wy - t79;
+        let t81 = T::fused(t78, t78, t80 * t80) / t74;
+        let t82 = T::fused(rotor_wx, t77, rotor_wz * t75)
+            + T::fused(-t78, t76, t40 * t81);
+        let t83 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t82);
+        let t84 = T::fused(-rotor_wy, t75, rotor_wx * t79)
+            - T::fused(-t80, t76, t36 * t81);
+        let t85 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t84);
+        let t86 = k(2.0) * inner_ring_e0;
+        let t87 = inner_ring_e3 * t86;
+        let t88 = k(2.0) * inner_ring_e1;
+        let t89 = inner_ring_e2 * t88;
+        let t90 = t89 - t87;
+        let t91 = k(0.000125) * t90;
+        let t92 = T::fused(-inner_ring_e0, t86, k(1.0));
+        let t93 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t94 = inner_ring_wx * inner_ring_wy;
+        let t95 = inner_ring_e2 * t86;
+        let t96 = inner_ring_e3 * t88;
+        let t97 = t96 + t95;
+        let t98 = inner_ring_wx * inner_ring_wz;
+        let t99 = T::fused(
+            t98,
+            t97,
+            T::fused(t93, T::fused(-inner_ring_e1, t88, t92), t94 * t90),
+        );
+        let t100 = k(1e-5) * t99;
+        let t101 = k(2.0) * inner_ring_e2;
+        let t102 = T::fused(-inner_ring_e2, t101, t92);
+        let t103 = k(0.000125) * t102;
+        let t104 = inner_ring_e1 * t86;
+        let t105 = inner_ring_e3 * t101;
+        let t106 = t105 - t104;
+        let t107 = T::fused(t98, t106, -T::fused(t93, t89 + t87, t94 * t102));
+        let t108 = T::fused(k(1e-5), t107, k(0.8));
+        let t109 = t105 + t104;
+        let t110 = k(0.000125) * t109;
+        let t111 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t92);
+        let t112 = T::fused(t98, t111, -T::fused(-t93, t96 - t95, t94 * t109));
+        let t113 = k(1e-5) * t112;
+        let t114 = T::fused(t113, t110, T::fused(-t100, t91, t108 * t103))
+            - T::fused(t45, t83, t47 * t85);
+        let t115 = T::fused(k(1e-6), t94, -t114);
+        let t116 = t50 * t115;
         let t117 = T::fused(
-            t64,
+            t48,
             t116,
             -T::fused(
                 k(1e-6),
                 inner_ring_wy * inner_ring_wz,
-                -T::fused(t45, t99, t52 * t101),
+                T::fused(-t36, t83, t40 * t85),
             ),
         );
-        let t118 = k(2.0) * (t1 + t0);
-        let t119 = k(2.0) * (t8 - t7);
-        let t120 = T::fused(
-            outer_ring_wx,
-            T::fused(t119, t61, -T::fused(-t21, t59, t118 * t57)),
-            outer_ring_wy * T::fused(t25, t61, -T::fused(-t24, t57, t2 * t59)),
-        );
-        let t121 = T::fused(t13, t61, T::fused(t19, t57, t9 * t59));
-        let t122 = T::fused(outer_ring_wz, t121, -t120);
-        let t123 = inner_ring_wz - t122;
-        let t124 = T::fused(t119, t75, -T::fused(t21, t73, t118 * t71));
-        let t125 = T::fused(t13, t75, -T::fused(-t19, t71, t9 * t73));
-        let t126 = T::fused(
+        let t118 = t59 * t54;
+        let t119 = t55 * t58;
+        let t120 = t57 * t54;
+        let t121 = t55 * t68;
+        let t122 = T::fused(-t55, k(2.0) * t55, t69);
+        let t123 = T::fused(
             outer_ring_wz,
-            t125,
-            -T::fused(outer_ring_wx, t124, outer_ring_wy * t82),
+            t122,
+            -T::fused(outer_ring_wx, t119 - t118, outer_ring_wy * (t121 + t120)),
         );
-        let t127 = inner_ring_wy + t126;
-        let t128 = T::fused(t119, t44, T::fused(t21, t33, t118 * t38));
-        let t129 = T::fused(t13, t44, -T::fused(-t9, t33, t19 * t38));
-        let t130 = T::fused(
+        let t124 = inner_ring_wz + t123;
+        let t125 = t60 + t56;
+        let t126 = t121 - t120;
+        let t127 = T::fused(
             outer_ring_wz,
-            t129,
-            -T::fused(outer_ring_wx, t128, outer_ring_wy * t69),
+            t126,
+            -T::fused(-outer_ring_wx, t125, outer_ring_wy * t70),
         );
-        let t131 = inner_ring_wx + t130;
-        let t132 = T::fused(t127, t127, t131 * t131) / t121;
-        let t133 = T::fused(inner_ring_wz, t126, inner_ring_wy * t122)
-            + T::fused(-t127, t123, t125 * t132);
-        let t134 = T::fused(inner_ring_wx, t122, inner_ring_wz * t130)
-            + T::fused(-t131, t123, t129 * t132);
-        let t135 = k(0.00025) * t58;
-        let t136 = k(0.00025) * t56;
-        let t137 = k(0.00025) * t60;
-        let t138 = T::fused(t137, t112, T::fused(t135, t106, t136 * t109))
-            - T::fused(t76, t99, t77 * t101);
-        let t139 = T::fused(
-            t69,
-            T::fused(-t68, t133, t81 * t134) - t117,
-            t82 * (T::fused(-t81, t133, t84 * t134) - T::fused(t80, t116, -t138)),
+        let t128 = inner_ring_wy - t127;
+        let t129 = T::fused(-t57, t58, t69);
+        let t130 = t119 + t118;
+        let t131 = T::fused(
+            outer_ring_wz,
+            t130,
+            T::fused(-outer_ring_wx, t129, outer_ring_wy * t61),
         );
+        let t132 = inner_ring_wx - t131;
+        let t133 = T::fused(t128, t128, t132 * t132) / t122;
+        let t134 = T::fused(inner_ring_wz, t127, inner_ring_wy * t123)
+            - T::fused(-t128, t124, t126 * t133);
+        let t135 = T::fused(inner_ring_wx, t123, inner_ring_wz * t131)
+            - T::fused(-t132, t124, t130 * t133);
+        let t136 = k(0.000125) * t97;
+        let t137 = k(0.000125) * t106;
+        let t138 = k(0.000125) * t111;
+        let t139 = T::fused(t113, t138, T::fused(t100, t136, t108 * t137))
+            + T::fused(t62, t83, t63 * t85);
         let t140 = T::fused(
-            t69,
-            T::fused(t128, t68, t124 * t81),
-            t82 * T::fused(t128, t81, t124 * t84),
+            -t61,
+            T::fused(-t52, t134, t67 * t135) + t117,
+            t70 * (T::fused(-t67, t134, t72 * t135) + T::fused(t66, t116, -t139)),
         );
-        let t141 = T::fused(t9, t27, T::fused(outer_ring_wy, t22, outer_ring_wx * t5))
-            - T::fused(t23, t6, T::fused(t16, t119, t20 * t118) * t26);
-        let t142 = T::fused(-t28, t140, T::fused(t83, t129, t85 * t125) * t141)
-            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t139);
-        let t143 = t142 / (k(1e-6) - T::fused(t69, t83, t82 * t85));
-        let t144 = t133 - T::fused(t129, t141, T::fused(-t128, t28, t69 * t143));
-        let t145 = t134 + T::fused(t125, t141, T::fused(-t124, t28, t82 * t143));
-        let t146 = t66 * (t115 - T::fused(-t64, t144, t80 * t145));
+        let t141 = T::fused(
+            -t61,
+            T::fused(-t129, t52, t125 * t67),
+            t70 * T::fused(-t129, t67, t125 * t72),
+        );
+        let t142 = T::fused(t24, t7, t25 * T::fused(t18, t3 + t1, t20 * (t9 - t8)));
+        let t143 = T::fused(t26, t10, T::fused(outer_ring_wy, t23, outer_ring_wx * t6))
+            - t142;
+        let t144 = T::fused(t27, t141, t143 * T::fused(t130, t71, t126 * t73))
+            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t140);
+        let t145 = t144 / (k(1e-6) - T::fused(-t61, t71, t70 * t73));
+        let t146 = t134 - T::fused(t130, t143, -T::fused(t129, t27, t61 * t145));
+        let t147 = t135 + T::fused(t126, t143, T::fused(t125, t27, t70 * t145));
+        let t148 = t50 * (t115 + T::fused(-t48, t146, t66 * t147));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t28,
-            t143,
-            -t141,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t144,
+            -t27,
             t145,
-            -t146,
-            T::fused(k(0.000125), t105, -T::fused(t135, t145, t107 * t146)),
-            T::fused(k(0.000125), t108, T::fused(-t136, t145, t110 * t146)),
-            -T::fused(k(0.000125), t111, T::fused(-t137, t145, t113 * t146)),
+            -t143,
             k(0.0),
-            t98 + T::fused(t62, t146, T::fused(-t45, t144, t76 * t145)),
-            t100 - T::fused(t63, t146, T::fused(-t52, t144, t77 * t145)),
+            k(0.0),
+            k(0.0),
+            t146,
+            -t147,
+            -t148,
+            T::fused(k(0.000125), t99, -T::fused(-t136, t147, t91 * t148)),
+            T::fused(k(0.000125), t107, T::fused(t137, t147, t103 * t148)),
+            -T::fused(k(0.000125), t112, T::fused(t138, t147, t110 * t148)),
+            k(0.0),
+            -(t82 + T::fused(t45, t148, -T::fused(t36, t146, t62 * t147))),
+            T::fused(t47, t148, -T::fused(-t40, t146, t63 * t147)) - t84,
         ];
     }
     /// Writes λ: 142 operations (56 ±, 86 ×, 0 ÷) and 3 functions.
@@ -4430,7 +4445,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 586 operations (233 ±, 348 ×, 5 ÷) and 6 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 546 operations (221 ±, 320 ×, 5 ÷) and 6 functions.
     fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4454,233 +4469,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e3;
-        let t1 = outer_ring_e1 * outer_ring_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = k(12.566370614359172) * t;
-        let t4 = k(1.2566370614359172) * t3.cos();
-        let t5 = t4 * t2;
-        let t6 = outer_ring_wy - t5;
-        let t7 = outer_ring_e0 * outer_ring_e2;
-        let t8 = outer_ring_e1 * outer_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = t4 * t9;
-        let t11 = outer_ring_wz - t10;
-        let t12 = outer_ring_e0 * outer_ring_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t12));
-        let t14 = t3.sin();
-        let t15 = k(0.1) * t14;
-        let t16 = t15.sin();
-        let t17 = outer_ring_e0 * outer_ring_e1;
-        let t18 = outer_ring_e2 * outer_ring_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = t15.cos();
-        let t21 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t12));
-        let t22 = t4 * t21;
-        let t23 = outer_ring_wx + t22;
-        let t24 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t12));
-        let t25 = k(2.0) * (t18 + t17);
-        let t26 = T::fused(t11, t11, t23 * t23) / T::fused(-t20, t24, t16 * t25);
-        let t27 = k(15.791367041742975) * t14;
-        let t28 = T::fused(-t21, t27, T::fused(-outer_ring_wz, t5, outer_ring_wy * t10))
-            + T::fused(t11, t6, t26 * T::fused(-t16, t13, t20 * t19));
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = k(2.0) * (t30 - t29);
-        let t32 = inner_ring_e0 * inner_ring_e0;
-        let t33 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t32));
-        let t34 = rotor_e0 * rotor_e0;
-        let t35 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34));
-        let t36 = inner_ring_e0 * inner_ring_e3;
-        let t37 = inner_ring_e1 * inner_ring_e2;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = k(2.0) * (t40 + t39);
-        let t42 = inner_ring_e0 * inner_ring_e2;
-        let t43 = inner_ring_e1 * inner_ring_e3;
-        let t44 = k(2.0) * (t43 - t42);
-        let t45 = T::fused(t44, t41, -T::fused(t33, t31, t38 * t35));
-        let t46 = k(5e-6) * t45;
-        let t47 = rotor_e0 * rotor_e2;
-        let t48 = rotor_e1 * rotor_e3;
-        let t49 = k(2.0) * (t48 + t47);
-        let t50 = k(2.0) * (t40 - t39);
-        let t51 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34));
-        let t52 = T::fused(t44, t51, -T::fused(-t33, t49, t38 * t50));
-        let t53 = k(5e-6) * t52;
-        let t54 = inner_ring_e0 * inner_ring_e1;
-        let t55 = inner_ring_e2 * inner_ring_e3;
-        let t56 = t55 - t54;
-        let t57 = k(2.0) * t56;
-        let t58 = t43 + t42;
-        let t59 = k(2.0) * t58;
-        let t60 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t32);
-        let t61 = k(2.0) * t60;
-        let t62 = T::fused(t61, t41, -T::fused(-t57, t35, t59 * t31));
-        let t63 = T::fused(t61, t51, T::fused(t57, t50, t59 * t49));
-        let t64 = T::fused(t62, t46, t63 * t53);
-        let t65 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t62, k(5e-6) * t62, t63 * (k(5e-6) * t63)));
-        let t66 = k(1.0) / t65;
-        let t67 = t66 * t64;
-        let t68 = T::fused(t64, t67, -(k(1e-6) + T::fused(t45, t46, t52 * t53)));
-        let t69 = T::fused(t25, t44, -T::fused(t2, t33, t24 * t38));
-        let t70 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t32);
-        let t71 = k(2.0) * t70;
-        let t72 = t37 - t36;
-        let t73 = k(2.0) * t72;
-        let t74 = t55 + t54;
-        let t75 = k(2.0) * t74;
-        let t76 = T::fused(t75, t41, T::fused(t71, t35, t73 * t31));
-        let t77 = T::fused(t75, t51, -T::fused(-t71, t50, t73 * t49));
-        let t78 = k(5e-6) * t76;
-        let t79 = k(5e-6) * t77;
-        let t80 = T::fused(t62, t78, t63 * t79);
-        let t81 = T::fused(t80, t67, -T::fused(t76, t46, t77 * t53));
-        let t82 = T::fused(t25, t75, T::fused(t24, t71, t2 * t73));
-        let t83 = T::fused(t69, t68, t82 * t81);
-        let t84 = T::fused(
-            t80,
-            t66 * t80,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t76, t78, t77 * t79))),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = k(12.566370614359172) * t;
+        let t5 = k(1.2566370614359172) * t4.cos();
+        let t6 = t5 * (t3 - t1);
+        let t7 = outer_ring_wy - t6;
+        let t8 = outer_ring_e2 * t0;
+        let t9 = outer_ring_e3 * t2;
+        let t10 = t9 + t8;
+        let t11 = t5 * t10;
+        let t12 = outer_ring_wz - t11;
+        let t13 = outer_ring_e1 * t0;
+        let t14 = k(2.0) * outer_ring_e2;
+        let t15 = outer_ring_e3 * t14;
+        let t16 = t4.sin();
+        let t17 = k(0.1) * t16;
+        let t18 = t17.cos();
+        let t19 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t20 = t17.sin();
+        let t21 = T::fused(
+            -t18,
+            t15 - t13,
+            t20 * T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t19),
         );
-        let t85 = T::fused(t69, t81, t82 * t84);
-        let t86 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34));
-        let t87 = k(2.0) * (t30 + t29);
-        let t88 = k(2.0) * (t48 - t47);
-        let t89 = T::fused(t44, t88, T::fused(t33, t86, t38 * t87));
-        let t90 = T::fused(
-            inner_ring_wx,
-            t89,
-            inner_ring_wy * T::fused(t75, t88, -T::fused(t73, t86, t71 * t87)),
-        );
-        let t91 = T::fused(
-            inner_ring_wz,
-            T::fused(t61, t88, -T::fused(-t59, t86, t57 * t87)),
-            -t90,
-        );
-        let t92 = rotor_wx + t91;
-        let t93 = T::fused(
-            inner_ring_wz,
-            t63,
-            -T::fused(inner_ring_wx, t52, inner_ring_wy * t77),
-        );
-        let t94 = rotor_wz - t93;
-        let t95 = T::fused(
-            inner_ring_wz,
-            t62,
-            -T::fused(inner_ring_wx, t45, inner_ring_wy * t76),
-        );
-        let t96 = rotor_wy + t95;
-        let t97 = T::fused(t94, t94, t96 * t96) / t89;
-        let t98 = T::fused(rotor_wx, t93, rotor_wz * t91)
-            - T::fused(-t94, t92, t52 * t97);
-        let t99 = rotor_wx * rotor_wz;
-        let t100 = k(5e-6) * (t99 + t98);
-        let t101 = T::fused(-rotor_wy, t91, rotor_wx * t95)
-            - T::fused(t96, t92, t45 * t97);
-        let t102 = rotor_wx * rotor_wy;
-        let t103 = k(5e-6) * (t102 - t101);
-        let t104 = inner_ring_wy * inner_ring_wz;
-        let t105 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t106 = inner_ring_wx * inner_ring_wy;
-        let t107 = inner_ring_wx * inner_ring_wz;
-        let t108 = T::fused(t59, t107, T::fused(t33, t105, t73 * t106));
-        let t109 = k(1e-5) * t108;
-        let t110 = k(0.00025) * t72;
-        let t111 = T::fused(t57, t107, -T::fused(t38, t105, t71 * t106));
-        let t112 = T::fused(k(1e-5), t111, k(0.8));
-        let t113 = k(0.00025) * t70;
-        let t114 = T::fused(t61, t107, -T::fused(-t44, t105, t75 * t106));
-        let t115 = k(1e-5) * t114;
-        let t116 = k(0.00025) * t74;
-        let t117 = T::fused(t116, t115, T::fused(-t110, t109, t113 * t112))
-            + T::fused(t62, t100, t63 * t103);
-        let t118 = T::fused(k(1e-6), t106, -t117);
-        let t119 = t66 * t118;
-        let t120 = T::fused(
-            t64,
-            t119,
-            -T::fused(k(1e-6), t104, -T::fused(t45, t100, t52 * t103)),
-        );
-        let t121 = k(2.0) * (t1 + t0);
-        let t122 = k(2.0) * (t8 - t7);
-        let t123 = T::fused(
-            outer_ring_wx,
-            T::fused(t122, t61, -T::fused(-t21, t59, t121 * t57)),
-            outer_ring_wy * T::fused(t25, t61, -T::fused(-t24, t57, t2 * t59)),
-        );
-        let t124 = T::fused(t13, t61, T::fused(t19, t57, t9 * t59));
-        let t125 = T::fused(outer_ring_wz, t124, -t123);
-        let t126 = inner_ring_wz - t125;
-        let t127 = T::fused(t122, t75, -T::fused(t21, t73, t121 * t71));
-        let t128 = T::fused(t13, t75, -T::fused(-t19, t71, t9 * t73));
-        let t129 = T::fused(
-            outer_ring_wz,
-            t128,
-            -T::fused(outer_ring_wx, t127, outer_ring_wy * t82),
-        );
-        let t130 = inner_ring_wy + t129;
-        let t131 = T::fused(t122, t44, T::fused(t21, t33, t121 * t38));
-        let t132 = T::fused(t13, t44, -T::fused(-t9, t33, t19 * t38));
-        let t133 = T::fused(
-            outer_ring_wz,
-            t132,
-            -T::fused(outer_ring_wx, t131, outer_ring_wy * t69),
-        );
-        let t134 = inner_ring_wx + t133;
-        let t135 = T::fused(t130, t130, t134 * t134) / t124;
-        let t136 = T::fused(inner_ring_wz, t129, inner_ring_wy * t125)
-            + T::fused(-t130, t126, t128 * t135);
-        let t137 = T::fused(inner_ring_wx, t125, inner_ring_wz * t133)
-            + T::fused(-t134, t126, t132 * t135);
-        let t138 = k(0.00025) * t58;
-        let t139 = k(0.00025) * t56;
-        let t140 = k(0.00025) * t60;
-        let t141 = T::fused(t140, t115, T::fused(t138, t109, t139 * t112))
-            - T::fused(t76, t100, t77 * t103);
-        let t142 = T::fused(
-            t69,
-            T::fused(-t68, t136, t81 * t137) - t120,
-            t82 * (T::fused(-t81, t136, t84 * t137) - T::fused(t80, t119, -t141)),
-        );
-        let t143 = T::fused(
-            t69,
-            T::fused(t131, t68, t127 * t81),
-            t82 * T::fused(t131, t81, t127 * t84),
-        );
-        let t144 = T::fused(t9, t27, T::fused(outer_ring_wy, t22, outer_ring_wx * t5))
-            - T::fused(t23, t6, T::fused(t16, t122, t20 * t121) * t26);
-        let t145 = T::fused(-t28, t143, T::fused(t83, t132, t85 * t128) * t144)
-            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t142);
-        let t146 = t145 / (k(1e-6) - T::fused(t69, t83, t82 * t85));
-        let t147 = t136 - T::fused(t132, t144, T::fused(-t131, t28, t69 * t146));
-        let t148 = t137 + T::fused(t128, t144, T::fused(-t127, t28, t82 * t146));
-        let t149 = t66 * (t118 - T::fused(-t64, t147, t80 * t148));
-        let t150 = T::fused(-k(0.000125), t108, T::fused(t138, t148, t110 * t149));
-        let t151 = T::fused(k(0.000125), t111, T::fused(-t139, t148, t113 * t149));
-        let t152 = T::fused(k(0.000125), t114, T::fused(-t140, t148, t116 * t149));
-        let t153 = t98 + T::fused(t62, t149, T::fused(-t45, t147, t76 * t148));
-        let t154 = t101 - T::fused(t63, t149, T::fused(-t52, t147, t77 * t148));
-        let t155 = k(0.08) * t150;
-        let t156 = T::fused(k(0.08), t151, k(0.8));
-        let t157 = k(0.1) + t156;
-        let t158 = k(0.08) * t152;
-        let t159 = k(5e-6) * (t102 - t154);
-        let t160 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t161 = k(2.0) * t160;
-        let t162 = T::fused(-t160, t161, k(1.0));
-        let t163 = k(5e-6) * (t99 + t153);
-        let t164 = T::fused(
+        let t22 = T::fused(-outer_ring_e1, t2, t19);
+        let t23 = t5 * t22;
+        let t24 = outer_ring_wx + t23;
+        let t25 = T::fused(t12, t12, t24 * t24)
+            / T::fused(-t18, T::fused(-outer_ring_e2, t14, t19), t20 * (t15 + t13));
+        let t26 = k(15.791367041742975) * t16;
+        let t27 = T::fused(-t26, t22, T::fused(-outer_ring_wz, t6, outer_ring_wy * t11))
+            - T::fused(-t12, t7, t25 * t21);
+        let t28 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4689,37 +4512,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t165 = t164 * t161;
-        let t166 = T::fused(t162, t159, t165 * t163);
-        let t167 = T::fused(
-            -k(1e-6),
-            t106 - t149,
-            T::fused(t116, t158, T::fused(t113, t156, t110 * t155)) + t166,
-        );
-        let t168 = T::fused(k(1e-6), T::fused(outer_ring_wx, outer_ring_wy, t144), t167);
-        let t169 = k(0.05) * t14;
-        let t170 = t169.sin();
-        let t171 = t169.cos();
-        let t172 = T::fused(t170, outer_ring_e3, t171 * outer_ring_e2);
-        let t173 = k(2.0) * t172;
-        let t174 = T::fused(t170, outer_ring_e1, t171 * outer_ring_e0) * t173;
-        let t175 = T::fused(-t165, t159, t162 * t163);
-        let t176 = T::fused(
-            k(2e-6),
-            t148,
-            T::fused(-t140, t158, T::fused(-t139, t156, t138 * t155)) + t175,
-        );
-        let t177 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+        let t29 = k(2.0) * t28;
+        let t30 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t178 = k(2.0) * t177;
-        let t179 = T::fused(
+        let t31 = t30 * t29;
+        let t32 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t33 = k(2.0) * t32;
+        let t34 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t35 = t34 * t33;
+        let t36 = t35 + t31;
+        let t37 = k(5e-6) * t36;
+        let t38 = t34 * t29;
+        let t39 = t30 * t33;
+        let t40 = t39 - t38;
+        let t41 = k(5e-6) * t40;
+        let t42 = t32 * t29;
+        let t43 = k(2.0) * t34;
+        let t44 = t30 * t43;
+        let t45 = t44 - t42;
+        let t46 = T::fused(-t28, t29, k(1.0));
+        let t47 = T::fused(-t30, k(2.0) * t30, t46);
+        let t48 = T::fused(-t45, t37, t47 * t41);
+        let t49 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t45, k(5e-6) * t45, t47 * (k(5e-6) * t47)));
+        let t50 = k(1.0) / t49;
+        let t51 = t50 * t48;
+        let t52 = T::fused(t48, t51, -(k(1e-6) + T::fused(t36, t37, t40 * t41)));
+        let t53 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4728,46 +4570,277 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for DrivenGyroscope<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t180 = t179 * t178;
-        let t181 = k(1e-6) * (t104 + t147);
-        let t182 = T::fused(-t177, t178, k(1.0));
-        let t183 = T::fused(-t180, t176, t182 * t181);
-        let t184 = T::fused(k(2e-6), t28, t183);
-        let t185 = T::fused(-t172, t173, k(1.0));
+        let t54 = k(2.0) * t53;
+        let t55 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t56 = t55 * t54;
+        let t57 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t58 = k(2.0) * t57;
+        let t59 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t60 = t59 * t58;
+        let t61 = t60 - t56;
+        let t62 = T::fused(-t34, t43, t46);
+        let t63 = t44 + t42;
+        let t64 = k(5e-6) * t62;
+        let t65 = k(5e-6) * t63;
+        let t66 = T::fused(t45, t64, t47 * t65);
+        let t67 = T::fused(t66, t51, -T::fused(-t62, t37, t63 * t41));
+        let t68 = k(2.0) * t59;
+        let t69 = T::fused(-t53, t54, k(1.0));
+        let t70 = T::fused(-t59, t68, t69);
+        let t71 = T::fused(-t61, t52, t70 * t67);
+        let t72 = T::fused(
+            t66,
+            t50 * t66,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t62, t64, t63 * t65))),
+        );
+        let t73 = T::fused(-t61, t67, t70 * t72);
+        let t74 = t32 * t33;
+        let t75 = t46 - t74;
+        let t76 = T::fused(
+            inner_ring_wz,
+            t39 + t38,
+            T::fused(-inner_ring_wx, t75, inner_ring_wy * (t35 - t31)),
+        );
+        let t77 = rotor_wx - t76;
+        let t78 = T::fused(
+            inner_ring_wz,
+            t47,
+            -T::fused(inner_ring_wx, t40, inner_ring_wy * t63),
+        );
+        let t79 = rotor_wz + t78;
+        let t80 = T::fused(
+            inner_ring_wz,
+            t45,
+            -T::fused(-inner_ring_wx, t36, inner_ring_wy * t62),
+        );
+        let t81 = rotor_wy - t80;
+        let t82 = T::fused(t79, t79, t81 * t81) / t75;
+        let t83 = T::fused(rotor_wx, t78, rotor_wz * t76)
+            + T::fused(-t79, t77, t40 * t82);
+        let t84 = rotor_wx * rotor_wz;
+        let t85 = k(5e-6) * (t84 - t83);
+        let t86 = T::fused(-rotor_wy, t76, rotor_wx * t80)
+            - T::fused(-t81, t77, t36 * t82);
+        let t87 = rotor_wx * rotor_wy;
+        let t88 = k(5e-6) * (t87 + t86);
+        let t89 = inner_ring_wy * inner_ring_wz;
+        let t90 = k(2.0) * inner_ring_e0;
+        let t91 = inner_ring_e3 * t90;
+        let t92 = k(2.0) * inner_ring_e1;
+        let t93 = inner_ring_e2 * t92;
+        let t94 = t93 - t91;
+        let t95 = k(0.000125) * t94;
+        let t96 = T::fused(-inner_ring_e0, t90, k(1.0));
+        let t97 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t98 = inner_ring_wx * inner_ring_wy;
+        let t99 = inner_ring_e2 * t90;
+        let t100 = inner_ring_e3 * t92;
+        let t101 = t100 + t99;
+        let t102 = inner_ring_wx * inner_ring_wz;
+        let t103 = T::fused(
+            t102,
+            t101,
+            T::fused(t97, T::fused(-inner_ring_e1, t92, t96), t98 * t94),
+        );
+        let t104 = k(1e-5) * t103;
+        let t105 = k(2.0) * inner_ring_e2;
+        let t106 = T::fused(-inner_ring_e2, t105, t96);
+        let t107 = k(0.000125) * t106;
+        let t108 = inner_ring_e1 * t90;
+        let t109 = inner_ring_e3 * t105;
+        let t110 = t109 - t108;
+        let t111 = T::fused(t102, t110, -T::fused(t97, t93 + t91, t98 * t106));
+        let t112 = T::fused(k(1e-5), t111, k(0.8));
+        let t113 = t109 + t108;
+        let t114 = k(0.000125) * t113;
+        let t115 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t96);
+        let t116 = T::fused(t102, t115, -T::fused(-t97, t100 - t99, t98 * t113));
+        let t117 = k(1e-5) * t116;
+        let t118 = T::fused(t117, t114, T::fused(-t104, t95, t112 * t107))
+            - T::fused(t45, t85, t47 * t88);
+        let t119 = T::fused(k(1e-6), t98, -t118);
+        let t120 = t50 * t119;
+        let t121 = T::fused(
+            t48,
+            t120,
+            -T::fused(k(1e-6), t89, T::fused(-t36, t85, t40 * t88)),
+        );
+        let t122 = t59 * t54;
+        let t123 = t55 * t58;
+        let t124 = t57 * t54;
+        let t125 = t55 * t68;
+        let t126 = k(2.0) * t55;
+        let t127 = t55 * t126;
+        let t128 = t69 - t127;
+        let t129 = T::fused(
+            outer_ring_wz,
+            t128,
+            -T::fused(outer_ring_wx, t123 - t122, outer_ring_wy * (t125 + t124)),
+        );
+        let t130 = inner_ring_wz + t129;
+        let t131 = t60 + t56;
+        let t132 = t125 - t124;
+        let t133 = T::fused(
+            outer_ring_wz,
+            t132,
+            -T::fused(-outer_ring_wx, t131, outer_ring_wy * t70),
+        );
+        let t134 = inner_ring_wy - t133;
+        let t135 = T::fused(-t57, t58, t69);
+        let t136 = t123 + t122;
+        let t137 = T::fused(
+            outer_ring_wz,
+            t136,
+            T::fused(-outer_ring_wx, t135, outer_ring_wy * t61),
+        );
+        let t138 = inner_ring_wx - t137;
+        let t139 = T::fused(t134, t134, t138 * t138) / t128;
+        let t140 = T::fused(inner_ring_wz, t133, inner_ring_wy * t129)
+            - T::fused(-t134, t130, t132 * t139);
+        let t141 = T::fused(inner_ring_wx, t129, inner_ring_wz * t137)
+            - T::fused(-t138, t130, t136 * t139);
+        let t142 = k(0.000125) * t101;
+        let t143 = k(0.000125) * t110;
+        let t144 = k(0.000125) * t115;
+        let t145 = T::fused(t117, t144, T::fused(t104, t142, t112 * t143))
+            + T::fused(t62, t85, t63 * t88);
+        let t146 = T::fused(
+            -t61,
+            T::fused(-t52, t140, t67 * t141) + t121,
+            t70 * (T::fused(-t67, t140, t72 * t141) + T::fused(t66, t120, -t145)),
+        );
+        let t147 = T::fused(
+            -t61,
+            T::fused(-t135, t52, t131 * t67),
+            t70 * T::fused(-t135, t67, t131 * t72),
+        );
+        let t148 = T::fused(t24, t7, t25 * T::fused(t18, t3 + t1, t20 * (t9 - t8)));
+        let t149 = T::fused(t26, t10, T::fused(outer_ring_wy, t23, outer_ring_wx * t6))
+            - t148;
+        let t150 = T::fused(t27, t147, t149 * T::fused(t136, t71, t132 * t73))
+            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t146);
+        let t151 = t150 / (k(1e-6) - T::fused(-t61, t71, t70 * t73));
+        let t152 = t140 - T::fused(t136, t149, -T::fused(t135, t27, t61 * t151));
+        let t153 = t141 + T::fused(t132, t149, T::fused(t131, t27, t70 * t151));
+        let t154 = t50 * (t119 + T::fused(-t48, t152, t66 * t153));
+        let t155 = T::fused(k(0.000125), t103, -T::fused(-t142, t153, t95 * t154));
+        let t156 = T::fused(k(0.000125), t111, T::fused(t143, t153, t107 * t154));
+        let t157 = T::fused(k(0.000125), t116, T::fused(t144, t153, t114 * t154));
+        let t158 = t83 + T::fused(t45, t154, -T::fused(t36, t152, t62 * t153));
+        let t159 = t86 - T::fused(t47, t154, -T::fused(-t40, t152, t63 * t153));
+        let t160 = k(0.08) * t155;
+        let t161 = T::fused(k(0.08), t156, k(0.8));
+        let t162 = k(0.1) + t161;
+        let t163 = k(0.08) * t157;
+        let t164 = k(5e-6) * (t87 + t159);
+        let t165 = k(1.0) - t74;
+        let t166 = k(5e-6) * (t84 - t158);
+        let t167 = t28 * t33;
+        let t168 = T::fused(t165, t164, t167 * t166);
+        let t169 = inner_ring_e0 * inner_ring_e1;
+        let t170 = inner_ring_e2 * inner_ring_e3;
+        let t171 = inner_ring_e0 * inner_ring_e0;
+        let t172 = T::fused(
+            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t171))),
+            t161,
+            k(0.00025)
+                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
+                * t160,
+        );
+        let t173 = T::fused(
+            k(1e-6),
+            t98 - t154,
+            T::fused(-(k(0.00025) * (t170 + t169)), t163, t172) - t168,
+        );
+        let t174 = T::fused(
+            -k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, t149),
+            t173,
+        );
+        let t175 = k(0.05) * t16;
+        let t176 = t175.sin();
+        let t177 = t175.cos();
+        let t178 = T::fused(t176, outer_ring_e3, t177 * outer_ring_e2);
+        let t179 = k(2.0) * t178;
+        let t180 = T::fused(t176, outer_ring_e1, t177 * outer_ring_e0) * t179;
+        let t181 = T::fused(-t167, t164, t165 * t166);
+        let t182 = T::fused(
+            k(0.00025) * (t170 - t169),
+            t161,
+            k(0.00025)
+                * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
+                * t160,
+        );
+        let t183 = T::fused(
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t171)),
+            t163,
+            t182,
+        ) - t181;
+        let t184 = T::fused(k(2e-6), t153, t183);
+        let t185 = t53 * t126;
+        let t186 = k(1e-6) * (t89 - t152);
+        let t187 = k(1.0) - t127;
+        let t188 = T::fused(t185, t184, t187 * t186);
+        let t189 = T::fused(k(2e-6), t27, t188);
+        let t190 = T::fused(-t178, t179, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t28,
-            t146,
-            -t144,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t147,
-            t148,
-            -t149,
-            -t150,
+            -t27,
             t151,
-            -t152,
+            -t149,
             k(0.0),
-            t153,
-            t154,
+            k(0.0),
+            k(0.0),
+            t152,
+            -t153,
+            -t154,
             t155,
-            -(k(0.1) + t157),
-            t158,
-            T::fused(t174, t168, t185 * t184),
-            T::fused(-t185, t168, t174 * t184),
-            t155,
+            t156,
             -t157,
-            t158,
-            -T::fused(t182, t176, t180 * t181),
-            -t183,
-            t155,
-            -t156,
-            t158,
-            t166,
-            t175,
+            k(0.0),
+            -t158,
+            -t159,
+            -t160,
+            -(k(0.1) + t162),
+            t163,
+            T::fused(-t180, t174, t190 * t189),
+            T::fused(t190, t174, t180 * t189),
+            -t160,
+            -t162,
+            t163,
+            T::fused(-t185, t186, t187 * t184),
+            -t188,
+            -t160,
+            -t161,
+            t163,
+            t168,
+            t181,
         ];
     }
 }
@@ -4780,7 +4853,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1406 operations (528 ±, 876 ×, 2 ÷) and 18 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1403 operations (528 ±, 873 ×, 2 ÷) and 18 functions.
     fn joint_jacobian(
         &self,
         t: T,
@@ -4809,44 +4882,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             t22,
             t28,
             t29,
-            t38,
             t39,
             t40,
             t41,
             t42,
-            t47,
+            t43,
             t48,
             t49,
-            t52,
-            t54,
+            t50,
+            t53,
             t55,
-            t58,
+            t56,
             t59,
             t60,
-            t63,
-            t66,
+            t61,
+            t64,
             t67,
-            t73,
+            t68,
             t74,
             t75,
-            t77,
-            t82,
+            t76,
+            t79,
             t83,
             t84,
             t85,
             t86,
-            t88,
-            t90,
+            t87,
+            t89,
             t91,
             t92,
             t93,
-            t95,
+            t94,
             t96,
             t97,
-            t99,
+            t98,
             t100,
             t101,
-            t103,
+            t102,
             t104,
             t105,
             t106,
@@ -4854,47 +4926,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             t108,
             t109,
             t110,
-            t113,
+            t111,
             t114,
             t115,
             t116,
             t117,
             t118,
-            t120,
+            t119,
             t121,
             t122,
             t123,
-            t125,
+            t124,
             t126,
-            t128,
-            t130,
-            t133,
+            t127,
+            t129,
+            t131,
             t134,
             t135,
             t136,
             t137,
             t138,
             t139,
-            t141,
+            t140,
             t142,
             t143,
             t144,
-            t146,
+            t145,
             t147,
-            t149,
-            t151,
-            t154,
+            t148,
+            t150,
+            t152,
             t155,
+            t156,
             t157,
             t158,
             t159,
-            t162,
+            t160,
             t163,
             t164,
             t165,
             t166,
             t167,
-            t169,
+            t168,
             t170,
             t171,
             t172,
@@ -4907,7 +4980,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             t179,
             t180,
             t181,
-            t184,
+            t182,
             t185,
             t186,
             t187,
@@ -4966,224 +5039,212 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
                 T::fused(t9, t5, T::fused(t13, t18, t7 * t20)),
                 t21 * (t13 * t28),
             );
-            let t30 = T::fused(
+            let t30 = k(2.0) * t0;
+            let t31 = k(6.00125e-6) * (t2 * t2);
+            let t32 = T::fused(
                 -k(1.2566370614359172),
                 T::fused(k(3.9739061945541905), u2, -t23),
                 t25,
             );
-            let t31 = t7 * t21;
-            let t32 = T::fused(
+            let t33 = t7 * t21;
+            let t34 = T::fused(
                 -k(1.05520916103247),
-                T::fused(-t9, t21, k(0.020025) * (u1 * t30)),
-                t19 * t31,
+                T::fused(-t9, t21, k(0.020025) * (u1 * t32)),
+                t19 * t33,
             );
-            let t33 = t2 * t2;
-            let t34 = T::fused(k(9.476794145926002e-5), t0 * t32, t27 * t14);
-            let t35 = T::fused(
-                -t32,
-                t3,
-                T::fused(-t26, t15, k(2.0) * (t0 * (k(6.00125e-6) * (t34 * t33)))),
+            let t35 = T::fused(k(9.476794145926002e-5), t0 * t34, t27 * t14);
+            let t36 = T::fused(
+                t22,
+                t17,
+                T::fused(t34, t3, T::fused(-(t35 * t31), t30, t26 * t15)),
             );
-            let t36 = k(1.2566370614359173e-5) * t16;
-            let t37 = t36 - t11;
-            let t38 = T::fused(
-                t19,
-                T::fused(-t22, t17, t35),
-                t0 * T::fused(u0, t37, t31 * t4),
-            );
-            let t39 = t19 * t37;
-            let t40 = t30 * t10;
-            let t41 = T::fused(k(4.9937578027465666), t11, t36);
-            let t42 = T::fused(t9, t19, k(0.9476794145926002) * t7);
-            let t43 = k(166631.95167673402) * t22;
-            let t44 = t19 * t43;
-            let t45 = k(6.314572895816972e-6) * t44;
-            let t46 = k(1.2503907471084714) - t1;
-            let t47 = T::fused(k(1.0049954898833748e-5), u0 * t46, t19 * t24);
-            let t48 = T::fused(t0, t45, k(166631.95167673402) * t47);
-            let t49 = T::fused(t21, k(16.6631951676734) * t42, t12 * (t13 * t48));
-            let t50 = k(0.6663195167673401) * t0;
-            let t51 = u0 * t50;
-            let t52 = k(16.6631951676734) * t12;
-            let t53 = T::fused(k(2.500781494216943), u2, t25);
-            let t54 = t8.cos();
-            let t55 = T::fused(-k(0.0399875), u0 * t53, t54);
-            let t56 = k(1.6746435990558215) * t22;
-            let t57 = t0 * (u0 * t56);
-            let t58 = T::fused(
+            let t37 = k(1.2566370614359173e-5) * t16;
+            let t38 = t37 - t11;
+            let t39 = T::fused(-t19, t36, t0 * T::fused(u0, t38, t33 * t4));
+            let t40 = t19 * t38;
+            let t41 = t32 * t10;
+            let t42 = T::fused(k(4.9937578027465666), t11, t37);
+            let t43 = T::fused(t9, t19, k(0.9476794145926002) * t7);
+            let t44 = k(166631.95167673402) * t22;
+            let t45 = t19 * t44;
+            let t46 = k(6.314572895816972e-6) * t45;
+            let t47 = k(1.2503907471084714) - t1;
+            let t48 = T::fused(k(1.0049954898833748e-5), u0 * t47, t19 * t24);
+            let t49 = T::fused(t0, t46, k(166631.95167673402) * t48);
+            let t50 = T::fused(t21, k(16.6631951676734) * t43, t12 * (t13 * t49));
+            let t51 = k(0.6663195167673401) * t0;
+            let t52 = u0 * t51;
+            let t53 = k(16.6631951676734) * t12;
+            let t54 = T::fused(k(2.500781494216943), u2, t25);
+            let t55 = t8.cos();
+            let t56 = T::fused(-k(0.0399875), u0 * t54, t55);
+            let t57 = k(1.6746435990558215) * t22;
+            let t58 = t0 * (u0 * t57);
+            let t59 = T::fused(
                 t0,
-                T::fused(-u0, t51, T::fused(-t9, t52, t24 * t43)),
-                t19 * T::fused(-k(16.6631951676734), t55, t57 - T::fused(t22, t45, -t57)),
+                T::fused(-u0, t52, T::fused(-t9, t53, t24 * t44)),
+                t19 * T::fused(-k(16.6631951676734), t56, t58 - T::fused(t22, t46, -t58)),
             );
-            let t59 = T::fused(-t19, t51, T::fused(-t53, t50, t46 * t56));
-            let t60 = T::fused(
+            let t60 = T::fused(-t19, t52, T::fused(-t54, t51, t47 * t57));
+            let t61 = T::fused(
                 -k(2.500781494216943),
-                t51,
-                k(1.2566370614359173e-5) * t44,
+                t52,
+                k(1.2566370614359173e-5) * t45,
             );
-            let t61 = u0 * t0;
-            let t62 = t19 * t2;
-            let t63 = T::fused(k(1.2566370614359172), t61, t27 * t62);
-            let t64 = k(9.476794145926002e-5) * t62;
-            let t65 = t0 * t64;
-            let t66 = T::fused(k(15.791367041742975), t0, t19 * t65);
-            let t67 = u1 * t19;
-            let t68 = k(0.021130563449675212) * t65;
-            let t69 = u1 * t68;
-            let t70 = t14 * t62;
-            let t71 = t0 * t70;
-            let t72 = T::fused(
-                -k(1.2566370614359172),
-                t69,
-                k(6.314572895816972e-6) * t71,
-            );
+            let t62 = u0 * t0;
+            let t63 = t19 * t2;
+            let t64 = T::fused(k(1.2566370614359172), t62, t27 * t63);
+            let t65 = k(9.476794145926002e-5) * t63;
+            let t66 = t0 * t65;
+            let t67 = T::fused(k(15.791367041742975), t0, t19 * t66);
+            let t68 = u1 * t19;
+            let t69 = k(0.021130563449675212) * t66;
+            let t70 = u1 * t69;
+            let t71 = t14 * t63;
+            let t72 = t0 * t71;
             let t73 = T::fused(
-                k(1.2566370614359172),
-                t67,
-                T::fused(t0, t72, k(3.1582734083485947e-6) * t70),
-            );
-            let t74 = k(1.05520916103247) * t65;
-            let t75 = T::fused(
-                -t21,
-                t13 * t63,
-                t12 * T::fused(t7, t66, T::fused(t13, t73, t9 * t74)),
-            );
-            let t76 = T::fused(-k(1.2566370614359172), t14, u1);
-            let t77 = T::fused(-k(0.06332573977646111), u0 * t76, t31);
-            let t78 = T::fused(
-                -t26,
+                -k(1.2566370614359172),
                 t70,
-                k(2.0) * (t0 * (k(6.00125e-6) * (t33 * (t19 * t34)))),
+                k(6.314572895816972e-6) * t72,
             );
-            let t79 = k(1.2566370614359172) * t22;
-            let t80 = k(1.2566370614359173e-5) * t71;
-            let t81 = t80 - t69;
-            let t82 = t2 * t34;
-            let t83 = T::fused(
-                t19,
-                T::fused(
-                    -k(15.791367041742975),
-                    t77,
-                    T::fused(-t22, t72, T::fused(-t32, t64, t78)),
-                ),
-                t0 * T::fused(u1, t79, T::fused(u0, t81, T::fused(t31, t65, t82))),
+            let t74 = T::fused(
+                k(1.2566370614359172),
+                t68,
+                T::fused(t0, t73, k(3.1582734083485947e-6) * t71),
             );
-            let t84 = T::fused(-t0, t76, t19 * t81);
-            let t85 = t61 + T::fused(-t19, t79, t30 * t68);
-            let t86 = T::fused(k(4.9937578027465666), t69, t80);
-            let t87 = k(0.5) * x0;
-            let t88 = t87.cos();
-            let t89 = k(0.05) * t7;
-            let t90 = t89.sin();
-            let t91 = t90 * t88;
-            let t92 = t89.cos();
-            let t93 = t92 * t88;
-            let t94 = t93 * t91;
-            let t95 = t87.sin();
-            let t96 = t90 * t95;
-            let t97 = t92 * t95;
-            let t98 = t97 * t96;
-            let t99 = k(2.0) * (t98 + t94);
-            let t100 = k(1.2566370614359172) * t13;
-            let t101 = t100 * t9;
-            let t102 = t93 * t93;
-            let t103 = k(2.0) * (k(0.5) - T::fused(t97, t97, t102));
-            let t104 = t100 * t54;
-            let t105 = T::fused(-t101, t99, t104 * t103);
-            let t106 = k(2.0) * (t98 - t94);
-            let t107 = k(2.0) * (k(0.5) - T::fused(t96, t96, t102));
-            let t108 = T::fused(t9, t106, t54 * t107);
-            let t109 = k(2.0) * (k(0.5) - T::fused(t91, t91, t102));
-            let t110 = k(2.0) * T::fused(t93, t96, t91 * t97);
-            let t111 = t93 * t97;
-            let t112 = t91 * t96;
-            let t113 = k(2.0) * (t112 - t111);
-            let t114 = T::fused(-t9, t110, t54 * t113);
-            let t115 = k(2.0) * (t112 + t111);
-            let t116 = k(1.0) / T::fused(-t109, t108, t115 * t114);
-            let t117 = t109 * t116;
-            let t118 = t117 * t105;
-            let t119 = k(0.5) * x1;
-            let t120 = t119.sin();
-            let t121 = t119.cos();
-            let t122 = T::fused(t97, t120, t91 * t121);
-            let t123 = T::fused(-t96, t120, t93 * t121);
-            let t124 = t123 * t123;
-            let t125 = k(2.0) * (k(0.5) - T::fused(t122, t122, t124));
-            let t126 = T::fused(t93, t120, t96 * t121);
-            let t127 = t123 * t126;
-            let t128 = T::fused(-t91, t120, t97 * t121);
-            let t129 = t122 * t128;
-            let t130 = k(2.0) * (t129 + t127);
-            let t131 = t123 * t128;
-            let t132 = t122 * t126;
-            let t133 = k(2.0) * (t132 - t131);
-            let t134 = T::fused(t113, t133, T::fused(t109, t125, t110 * t130));
-            let t135 = t115 * t116;
-            let t136 = t135 * t105;
-            let t137 = T::fused(t107, t133, -T::fused(-t115, t125, t106 * t130));
-            let t138 = T::fused(t134, t118, t137 * t136);
-            let t139 = k(1e-6) * t138;
-            let t140 = k(0.5) * x2;
-            let t141 = t140.sin();
-            let t142 = t140.cos();
-            let t143 = T::fused(t123, t141, t122 * t142);
-            let t144 = T::fused(-t122, t141, t123 * t142);
-            let t145 = t144 * t144;
-            let t146 = k(2.0) * (k(0.5) - T::fused(t143, t143, t145));
-            let t147 = T::fused(-t128, t141, t126 * t142);
-            let t148 = t144 * t147;
-            let t149 = T::fused(t126, t141, t128 * t142);
-            let t150 = t143 * t149;
-            let t151 = k(2.0) * (t150 + t148);
-            let t152 = t144 * t149;
-            let t153 = t143 * t147;
-            let t154 = k(2.0) * (t153 - t152);
-            let t155 = T::fused(t133, t154, T::fused(t125, t146, t130 * t151));
-            let t156 = t129 - t127;
-            let t157 = k(2.0) * t156;
-            let t158 = k(0.5) - T::fused(t128, t128, t124);
-            let t159 = k(2.0) * t158;
-            let t160 = t123 * t122;
-            let t161 = t128 * t126;
-            let t162 = t161 + t160;
-            let t163 = k(2.0) * t162;
-            let t164 = T::fused(t113, t163, -T::fused(t109, t157, t110 * t159));
-            let t165 = T::fused(t107, t163, T::fused(-t115, t157, t106 * t159));
-            let t166 = T::fused(t164, t118, t165 * t136);
-            let t167 = T::fused(t163, t154, -T::fused(t157, t146, t159 * t151));
-            let t168 = t132 + t131;
-            let t169 = k(2.0) * t168;
-            let t170 = t161 - t160;
-            let t171 = k(2.0) * t170;
-            let t172 = k(0.5) - T::fused(t126, t126, t124);
-            let t173 = k(2.0) * t172;
-            let t174 = T::fused(t113, t173, -T::fused(-t109, t169, t110 * t171));
-            let t175 = T::fused(t107, t173, T::fused(t115, t169, t106 * t171));
-            let t176 = T::fused(t174, t118, t175 * t136);
-            let t177 = T::fused(t173, t154, -T::fused(-t169, t146, t171 * t151));
-            let t178 = k(1e-5) * T::fused(t155, t138, T::fused(t167, t166, t177 * t176));
-            let t179 = t178 + t139;
-            let t180 = k(2.0) * (t150 - t148);
-            let t181 = k(2.0) * (k(0.5) - T::fused(t149, t149, t145));
-            let t182 = t144 * t143;
-            let t183 = t149 * t147;
-            let t184 = k(2.0) * (t183 + t182);
-            let t185 = T::fused(t133, t184, -T::fused(t125, t180, t130 * t181));
-            let t186 = T::fused(t163, t184, T::fused(t157, t180, t159 * t181));
-            let t187 = T::fused(t173, t184, T::fused(-t169, t180, t171 * t181));
-            let t188 = k(5e-6) * T::fused(t185, t138, T::fused(t186, t166, t187 * t176));
-            let t189 = x2.cos();
-            let t190 = k(2.0) * (t153 + t152);
-            let t191 = k(2.0) * (t183 - t182);
-            let t192 = k(2.0) * (k(0.5) - T::fused(t147, t147, t145));
-            let t193 = T::fused(t133, t192, -T::fused(-t125, t190, t130 * t191));
-            let t194 = T::fused(t163, t192, T::fused(-t157, t190, t159 * t191));
-            let t195 = T::fused(t173, t192, T::fused(t169, t190, t171 * t191));
-            let t196 = k(5e-6) * T::fused(t193, t138, T::fused(t194, t166, t195 * t176));
-            let t197 = x2.sin();
-            let t198 = k(0.00025) * t168;
-            let t199 = k(0.00025) * t156;
+            let t75 = k(1.05520916103247) * t66;
+            let t76 = T::fused(
+                -t21,
+                t13 * t64,
+                t12 * T::fused(t7, t67, T::fused(t13, t74, t9 * t75)),
+            );
+            let t77 = T::fused(t34, t65, T::fused(-t30, t19 * t35 * t31, t26 * t71));
+            let t78 = T::fused(-k(1.2566370614359172), t14, u1);
+            let t79 = T::fused(-k(0.06332573977646111), u0 * t78, t33);
+            let t80 = k(1.2566370614359172) * t22;
+            let t81 = k(1.2566370614359173e-5) * t72;
+            let t82 = t81 - t70;
+            let t83 = t2 * t35;
+            let t84 = T::fused(
+                -t19,
+                T::fused(k(15.791367041742975), t79, T::fused(t22, t73, t77)),
+                t0 * T::fused(u1, t80, T::fused(u0, t82, T::fused(t33, t66, t83))),
+            );
+            let t85 = T::fused(-t0, t78, t19 * t82);
+            let t86 = t62 + T::fused(-t19, t80, t32 * t69);
+            let t87 = T::fused(k(4.9937578027465666), t70, t81);
+            let t88 = k(0.5) * x0;
+            let t89 = t88.cos();
+            let t90 = k(0.05) * t7;
+            let t91 = t90.sin();
+            let t92 = t91 * t89;
+            let t93 = t90.cos();
+            let t94 = t93 * t89;
+            let t95 = t94 * t92;
+            let t96 = t88.sin();
+            let t97 = t91 * t96;
+            let t98 = t93 * t96;
+            let t99 = t98 * t97;
+            let t100 = k(2.0) * (t99 + t95);
+            let t101 = k(1.2566370614359172) * t13;
+            let t102 = t101 * t9;
+            let t103 = t94 * t94;
+            let t104 = k(2.0) * (k(0.5) - T::fused(t98, t98, t103));
+            let t105 = t101 * t55;
+            let t106 = T::fused(-t102, t100, t105 * t104);
+            let t107 = k(2.0) * (t99 - t95);
+            let t108 = k(2.0) * (k(0.5) - T::fused(t97, t97, t103));
+            let t109 = T::fused(t9, t107, t55 * t108);
+            let t110 = k(2.0) * (k(0.5) - T::fused(t92, t92, t103));
+            let t111 = k(2.0) * T::fused(t94, t97, t92 * t98);
+            let t112 = t94 * t98;
+            let t113 = t92 * t97;
+            let t114 = k(2.0) * (t113 - t112);
+            let t115 = T::fused(-t9, t111, t55 * t114);
+            let t116 = k(2.0) * (t113 + t112);
+            let t117 = k(1.0) / T::fused(-t110, t109, t116 * t115);
+            let t118 = t110 * t117;
+            let t119 = t118 * t106;
+            let t120 = k(0.5) * x1;
+            let t121 = t120.sin();
+            let t122 = t120.cos();
+            let t123 = T::fused(t98, t121, t92 * t122);
+            let t124 = T::fused(-t97, t121, t94 * t122);
+            let t125 = t124 * t124;
+            let t126 = k(2.0) * (k(0.5) - T::fused(t123, t123, t125));
+            let t127 = T::fused(t94, t121, t97 * t122);
+            let t128 = t124 * t127;
+            let t129 = T::fused(-t92, t121, t98 * t122);
+            let t130 = t123 * t129;
+            let t131 = k(2.0) * (t130 + t128);
+            let t132 = t124 * t129;
+            let t133 = t123 * t127;
+            let t134 = k(2.0) * (t133 - t132);
+            let t135 = T::fused(t114, t134, T::fused(t110, t126, t111 * t131));
+            let t136 = t116 * t117;
+            let t137 = t136 * t106;
+            let t138 = T::fused(t108, t134, -T::fused(-t116, t126, t107 * t131));
+            let t139 = T::fused(t135, t119, t138 * t137);
+            let t140 = k(1e-6) * t139;
+            let t141 = k(0.5) * x2;
+            let t142 = t141.sin();
+            let t143 = t141.cos();
+            let t144 = T::fused(t124, t142, t123 * t143);
+            let t145 = T::fused(-t123, t142, t124 * t143);
+            let t146 = t145 * t145;
+            let t147 = k(2.0) * (k(0.5) - T::fused(t144, t144, t146));
+            let t148 = T::fused(-t129, t142, t127 * t143);
+            let t149 = t145 * t148;
+            let t150 = T::fused(t127, t142, t129 * t143);
+            let t151 = t144 * t150;
+            let t152 = k(2.0) * (t151 + t149);
+            let t153 = t145 * t150;
+            let t154 = t144 * t148;
+            let t155 = k(2.0) * (t154 - t153);
+            let t156 = T::fused(t134, t155, T::fused(t126, t147, t131 * t152));
+            let t157 = t130 - t128;
+            let t158 = k(2.0) * t157;
+            let t159 = k(0.5) - T::fused(t129, t129, t125);
+            let t160 = k(2.0) * t159;
+            let t161 = t124 * t123;
+            let t162 = t129 * t127;
+            let t163 = t162 + t161;
+            let t164 = k(2.0) * t163;
+            let t165 = T::fused(t114, t164, -T::fused(t110, t158, t111 * t160));
+            let t166 = T::fused(t108, t164, T::fused(-t116, t158, t107 * t160));
+            let t167 = T::fused(t165, t119, t166 * t137);
+            let t168 = T::fused(t164, t155, -T::fused(t158, t147, t160 * t152));
+            let t169 = t133 + t132;
+            let t170 = k(2.0) * t169;
+            let t171 = t162 - t161;
+            let t172 = k(2.0) * t171;
+            let t173 = k(0.5) - T::fused(t127, t127, t125);
+            let t174 = k(2.0) * t173;
+            let t175 = T::fused(t114, t174, -T::fused(-t110, t170, t111 * t172));
+            let t176 = T::fused(t108, t174, T::fused(t116, t170, t107 * t172));
+            let t177 = T::fused(t175, t119, t176 * t137);
+            let t178 = T::fused(t174, t155, -T::fused(-t170, t147, t172 * t152));
+            let t179 = k(1e-5) * T::fused(t156, t139, T::fused(t168, t167, t178 * t177));
+            let t180 = t179 + t140;
+            let t181 = k(2.0) * (t151 - t149);
+            let t182 = k(2.0) * (k(0.5) - T::fused(t150, t150, t146));
+            let t183 = t145 * t144;
+            let t184 = t150 * t148;
+            let t185 = k(2.0) * (t184 + t183);
+            let t186 = T::fused(t134, t185, -T::fused(t126, t181, t131 * t182));
+            let t187 = T::fused(t164, t185, T::fused(t158, t181, t160 * t182));
+            let t188 = T::fused(t174, t185, T::fused(-t170, t181, t172 * t182));
+            let t189 = k(5e-6) * T::fused(t186, t139, T::fused(t187, t167, t188 * t177));
+            let t190 = x2.cos();
+            let t191 = k(2.0) * (t154 + t153);
+            let t192 = k(2.0) * (t184 - t183);
+            let t193 = k(2.0) * (k(0.5) - T::fused(t148, t148, t146));
+            let t194 = T::fused(t134, t193, -T::fused(-t126, t191, t131 * t192));
+            let t195 = T::fused(t164, t193, T::fused(-t158, t191, t160 * t192));
+            let t196 = T::fused(t174, t193, T::fused(t170, t191, t172 * t192));
+            let t197 = k(5e-6) * T::fused(t194, t139, T::fused(t195, t167, t196 * t177));
+            let t198 = x2.sin();
+            let t199 = k(0.00025) * t169;
             (
                 t0,
                 t5,
@@ -5198,44 +5259,43 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
                 t22,
                 t28,
                 t29,
-                t38,
                 t39,
                 t40,
                 t41,
                 t42,
-                t47,
+                t43,
                 t48,
                 t49,
-                t52,
-                t54,
+                t50,
+                t53,
                 t55,
-                t58,
+                t56,
                 t59,
                 t60,
-                t63,
-                t66,
+                t61,
+                t64,
                 t67,
-                t73,
+                t68,
                 t74,
                 t75,
-                t77,
-                t82,
+                t76,
+                t79,
                 t83,
                 t84,
                 t85,
                 t86,
-                t88,
-                t90,
+                t87,
+                t89,
                 t91,
                 t92,
                 t93,
-                t95,
+                t94,
                 t96,
                 t97,
-                t99,
+                t98,
                 t100,
                 t101,
-                t103,
+                t102,
                 t104,
                 t105,
                 t106,
@@ -5243,47 +5303,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
                 t108,
                 t109,
                 t110,
-                t113,
+                t111,
                 t114,
                 t115,
                 t116,
                 t117,
                 t118,
-                t120,
+                t119,
                 t121,
                 t122,
                 t123,
-                t125,
+                t124,
                 t126,
-                t128,
-                t130,
-                t133,
+                t127,
+                t129,
+                t131,
                 t134,
                 t135,
                 t136,
                 t137,
                 t138,
                 t139,
-                t141,
+                t140,
                 t142,
                 t143,
                 t144,
-                t146,
+                t145,
                 t147,
-                t149,
-                t151,
-                t154,
+                t148,
+                t150,
+                t152,
                 t155,
+                t156,
                 t157,
                 t158,
                 t159,
-                t162,
+                t160,
                 t163,
                 t164,
                 t165,
                 t166,
                 t167,
-                t169,
+                t168,
                 t170,
                 t171,
                 t172,
@@ -5296,7 +5357,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
                 t179,
                 t180,
                 t181,
-                t184,
+                t182,
                 t185,
                 t186,
                 t187,
@@ -5315,596 +5376,596 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             )
         };
         let (
-            t208,
             t209,
-            t211,
+            t210,
             t212,
-            t215,
+            t213,
             t216,
             t217,
-            t219,
+            t218,
             t220,
             t221,
-            t226,
-            t230,
-            t259,
-            t267,
-            t272,
-            t323,
-            t328,
-            t339,
-            t341,
-            t343,
-            t357,
+            t222,
+            t227,
+            t231,
+            t260,
+            t268,
+            t273,
+            t324,
+            t329,
+            t340,
+            t342,
+            t344,
             t358,
             t359,
             t360,
-            t364,
+            t361,
             t365,
-            t369,
-            t371,
-            t375,
+            t366,
+            t370,
+            t372,
             t376,
             t377,
             t378,
             t379,
-            t381,
-            t383,
+            t380,
+            t382,
             t384,
             t385,
-            t389,
-            t396,
+            t386,
+            t390,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = k(0.08) * T::fused(t198, t166, t199 * t176);
-            let t201 = k(0.00025) * t170;
-            let t202 = k(0.00025) * t158;
-            let t203 = k(0.08) * T::fused(-t201, t166, t202 * t176);
-            let t204 = k(0.00025) * t172;
-            let t205 = k(0.00025) * t162;
-            let t206 = k(0.08) * T::fused(-t204, t166, t205 * t176);
-            let t207 = T::fused(
+            let t200 = k(0.00025) * t157;
+            let t201 = k(0.08) * T::fused(t199, t167, t200 * t177);
+            let t202 = k(0.00025) * t171;
+            let t203 = k(0.00025) * t159;
+            let t204 = k(0.08) * T::fused(-t202, t167, t203 * t177);
+            let t205 = k(0.00025) * t173;
+            let t206 = k(0.00025) * t163;
+            let t207 = k(0.08) * T::fused(-t205, t167, t206 * t177);
+            let t208 = T::fused(
                 -k(2e-6),
-                t166,
-                T::fused(-t198, t200, T::fused(t201, t203, t204 * t206)),
+                t167,
+                T::fused(-t199, t201, T::fused(t202, t204, t205 * t207)),
             );
-            let t208 = T::fused(-t189, t188, T::fused(-t197, t196, t207));
-            let t209 = T::fused(-t19, t179, t0 * t208);
-            let t210 = k(2.0) * t95;
-            let t211 = t88 * t210;
-            let t212 = t100 * t211;
-            let t213 = k(15.791367041742975) * t7;
-            let t214 = T::fused(u0, t212, t213 * t21);
-            let t215 = u1 + t212;
-            let t216 = T::fused(-t95, t210, k(1.0));
-            let t217 = t100 * t216;
-            let t218 = k(2.0) * t120;
-            let t219 = t121 * t218;
-            let t220 = T::fused(-t120, t218, k(1.0));
-            let t221 = T::fused(-t219, t217, u0 * t220);
-            let t222 = t19 * t82;
-            let t223 = T::fused(-u1, t221, T::fused(t0, t214, t222));
-            let t224 = T::fused(
+            let t209 = T::fused(-t190, t189, T::fused(-t198, t197, t208));
+            let t210 = T::fused(-t19, t180, t0 * t209);
+            let t211 = k(2.0) * t96;
+            let t212 = t89 * t211;
+            let t213 = t101 * t212;
+            let t214 = k(15.791367041742975) * t7;
+            let t215 = T::fused(u0, t213, t214 * t21);
+            let t216 = u1 + t213;
+            let t217 = T::fused(-t96, t211, k(1.0));
+            let t218 = t101 * t217;
+            let t219 = k(2.0) * t121;
+            let t220 = t122 * t219;
+            let t221 = T::fused(-t121, t219, k(1.0));
+            let t222 = T::fused(-t220, t218, u0 * t221);
+            let t223 = t19 * t83;
+            let t224 = T::fused(-u1, t222, T::fused(t0, t215, t223));
+            let t225 = T::fused(
                 k(100000.0),
                 T::fused(
                     k(0.00015791367041742975),
-                    t0 * t77,
-                    k(1.2566370614359173e-5) * (t22 * t67),
+                    t0 * t79,
+                    k(1.2566370614359173e-5) * (t22 * t68),
                 ),
-                t222,
+                t223,
             );
-            let t225 = k(1e-5) * (t224 - t223);
-            let t226 = k(2.0) * t141;
-            let t227 = t142 * t226;
-            let t228 = T::fused(-t141, t226, k(1.0));
-            let t229 = T::fused(-t227, t221, t228 * t215);
-            let t230 = T::fused(t220, t217, u0 * t219);
-            let t231 = u2 + t230;
-            let t232 = T::fused(u1, t230, T::fused(-t19, t214, t0 * t82));
-            let t233 = u0 * t217;
-            let t234 = T::fused(t213, t12, -t233);
-            let t235 = T::fused(
-                k(166631.95167673402),
-                T::fused(-k(0.0001), T::fused(-t0, t55, t12 * t42), t22 * t47),
-                t234,
-            );
+            let t226 = k(1e-5) * (t225 - t224);
+            let t227 = k(2.0) * t142;
+            let t228 = t143 * t227;
+            let t229 = T::fused(-t142, t227, k(1.0));
+            let t230 = T::fused(-t228, t222, t229 * t216);
+            let t231 = T::fused(t221, t218, u0 * t220);
+            let t232 = u2 + t231;
+            let t233 = T::fused(u1, t231, T::fused(-t19, t215, t0 * t83));
+            let t234 = u0 * t218;
+            let t235 = T::fused(t214, t12, -t234);
             let t236 = T::fused(
-                -t231,
-                t229,
-                T::fused(-u2, t229, T::fused(t189, t232, t197 * t235)),
+                k(166631.95167673402),
+                T::fused(-k(0.0001), T::fused(-t0, t56, t12 * t43), t22 * t48),
+                t235,
             );
-            let t237 = k(5e-6) * t236;
-            let t238 = T::fused(t228, t221, t227 * t215);
-            let t239 = T::fused(
-                t231,
-                t238,
-                T::fused(u2, t238, T::fused(-t197, t232, t189 * t235)),
+            let t237 = T::fused(
+                -t232,
+                t230,
+                T::fused(-u2, t230, T::fused(t190, t233, t198 * t236)),
             );
-            let t240 = k(5e-6) * t239;
-            let t241 = T::fused(
+            let t238 = k(5e-6) * t237;
+            let t239 = T::fused(t229, t222, t228 * t216);
+            let t240 = T::fused(
+                t232,
+                t239,
+                T::fused(u2, t239, T::fused(-t198, t233, t190 * t236)),
+            );
+            let t241 = k(5e-6) * t240;
+            let t242 = T::fused(
                 -k(1e-6),
-                T::fused(t221, t215, t223),
-                T::fused(t240, t193, -T::fused(-t225, t155, t237 * t185)),
+                T::fused(t222, t216, t224),
+                T::fused(t241, t194, -T::fused(-t226, t156, t238 * t186)),
             );
-            let t242 = k(0.000125) * t221;
-            let t243 = k(0.000125) * t215;
-            let t244 = T::fused(t221, t242, t215 * t243);
-            let t245 = t242 * t230;
-            let t246 = t243 * t230;
-            let t247 = T::fused(-t232, t198, t235 * t199)
-                - T::fused(t169, t246, T::fused(t125, t244, t157 * t245));
-            let t248 = k(0.08) * t247;
-            let t249 = T::fused(t232, t201, t235 * t202)
-                + T::fused(t171, t246, -T::fused(t130, t244, t159 * t245));
-            let t250 = T::fused(k(0.08), t249, k(0.8));
-            let t251 = T::fused(t232, t204, t235 * t205)
-                + T::fused(t173, t246, -T::fused(-t133, t244, t163 * t245));
-            let t252 = k(0.08) * t251;
-            let t253 = T::fused(t204, t252, T::fused(-t198, t248, t201 * t250))
-                - T::fused(t240, t194, -T::fused(-t225, t167, t237 * t186));
-            let t254 = T::fused(k(2e-6), t232, t253);
-            let t255 = T::fused(t205, t252, T::fused(t199, t248, t202 * t250))
-                + T::fused(t240, t195, -T::fused(-t225, t177, t237 * t187));
-            let t256 = T::fused(k(1e-6), T::fused(-t221, t230, t235), t255);
-            let t257 = T::fused(
-                -k(2e-6),
-                t214,
-                T::fused(t256, t174, -T::fused(-t241, t134, t254 * t164)),
-            );
+            let t243 = k(0.000125) * t222;
+            let t244 = k(0.000125) * t216;
+            let t245 = T::fused(t222, t243, t216 * t244);
+            let t246 = t243 * t231;
+            let t247 = t244 * t231;
+            let t248 = T::fused(-t233, t199, t236 * t200)
+                - T::fused(t170, t247, T::fused(t126, t245, t158 * t246));
+            let t249 = k(0.08) * t248;
+            let t250 = T::fused(t233, t202, t236 * t203)
+                + T::fused(t172, t247, -T::fused(t131, t245, t160 * t246));
+            let t251 = T::fused(k(0.08), t250, k(0.8));
+            let t252 = T::fused(t233, t205, t236 * t206)
+                + T::fused(t174, t247, -T::fused(-t134, t245, t164 * t246));
+            let t253 = k(0.08) * t252;
+            let t254 = T::fused(t205, t253, T::fused(-t199, t249, t202 * t251))
+                - T::fused(t241, t195, -T::fused(-t226, t168, t238 * t187));
+            let t255 = T::fused(k(2e-6), t233, t254);
+            let t256 = T::fused(t206, t253, T::fused(t200, t249, t203 * t251))
+                + T::fused(t241, t196, -T::fused(-t226, t178, t238 * t188));
+            let t257 = T::fused(k(1e-6), T::fused(-t222, t231, t236), t256);
             let t258 = T::fused(
+                -k(2e-6),
+                t215,
+                T::fused(t257, t175, -T::fused(-t242, t135, t255 * t165)),
+            );
+            let t259 = T::fused(
                 k(1e-6),
-                t233 + t234,
-                T::fused(t256, t175, -T::fused(-t241, t137, t254 * t165)),
+                t234 + t235,
+                T::fused(t257, t176, -T::fused(-t242, t138, t255 * t166)),
             );
-            let t259 = T::fused(t257, t117, t258 * t135);
-            let t260 = t101 * t259;
-            let t261 = t256 * t136;
-            let t262 = t254 * t136;
-            let t263 = t241 * t136;
-            let t264 = t258 * t105;
-            let t265 = t257 * t105;
-            let t266 = t116 * t116 * T::fused(t115, t264, t109 * t265);
-            let t267 = t109 * t266;
-            let t268 = T::fused(
+            let t260 = T::fused(t258, t118, t259 * t136);
+            let t261 = t102 * t260;
+            let t262 = t257 * t137;
+            let t263 = t255 * t137;
+            let t264 = t242 * t137;
+            let t265 = t259 * t106;
+            let t266 = t258 * t106;
+            let t267 = t117 * t117 * T::fused(t116, t265, t110 * t266);
+            let t268 = t110 * t267;
+            let t269 = T::fused(
                 t9,
-                t267,
-                -T::fused(t130, t263, T::fused(-t171, t261, t159 * t262)),
+                t268,
+                -T::fused(t131, t264, T::fused(-t172, t262, t160 * t263)),
             );
-            let t269 = k(2.0) * (t268 + t260);
-            let t270 = T::fused(
-                t125,
-                t263,
-                T::fused(t157, t262, T::fused(t116, t264, t169 * t261)),
+            let t270 = k(2.0) * (t269 + t261);
+            let t271 = T::fused(
+                t126,
+                t264,
+                T::fused(t158, t263, T::fused(t117, t265, t170 * t262)),
             );
-            let t271 = T::fused(t114, t266, -t270);
-            let t272 = t115 * t266;
-            let t273 = t256 * t118;
-            let t274 = t254 * t118;
-            let t275 = t241 * t118;
-            let t276 = T::fused(
-                t133,
+            let t272 = T::fused(t115, t267, -t271);
+            let t273 = t116 * t267;
+            let t274 = t257 * t119;
+            let t275 = t255 * t119;
+            let t276 = t242 * t119;
+            let t277 = T::fused(
+                t134,
+                t276,
+                -T::fused(t164, t275, -T::fused(-t55, t273, t174 * t274)),
+            );
+            let t278 = k(2.0) * (t277 - t272);
+            let t279 = T::fused(
+                t131,
+                t276,
+                T::fused(t160, t275, -T::fused(-t9, t273, t172 * t274)),
+            );
+            let t280 = k(2.0) * t279;
+            let t281 = T::fused(
+                t158,
                 t275,
-                -T::fused(t163, t274, -T::fused(-t54, t272, t173 * t273)),
+                T::fused(t170, t274, T::fused(t117, t266, t109 * t267)),
             );
-            let t277 = k(2.0) * (t276 - t271);
-            let t278 = T::fused(
-                t130,
-                t275,
-                T::fused(t159, t274, -T::fused(-t9, t272, t171 * t273)),
+            let t282 = T::fused(t126, t276, t281);
+            let t283 = t92 * (k(2.0) * t282);
+            let t284 = t283
+                + (t283 - T::fused(t98, t280, T::fused(-t94, t270, t97 * t278)));
+            let t285 = t241 * t177;
+            let t286 = t238 * t177;
+            let t287 = T::fused(
+                t182,
+                t286,
+                -T::fused(t192, t285, -T::fused(-t107, t262, t111 * t274)),
             );
-            let t279 = k(2.0) * t278;
-            let t280 = T::fused(
-                t157,
-                t274,
-                T::fused(t169, t273, T::fused(t116, t265, t108 * t266)),
-            );
-            let t281 = T::fused(t125, t275, t280);
-            let t282 = t91 * (k(2.0) * t281);
-            let t283 = t282
-                + (t282 - T::fused(t97, t279, T::fused(-t93, t269, t96 * t277)));
-            let t284 = t240 * t176;
-            let t285 = t237 * t176;
-            let t286 = T::fused(
-                t181,
-                t285,
-                -T::fused(t191, t284, -T::fused(-t106, t261, t110 * t273)),
-            );
-            let t287 = t225 * t176;
-            let t288 = T::fused(
+            let t288 = t226 * t177;
+            let t289 = T::fused(
                 k(2.0),
-                T::fused(t246, t203, -T::fused(t151, t287, t286)),
-                k(0.00025) * T::fused(-t250, t166, t232 * t203),
+                T::fused(t247, t204, -T::fused(t152, t288, t287)),
+                k(0.00025) * T::fused(-t251, t167, t233 * t204),
             );
-            let t289 = t240 * t166;
-            let t290 = T::fused(
-                t192,
-                t289,
-                -T::fused(t245, t206, T::fused(t107, t262, t113 * t274)),
+            let t290 = t241 * t167;
+            let t291 = T::fused(
+                t193,
+                t290,
+                -T::fused(t246, t207, T::fused(t108, t263, t114 * t275)),
             );
-            let t291 = t237 * t166;
-            let t292 = t225 * t166;
-            let t293 = T::fused(
+            let t292 = t238 * t167;
+            let t293 = t226 * t167;
+            let t294 = T::fused(
                 k(0.00025),
-                T::fused(t252, t176, t235 * t206),
-                k(2.0) * T::fused(t154, t292, -T::fused(t184, t291, -t290)),
+                T::fused(t253, t177, t236 * t207),
+                k(2.0) * T::fused(t155, t293, -T::fused(t185, t292, -t291)),
             );
-            let t294 = t293 + t288;
-            let t295 = T::fused(
-                t191,
-                t289,
-                -T::fused(t245, t203, -T::fused(-t106, t262, t110 * t274)),
-            );
+            let t295 = t294 + t289;
             let t296 = T::fused(
-                -k(0.00025),
-                T::fused(t250, t176, t235 * t203),
-                k(2.0) * T::fused(t151, t292, T::fused(t181, t291, -t295)),
-            );
-            let t297 = t128 * t296;
-            let t298 = T::fused(
-                t180,
-                t285,
-                T::fused(t190, t284, T::fused(t115, t261, t109 * t273)),
-            );
-            let t299 = T::fused(
-                k(2.0),
-                T::fused(t246, t200, -T::fused(t146, t287, t298)),
-                k(0.00025) * T::fused(-t248, t166, t232 * t200),
-            );
-            let t300 = t240 * t138;
-            let t301 = T::fused(
                 t192,
-                t300,
-                T::fused(t113, t275, T::fused(t107, t263, t244 * t206)),
+                t290,
+                -T::fused(t246, t204, -T::fused(-t107, t263, t111 * t275)),
             );
-            let t302 = t237 * t138;
-            let t303 = t225 * t138;
-            let t304 = k(2.0) * T::fused(t154, t303, -T::fused(t184, t302, -t301));
-            let t305 = t304 + t299;
-            let t306 = T::fused(
-                t190,
-                t289,
-                T::fused(t245, t200, -T::fused(t115, t262, t109 * t274)),
-            );
-            let t307 = T::fused(
+            let t297 = T::fused(
                 -k(0.00025),
-                T::fused(t248, t176, t235 * t200),
-                k(2.0) * T::fused(t146, t292, T::fused(t180, t291, t306)),
+                T::fused(t251, t177, t236 * t204),
+                k(2.0) * T::fused(t152, t293, T::fused(t182, t292, -t296)),
+            );
+            let t298 = t129 * t297;
+            let t299 = T::fused(
+                t181,
+                t286,
+                T::fused(t191, t285, T::fused(t116, t262, t110 * t274)),
+            );
+            let t300 = T::fused(
+                k(2.0),
+                T::fused(t247, t201, -T::fused(t147, t288, t299)),
+                k(0.00025) * T::fused(-t249, t167, t233 * t201),
+            );
+            let t301 = t241 * t139;
+            let t302 = T::fused(
+                t193,
+                t301,
+                T::fused(t114, t276, T::fused(t108, t264, t245 * t207)),
+            );
+            let t303 = t238 * t139;
+            let t304 = t226 * t139;
+            let t305 = k(2.0) * T::fused(t155, t304, -T::fused(t185, t303, -t302));
+            let t306 = t305 + t300;
+            let t307 = T::fused(
+                t191,
+                t290,
+                T::fused(t246, t201, -T::fused(t116, t263, t110 * t275)),
             );
             let t308 = T::fused(
-                t191,
-                t300,
-                -T::fused(t110, t275, -T::fused(t106, t263, t244 * t203)),
+                -k(0.00025),
+                T::fused(t249, t177, t236 * t201),
+                k(2.0) * T::fused(t147, t293, T::fused(t181, t292, t307)),
             );
-            let t309 = k(2.0) * T::fused(t151, t303, T::fused(t181, t302, -t308));
-            let t310 = t309 - t307;
-            let t311 = T::fused(
-                t122,
-                t310,
-                -T::fused(t123, t305, -(t297 + T::fused(t126, t294, t297))),
+            let t309 = T::fused(
+                t192,
+                t301,
+                -T::fused(t111, t276, -T::fused(t107, t264, t245 * t204)),
             );
-            let t312 = T::fused(t130, t300, -T::fused(t171, t284, t159 * t289));
-            let t313 = T::fused(t133, t302, T::fused(t173, t285, t163 * t291));
-            let t314 = k(2.0) * (t313 + t312);
-            let t315 = T::fused(t130, t302, -T::fused(t171, t285, t159 * t291));
-            let t316 = t149 * (k(2.0) * t315);
-            let t317 = T::fused(t125, t300, -T::fused(-t169, t284, t157 * t289));
-            let t318 = T::fused(t133, t303, T::fused(t173, t287, t163 * t292));
-            let t319 = k(2.0) * (t318 - t317);
-            let t320 = T::fused(t125, t302, -T::fused(-t169, t285, t157 * t291));
-            let t321 = T::fused(t130, t303, -T::fused(t171, t287, t159 * t292));
-            let t322 = k(2.0) * (t321 + t320);
-            let t323 = T::fused(
-                t143,
-                t322,
-                -T::fused(t144, t319, t316 + T::fused(t147, t314, t316)),
-            );
-            let t324 = T::fused(t133, t300, T::fused(t173, t284, t163 * t289));
-            let t325 = k(2.0) * (t318 + t317);
-            let t326 = T::fused(
-                t143,
-                t325,
-                -T::fused(k(2.0), t147 * (k(2.0) * t324), t149 * t314),
-            );
-            let t327 = k(2.0) * (t321 - t320);
-            let t328 = T::fused(t144, t327, t326);
-            let t329 = T::fused(t141, t328, -T::fused(t142, t323, t311));
-            let t330 = t293 - t288;
-            let t331 = t304 - t299;
-            let t332 = T::fused(
-                t190,
-                t300,
-                T::fused(t109, t275, -T::fused(-t115, t263, t244 * t200)),
-            );
-            let t333 = k(2.0) * T::fused(t146, t303, T::fused(t180, t302, t332));
-            let t334 = t122 * t333;
-            let t335 = t334
-                + (t334 - T::fused(t128, t310, T::fused(t123, t330, t126 * t331)));
-            let t336 = k(2.0) * (t313 - t312);
-            let t337 = T::fused(t125, t303, -T::fused(-t169, t287, t157 * t292));
-            let t338 = t144 * (k(2.0) * (t337 + (t315 + t324)));
-            let t339 = t338
-                + (t338 - T::fused(t147, t327, -T::fused(t143, t336, t149 * t319)));
-            let t340 = t143 * (k(2.0) * t337);
-            let t341 = t340
-                + (t340 - T::fused(t149, t322, T::fused(-t144, t336, t147 * t325)));
-            let t342 = T::fused(t142, t341, -T::fused(t141, t339, -t335));
-            let t343 = T::fused(t121, t342, -T::fused(t120, t329, -t283));
-            let t344 = k(2.0) * (t276 + t271);
-            let t345 = t104 * t259;
-            let t346 = T::fused(
-                t54,
-                t267,
-                T::fused(t133, t263, -T::fused(-t173, t261, t163 * t262)),
-            );
-            let t347 = t93 * (k(2.0) * (t281 + (t346 + t345)));
-            let t348 = t347
-                + (t347 - T::fused(t96, t279, -T::fused(t91, t269, t97 * t344)));
-            let t349 = T::fused(
-                t184,
-                t285,
-                -T::fused(t192, t284, T::fused(t107, t261, t113 * t273)),
-            );
-            let t350 = T::fused(
-                k(2.0),
-                T::fused(t246, t206, T::fused(t154, t287, -t349)),
-                k(0.00025) * T::fused(-t252, t166, t232 * t206),
-            );
-            let t351 = t309 + t307;
-            let t352 = T::fused(
+            let t310 = k(2.0) * T::fused(t152, t304, T::fused(t182, t303, -t309));
+            let t311 = t310 - t308;
+            let t312 = T::fused(
                 t123,
-                t351,
-                T::fused(t122, t331, T::fused(-k(2.0), t126 * t350, t128 * t294)),
+                t311,
+                -T::fused(t124, t306, -(t298 + T::fused(t127, t295, t298))),
             );
-            let t353 = T::fused(t142, t328, T::fused(t141, t323, t352));
-            let t354 = t123 * (t333 - (t296 - t350));
-            let t355 = t354
-                + (t354 - T::fused(t126, t351, -T::fused(-t122, t330, t128 * t305)));
-            let t356 = T::fused(t141, t341, T::fused(t142, t339, t355));
-            let t357 = T::fused(t121, t356, -T::fused(t120, t353, -t348));
-            let t358 = T::fused(t0, t179, T::fused(t19, t208, k(2e-6) * t118));
-            let t359 = T::fused(u2, t188, t231 * t188);
-            let t360 = T::fused(u2, t196, t231 * t196);
-            let t361 = T::fused(-t125, t200, T::fused(-t130, t203, t133 * t206));
-            let t362 = T::fused(-t169, t200, T::fused(t171, t203, t173 * t206));
-            let t363 = T::fused(
-                t227,
-                t360,
-                T::fused(k(0.000125), T::fused(t215, t361, t230 * t362), t243 * t361),
+            let t313 = T::fused(t131, t301, -T::fused(t172, t285, t160 * t290));
+            let t314 = T::fused(t134, t303, T::fused(t174, t286, t164 * t292));
+            let t315 = k(2.0) * (t314 + t313);
+            let t316 = T::fused(t131, t303, -T::fused(t172, t286, t160 * t292));
+            let t317 = t150 * (k(2.0) * t316);
+            let t318 = T::fused(t126, t301, -T::fused(-t170, t285, t158 * t290));
+            let t319 = T::fused(t134, t304, T::fused(t174, t288, t164 * t293));
+            let t320 = k(2.0) * (t319 - t318);
+            let t321 = T::fused(t126, t303, -T::fused(-t170, t286, t158 * t292));
+            let t322 = T::fused(t131, t304, -T::fused(t172, t288, t160 * t293));
+            let t323 = k(2.0) * (t322 + t321);
+            let t324 = T::fused(
+                t144,
+                t323,
+                -T::fused(t145, t320, t317 + T::fused(t148, t315, t317)),
             );
-            let t364 = T::fused(-t221, t139, T::fused(t228, t359, t363));
-            let t365 = T::fused(-u0, t358, t364);
-            let t366 = t100 * t365;
-            let t367 = k(2.0) * (t268 - t260);
-            let t368 = T::fused(
-                t93,
-                t344,
-                -T::fused(-k(2.0), t97 * (k(2.0) * t345), t96 * t367),
+            let t325 = T::fused(t134, t301, T::fused(t174, t285, t164 * t290));
+            let t326 = k(2.0) * (t319 + t318);
+            let t327 = T::fused(
+                t144,
+                t326,
+                -T::fused(k(2.0), t148 * (k(2.0) * t325), t150 * t315),
             );
+            let t328 = k(2.0) * (t322 - t321);
+            let t329 = T::fused(t145, t328, t327);
+            let t330 = T::fused(t142, t329, -T::fused(t143, t324, t312));
+            let t331 = t294 - t289;
+            let t332 = t305 - t300;
+            let t333 = T::fused(
+                t191,
+                t301,
+                T::fused(t110, t276, -T::fused(-t116, t264, t245 * t201)),
+            );
+            let t334 = k(2.0) * T::fused(t147, t304, T::fused(t181, t303, t333));
+            let t335 = t123 * t334;
+            let t336 = t335
+                + (t335 - T::fused(t129, t311, T::fused(t124, t331, t127 * t332)));
+            let t337 = k(2.0) * (t314 - t313);
+            let t338 = T::fused(t126, t304, -T::fused(-t170, t288, t158 * t293));
+            let t339 = t145 * (k(2.0) * (t338 + (t316 + t325)));
+            let t340 = t339
+                + (t339 - T::fused(t148, t328, -T::fused(t144, t337, t150 * t320)));
+            let t341 = t144 * (k(2.0) * t338);
+            let t342 = t341
+                + (t341 - T::fused(t150, t323, T::fused(-t145, t337, t148 * t326)));
+            let t343 = T::fused(t143, t342, -T::fused(t142, t340, -t336));
+            let t344 = T::fused(t122, t343, -T::fused(t121, t330, -t284));
+            let t345 = k(2.0) * (t277 + t272);
+            let t346 = t105 * t260;
+            let t347 = T::fused(
+                t55,
+                t268,
+                T::fused(t134, t264, -T::fused(-t174, t262, t164 * t263)),
+            );
+            let t348 = t94 * (k(2.0) * (t282 + (t347 + t346)));
+            let t349 = t348
+                + (t348 - T::fused(t97, t280, -T::fused(t92, t270, t98 * t345)));
+            let t350 = T::fused(
+                t185,
+                t286,
+                -T::fused(t193, t285, T::fused(t108, t262, t114 * t274)),
+            );
+            let t351 = T::fused(
+                k(2.0),
+                T::fused(t247, t207, T::fused(t155, t288, -t350)),
+                k(0.00025) * T::fused(-t253, t167, t233 * t207),
+            );
+            let t352 = t310 + t308;
+            let t353 = T::fused(
+                t124,
+                t352,
+                T::fused(t123, t332, T::fused(-k(2.0), t127 * t351, t129 * t295)),
+            );
+            let t354 = T::fused(t143, t329, T::fused(t142, t324, t353));
+            let t355 = t124 * (t334 - (t297 - t351));
+            let t356 = t355
+                + (t355 - T::fused(t127, t352, -T::fused(-t123, t331, t129 * t306)));
+            let t357 = T::fused(t142, t342, T::fused(t143, t340, t356));
+            let t358 = T::fused(t122, t357, -T::fused(t121, t354, -t349));
+            let t359 = T::fused(t0, t180, T::fused(t19, t209, k(2e-6) * t119));
+            let t360 = T::fused(u2, t189, t232 * t189);
+            let t361 = T::fused(u2, t197, t232 * t197);
+            let t362 = T::fused(-t126, t201, T::fused(-t131, t204, t134 * t207));
+            let t363 = T::fused(-t170, t201, T::fused(t172, t204, t174 * t207));
+            let t364 = T::fused(
+                t228,
+                t361,
+                T::fused(k(0.000125), T::fused(t216, t362, t231 * t363), t244 * t362),
+            );
+            let t365 = T::fused(-t222, t140, T::fused(t229, t360, t364));
+            let t366 = T::fused(-u0, t359, t365);
+            let t367 = t101 * t366;
+            let t368 = k(2.0) * (t269 - t261);
             let t369 = T::fused(
-                t120,
-                t342,
-                T::fused(t121, t329, -T::fused(t91, t279, -t368)),
+                t94,
+                t345,
+                -T::fused(-k(2.0), t98 * (k(2.0) * t346), t97 * t368),
             );
             let t370 = T::fused(
-                t91,
-                t277,
-                T::fused(-k(2.0), t96 * (k(2.0) * t346), t97 * t367),
+                t121,
+                t343,
+                T::fused(t122, t330, -T::fused(t92, t280, -t369)),
             );
             let t371 = T::fused(
-                t120,
-                t356,
-                T::fused(t121, t353, T::fused(t93, t279, t370)),
+                t92,
+                t278,
+                T::fused(-k(2.0), t97 * (k(2.0) * t347), t98 * t368),
             );
-            let t372 = T::fused(t157, t200, T::fused(t159, t203, t163 * t206));
-            let t373 = k(1e-6) * t176;
-            let t374 = T::fused(
-                k(0.000125),
-                T::fused(-t221, t361, t230 * t372),
-                T::fused(-t242, t361, t230 * t373),
+            let t372 = T::fused(
+                t121,
+                t357,
+                T::fused(t122, t354, T::fused(t94, t280, t371)),
             );
+            let t373 = T::fused(t158, t201, T::fused(t160, t204, t164 * t207));
+            let t374 = k(1e-6) * t177;
             let t375 = T::fused(
-                -u1,
-                t179,
-                T::fused(t215, t139, T::fused(t227, t359, T::fused(-t228, t360, t374))),
+                k(0.000125),
+                T::fused(-t222, t362, t231 * t373),
+                T::fused(-t243, t362, t231 * t374),
             );
-            let t376 = t229 * t188;
-            let t377 = t238 * t196;
-            let t378 = t377 + t376;
-            let t379 = T::fused(
+            let t376 = T::fused(
                 -u1,
-                t208,
-                T::fused(t242, t372, T::fused(-t243, t362, t221 * t373)) - t378,
+                t180,
+                T::fused(t216, t140, T::fused(t228, t360, T::fused(-t229, t361, t375))),
             );
+            let t377 = t230 * t189;
+            let t378 = t239 * t197;
+            let t379 = t378 + t377;
             let t380 = T::fused(
-                t189,
-                t196,
-                T::fused(t199, t200, T::fused(t202, t203, T::fused(t205, t206, t373))),
+                -u1,
+                t209,
+                T::fused(t243, t373, T::fused(-t244, t363, t222 * t374)) - t379,
             );
-            let t381 = T::fused(-t197, t188, t380);
-            let t382 = k(1e-6) * t136;
-            let t383 = t382 + t381;
-            let t384 = t382 - t383;
-            let t385 = T::fused(t219, t375, T::fused(-t220, t379, u0 * t384));
-            let t386 = t100 * t385;
-            let t387 = T::fused(
-                k(2.0),
-                T::fused(-t88, t366, t95 * t386),
-                T::fused(t210, t386, -T::fused(-t92, t369, t90 * t371)),
+            let t381 = T::fused(
+                t190,
+                t197,
+                T::fused(t200, t201, T::fused(t203, t204, T::fused(t206, t207, t374))),
             );
+            let t382 = T::fused(-t198, t189, t381);
+            let t383 = k(1e-6) * t137;
+            let t384 = t383 + t382;
+            let t385 = t383 - t384;
+            let t386 = T::fused(t220, t376, T::fused(-t221, t380, u0 * t385));
+            let t387 = t101 * t386;
             let t388 = T::fused(
-                t95,
-                T::fused(t210, t366, -T::fused(t90, t343, t92 * t357)),
-                t88 * t387,
+                k(2.0),
+                T::fused(-t89, t367, t96 * t387),
+                T::fused(t211, t387, -T::fused(-t93, t370, t91 * t372)),
             );
             let t389 = T::fused(
-                -k(0.5),
-                t388,
-                T::fused(t12, t213 * t358, t21 * (t213 * t383)),
+                t96,
+                T::fused(t211, t367, -T::fused(t91, t344, t93 * t358)),
+                t89 * t388,
             );
             let t390 = T::fused(
-                t93,
-                t356,
-                T::fused(t91, t342, T::fused(-t96, t353, t97 * t329)),
+                -k(0.5),
+                t389,
+                T::fused(t12, t214 * t359, t21 * (t214 * t384)),
             );
-            let t391 = T::fused(-t217, t375, u0 * t379);
-            let t392 = T::fused(
-                t96,
-                t356,
-                -T::fused(t97, t342, -T::fused(t93, t353, t91 * t329)),
+            let t391 = T::fused(
+                t94,
+                t357,
+                T::fused(t92, t343, T::fused(-t97, t354, t98 * t330)),
             );
-            let t393 = T::fused(u0, t375, t217 * t379);
-            let t394 = T::fused(
-                k(2.0),
-                T::fused(-t121, t391, t120 * t393),
-                T::fused(t218, t393, t392),
+            let t392 = T::fused(-t218, t376, u0 * t380);
+            let t393 = T::fused(
+                t97,
+                t357,
+                -T::fused(t98, t343, -T::fused(t94, t354, t92 * t330)),
             );
+            let t394 = T::fused(u0, t376, t218 * t380);
             let t395 = T::fused(
-                k(0.5),
-                T::fused(t120, T::fused(t218, t391, t390), t121 * t394),
-                t19 * T::fused(-t82, t208, t214 * t179),
+                k(2.0),
+                T::fused(-t122, t392, t121 * t394),
+                T::fused(t219, t394, t393),
             );
             let t396 = T::fused(
-                -t38,
-                t209,
-                T::fused(t0, T::fused(t82, t179, t214 * t208), -t395),
+                k(0.5),
+                T::fused(t121, T::fused(t219, t392, t391), t122 * t395),
+                t19 * T::fused(-t83, t209, t215 * t180),
             );
             let t397 = T::fused(
-                -t189,
-                T::fused(t232, t196, t235 * t188),
-                t197 * T::fused(-t235, t196, t232 * t188),
+                -t210,
+                t39,
+                T::fused(t0, T::fused(t83, t180, t215 * t209), -t396),
             );
-            let t398 = T::fused(-t221, t359, t215 * t360);
-            let t399 = T::fused(
-                t123,
-                t339,
-                -T::fused(t126, t328, T::fused(t128, t323, t226 * t398)),
+            let t398 = T::fused(
+                -t190,
+                T::fused(t233, t197, t236 * t189),
+                t198 * T::fused(-t236, t197, t233 * t189),
             );
+            let t399 = T::fused(-t222, t360, t216 * t361);
             (
-                t208,
                 t209,
-                t211,
+                t210,
                 t212,
-                t215,
+                t213,
                 t216,
                 t217,
-                t219,
+                t218,
                 t220,
                 t221,
-                t226,
-                t230,
-                t259,
-                t267,
-                t272,
-                t323,
-                t328,
-                t339,
-                t341,
-                t343,
-                t357,
+                t222,
+                t227,
+                t231,
+                t260,
+                t268,
+                t273,
+                t324,
+                t329,
+                t340,
+                t342,
+                t344,
                 t358,
                 t359,
                 t360,
-                t364,
+                t361,
                 t365,
-                t369,
-                t371,
-                t375,
+                t366,
+                t370,
+                t372,
                 t376,
                 t377,
                 t378,
                 t379,
-                t381,
-                t383,
+                t380,
+                t382,
                 t384,
                 t385,
-                t389,
-                t396,
+                t386,
+                t390,
                 t397,
                 t398,
                 t399,
             )
         };
-        let (t402, t403, t404, t405, t407, t409, t411, t418) = {
-            let t400 = T::fused(t215, t359, t221 * t360);
-            let t401 = T::fused(
-                -t126,
-                t323,
-                T::fused(k(2.0), T::fused(-t142, t398, t141 * t400), t226 * t400),
+        let (t403, t404, t405, t406, t409, t411, t413, t420) = {
+            let t400 = T::fused(
+                t124,
+                t340,
+                -T::fused(t127, t329, T::fused(t129, t324, t227 * t399)),
             );
+            let t401 = T::fused(t216, t360, t222 * t361);
             let t402 = T::fused(
-                -t141,
-                T::fused(t122, t341, t399),
-                t142
-                    * T::fused(
-                        t123,
-                        t341,
-                        -T::fused(t122, t339, -T::fused(t128, t328, t401)),
-                    ),
+                -t127,
+                t324,
+                T::fused(k(2.0), T::fused(-t143, t399, t142 * t401), t227 * t401),
             );
             let t403 = T::fused(
-                -t212,
-                t358,
-                T::fused(-t220, t375, T::fused(-t219, t379, t217 * t384)),
+                -t142,
+                T::fused(t123, t342, t400),
+                t143
+                    * T::fused(
+                        t124,
+                        t342,
+                        -T::fused(t123, t340, -T::fused(t129, t329, t402)),
+                    ),
             );
             let t404 = T::fused(
-                -t85,
-                t178,
-                T::fused(-t40, t209, T::fused(t221, t179, T::fused(t230, t208, t364))),
+                -t213,
+                t359,
+                T::fused(-t221, t376, T::fused(-t220, t380, t218 * t385)),
             );
             let t405 = T::fused(
-                t86,
-                t178,
-                T::fused(t60, t381, T::fused(t41, t209, t376 + (t377 + t378))),
+                -t86,
+                t179,
+                T::fused(-t41, t210, T::fused(t222, t180, T::fused(t231, t209, t365))),
             );
             let t406 = T::fused(
+                t87,
+                t179,
+                T::fused(t61, t382, T::fused(t42, t210, t377 + (t378 + t379))),
+            );
+            let t407 = k(0.1) * t55;
+            let t408 = T::fused(
                 -t13,
-                T::fused(k(0.1), t54 * (t21 * t5), t21 * t20),
+                T::fused(t407, t21 * t5, t21 * t20),
                 t7 * T::fused(t21, t18, t12 * t28),
             );
-            let t407 = k(12.566370614359172) * t406;
-            let t408 = T::fused(
+            let t409 = k(12.566370614359172) * t408;
+            let t410 = T::fused(
                 k(0.1),
-                T::fused(t9, k(16.6631951676734) * t0, t54 * (t19 * t52)),
+                T::fused(t9, k(16.6631951676734) * t0, t55 * (t19 * t53)),
                 k(15.791367041742975) * t12,
             );
-            let t409 = k(12.566370614359172) * T::fused(t13, t408, t7 * (t21 * t48));
-            let t410 = T::fused(
-                -t7,
-                T::fused(t12, t63, t21 * t73),
-                t13 * T::fused(t21, t66, k(0.1) * (t54 * (t21 * t74))),
+            let t411 = k(12.566370614359172) * T::fused(t13, t410, t7 * (t21 * t49));
+            let t412 = T::fused(
+                -t13,
+                T::fused(t407, t21 * t75, t21 * t67),
+                t7 * T::fused(t12, t64, t21 * t74),
             );
-            let t411 = k(12.566370614359172) * t410;
-            let t412 = t103 * t259;
-            let t413 = t99 * t259;
-            let t414 = T::fused(
-                -t9,
-                T::fused(t107, t267, -T::fused(-t100, t412, t113 * t272)),
-                t54 * T::fused(t106, t267, T::fused(-t100, t413, t110 * t272)),
-            );
-            let t415 = T::fused(
-                t90,
-                T::fused(t95, t369, t88 * t357),
-                t92 * T::fused(-t88, t343, t95 * t371),
-            );
+            let t413 = k(12.566370614359172) * t412;
+            let t414 = t104 * t260;
+            let t415 = t100 * t260;
             let t416 = T::fused(
-                k(15.791367041742975),
-                T::fused(-t21, t358, t12 * t383),
-                T::fused(k(0.1), t414, k(0.05) * t415),
+                -t9,
+                T::fused(t108, t268, -T::fused(-t101, t414, t114 * t273)),
+                t55 * T::fused(t107, t268, T::fused(-t101, t415, t111 * t273)),
             );
             let t417 = T::fused(
-                t211,
-                t365,
-                T::fused(t216, t385, -T::fused(-t54, t412, t9 * t413)),
+                t91,
+                T::fused(t96, t370, t89 * t358),
+                t93 * T::fused(-t89, t344, t96 * t372),
             );
             let t418 = T::fused(
-                t407,
-                t209,
-                k(12.566370614359172)
-                    * T::fused(-t13, t416, t7 * (k(1.2566370614359172) * t417)),
+                k(15.791367041742975),
+                T::fused(-t21, t359, t12 * t384),
+                T::fused(k(0.1), t416, k(0.05) * t417),
             );
-            (t402, t403, t404, t405, t407, t409, t411, t418)
+            let t419 = T::fused(
+                t212,
+                t366,
+                T::fused(t217, t386, -T::fused(-t55, t414, t9 * t415)),
+            );
+            let t420 = T::fused(
+                t210,
+                t409,
+                k(12.566370614359172)
+                    * T::fused(-t13, t418, t7 * (k(1.2566370614359172) * t419)),
+            );
+            (t403, t404, t405, t406, t409, t411, t413, t420)
         };
         *dfdx = [
             k(0.0),
@@ -5929,42 +5990,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for DrivenGyroscope<T> {
             k(1.0),
             k(0.0),
             -t29,
-            -t38,
-            k(0.0),
             -t39,
-            t40,
-            -t41,
             k(0.0),
-            t49,
-            -t58,
+            -t40,
+            t41,
+            -t42,
             k(0.0),
+            t50,
             -t59,
             k(0.0),
             -t60,
             k(0.0),
-            -t75,
-            t83,
+            -t61,
             k(0.0),
+            -t76,
             t84,
-            -t85,
-            t86,
             k(0.0),
-            T::fused(t75, t178, T::fused(t49, t381, -T::fused(t29, t209, t389))),
-            -T::fused(t83, t178, T::fused(t58, t381, -t396)),
-            T::fused(k(0.5), t402, -t397),
-            -T::fused(t84, t178, T::fused(t59, t381, T::fused(t39, t209, t403))),
-            -t404,
+            t85,
+            -t86,
+            t87,
+            k(0.0),
+            T::fused(t76, t179, T::fused(t50, t382, -T::fused(t29, t210, t390))),
+            -T::fused(t179, t84, T::fused(t59, t382, -t397)),
+            T::fused(k(0.5), t403, -t398),
+            -T::fused(t85, t179, T::fused(t60, t382, T::fused(t40, t210, t404))),
             -t405,
+            -t406,
             k(0.0),
         ];
         *dfdt = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t407,
             t409,
             t411,
-            T::fused(-t411, t178, T::fused(t409, t381, t418)),
+            -t413,
+            T::fused(t179, t413, T::fused(t411, t382, t420)),
         ];
     }
     fn joint_input_jacobian(

@@ -13,23 +13,23 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 1192 operations by rotations of the bodies; 1192 operations by relative Euler parameters
-//! * project: 1003 operations by rotations of the bodies; 1003 operations by relative Euler parameters
+//! * accelerations: 1177 operations by rotations of the bodies, doubled; 1177 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 993 operations by rotations of the bodies, doubled; 993 operations by relative Euler parameters, doubled; 2 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 58 | 50 | 0 | 108 | 0 of 20 | 174 | 108 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 70 | 0 | 90 | 0 of 114 | 224 | 90 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 43 | 82 | 0 | 125 | 0 of 66 | 316 | 125 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 64 | 0 | 84 | 0 of 114 | 244 | 84 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 37 | 72 | 0 | 109 | 0 of 66 | 420 | 109 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 | 0 | 0 |
-//! | gamma | γ | 101 | 163 | 0 | 264 | 0 of 17 | 872 | 264 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 107 | 0 | 190 | 0 of 17 | 431 | 190 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 497 | 686 | 9 | 1192 | 0 of 21 | 1.4e10 | 1193 |
-//! | multipliers | λ, the accelerations being known | 104 | 165 | 3 | 272 | 0 of 17 | 1608 | 272 |
-//! | project | (δr, δπ') that changes the rows as given | 421 | 573 | 9 | 1003 | 0 of 18 | 1.2e10 | 1004 |
+//! | gamma | γ | 95 | 148 | 0 | 243 | 0 of 17 | 998 | 243 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 77 | 93 | 0 | 170 | 0 of 17 | 499 | 170 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 491 | 677 | 9 | 1177 | 0 of 21 | 1.6e10 | 1178 |
+//! | multipliers | λ, the accelerations being known | 98 | 154 | 3 | 255 | 0 of 17 | 1936 | 255 |
+//! | project | (δr, δπ') that changes the rows as given | 415 | 569 | 9 | 993 | 0 of 18 | 1.5e10 | 994 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
@@ -347,7 +347,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
             T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t9)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 190 operations (83 ±, 107 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 170 operations (77 ±, 93 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -380,99 +380,102 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_e0 * crank_e3;
-        let t1 = crank_e1 * crank_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = crank_e0 * crank_e2;
-        let t4 = crank_e1 * crank_e3;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(0.1) * T::fused(-t2, crank_wz, t5 * crank_wy);
-        let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
-        let t9 = crank_e0 * crank_e1;
-        let t10 = crank_e2 * crank_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(0.1) * T::fused(t8, crank_wz, t11 * crank_wy);
-        let t13 = k(2.0) * (t10 + t9);
-        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
-        let t15 = k(0.1) * T::fused(t13, crank_wz, t14 * crank_wy);
-        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
-        let t17 = k(2.0) * (t1 + t0);
-        let t18 = rocker_e0 * rocker_e3;
-        let t19 = rocker_e1 * rocker_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = T::fused(
-            -t20,
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e3 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = crank_e2 * t0;
+        let t6 = crank_e3 * t2;
+        let t7 = t6 + t5;
+        let t8 = k(0.1) * T::fused(-crank_wz, t4, crank_wy * t7);
+        let t9 = k(2.0) * crank_e2;
+        let t10 = T::fused(-crank_e0, t0, k(1.0));
+        let t11 = T::fused(-crank_e2, t9, t10);
+        let t12 = crank_e1 * t0;
+        let t13 = crank_e3 * t9;
+        let t14 = t13 - t12;
+        let t15 = k(0.1) * T::fused(crank_wz, t11, crank_wy * t14);
+        let t16 = t13 + t12;
+        let t17 = T::fused(-crank_e3, k(2.0) * crank_e3, t10);
+        let t18 = k(0.1) * T::fused(crank_wz, t16, crank_wy * t17);
+        let t19 = T::fused(-crank_e1, t2, t10);
+        let t20 = t3 + t1;
+        let t21 = k(2.0) * rocker_e0;
+        let t22 = rocker_e3 * t21;
+        let t23 = k(2.0) * rocker_e1;
+        let t24 = rocker_e2 * t23;
+        let t25 = t24 - t22;
+        let t26 = k(0.2)
+            * T::fused(
+                -rocker_wz,
+                t25,
+                rocker_wy * T::fused(rocker_e2, t21, rocker_e3 * t23),
+            );
+        let t27 = k(2.0) * rocker_e2;
+        let t28 = T::fused(-rocker_e0, t21, k(1.0));
+        let t29 = T::fused(-rocker_e2, t27, t28);
+        let t30 = rocker_e1 * t21;
+        let t31 = rocker_e3 * t27;
+        let t32 = k(0.2) * T::fused(rocker_wz, t29, rocker_wy * (t31 - t30));
+        let t33 = T::fused(
             rocker_wz,
-            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+            t31 + t30,
+            rocker_wy * T::fused(-rocker_e3, k(2.0) * rocker_e3, t28),
         );
-        let t22 = k(0.2) * t21;
-        let t23 = rocker_e0 * rocker_e0;
-        let t24 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t23));
-        let t25 = rocker_e0 * rocker_e1;
-        let t26 = rocker_e2 * rocker_e3;
-        let t27 = k(0.2) * T::fused(t24, rocker_wz, k(2.0) * (t26 - t25) * rocker_wy);
-        let t28 = T::fused(
-            k(2.0) * (t26 + t25),
-            rocker_wz,
-            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t23)) * rocker_wy,
+        let t34 = k(0.2) * t33;
+        let t35 = k(2.0) * coupler_e0;
+        let t36 = coupler_e3 * t35;
+        let t37 = k(2.0) * coupler_e1;
+        let t38 = coupler_e2 * t37;
+        let t39 = t38 - t36;
+        let t40 = coupler_e2 * t35;
+        let t41 = coupler_e3 * t37;
+        let t42 = t41 + t40;
+        let t43 = k(0.25) * T::fused(-coupler_wz, t39, coupler_wy * t42);
+        let t44 = k(2.0) * coupler_e2;
+        let t45 = T::fused(-coupler_e0, t35, k(1.0));
+        let t46 = T::fused(-coupler_e2, t44, t45);
+        let t47 = coupler_e1 * t35;
+        let t48 = coupler_e3 * t44;
+        let t49 = t48 - t47;
+        let t50 = k(0.25) * T::fused(coupler_wz, t46, coupler_wy * t49);
+        let t51 = t48 + t47;
+        let t52 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t45);
+        let t53 = k(0.25) * T::fused(coupler_wz, t51, coupler_wy * t52);
+        let t54 = T::fused(
+            t17,
+            t41 - t40,
+            -T::fused(-t7, T::fused(-coupler_e1, t37, t45), t14 * (t38 + t36)),
         );
-        let t29 = k(0.2) * t28;
-        let t30 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t23)),
-            rocker_wy,
-            t20 * rocker_wx,
-        );
-        let t31 = coupler_e0 * coupler_e3;
-        let t32 = coupler_e1 * coupler_e2;
-        let t33 = k(2.0) * (t32 - t31);
-        let t34 = coupler_e0 * coupler_e2;
-        let t35 = coupler_e1 * coupler_e3;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.25) * T::fused(-t33, coupler_wz, t36 * coupler_wy);
-        let t38 = coupler_e0 * coupler_e0;
-        let t39 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t38));
-        let t40 = coupler_e0 * coupler_e1;
-        let t41 = coupler_e2 * coupler_e3;
-        let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.25) * T::fused(t39, coupler_wz, t42 * coupler_wy);
-        let t44 = k(2.0) * (t41 + t40);
-        let t45 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t38));
-        let t46 = k(0.25) * T::fused(t44, coupler_wz, t45 * coupler_wy);
-        let t47 = T::fused(
-            -t5,
-            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t38)),
-            t11 * (k(2.0) * (t32 + t31)),
-        );
-        let t48 = T::fused(
+        let t55 = T::fused(
             coupler_wz,
-            T::fused(t14, k(2.0) * (t35 - t34), -t47),
-            coupler_wx * T::fused(t14, t45, T::fused(t11, t42, t5 * t36)),
+            t54,
+            coupler_wx * T::fused(t17, t52, T::fused(t7, t42, t14 * t49)),
         );
-        let t49 = T::fused(k(2.0) * (t4 - t3), t44, -T::fused(t16, t33, t17 * t39));
-        let t50 = T::fused(
+        let t56 = T::fused(
             -crank_wy,
-            t49,
-            crank_wx * T::fused(t13, t44, T::fused(t8, t39, t2 * t33)),
+            T::fused(t6 - t5, t51, -T::fused(t19, t39, t20 * t46)),
+            crank_wx * T::fused(t16, t51, T::fused(t4, t39, t11 * t46)),
         );
         *out = [
-            crank_sx + t6,
-            crank_sy + t12,
-            crank_sz - t15,
-            -T::fused(t16, crank_wy, t2 * crank_wx),
-            T::fused(t17, crank_wy, t8 * crank_wx),
-            rocker_sx + t22,
-            rocker_sy + t27,
-            rocker_sz - t29,
-            -t30,
-            T::fused(k(2.0) * (t19 + t18), rocker_wy, t24 * rocker_wx),
-            coupler_sx + t37 - (crank_sx - t6),
-            coupler_sy + t43 - (crank_sy - t12),
-            coupler_sz - t46 - (crank_sz + t15),
-            t48 - t50,
-            rocker_sx - t22 - (coupler_sx - t37),
-            rocker_sy - t27 - (coupler_sy - t43),
-            rocker_sz + t29 - (coupler_sz + t46),
+            crank_sx + t8,
+            crank_sy + t15,
+            crank_sz - t18,
+            -T::fused(crank_wy, t19, crank_wx * t4),
+            T::fused(crank_wy, t20, crank_wx * t11),
+            rocker_sx + t26,
+            rocker_sy + t32,
+            rocker_sz - t34,
+            -T::fused(rocker_wy, T::fused(-rocker_e1, t23, t28), rocker_wx * t25),
+            T::fused(rocker_wy, t24 + t22, rocker_wx * t29),
+            coupler_sx + t43 - (crank_sx - t8),
+            coupler_sy + t50 - (crank_sy - t15),
+            coupler_sz - t53 - (crank_sz + t18),
+            t55 - t56,
+            rocker_sx - t26 - (coupler_sx - t43),
+            rocker_sy - t32 - (coupler_sy - t50),
+            rocker_sz + t34 - (coupler_sz + t53),
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -1099,7 +1102,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             (16, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 90 operations (20 ±, 70 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 84 operations (20 ±, 64 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1138,17 +1141,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t21 = k(0.5) * coupler_e2;
         let t22 = k(0.5) * coupler_e1;
         let t23 = k(0.5) * coupler_e0;
-        let t24 = k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
-        let t25 = k(2.0)
-            * (k(0.5) - T::fused(coupler_e2, coupler_e2, coupler_e0 * coupler_e0));
-        let t26 = k(2.0) * T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
-        let t27 = k(2.0) * coupler_e1;
-        let t28 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, crank_e0 * crank_e0));
-        let t29 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
-        let t30 = k(2.0) * coupler_e3;
-        let t31 = k(2.0) * T::fused(crank_e0, crank_e2, crank_e1 * crank_e3);
-        let t32 = k(2.0) * coupler_e0;
-        let t33 = k(2.0) * coupler_e2;
+        let t24 = k(2.0) * coupler_e0;
+        let t25 = k(2.0) * coupler_e2;
+        let t26 = T::fused(coupler_e1, t24, coupler_e3 * t25);
+        let t27 = T::fused(-coupler_e2, t25, T::fused(-coupler_e0, t24, k(1.0)));
+        let t28 = k(2.0) * coupler_e1;
+        let t29 = T::fused(-coupler_e3, t24, coupler_e2 * t28);
+        let t30 = T::fused(-crank_e3, t7, T::fused(-crank_e0, t8, k(1.0)));
+        let t31 = T::fused(-crank_e1, t8, crank_e3 * t6);
+        let t32 = T::fused(crank_e2, t8, crank_e3 * t9);
+        let t33 = k(2.0) * coupler_e3;
         *out = [
             k(1.0),
             -t0,
@@ -1218,14 +1220,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             -t20,
             t23,
             -t22,
-            T::fused(t24, k(4.0) * crank_e0, T::fused(t25, t9, t26 * t6)),
-            T::fused(t25, t8, t26 * t7),
-            T::fused(-t25, t7, t26 * t8),
-            T::fused(t24, k(4.0) * crank_e3, T::fused(-t25, t6, t26 * t9)),
-            -T::fused(t28, t27, T::fused(-t29, k(4.0) * coupler_e0, t31 * t30)),
-            T::fused(-t28, t32, t31 * t33),
-            T::fused(-t28, t30, T::fused(t29, k(4.0) * coupler_e2, t31 * t27)),
-            -T::fused(t28, t33, t31 * t32),
+            T::fused(k(4.0) * crank_e0, t26, T::fused(t9, t27, t6 * t29)),
+            T::fused(t8, t27, t7 * t29),
+            T::fused(-t7, t27, t8 * t29),
+            T::fused(k(4.0) * crank_e3, t26, T::fused(-t6, t27, t9 * t29)),
+            -T::fused(t28, t30, T::fused(-(k(4.0) * coupler_e0), t31, t33 * t32)),
+            T::fused(-t24, t30, t25 * t32),
+            T::fused(-t33, t30, T::fused(k(4.0) * coupler_e2, t31, t28 * t32)),
+            -T::fused(t25, t30, t24 * t32),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1256,17 +1258,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             t9,
             t6,
             t7,
-            t32,
-            t27,
+            t24,
+            t28,
+            t25,
             t33,
-            t30,
             t18,
             t19,
             t16,
             t17,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 125 operations (43 ±, 82 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 109 operations (37 ±, 72 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1281,145 +1283,140 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_e1 = y[18];
         let rocker_e2 = y[19];
         let rocker_e3 = y[20];
-        let t0 = crank_e0 * crank_e2;
-        let t1 = crank_e1 * crank_e3;
-        let t2 = t1 + t0;
-        let t3 = k(0.2) * t2;
-        let t4 = crank_e0 * crank_e3;
-        let t5 = crank_e1 * crank_e2;
-        let t6 = t5 - t4;
-        let t7 = k(0.2) * t6;
-        let t8 = crank_e0 * crank_e1;
-        let t9 = crank_e2 * crank_e3;
-        let t10 = t9 - t8;
-        let t11 = k(0.2) * t10;
-        let t12 = crank_e0 * crank_e0;
-        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
-        let t14 = k(0.2) * t13;
-        let t15 = k(0.5) - T::fused(crank_e3, crank_e3, t12);
-        let t16 = k(0.2) * t15;
-        let t17 = t9 + t8;
-        let t18 = k(0.2) * t17;
-        let t19 = k(2.0) * t6;
-        let t20 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12));
-        let t21 = k(2.0) * t13;
-        let t22 = k(2.0) * (t5 + t4);
-        let t23 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t24 = rocker_e0 * rocker_e3;
-        let t25 = rocker_e1 * rocker_e2;
-        let t26 = t25 - t24;
-        let t27 = k(0.4) * t26;
-        let t28 = rocker_e0 * rocker_e1;
-        let t29 = rocker_e2 * rocker_e3;
-        let t30 = k(0.4) * (t29 - t28);
-        let t31 = rocker_e0 * rocker_e0;
-        let t32 = k(0.5) - T::fused(rocker_e2, rocker_e2, t31);
-        let t33 = k(0.4) * t32;
-        let t34 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t31));
-        let t35 = k(0.4) * (t29 + t28);
-        let t36 = coupler_e0 * coupler_e2;
-        let t37 = coupler_e1 * coupler_e3;
-        let t38 = t37 + t36;
-        let t39 = k(0.5) * t38;
-        let t40 = coupler_e0 * coupler_e3;
-        let t41 = coupler_e1 * coupler_e2;
-        let t42 = t41 - t40;
-        let t43 = k(0.5) * t42;
-        let t44 = coupler_e0 * coupler_e1;
-        let t45 = coupler_e2 * coupler_e3;
-        let t46 = t45 - t44;
-        let t47 = k(0.5) * t46;
-        let t48 = coupler_e0 * coupler_e0;
-        let t49 = k(0.5) - T::fused(coupler_e2, coupler_e2, t48);
-        let t50 = k(0.5) * t49;
-        let t51 = k(0.5) - T::fused(coupler_e3, coupler_e3, t48);
-        let t52 = k(0.5) * t51;
-        let t53 = t45 + t44;
-        let t54 = k(0.5) * t53;
-        let t55 = k(2.0) * t49;
-        let t56 = k(2.0) * t42;
-        let t57 = k(2.0) * t53;
-        let t58 = T::fused(k(2.0) * (t1 - t0), t57, -T::fused(t20, t56, t22 * t55));
-        let t59 = k(2.0) * t15;
-        let t60 = k(2.0) * t10;
-        let t61 = k(2.0) * t2;
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e2 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = k(0.1) * t4;
+        let t6 = crank_e3 * t0;
+        let t7 = crank_e2 * t2;
+        let t8 = t7 - t6;
+        let t9 = k(0.1) * t8;
+        let t10 = crank_e1 * t0;
+        let t11 = k(2.0) * crank_e2;
+        let t12 = crank_e3 * t11;
+        let t13 = t12 - t10;
+        let t14 = k(0.1) * t13;
+        let t15 = T::fused(-crank_e0, t0, k(1.0));
+        let t16 = T::fused(-crank_e2, t11, t15);
+        let t17 = k(0.1) * t16;
+        let t18 = T::fused(-crank_e3, k(2.0) * crank_e3, t15);
+        let t19 = k(0.1) * t18;
+        let t20 = t12 + t10;
+        let t21 = k(0.1) * t20;
+        let t22 = T::fused(-crank_e1, t2, t15);
+        let t23 = t7 + t6;
+        let t24 = k(2.0) * rocker_e0;
+        let t25 = k(2.0) * rocker_e1;
+        let t26 = k(0.2) * T::fused(rocker_e2, t24, rocker_e3 * t25);
+        let t27 = rocker_e3 * t24;
+        let t28 = rocker_e2 * t25;
+        let t29 = t28 - t27;
+        let t30 = k(0.2) * t29;
+        let t31 = rocker_e1 * t24;
+        let t32 = k(2.0) * rocker_e2;
+        let t33 = rocker_e3 * t32;
+        let t34 = k(0.2) * (t33 - t31);
+        let t35 = T::fused(-rocker_e0, t24, k(1.0));
+        let t36 = T::fused(-rocker_e2, t32, t35);
+        let t37 = k(0.2) * t36;
+        let t38 = k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t35);
+        let t39 = k(0.2) * (t33 + t31);
+        let t40 = k(2.0) * coupler_e0;
+        let t41 = coupler_e2 * t40;
+        let t42 = k(2.0) * coupler_e1;
+        let t43 = coupler_e3 * t42;
+        let t44 = t43 + t41;
+        let t45 = k(0.25) * t44;
+        let t46 = coupler_e3 * t40;
+        let t47 = coupler_e2 * t42;
+        let t48 = t47 - t46;
+        let t49 = k(0.25) * t48;
+        let t50 = coupler_e1 * t40;
+        let t51 = k(2.0) * coupler_e2;
+        let t52 = coupler_e3 * t51;
+        let t53 = t52 - t50;
+        let t54 = k(0.25) * t53;
+        let t55 = T::fused(-coupler_e0, t40, k(1.0));
+        let t56 = T::fused(-coupler_e2, t51, t55);
+        let t57 = k(0.25) * t56;
+        let t58 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t55);
+        let t59 = k(0.25) * t58;
+        let t60 = t52 + t50;
+        let t61 = k(0.25) * t60;
         let t62 = T::fused(
-            t59,
-            k(2.0) * t51,
-            T::fused(t60, k(2.0) * t46, t61 * (k(2.0) * t38)),
-        );
-        let t63 = T::fused(
-            -t61,
-            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t48)),
-            t60 * (k(2.0) * (t41 + t40)),
+            t18,
+            t43 - t41,
+            -T::fused(-t4, T::fused(-coupler_e1, t42, t55), t13 * (t47 + t46)),
         );
         *out = [
             k(1.0),
-            t3,
-            -t7,
+            t5,
+            -t9,
             k(1.0),
-            t11,
             t14,
+            t17,
             k(1.0),
-            -t16,
-            -t18,
             -t19,
-            -t20,
-            t21,
-            t22,
-            k(1.0),
+            -t21,
+            -t8,
+            -t22,
+            t16,
             t23,
-            -t27,
             k(1.0),
-            t30,
-            t33,
-            k(1.0),
-            -t34,
-            -t35,
-            -(k(2.0) * t26),
-            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t31))),
-            k(2.0) * t32,
-            k(2.0) * (t25 + t24),
-            k(-1.0),
-            t3,
-            -t7,
-            k(1.0),
-            t39,
-            -t43,
-            k(-1.0),
-            t11,
-            t14,
-            k(1.0),
-            t47,
-            t50,
-            k(-1.0),
-            -t16,
-            -t18,
-            k(1.0),
-            -t52,
-            -t54,
-            -T::fused(k(2.0) * t17, t57, T::fused(t21, t55, t19 * t56)),
-            t58,
-            t62,
-            T::fused(t59, k(2.0) * (t37 - t36), -t63),
-            k(-1.0),
-            t39,
-            -t43,
-            k(1.0),
-            -t23,
-            t27,
-            k(-1.0),
-            t47,
-            t50,
-            k(1.0),
+            t26,
             -t30,
-            -t33,
-            k(-1.0),
-            -t52,
-            -t54,
             k(1.0),
             t34,
-            t35,
+            t37,
+            k(1.0),
+            -t38,
+            -t39,
+            -t29,
+            T::fused(rocker_e1, t25, -t35),
+            t36,
+            t28 + t27,
+            k(-1.0),
+            t5,
+            -t9,
+            k(1.0),
+            t45,
+            -t49,
+            k(-1.0),
+            t14,
+            t17,
+            k(1.0),
+            t54,
+            t57,
+            k(-1.0),
+            -t19,
+            -t21,
+            k(1.0),
+            -t59,
+            -t61,
+            -T::fused(t20, t60, T::fused(t8, t48, t16 * t56)),
+            T::fused(t3 - t1, t60, -T::fused(t22, t48, t23 * t56)),
+            T::fused(t18, t58, T::fused(t4, t44, t13 * t53)),
+            t62,
+            k(-1.0),
+            t45,
+            -t49,
+            k(1.0),
+            -t26,
+            t30,
+            k(-1.0),
+            t54,
+            t57,
+            k(1.0),
+            -t34,
+            -t37,
+            k(-1.0),
+            -t59,
+            -t61,
+            k(1.0),
+            t38,
+            t39,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1445,7 +1442,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 264 operations (101 ±, 163 ×, 0 ÷).
+    /// Writes γ: 243 operations (95 ±, 148 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1469,131 +1466,139 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_wy * crank_wy;
-        let t1 = T::fused(crank_wz, crank_wz, t0);
-        let t2 = crank_e0 * crank_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
-        let t4 = crank_wx * crank_wy;
-        let t5 = crank_e0 * crank_e3;
-        let t6 = crank_e1 * crank_e2;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = crank_wx * crank_wz;
-        let t9 = crank_e0 * crank_e2;
-        let t10 = crank_e1 * crank_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = k(0.1) * T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
-        let t13 = k(2.0) * (t6 + t5);
-        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t2));
-        let t15 = crank_e0 * crank_e1;
-        let t16 = crank_e2 * crank_e3;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = k(0.1) * T::fused(t17, t8, -T::fused(t13, t1, t14 * t4));
-        let t19 = k(2.0) * (t10 - t9);
-        let t20 = k(2.0) * (t16 + t15);
-        let t21 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t2));
-        let t22 = k(0.1) * T::fused(t21, t8, -T::fused(-t19, t1, t20 * t4));
-        let t23 = crank_wy * crank_wz;
-        let t24 = T::fused(crank_wx, crank_wx, t0);
-        let t25 = rocker_wy * rocker_wy;
-        let t26 = T::fused(rocker_wz, rocker_wz, t25);
-        let t27 = rocker_e0 * rocker_e0;
-        let t28 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t27));
-        let t29 = rocker_wx * rocker_wy;
-        let t30 = rocker_e0 * rocker_e3;
-        let t31 = rocker_e1 * rocker_e2;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = rocker_wx * rocker_wz;
-        let t34 = rocker_e0 * rocker_e2;
-        let t35 = rocker_e1 * rocker_e3;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.2) * T::fused(t36, t33, T::fused(t28, t26, t32 * t29));
-        let t38 = k(2.0) * (t31 + t30);
-        let t39 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t27));
-        let t40 = rocker_e0 * rocker_e1;
-        let t41 = rocker_e2 * rocker_e3;
-        let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.2) * T::fused(t42, t33, -T::fused(t38, t26, t39 * t29));
-        let t44 = T::fused(-(k(2.0) * (t35 - t34)), t26, k(2.0) * (t41 + t40) * t29);
-        let t45 = k(0.2)
-            * T::fused(
-                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t27)),
-                t33,
-                -t44,
-            );
-        let t46 = rocker_wy * rocker_wz;
-        let t47 = T::fused(rocker_wx, rocker_wx, t25);
-        let t48 = coupler_wz * coupler_wz;
-        let t49 = T::fused(coupler_wy, coupler_wy, t48);
-        let t50 = coupler_e0 * coupler_e0;
-        let t51 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t50));
-        let t52 = coupler_wx * coupler_wy;
-        let t53 = coupler_e0 * coupler_e3;
-        let t54 = coupler_e1 * coupler_e2;
-        let t55 = k(2.0) * (t54 - t53);
-        let t56 = coupler_wx * coupler_wz;
-        let t57 = coupler_e0 * coupler_e2;
-        let t58 = coupler_e1 * coupler_e3;
-        let t59 = k(2.0) * (t58 + t57);
-        let t60 = k(0.25) * T::fused(t59, t56, T::fused(t51, t49, t55 * t52));
-        let t61 = k(2.0) * (t54 + t53);
-        let t62 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t50));
-        let t63 = coupler_e0 * coupler_e1;
-        let t64 = coupler_e2 * coupler_e3;
-        let t65 = k(2.0) * (t64 - t63);
-        let t66 = k(0.25) * T::fused(t65, t56, -T::fused(t61, t49, t62 * t52));
-        let t67 = k(2.0) * (t58 - t57);
-        let t68 = k(2.0) * (t64 + t63);
-        let t69 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t50));
-        let t70 = k(0.25) * T::fused(t69, t56, -T::fused(-t67, t49, t68 * t52));
-        let t71 = T::fused(
-            t8,
-            T::fused(t19, t68, -T::fused(t3, t55, t13 * t62)),
-            t23 * T::fused(t20, t68, T::fused(t14, t62, t7 * t55)),
+        let t0 = k(2.0) * crank_e1;
+        let t1 = k(2.0) * crank_e0;
+        let t2 = T::fused(-crank_e0, t1, k(1.0));
+        let t3 = T::fused(-crank_e1, t0, t2);
+        let t4 = crank_wy * crank_wy;
+        let t5 = T::fused(crank_wz, crank_wz, t4);
+        let t6 = crank_e3 * t1;
+        let t7 = crank_e2 * t0;
+        let t8 = t7 - t6;
+        let t9 = crank_wx * crank_wy;
+        let t10 = crank_e2 * t1;
+        let t11 = crank_e3 * t0;
+        let t12 = t11 + t10;
+        let t13 = crank_wx * crank_wz;
+        let t14 = k(0.1) * T::fused(t13, t12, T::fused(t5, t3, t9 * t8));
+        let t15 = t7 + t6;
+        let t16 = k(2.0) * crank_e2;
+        let t17 = T::fused(-crank_e2, t16, t2);
+        let t18 = crank_e1 * t1;
+        let t19 = crank_e3 * t16;
+        let t20 = t19 - t18;
+        let t21 = k(0.1) * T::fused(t13, t20, -T::fused(t5, t15, t9 * t17));
+        let t22 = t11 - t10;
+        let t23 = t19 + t18;
+        let t24 = T::fused(-crank_e3, k(2.0) * crank_e3, t2);
+        let t25 = k(0.1) * T::fused(t13, t24, -T::fused(-t5, t22, t9 * t23));
+        let t26 = crank_wy * crank_wz;
+        let t27 = T::fused(crank_wx, crank_wx, t4);
+        let t28 = k(2.0) * rocker_e1;
+        let t29 = k(2.0) * rocker_e0;
+        let t30 = T::fused(-rocker_e0, t29, k(1.0));
+        let t31 = T::fused(-rocker_e1, t28, t30);
+        let t32 = rocker_wy * rocker_wy;
+        let t33 = T::fused(rocker_wz, rocker_wz, t32);
+        let t34 = rocker_e3 * t29;
+        let t35 = rocker_e2 * t28;
+        let t36 = t35 - t34;
+        let t37 = rocker_wx * rocker_wy;
+        let t38 = rocker_e2 * t29;
+        let t39 = rocker_e3 * t28;
+        let t40 = t39 + t38;
+        let t41 = rocker_wx * rocker_wz;
+        let t42 = k(0.2) * T::fused(t41, t40, T::fused(t33, t31, t37 * t36));
+        let t43 = t35 + t34;
+        let t44 = k(2.0) * rocker_e2;
+        let t45 = T::fused(-rocker_e2, t44, t30);
+        let t46 = rocker_e1 * t29;
+        let t47 = rocker_e3 * t44;
+        let t48 = t47 - t46;
+        let t49 = k(0.2) * T::fused(t41, t48, -T::fused(t33, t43, t37 * t45));
+        let t50 = T::fused(
+            t41,
+            T::fused(-rocker_e3, k(2.0) * rocker_e3, t30),
+            -T::fused(-t33, t39 - t38, t37 * (t47 + t46)),
         );
-        let t72 = T::fused(t21, t68, -T::fused(-t17, t62, t11 * t55));
-        let t73 = T::fused(
+        let t51 = k(0.2) * t50;
+        let t52 = rocker_wy * rocker_wz;
+        let t53 = T::fused(rocker_wx, rocker_wx, t32);
+        let t54 = k(2.0) * coupler_e1;
+        let t55 = k(2.0) * coupler_e0;
+        let t56 = T::fused(-coupler_e0, t55, k(1.0));
+        let t57 = T::fused(-coupler_e1, t54, t56);
+        let t58 = coupler_wz * coupler_wz;
+        let t59 = T::fused(coupler_wy, coupler_wy, t58);
+        let t60 = coupler_e3 * t55;
+        let t61 = coupler_e2 * t54;
+        let t62 = t61 - t60;
+        let t63 = coupler_wx * coupler_wy;
+        let t64 = coupler_e2 * t55;
+        let t65 = coupler_e3 * t54;
+        let t66 = t65 + t64;
+        let t67 = coupler_wx * coupler_wz;
+        let t68 = k(0.25) * T::fused(t67, t66, T::fused(t59, t57, t63 * t62));
+        let t69 = t61 + t60;
+        let t70 = k(2.0) * coupler_e2;
+        let t71 = T::fused(-coupler_e2, t70, t56);
+        let t72 = coupler_e1 * t55;
+        let t73 = coupler_e3 * t70;
+        let t74 = t73 - t72;
+        let t75 = k(0.25) * T::fused(t67, t74, -T::fused(t59, t69, t63 * t71));
+        let t76 = t65 - t64;
+        let t77 = t73 + t72;
+        let t78 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t56);
+        let t79 = k(0.25) * T::fused(t67, t78, -T::fused(-t59, t76, t63 * t77));
+        let t80 = T::fused(
+            t13,
+            T::fused(t22, t77, -T::fused(t3, t62, t15 * t71)),
+            t26 * T::fused(t23, t77, T::fused(t8, t62, t17 * t71)),
+        );
+        let t81 = T::fused(t24, t77, T::fused(-t12, t62, t20 * t71));
+        let t82 = T::fused(
             coupler_wz,
-            T::fused(t19, t67, T::fused(t3, t51, t13 * t61)),
-            coupler_wx * T::fused(t19, t69, -T::fused(-t3, t59, t13 * t65)),
+            T::fused(t22, t76, T::fused(t3, t57, t15 * t69)),
+            coupler_wx * T::fused(t22, t78, -T::fused(-t3, t66, t15 * t74)),
         );
-        let t74 = T::fused(
+        let t83 = T::fused(
             coupler_wz,
-            T::fused(t20, t67, -T::fused(t7, t51, t14 * t61)),
-            coupler_wx * T::fused(t20, t69, -T::fused(-t14, t65, t7 * t59)),
+            T::fused(t23, t76, -T::fused(t8, t57, t17 * t69)),
+            coupler_wx * T::fused(t23, t78, T::fused(-t8, t66, t17 * t74)),
         );
-        let t75 = T::fused(
-            -t52,
-            T::fused(t21, t67, -T::fused(-t11, t51, t17 * t61)),
-            T::fused(coupler_wx, coupler_wx, t48) * t72,
+        let t84 = T::fused(
+            -t63,
+            T::fused(t24, t76, -T::fused(-t12, t57, t20 * t69)),
+            T::fused(coupler_wx, coupler_wx, t58) * t81,
         );
-        let t76 = T::fused(
+        let t85 = T::fused(
             coupler_wy * coupler_wz,
-            T::fused(t21, t69, T::fused(t17, t65, t11 * t59)),
-            t75,
+            T::fused(t24, t78, T::fused(t12, t66, t20 * t74)),
+            t84,
         );
-        let t77 = T::fused(k(2.0), T::fused(-crank_wy, t73, crank_wx * t74), t76)
-            + T::fused(t24, t72, t71);
+        let t86 = T::fused(k(2.0), T::fused(-crank_wy, t82, crank_wx * t83), t85)
+            + T::fused(t27, t81, t80);
         *out = [
-            t12,
-            t18,
-            -t22,
-            T::fused(t11, t24, -T::fused(-t3, t8, t7 * t23)),
-            T::fused(t17, t24, T::fused(-t13, t8, t14 * t23)),
-            t37,
-            t43,
-            -t45,
-            T::fused(t36, t47, -T::fused(-t28, t33, t32 * t46)),
-            T::fused(t42, t47, T::fused(-t38, t33, t39 * t46)),
-            t12 + t60,
-            t18 + t66,
-            -(t22 + t70),
-            -t77,
-            t60 - t37,
-            t66 - t43,
-            t45 - t70,
+            t14,
+            t21,
+            -t25,
+            T::fused(t27, t12, -T::fused(-t13, t3, t26 * t8)),
+            T::fused(t27, t20, T::fused(-t13, t15, t26 * t17)),
+            t42,
+            t49,
+            -t51,
+            T::fused(t53, t40, -T::fused(-t41, t31, t52 * t36)),
+            T::fused(t53, t48, T::fused(-t41, t43, t52 * t45)),
+            t14 + t68,
+            t21 + t75,
+            -(t25 + t79),
+            -t86,
+            t68 - t42,
+            t75 - t49,
+            t51 - t79,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let crank_wx = y[24];
@@ -1605,28 +1610,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
+        let t0 = k(0.00133) * crank_wx;
+        let t1 = k(0.02095) * coupler_wx;
+        let t2 = k(0.01076) * rocker_wx;
         *out = [
             k(0.0),
             k(-3.924),
             k(0.0),
             k(0.0),
-            k(0.00133) * (crank_wx * crank_wz),
-            -(k(0.00133) * (crank_wx * crank_wy)),
+            crank_wz * t0,
+            -(crank_wy * t0),
             k(0.0),
             k(-9.81),
             k(0.0),
             k(0.0),
-            k(0.02095) * (coupler_wx * coupler_wz),
-            -(k(0.02095) * (coupler_wx * coupler_wy)),
+            coupler_wz * t1,
+            -(coupler_wy * t1),
             k(0.0),
             k(-7.848),
             k(0.0),
             k(0.0),
-            k(0.01076) * (rocker_wx * rocker_wz),
-            -(k(0.01076) * (rocker_wx * rocker_wy)),
+            rocker_wz * t2,
+            -(rocker_wy * t2),
         ];
     }
-    /// Solves eq. (17): 1192 operations (497 ±, 686 ×, 9 ÷).
+    /// Solves eq. (17): 1177 operations (491 ±, 677 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1651,10 +1659,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t7,
+            t8,
             t12,
             t14,
-            t15,
             t16,
             t17,
             t18,
@@ -1669,323 +1676,318 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
             t27,
             t28,
             t29,
-            t54,
+            t53,
             t58,
             t60,
-            t62,
+            t61,
+            t63,
+            t65,
             t66,
-            t68,
+            t67,
+            t70,
             t71,
             t72,
-            t75,
-            t76,
-            t77,
+            t73,
+            t74,
             t78,
-            t79,
             t81,
-            t83,
             t86,
-            t91,
-            t92,
+            t87,
+            t88,
+            t90,
             t93,
-            t95,
+            t96,
+            t97,
             t98,
-            t101,
-            t102,
+            t100,
             t103,
-            t105,
             t108,
+            t109,
+            t110,
             t112,
-            t113,
-            t114,
-            t115,
-            t116,
-            t118,
-            t123,
-            t124,
-            t125,
-            t126,
-            t130,
-            t133,
-            t134,
-            t148,
-            t152,
-            t156,
-            t169,
+            t128,
+            t142,
+            t146,
+            t150,
+            t163,
+            t185,
+            t186,
+            t188,
+            t189,
             t191,
             t192,
             t194,
             t195,
+            t196,
             t197,
-            t198,
             t199,
         ) = {
-            let t0 = coupler_wz * coupler_wz;
-            let t1 = T::fused(coupler_wy, coupler_wy, t0);
-            let t2 = coupler_e0 * coupler_e0;
-            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
-            let t4 = coupler_wx * coupler_wy;
-            let t5 = coupler_e0 * coupler_e3;
-            let t6 = coupler_e1 * coupler_e2;
-            let t7 = t6 - t5;
-            let t8 = k(2.0) * t7;
-            let t9 = coupler_wx * coupler_wz;
-            let t10 = coupler_e0 * coupler_e2;
-            let t11 = coupler_e1 * coupler_e3;
+            let t0 = k(2.0) * coupler_e1;
+            let t1 = k(2.0) * coupler_e0;
+            let t2 = T::fused(-coupler_e0, t1, k(1.0));
+            let t3 = T::fused(-coupler_e1, t0, t2);
+            let t4 = coupler_wz * coupler_wz;
+            let t5 = T::fused(coupler_wy, coupler_wy, t4);
+            let t6 = coupler_e3 * t1;
+            let t7 = coupler_e2 * t0;
+            let t8 = t7 - t6;
+            let t9 = coupler_wx * coupler_wy;
+            let t10 = coupler_e2 * t1;
+            let t11 = coupler_e3 * t0;
             let t12 = t11 + t10;
-            let t13 = k(2.0) * t12;
-            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
-            let t15 = rocker_wy * rocker_wy;
-            let t16 = T::fused(rocker_wz, rocker_wz, t15);
-            let t17 = rocker_e0 * rocker_e0;
-            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
-            let t19 = rocker_wx * rocker_wy;
-            let t20 = rocker_e0 * rocker_e3;
-            let t21 = rocker_e1 * rocker_e2;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = rocker_wx * rocker_wz;
-            let t25 = rocker_e0 * rocker_e2;
-            let t26 = rocker_e1 * rocker_e3;
+            let t13 = coupler_wx * coupler_wz;
+            let t14 = k(0.25) * T::fused(t13, t12, T::fused(t5, t3, t9 * t8));
+            let t15 = k(2.0) * rocker_e1;
+            let t16 = k(2.0) * rocker_e0;
+            let t17 = T::fused(-rocker_e0, t16, k(1.0));
+            let t18 = T::fused(-rocker_e1, t15, t17);
+            let t19 = rocker_wy * rocker_wy;
+            let t20 = T::fused(rocker_wz, rocker_wz, t19);
+            let t21 = rocker_e3 * t16;
+            let t22 = rocker_e2 * t15;
+            let t23 = t22 - t21;
+            let t24 = rocker_wx * rocker_wy;
+            let t25 = rocker_e2 * t16;
+            let t26 = rocker_e3 * t15;
             let t27 = t26 + t25;
-            let t28 = k(2.0) * t27;
-            let t29 = k(0.2) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
-            let t30 = crank_wx * crank_wz;
-            let t31 = crank_e0 * crank_e0;
-            let t32 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t31));
-            let t33 = crank_wy * crank_wz;
-            let t34 = crank_e0 * crank_e3;
-            let t35 = crank_e1 * crank_e2;
-            let t36 = t35 - t34;
-            let t37 = k(2.0) * t36;
-            let t38 = crank_wy * crank_wy;
-            let t39 = T::fused(crank_wx, crank_wx, t38);
-            let t40 = crank_e0 * crank_e2;
-            let t41 = crank_e1 * crank_e3;
-            let t42 = t41 + t40;
-            let t43 = k(2.0) * t42;
-            let t44 = T::fused(t43, t39, -T::fused(-t32, t30, t37 * t33));
-            let t45 = k(2.0) * (t35 + t34);
-            let t46 = k(0.5) - T::fused(crank_e2, crank_e2, t31);
-            let t47 = k(2.0) * t46;
-            let t48 = k(1.0) / T::fused(-t37, t45, t32 * t47);
-            let t49 = crank_e0 * crank_e1;
-            let t50 = crank_e2 * crank_e3;
+            let t28 = rocker_wx * rocker_wz;
+            let t29 = k(0.2) * T::fused(t28, t27, T::fused(t20, t18, t24 * t23));
+            let t30 = k(2.0) * crank_e1;
+            let t31 = k(2.0) * crank_e0;
+            let t32 = T::fused(-crank_e0, t31, k(1.0));
+            let t33 = T::fused(-crank_e1, t30, t32);
+            let t34 = crank_wx * crank_wz;
+            let t35 = crank_e3 * t31;
+            let t36 = crank_e2 * t30;
+            let t37 = t36 - t35;
+            let t38 = crank_wy * crank_wz;
+            let t39 = crank_e2 * t31;
+            let t40 = crank_e3 * t30;
+            let t41 = t40 + t39;
+            let t42 = crank_wy * crank_wy;
+            let t43 = T::fused(crank_wx, crank_wx, t42);
+            let t44 = T::fused(t43, t41, -T::fused(-t34, t33, t38 * t37));
+            let t45 = t36 + t35;
+            let t46 = k(2.0) * crank_e2;
+            let t47 = T::fused(-crank_e2, t46, t32);
+            let t48 = k(1.0) / T::fused(-t37, t45, t33 * t47);
+            let t49 = crank_e1 * t31;
+            let t50 = crank_e3 * t46;
             let t51 = t50 - t49;
-            let t52 = k(2.0) * t51;
-            let t53 = T::fused(t52, t39, T::fused(-t45, t30, t47 * t33));
-            let t54 = T::fused(t47 * t48, t44, t37 * t48 * t53);
-            let t55 = k(0.2) * t42;
-            let t56 = coupler_e0 * coupler_e1;
-            let t57 = coupler_e2 * coupler_e3;
-            let t58 = t57 - t56;
-            let t59 = T::fused(k(4.905), t58, k(0.02095) * t9);
-            let t60 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
-            let t61 = k(2.0) * t60;
-            let t62 = t57 + t56;
-            let t63 = k(2.0) * t62;
-            let t64 = k(0.5) - T::fused(crank_e3, crank_e3, t31);
-            let t65 = k(2.0) * t64;
-            let t66 = T::fused(t65, t63, -T::fused(-t52, t61, t43 * t8));
-            let t67 = T::fused(-k(4.905), t60, k(0.02095) * t4);
-            let t68 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
-            let t69 = k(2.0) * t68;
-            let t70 = k(2.0) * t58;
-            let t71 = T::fused(t65, t69, T::fused(t52, t70, t43 * t13));
-            let t72 = T::fused(t66, t59, t71 * t67);
-            let t73 = k(2.0) * (t6 + t5);
-            let t74 = k(2.0) * (t11 - t10);
-            let t75 = T::fused(t65, t74, -T::fused(-t43, t3, t52 * t73));
-            let t76 = k(5e-5) * t75;
-            let t77 = k(0.0835) * t66;
-            let t78 = k(0.0835) * t71;
-            let t79 = k(1.0) / T::fused(t71, t78, T::fused(t75, t76, t66 * t77));
-            let t80 = t79 * t72;
-            let t81 = T::fused(-t77, t80, t59);
-            let t82 = t77 * t79;
-            let t83 = k(1.0) / T::fused(-t77, t82, k(0.0835));
-            let t84 = t83 * t81;
-            let t85 = t76 * t79;
-            let t86 = t77 * t85;
-            let t87 = T::fused(crank_wz, crank_wz, t38);
-            let t88 = crank_wx * crank_wy;
-            let t89 = k(0.1) * T::fused(t43, t30, T::fused(t32, t87, t37 * t88));
-            let t90 = t89 + t14;
-            let t91 = k(0.5) * t12;
-            let t92 = k(0.5) * t7;
-            let t93 = T::fused(t91, t66, t92 * t71);
-            let t94 = t79 * t93;
-            let t95 = T::fused(-t77, t94, t91);
-            let t96 = t83 * t95;
-            let t97 = T::fused(-t76, t94, t86 * t96);
-            let t98 = k(0.25) * T::fused(t70, t9, -T::fused(t73, t1, t61 * t4));
-            let t99 = k(0.1) * T::fused(t52, t30, -T::fused(t45, t87, t47 * t88));
-            let t100 = t99 + t98;
-            let t101 = k(0.5) * t58;
-            let t102 = k(0.5) * t60;
-            let t103 = T::fused(-t101, t66, t102 * t71);
-            let t104 = t79 * t103;
-            let t105 = T::fused(t77, t104, t101);
-            let t106 = t83 * t105;
-            let t107 = T::fused(t76, t104, t86 * t106);
-            let t108 = k(0.25) * T::fused(t69, t9, -T::fused(-t74, t1, t63 * t4));
-            let t109 = k(2.0) * (t41 - t40);
-            let t110 = t50 + t49;
-            let t111 = k(2.0) * t110;
-            let t112 = k(0.1) * T::fused(t65, t30, -T::fused(-t109, t87, t111 * t88));
-            let t113 = t112 + t108;
-            let t114 = k(0.5) * t68;
-            let t115 = k(0.5) * t62;
-            let t116 = T::fused(-t114, t66, t115 * t71);
-            let t117 = t79 * t116;
-            let t118 = T::fused(t77, t117, t114);
-            let t119 = t83 * t118;
-            let t120 = T::fused(t76, t117, t86 * t119);
-            let t121 = k(1.0) / T::fused(t71, t71, t75 * t75);
-            let t122 = T::fused(
-                t30,
-                T::fused(t109, t63, -T::fused(t32, t8, t45 * t61)),
-                t33 * T::fused(t111, t63, T::fused(t47, t61, t37 * t8)),
+            let t52 = T::fused(t43, t51, T::fused(-t34, t45, t38 * t47));
+            let t53 = T::fused(t47 * t48, t44, t37 * t48 * t52);
+            let t54 = k(0.1) * t41;
+            let t55 = coupler_e1 * t1;
+            let t56 = k(2.0) * coupler_e2;
+            let t57 = coupler_e3 * t56;
+            let t58 = t57 - t55;
+            let t59 = T::fused(k(2.4525), t58, k(0.02095) * t13);
+            let t60 = T::fused(-coupler_e2, t56, t2);
+            let t61 = t57 + t55;
+            let t62 = T::fused(-crank_e3, k(2.0) * crank_e3, t32);
+            let t63 = T::fused(t62, t61, T::fused(-t41, t8, t51 * t60));
+            let t64 = T::fused(-k(2.4525), t60, k(0.02095) * t9);
+            let t65 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t2);
+            let t66 = T::fused(t62, t65, T::fused(t41, t12, t51 * t58));
+            let t67 = T::fused(t63, t59, t66 * t64);
+            let t68 = t7 + t6;
+            let t69 = t11 - t10;
+            let t70 = T::fused(t62, t69, -T::fused(-t41, t3, t51 * t68));
+            let t71 = k(5e-5) * t70;
+            let t72 = k(0.0835) * t63;
+            let t73 = k(0.0835) * t66;
+            let t74 = k(1.0) / T::fused(t66, t73, T::fused(t70, t71, t63 * t72));
+            let t75 = t74 * t67;
+            let t76 = T::fused(-t72, t75, t59);
+            let t77 = t72 * t74;
+            let t78 = k(1.0) / T::fused(-t72, t77, k(0.0835));
+            let t79 = t78 * t76;
+            let t80 = t71 * t74;
+            let t81 = t72 * t80;
+            let t82 = T::fused(crank_wz, crank_wz, t42);
+            let t83 = crank_wx * crank_wy;
+            let t84 = k(0.1) * T::fused(t34, t41, T::fused(t82, t33, t83 * t37));
+            let t85 = t84 + t14;
+            let t86 = k(0.25) * t12;
+            let t87 = k(0.25) * t8;
+            let t88 = T::fused(t63, t86, t66 * t87);
+            let t89 = t74 * t88;
+            let t90 = T::fused(-t72, t89, t86);
+            let t91 = t78 * t90;
+            let t92 = T::fused(-t71, t89, t81 * t91);
+            let t93 = k(0.25) * T::fused(t13, t58, -T::fused(t5, t68, t9 * t60));
+            let t94 = k(0.1) * T::fused(t34, t51, -T::fused(t82, t45, t83 * t47));
+            let t95 = t94 + t93;
+            let t96 = k(0.25) * t58;
+            let t97 = k(0.25) * t60;
+            let t98 = T::fused(-t63, t96, t66 * t97);
+            let t99 = t74 * t98;
+            let t100 = T::fused(t72, t99, t96);
+            let t101 = t78 * t100;
+            let t102 = T::fused(t71, t99, t81 * t101);
+            let t103 = k(0.25) * T::fused(t13, t65, -T::fused(-t5, t69, t9 * t61));
+            let t104 = t40 - t39;
+            let t105 = t50 + t49;
+            let t106 = k(0.1) * T::fused(t34, t62, -T::fused(-t82, t104, t83 * t105));
+            let t107 = t106 + t103;
+            let t108 = k(0.25) * t65;
+            let t109 = k(0.25) * t61;
+            let t110 = T::fused(-t63, t108, t66 * t109);
+            let t111 = t74 * t110;
+            let t112 = T::fused(t72, t111, t108);
+            let t113 = t78 * t112;
+            let t114 = T::fused(t71, t111, t81 * t113);
+            let t115 = k(1.0) / T::fused(t66, t66, t70 * t70);
+            let t116 = T::fused(
+                t34,
+                T::fused(t104, t61, -T::fused(t33, t8, t45 * t60)),
+                t38 * T::fused(t105, t61, T::fused(t37, t8, t47 * t60)),
             );
-            let t123 = T::fused(t109, t74, T::fused(t32, t3, t45 * t73));
-            let t124 = T::fused(t109, t69, -T::fused(-t32, t13, t45 * t70));
-            let t125 = T::fused(t111, t74, -T::fused(t37, t3, t47 * t73));
-            let t126 = T::fused(t111, t69, -T::fused(-t47, t70, t37 * t13));
-            let t127 = T::fused(
+            let t117 = T::fused(t104, t69, T::fused(t33, t3, t45 * t68));
+            let t118 = T::fused(t104, t65, -T::fused(-t33, t12, t45 * t58));
+            let t119 = T::fused(t105, t69, -T::fused(t37, t3, t47 * t68));
+            let t120 = T::fused(t105, t65, T::fused(-t37, t12, t47 * t58));
+            let t121 = T::fused(
                 -crank_wy,
-                T::fused(coupler_wz, t123, coupler_wx * t124),
-                crank_wx * T::fused(coupler_wz, t125, coupler_wx * t126),
+                T::fused(coupler_wz, t117, coupler_wx * t118),
+                crank_wx * T::fused(coupler_wz, t119, coupler_wx * t120),
             );
-            let t128 = T::fused(
+            let t122 = T::fused(
                 coupler_wy * coupler_wz,
-                t71,
-                T::fused(-t4, t75, T::fused(coupler_wx, coupler_wx, t0) * t66),
+                t66,
+                T::fused(-t9, t70, T::fused(coupler_wx, coupler_wx, t4) * t63),
             );
-            let t129 = T::fused(k(2.0), t127, t128) + T::fused(t39, t66, t122);
-            let t130 = t129 * (t71 * t121);
-            let t131 = t83 * t86;
-            let t132 = T::fused(t86, t131, -T::fused(-t76, t85, k(5e-5)));
-            let t133 = t75 * t121 * t129;
-            let t134 = t78 * t82;
-            let t135 = T::fused(t78, t85, t134 * t131);
-            let t136 = T::fused(-t132, t130, t135 * t133)
-                + T::fused(t120, t113, T::fused(t97, t90, t107 * t100));
-            let t137 = T::fused(t134, t96, T::fused(-t78, t94, t92));
-            let t138 = T::fused(t134, t106, -T::fused(-t78, t104, t102));
-            let t139 = T::fused(t134, t119, -T::fused(-t78, t117, t115));
-            let t140 = T::fused(t134, t83 * t134, -T::fused(-t78, t78 * t79, k(0.0835)));
-            let t141 = T::fused(-t135, t130, t140 * t133)
-                + T::fused(t139, t113, T::fused(t137, t90, t138 * t100));
-            let t142 = T::fused(
-                t75,
-                t136 + T::fused(-t76, t80, t86 * t84),
-                t71 * (t141 + T::fused(t134, t84, T::fused(-t78, t80, t67))),
+            let t123 = T::fused(k(2.0), t121, t122) + T::fused(t43, t63, t116);
+            let t124 = t123 * (t66 * t115);
+            let t125 = t78 * t81;
+            let t126 = T::fused(t81, t125, -T::fused(-t71, t80, k(5e-5)));
+            let t127 = t70 * t115 * t123;
+            let t128 = t73 * t77;
+            let t129 = T::fused(t73, t80, t128 * t125);
+            let t130 = T::fused(-t126, t124, t129 * t127)
+                + T::fused(t114, t107, T::fused(t92, t85, t102 * t95));
+            let t131 = T::fused(t128, t91, T::fused(-t73, t89, t87));
+            let t132 = T::fused(t128, t101, -T::fused(-t73, t99, t97));
+            let t133 = T::fused(t128, t113, -T::fused(-t73, t111, t109));
+            let t134 = T::fused(t128, t78 * t128, -T::fused(-t73, t73 * t74, k(0.0835)));
+            let t135 = T::fused(-t129, t124, t134 * t127)
+                + T::fused(t133, t107, T::fused(t131, t85, t132 * t95));
+            let t136 = T::fused(
+                t70,
+                t130 + T::fused(-t71, t75, t81 * t79),
+                t66 * (t135 + T::fused(t128, t79, T::fused(-t73, t75, t64))),
             );
-            let t143 = T::fused(-t103, t94, t105 * t96);
-            let t144 = T::fused(t103, t104, t105 * t106);
-            let t145 = T::fused(t116, t104, t118 * t106);
-            let t146 = T::fused(-t107, t130, t138 * t133)
-                - (t100 - T::fused(t145, t113, T::fused(t143, t90, t144 * t100)));
-            let t147 = t146 + T::fused(t105, t84, -T::fused(t103, t80, k(9.81)));
-            let t148 = k(0.2) * t46;
-            let t149 = T::fused(t93, t94, t95 * t96);
-            let t150 = T::fused(-t116, t94, t118 * t96);
-            let t151 = T::fused(-t97, t130, t137 * t133)
-                - (t90 - T::fused(t150, t113, T::fused(t149, t90, t143 * t100)));
-            let t152 = k(0.2) * t36;
-            let t153 = t152 * (t151 + T::fused(t93, t80, t95 * t84));
-            let t154 = T::fused(t116, t117, t118 * t119);
-            let t155 = T::fused(-t120, t130, t139 * t133)
-                - (t113 - T::fused(t154, t113, T::fused(t150, t90, t145 * t100)));
-            let t156 = k(0.2) * t110;
-            let t157 = t156 * (t155 + T::fused(-t116, t80, t118 * t84));
-            let t158 = T::fused(t148, k(3.924) - t147, t153) - t157
-                - T::fused(k(0.00133), t88, t157 - T::fused(-t148, t147, t153) + t142);
-            let t159 = T::fused(t156, t150, T::fused(-t152, t149, t148 * t143));
-            let t160 = T::fused(t75, t97, t71 * t137);
-            let t161 = t152 + t159 + t160;
-            let t162 = T::fused(t156, t145, T::fused(-t152, t143, t148 * t144));
-            let t163 = T::fused(t75, t107, t71 * t138);
-            let t164 = t148 - t162 - t163;
+            let t137 = T::fused(-t98, t89, t100 * t91);
+            let t138 = T::fused(t98, t99, t100 * t101);
+            let t139 = T::fused(t110, t99, t112 * t101);
+            let t140 = T::fused(-t102, t124, t132 * t127)
+                - (t95 - T::fused(t139, t107, T::fused(t137, t85, t138 * t95)));
+            let t141 = t140 + T::fused(t100, t79, -T::fused(t98, t75, k(9.81)));
+            let t142 = k(0.1) * t47;
+            let t143 = T::fused(t88, t89, t90 * t91);
+            let t144 = T::fused(-t110, t89, t112 * t91);
+            let t145 = T::fused(-t92, t124, t131 * t127)
+                - (t85 - T::fused(t144, t107, T::fused(t143, t85, t137 * t95)));
+            let t146 = k(0.1) * t37;
+            let t147 = t146 * (t145 + T::fused(t88, t75, t90 * t79));
+            let t148 = T::fused(t110, t111, t112 * t113);
+            let t149 = T::fused(-t114, t124, t133 * t127)
+                - (t107 - T::fused(t148, t107, T::fused(t144, t85, t139 * t95)));
+            let t150 = k(0.1) * t105;
+            let t151 = t150 * (t149 + T::fused(-t110, t75, t112 * t79));
+            let t152 = T::fused(t142, k(3.924) - t141, t147) - t151
+                - T::fused(k(0.00133), t83, t151 - T::fused(-t142, t141, t147) + t136);
+            let t153 = T::fused(t150, t144, T::fused(-t146, t143, t142 * t137));
+            let t154 = T::fused(t70, t92, t66 * t131);
+            let t155 = t146 + t153 + t154;
+            let t156 = T::fused(t150, t139, T::fused(-t146, t137, t142 * t138));
+            let t157 = T::fused(t70, t102, t66 * t132);
+            let t158 = t142 - t156 - t157;
+            let t159 = T::fused(
+                -(t155 + T::fused(k(0.14), t37, t153)),
+                t84,
+                (t158 - T::fused(-k(0.14), t47, t156)) * t94,
+            );
+            let t160 = T::fused(t150, t148, T::fused(-t146, t144, t142 * t139));
+            let t161 = T::fused(t70, t114, t66 * t133);
+            let t162 = t150 - t160 - t161;
+            let t163 = T::fused(t44, t45 * t48, t52 * (t33 * t48));
+            let t164 = T::fused(
+                t70,
+                T::fused(t126, t117, t129 * t118),
+                t66 * T::fused(t129, t117, t134 * t118),
+            );
             let t165 = T::fused(
-                -(t161 + T::fused(k(0.28), t36, t159)),
-                t89,
-                (t164 - T::fused(-k(0.28), t46, t162)) * t99,
+                -t146,
+                T::fused(t92, t117, t131 * t118),
+                t142 * T::fused(t102, t117, t132 * t118),
             );
-            let t166 = T::fused(t156, t154, T::fused(-t152, t150, t148 * t145));
-            let t167 = T::fused(t75, t120, t71 * t139);
-            let t168 = t156 - t166 - t167;
-            let t169 = T::fused(t44, t45 * t48, t53 * (t32 * t48));
-            let t170 = T::fused(
-                t75,
-                T::fused(t132, t123, t135 * t124),
-                t71 * T::fused(t135, t123, t140 * t124),
+            let t166 = T::fused(t150, T::fused(t114, t117, t133 * t118), t165);
+            let t167 = T::fused(
+                t70,
+                T::fused(t126, t119, t129 * t120),
+                t66 * T::fused(t129, t119, t134 * t120),
             );
-            let t171 = T::fused(
-                -t152,
-                T::fused(t97, t123, t137 * t124),
-                t148 * T::fused(t107, t123, t138 * t124),
+            let t168 = k(0.1) * t51;
+            let t169 = k(0.1) * t62;
+            let t170 = T::fused(t92, t119, t131 * t120);
+            let t171 = T::fused(t102, t119, t132 * t120);
+            let t172 = T::fused(t114, t119, t133 * t120);
+            let t173 = T::fused(t150, t172, T::fused(-t146, t170, t142 * t171))
+                - T::fused(t161, t169, T::fused(t154, t54, t157 * t168));
+            let t174 = T::fused(t160, t169, T::fused(t153, t54, t156 * t168));
+            let t175 = t54 - T::fused(t144, t169, T::fused(t143, t54, t137 * t168))
+                + t170;
+            let t176 = t168 - T::fused(t139, t169, T::fused(t137, t54, t138 * t168))
+                + t171;
+            let t177 = t169 - T::fused(t148, t169, T::fused(t144, t54, t139 * t168))
+                + t172;
+            let t178 = T::fused(t150, t177, T::fused(-t146, t175, t142 * t176))
+                + T::fused(t162, t169, T::fused(-t155, t54, t158 * t168));
+            let t179 = T::fused(
+                -(t166 + (t166 + t164)),
+                t163,
+                (t178 - t174 - (t174 - t173 - t167)) * t53,
             );
-            let t172 = T::fused(t156, T::fused(t120, t123, t139 * t124), t171);
-            let t173 = T::fused(
-                t75,
-                T::fused(t132, t125, t135 * t126),
-                t71 * T::fused(t135, t125, t140 * t126),
+            let t180 = t179 + T::fused(t162 - T::fused(-k(0.14), t105, t160), t106, t159)
+                + t152;
+            let t181 = T::fused(
+                t70,
+                T::fused(t70, t126, t66 * t129),
+                t66 * T::fused(t70, t129, t66 * t134),
             );
-            let t174 = k(0.2) * t51;
-            let t175 = k(0.2) * t64;
-            let t176 = T::fused(t97, t125, t137 * t126);
-            let t177 = T::fused(t107, t125, t138 * t126);
-            let t178 = T::fused(t120, t125, t139 * t126);
-            let t179 = T::fused(t156, t178, T::fused(-t152, t176, t148 * t177))
-                - T::fused(t175, t167, T::fused(t55, t160, t174 * t163));
-            let t180 = T::fused(t175, t166, T::fused(t55, t159, t174 * t162));
-            let t181 = t55 - T::fused(t175, t150, T::fused(t55, t149, t174 * t143))
-                + t176;
-            let t182 = t174 - T::fused(t175, t145, T::fused(t55, t143, t174 * t144))
-                + t177;
-            let t183 = t175 - T::fused(t175, t154, T::fused(t55, t150, t174 * t145))
-                + t178;
-            let t184 = T::fused(t156, t183, T::fused(-t152, t181, t148 * t182))
-                + T::fused(t175, t168, T::fused(-t55, t161, t174 * t164));
-            let t185 = T::fused(
-                -(t172 + (t172 + t170)),
-                t169,
-                (t184 - t180 - (t180 - t179 - t173)) * t54,
-            );
-            let t186 = t185 + T::fused(t168 - T::fused(-k(0.28), t110, t166), t112, t165)
-                + t158;
-            let t187 = T::fused(
-                t75,
-                T::fused(t75, t132, t71 * t135),
-                t71 * T::fused(t75, t135, t71 * t140),
-            );
-            let t188 = T::fused(t156, t166, T::fused(-t152, t159, t148 * t162));
-            let t189 = T::fused(
+            let t182 = T::fused(t150, t160, T::fused(-t146, t153, t142 * t156));
+            let t183 = T::fused(
                 k(2.0),
-                T::fused(t156, t167, T::fused(-t152, t160, t148 * t163)),
-                t188,
+                T::fused(t150, t161, T::fused(-t146, t154, t142 * t157)),
+                t182,
             );
-            let t190 = T::fused(
+            let t184 = T::fused(
                 k(2.0),
-                T::fused(t156, t168, T::fused(t152, t161, t148 * t164)),
-                -t188,
+                T::fused(t150, t162, T::fused(t146, t155, t142 * t158)),
+                -t182,
             );
-            let t191 = k(1.0)
-                / (t190 + (k(0.014) + (k(0.00135) - (t189 - (k(0.01) - t187)))));
-            let t192 = t191 * t186;
-            let t193 = T::fused(t55, t54, t152 * t192);
-            let t194 = t89 + t193;
-            let t195 = t90 + (t193 + t194);
-            let t196 = T::fused(-t174, t54, t148 * t192);
-            let t197 = t99 - t196;
-            let t198 = t100 - (t196 - t197);
-            let t199 = T::fused(-t175, t54, t156 * t192);
+            let t185 = k(1.0)
+                / (t184 + (k(0.014) + (k(0.00135) - (t183 - (k(0.01) - t181)))));
+            let t186 = t185 * t180;
+            let t187 = T::fused(t54, t53, t146 * t186);
+            let t188 = t84 + t187;
+            let t189 = t85 + (t187 + t188);
+            let t190 = T::fused(-t168, t53, t142 * t186);
+            let t191 = t94 - t190;
+            let t192 = t95 - (t190 - t191);
+            let t193 = T::fused(-t169, t53, t150 * t186);
+            let t194 = t106 - t193;
+            let t195 = t107 - (t193 - t194);
+            let t196 = t124 + T::fused(t70, t186, T::fused(-t117, t163, t119 * t53));
+            let t197 = t127 - T::fused(t66, t186, T::fused(-t118, t163, t120 * t53));
+            let t198 = T::fused(-t81, t196, t128 * t197)
+                + T::fused(t112, t195, T::fused(t90, t189, t100 * t192));
+            let t199 = t78 * (t76 + t198);
             (
-                t7,
+                t8,
                 t12,
                 t14,
-                t15,
                 t16,
                 t17,
                 t18,
@@ -2000,416 +2002,403 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
                 t27,
                 t28,
                 t29,
-                t54,
+                t53,
                 t58,
                 t60,
-                t62,
+                t61,
+                t63,
+                t65,
                 t66,
-                t68,
+                t67,
+                t70,
                 t71,
                 t72,
-                t75,
-                t76,
-                t77,
+                t73,
+                t74,
                 t78,
-                t79,
                 t81,
-                t83,
                 t86,
-                t91,
-                t92,
+                t87,
+                t88,
+                t90,
                 t93,
-                t95,
+                t96,
+                t97,
                 t98,
-                t101,
-                t102,
+                t100,
                 t103,
-                t105,
                 t108,
+                t109,
+                t110,
                 t112,
-                t113,
-                t114,
-                t115,
-                t116,
-                t118,
-                t123,
-                t124,
-                t125,
-                t126,
-                t130,
-                t133,
-                t134,
-                t148,
-                t152,
-                t156,
-                t169,
+                t128,
+                t142,
+                t146,
+                t150,
+                t163,
+                t185,
+                t186,
+                t188,
+                t189,
                 t191,
                 t192,
                 t194,
                 t195,
+                t196,
                 t197,
-                t198,
                 t199,
             )
         };
         let (
-            t200,
+            t202,
+            t203,
             t208,
             t209,
-            t214,
-            t215,
-            t218,
+            t212,
+            t216,
+            t217,
             t223,
-            t224,
-            t231,
-            t243,
-            t244,
-            t246,
-            t248,
-            t256,
-            t257,
-            t260,
-            t281,
+            t237,
+            t238,
+            t240,
+            t242,
+            t250,
+            t251,
+            t254,
+            t277,
+            t278,
+            t280,
             t282,
-            t284,
-            t286,
+            t290,
+            t291,
             t294,
-            t295,
             t298,
-            t302,
-            t305,
-            t307,
-            t308,
-            t313,
-            t314,
+            t301,
+            t303,
+            t304,
+            t309,
+            t310,
+            t322,
+            t323,
             t324,
             t325,
-            t326,
             t327,
             t329,
-            t331,
+            t334,
+            t335,
             t336,
-            t337,
             t338,
+            t339,
             t340,
-            t341,
             t342,
+            t343,
             t344,
             t345,
             t346,
             t347,
             t348,
             t349,
-            t350,
-            t351,
         ) = {
-            let t200 = t112 - t199;
-            let t201 = t113 - (t199 - t200);
-            let t202 = t130 + T::fused(t75, t192, T::fused(-t123, t169, t125 * t54));
-            let t203 = t133 - T::fused(t71, t192, T::fused(-t124, t169, t126 * t54));
-            let t204 = T::fused(-t86, t202, t134 * t203)
-                + T::fused(t118, t201, T::fused(t95, t195, t105 * t198));
-            let t205 = t83 * (t81 + t204);
-            let t206 = T::fused(t78, t203, T::fused(-t76, t202, t77 * t205))
-                + T::fused(t116, t201, T::fused(-t93, t195, t103 * t198));
-            let t207 = t79 * (t72 - t206);
-            let t208 = T::fused(t66, t207, t205);
-            let t209 = T::fused(t71, t207, t203);
-            let t210 = T::fused(t91, t208, t92 * t209);
-            let t211 = t195 - t210;
-            let t212 = rocker_wy * rocker_wz;
-            let t213 = T::fused(rocker_wx, rocker_wx, t15);
-            let t214 = T::fused(t28, t213, -T::fused(-t18, t24, t23 * t212));
-            let t215 = k(2.0) * (t21 + t20);
-            let t216 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
-            let t217 = k(2.0) * t216;
-            let t218 = k(1.0) / T::fused(-t23, t215, t18 * t217);
-            let t219 = rocker_e0 * rocker_e1;
-            let t220 = rocker_e2 * rocker_e3;
-            let t221 = t220 - t219;
-            let t222 = k(2.0) * t221;
-            let t223 = T::fused(t222, t213, T::fused(-t215, t24, t217 * t212));
-            let t224 = T::fused(t217 * t218, t214, t23 * t218 * t223);
-            let t225 = k(0.2) * T::fused(t222, t24, -T::fused(t215, t16, t217 * t19));
-            let t226 = t220 + t219;
-            let t227 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
-            let t228 = T::fused(
-                k(2.0) * t227,
-                t24,
-                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t226 * t19),
+            let t200 = T::fused(t73, t197, T::fused(-t71, t196, t72 * t199))
+                + T::fused(t110, t195, T::fused(-t88, t189, t98 * t192));
+            let t201 = t74 * (t67 - t200);
+            let t202 = T::fused(t63, t201, t199);
+            let t203 = T::fused(t66, t201, t197);
+            let t204 = T::fused(t86, t202, t87 * t203);
+            let t205 = t189 - t204;
+            let t206 = rocker_wy * rocker_wz;
+            let t207 = T::fused(rocker_wx, rocker_wx, t19);
+            let t208 = T::fused(t207, t27, -T::fused(-t28, t18, t206 * t23));
+            let t209 = t22 + t21;
+            let t210 = k(2.0) * rocker_e2;
+            let t211 = T::fused(-rocker_e2, t210, t17);
+            let t212 = k(1.0) / T::fused(-t23, t209, t18 * t211);
+            let t213 = rocker_e1 * t16;
+            let t214 = rocker_e3 * t210;
+            let t215 = t214 - t213;
+            let t216 = T::fused(t207, t215, T::fused(-t28, t209, t206 * t211));
+            let t217 = T::fused(t211 * t212, t208, t23 * t212 * t216);
+            let t218 = k(0.2) * T::fused(t28, t215, -T::fused(t20, t209, t24 * t211));
+            let t219 = t214 + t213;
+            let t220 = T::fused(-rocker_e3, k(2.0) * rocker_e3, t17);
+            let t221 = k(0.2)
+                * T::fused(t28, t220, -T::fused(-t20, t26 - t25, t24 * t219));
+            let t222 = T::fused(
+                k(0.16) * t219,
+                t221,
+                T::fused(-(k(0.16) * t23), t29, k(0.16) * t211 * t218),
             );
-            let t229 = k(0.2) * t228;
-            let t230 = T::fused(
-                k(0.32) * t226,
-                t229,
-                T::fused(-(k(0.32) * t22), t29, k(0.32) * t216 * t225),
+            let t223 = k(23.364485981308412)
+                * (t222 - T::fused(-k(1.5696), t211, k(0.01076) * t24));
+            let t224 = k(0.2) * t23;
+            let t225 = T::fused(t217, k(0.2) * t27, t224 * t223);
+            let t226 = t29 + t225;
+            let t227 = t225 + t226 + (t204 - t205) + (t29 - t14);
+            let t228 = k(0.5) * t12;
+            let t229 = k(0.5) * t8;
+            let t230 = T::fused(t228, t63, t229 * t66);
+            let t231 = t230 * t74;
+            let t232 = T::fused(-t72, t231, t228);
+            let t233 = t232 * t78;
+            let t234 = T::fused(
+                t70,
+                T::fused(-t71, t231, t233 * t81),
+                t66 * T::fused(t233, t128, T::fused(-t73, t231, t229)),
             );
-            let t231 = k(23.364485981308412)
-                * (t230 - T::fused(-k(3.1392), t216, k(0.01076) * t19));
-            let t232 = k(0.4) * t22;
-            let t233 = T::fused(k(0.4) * t27, t224, t232 * t231);
-            let t234 = t29 + t233;
-            let t235 = t233 + t234 + (t210 - t211) + (t29 - t14);
-            let t236 = T::fused(t12, t66, t7 * t71);
-            let t237 = t236 * t79;
-            let t238 = T::fused(-t77, t237, t12);
-            let t239 = t238 * t83;
-            let t240 = T::fused(
-                t75,
-                T::fused(-t76, t237, t239 * t86),
-                t71 * T::fused(t239, t134, T::fused(-t78, t237, t7)),
+            let t235 = T::fused(
+                -T::fused(t233, t90, -T::fused(-t231, t88, k(1.0))),
+                t146,
+                T::fused(-t231, t98, t233 * t100) * t142,
             );
-            let t241 = T::fused(
-                -t152,
-                T::fused(t239, t95, -T::fused(-t237, t93, k(1.0))),
-                t148 * T::fused(-t237, t103, t239 * t105),
+            let t236 = T::fused(T::fused(-t231, t110, t233 * t112), t150, t235);
+            let t237 = (t236 + (t236 + t234)) * t185;
+            let t238 = t146 * t237;
+            let t239 = k(2.0) * t238;
+            let t240 = t142 * t237;
+            let t241 = k(2.0) * t240;
+            let t242 = t150 * t237;
+            let t243 = k(2.0) * t242;
+            let t244 = t70 * t237;
+            let t245 = t66 * t237;
+            let t246 = T::fused(t81, t244, t128 * t245)
+                + T::fused(t112, t243, T::fused(-t90, t239, t100 * t241));
+            let t247 = t78 * (t232 + t246);
+            let t248 = T::fused(t73, t245, T::fused(t71, t244, t72 * t247))
+                + T::fused(t110, t243, T::fused(t88, t239, t98 * t241));
+            let t249 = t74 * (t230 - t248);
+            let t250 = T::fused(t63, t249, t247);
+            let t251 = T::fused(t66, t249, t245);
+            let t252 = T::fused(t86, t250, t87 * t251);
+            let t253 = t239 + t252;
+            let t254 = k(9.345794392523365) * t23;
+            let t255 = t254 * t224;
+            let t256 = k(1.0) / T::fused(k(2.0), t255, t252 + t253);
+            let t257 = T::fused(-t96, t202, t97 * t203);
+            let t258 = t192 + t257;
+            let t259 = k(0.2) * t211;
+            let t260 = T::fused(-t217, k(0.2) * t215, t259 * t223);
+            let t261 = t218 - t260;
+            let t262 = T::fused(-t96, t250, t97 * t251);
+            let t263 = t241 + t262;
+            let t264 = t254 * t259;
+            let t265 = T::fused(k(2.0), t264, t262 + t263);
+            let t266 = t256 * t265;
+            let t267 = T::fused(
+                t266,
+                t227,
+                -(t260 - t261 + (t257 + t258) - (t218 - t93)),
             );
-            let t242 = T::fused(t156, T::fused(-t237, t116, t239 * t118), t241);
-            let t243 = (t242 + (t242 + t240)) * t191;
-            let t244 = t152 * t243;
-            let t245 = k(2.0) * t244;
-            let t246 = t148 * t243;
-            let t247 = k(2.0) * t246;
-            let t248 = t156 * t243;
-            let t249 = k(2.0) * t248;
-            let t250 = t75 * t243;
-            let t251 = t71 * t243;
-            let t252 = T::fused(t86, t250, t134 * t251)
-                + T::fused(t118, t249, T::fused(-t95, t245, t105 * t247));
-            let t253 = t83 * (t238 + t252);
-            let t254 = T::fused(t78, t251, T::fused(t76, t250, t77 * t253))
-                + T::fused(t116, t249, T::fused(t93, t245, t103 * t247));
-            let t255 = t79 * (t236 - t254);
-            let t256 = T::fused(t66, t255, t253);
-            let t257 = T::fused(t71, t255, t251);
-            let t258 = T::fused(t91, t256, t92 * t257);
-            let t259 = t245 + t258;
-            let t260 = k(18.69158878504673) * t22;
-            let t261 = t232 * t260;
-            let t262 = k(1.0) / T::fused(k(2.0), t261, t258 + t259);
-            let t263 = T::fused(-t101, t208, t102 * t209);
-            let t264 = t198 + t263;
-            let t265 = k(0.4) * t216;
-            let t266 = T::fused(-(k(0.4) * t221), t224, t265 * t231);
-            let t267 = t225 - t266;
-            let t268 = T::fused(-t101, t256, t102 * t257);
-            let t269 = t247 + t268;
-            let t270 = t265 * t260;
-            let t271 = T::fused(k(2.0), t270, t268 + t269);
-            let t272 = t262 * t271;
-            let t273 = T::fused(
-                t272,
-                t235,
-                -(t266 - t267 + (t263 + t264) - (t225 - t98)),
+            let t268 = k(0.5) * t58;
+            let t269 = k(0.5) * t60;
+            let t270 = T::fused(-t63, t268, t66 * t269);
+            let t271 = t74 * t270;
+            let t272 = T::fused(t72, t271, t268);
+            let t273 = t78 * t272;
+            let t274 = T::fused(
+                t70,
+                T::fused(t71, t271, t81 * t273),
+                t66 * T::fused(t128, t273, -T::fused(-t73, t271, t269)),
             );
-            let t274 = T::fused(-t58, t66, t60 * t71);
-            let t275 = t79 * t274;
-            let t276 = T::fused(t77, t275, t58);
-            let t277 = t83 * t276;
-            let t278 = T::fused(
-                t75,
-                T::fused(t76, t275, t86 * t277),
-                t71 * T::fused(t134, t277, -T::fused(-t78, t275, t60)),
+            let t275 = T::fused(
+                -t146,
+                T::fused(-t88, t271, t90 * t273),
+                t142 * T::fused(t100, t273, -T::fused(-t98, t271, k(1.0))),
             );
-            let t279 = T::fused(
-                -t152,
-                T::fused(-t93, t275, t95 * t277),
-                t148 * T::fused(t105, t277, -T::fused(-t103, t275, k(1.0))),
-            );
-            let t280 = T::fused(t156, T::fused(t116, t275, t118 * t277), t279);
-            let t281 = t191 * (t280 + (t280 + t278));
-            let t282 = t152 * t281;
+            let t276 = T::fused(t150, T::fused(t110, t271, t112 * t273), t275);
+            let t277 = t185 * (t276 + (t276 + t274));
+            let t278 = t146 * t277;
+            let t279 = k(2.0) * t278;
+            let t280 = t142 * t277;
+            let t281 = k(2.0) * t280;
+            let t282 = t150 * t277;
             let t283 = k(2.0) * t282;
-            let t284 = t148 * t281;
-            let t285 = k(2.0) * t284;
-            let t286 = t156 * t281;
-            let t287 = k(2.0) * t286;
-            let t288 = t75 * t281;
-            let t289 = t71 * t281;
-            let t290 = T::fused(t86, t288, t134 * t289)
-                + T::fused(t118, t287, T::fused(-t95, t283, t105 * t285));
-            let t291 = t83 * (t276 + t290);
-            let t292 = T::fused(t78, t289, T::fused(t76, t288, t77 * t291))
-                + T::fused(t116, t287, T::fused(t93, t283, t103 * t285));
-            let t293 = t79 * (t274 + t292);
-            let t294 = T::fused(-t66, t293, t291);
-            let t295 = T::fused(-t71, t293, t289);
-            let t296 = T::fused(-t101, t294, t102 * t295);
-            let t297 = t285 + t296;
-            let t298 = k(18.69158878504673) * t216;
-            let t299 = t265 * t298;
-            let t300 = k(1.0)
-                / T::fused(t271, t272, -T::fused(k(2.0), t299, -(t296 + t297)));
-            let t301 = T::fused(-t114, t208, t115 * t209);
-            let t302 = t201 + t301;
-            let t303 = k(0.4) * t226;
-            let t304 = T::fused(-(k(0.4) * t227), t224, t303 * t231);
-            let t305 = t229 - t304;
-            let t306 = T::fused(-t114, t256, t115 * t257);
-            let t307 = t249 + t306;
-            let t308 = t303 * t260;
-            let t309 = T::fused(k(2.0), t308, t306 + t307);
-            let t310 = t262 * t309;
-            let t311 = T::fused(
-                t310,
-                t235,
-                -(t304 - t305 + (t301 + t302) - (t229 - t108)),
+            let t284 = t70 * t277;
+            let t285 = t66 * t277;
+            let t286 = T::fused(t81, t284, t128 * t285)
+                + T::fused(t112, t283, T::fused(-t90, t279, t100 * t281));
+            let t287 = t78 * (t272 + t286);
+            let t288 = T::fused(t73, t285, T::fused(t71, t284, t72 * t287))
+                + T::fused(t110, t283, T::fused(t88, t279, t98 * t281));
+            let t289 = t74 * (t270 + t288);
+            let t290 = T::fused(-t63, t289, t287);
+            let t291 = T::fused(-t66, t289, t285);
+            let t292 = T::fused(-t96, t290, t97 * t291);
+            let t293 = t281 + t292;
+            let t294 = k(9.345794392523365) * t211;
+            let t295 = t259 * t294;
+            let t296 = k(1.0)
+                / T::fused(t265, t266, -T::fused(k(2.0), t295, -(t292 + t293)));
+            let t297 = T::fused(-t108, t202, t109 * t203);
+            let t298 = t195 + t297;
+            let t299 = k(0.2) * t219;
+            let t300 = T::fused(-t217, k(0.2) * t220, t299 * t223);
+            let t301 = t221 - t300;
+            let t302 = T::fused(-t108, t250, t109 * t251);
+            let t303 = t243 + t302;
+            let t304 = t254 * t299;
+            let t305 = T::fused(k(2.0), t304, t302 + t303);
+            let t306 = t256 * t305;
+            let t307 = T::fused(
+                t306,
+                t227,
+                -(t300 - t301 + (t297 + t298) - (t221 - t103)),
             );
-            let t312 = T::fused(-t114, t294, t115 * t295);
-            let t313 = t287 + t312;
-            let t314 = t303 * t298;
-            let t315 = T::fused(t271, t310, -T::fused(k(2.0), t314, -(t312 + t313)));
-            let t316 = t300 * t315;
-            let t317 = T::fused(-t68, t66, t62 * t71);
-            let t318 = t79 * t317;
-            let t319 = T::fused(t77, t318, t68);
-            let t320 = t83 * t319;
+            let t308 = T::fused(-t108, t290, t109 * t291);
+            let t309 = t283 + t308;
+            let t310 = t294 * t299;
+            let t311 = T::fused(t265, t306, -T::fused(k(2.0), t310, -(t308 + t309)));
+            let t312 = t296 * t311;
+            let t313 = k(0.5) * t65;
+            let t314 = k(0.5) * t61;
+            let t315 = T::fused(-t63, t313, t66 * t314);
+            let t316 = t74 * t315;
+            let t317 = T::fused(t72, t316, t313);
+            let t318 = t78 * t317;
+            let t319 = T::fused(
+                t70,
+                T::fused(t71, t316, t81 * t318),
+                t66 * T::fused(t128, t318, -T::fused(-t73, t316, t314)),
+            );
+            let t320 = T::fused(
+                -t146,
+                T::fused(-t88, t316, t90 * t318),
+                t142 * T::fused(t98, t316, t100 * t318),
+            );
             let t321 = T::fused(
-                t75,
-                T::fused(t76, t318, t86 * t320),
-                t71 * T::fused(t134, t320, -T::fused(-t78, t318, t62)),
+                t150,
+                T::fused(t112, t318, -T::fused(-t110, t316, k(1.0))),
+                t320,
             );
-            let t322 = T::fused(
-                -t152,
-                T::fused(-t93, t318, t95 * t320),
-                t148 * T::fused(t103, t318, t105 * t320),
-            );
-            let t323 = T::fused(
-                t156,
-                T::fused(t118, t320, -T::fused(-t116, t318, k(1.0))),
-                t322,
-            );
-            let t324 = t191 * (t323 + (t323 + t321));
-            let t325 = t152 * t324;
+            let t322 = t185 * (t321 + (t321 + t319));
+            let t323 = t146 * t322;
+            let t324 = k(2.0) * t323;
+            let t325 = t142 * t322;
             let t326 = k(2.0) * t325;
-            let t327 = t148 * t324;
+            let t327 = t150 * t322;
             let t328 = k(2.0) * t327;
-            let t329 = t156 * t324;
-            let t330 = k(2.0) * t329;
-            let t331 = t75 * t324;
-            let t332 = t71 * t324;
-            let t333 = T::fused(t86, t331, t134 * t332)
-                + T::fused(t118, t330, T::fused(-t95, t326, t105 * t328));
-            let t334 = t83 * (t319 + t333);
-            let t335 = T::fused(t78, t332, T::fused(t76, t331, t77 * t334))
-                + T::fused(t116, t330, T::fused(t93, t326, t103 * t328));
-            let t336 = t79 * (t317 + t335);
-            let t337 = T::fused(-t66, t336, t334);
-            let t338 = T::fused(-t71, t336, t332);
-            let t339 = T::fused(-t114, t337, t115 * t338);
-            let t340 = t330 + t339;
-            let t341 = k(18.69158878504673) * t226;
-            let t342 = t303 * t341;
-            let t343 = T::fused(
-                t315,
-                t316,
-                -T::fused(t309, t310, -T::fused(k(2.0), t342, -(t339 + t340))),
+            let t329 = t70 * t322;
+            let t330 = t66 * t322;
+            let t331 = T::fused(t81, t329, t128 * t330)
+                + T::fused(t112, t328, T::fused(-t90, t324, t100 * t326));
+            let t332 = t78 * (t317 + t331);
+            let t333 = T::fused(t73, t330, T::fused(t71, t329, t72 * t332))
+                + T::fused(t110, t328, T::fused(t88, t324, t98 * t326));
+            let t334 = t74 * (t315 + t333);
+            let t335 = T::fused(-t63, t334, t332);
+            let t336 = T::fused(-t66, t334, t330);
+            let t337 = T::fused(-t108, t335, t109 * t336);
+            let t338 = t328 + t337;
+            let t339 = k(9.345794392523365) * t219;
+            let t340 = t299 * t339;
+            let t341 = T::fused(
+                t311,
+                t312,
+                -T::fused(t305, t306, -T::fused(k(2.0), t340, -(t337 + t338))),
             );
-            let t344 = T::fused(t316, t273, -t311) / t343;
-            let t345 = T::fused(-t300, t273, t316 * t344);
-            let t346 = T::fused(t310, t344, -T::fused(t262, t235, t272 * t345));
+            let t342 = T::fused(t312, t267, -t307) / t341;
+            let t343 = T::fused(-t296, t267, t312 * t342);
+            let t344 = T::fused(t306, t342, -T::fused(t256, t227, t266 * t343));
+            let t345 = T::fused(
+                t343,
+                t279 + T::fused(t86, t290, t87 * t291),
+                T::fused(-t253, t344, t205),
+            );
+            let t346 = T::fused(
+                t342,
+                t326 + T::fused(-t96, t335, t97 * t336),
+                -T::fused(t293, t343, -T::fused(t263, t344, t258)),
+            );
             let t347 = T::fused(
-                t345,
-                t283 + T::fused(t91, t294, t92 * t295),
-                T::fused(-t259, t346, t211),
+                t343,
+                T::fused(-t70, t289, t284),
+                -T::fused(t344, T::fused(t70, t249, t244), -T::fused(-t70, t201, t196)),
             );
             let t348 = T::fused(
-                t344,
-                t328 + T::fused(-t101, t337, t102 * t338),
-                -T::fused(t297, t345, -T::fused(t269, t346, t264)),
+                t342,
+                t224 * t339,
+                -T::fused(t343, t224 * t294, T::fused(t255, t344, t226)),
             );
             let t349 = T::fused(
-                t345,
-                T::fused(-t75, t293, t288),
-                -T::fused(t346, T::fused(t75, t255, t250), -T::fused(-t75, t207, t202)),
-            );
-            let t350 = T::fused(
-                t344,
-                t232 * t341,
-                -T::fused(t345, t232 * t298, T::fused(t261, t346, t234)),
-            );
-            let t351 = T::fused(
-                t344,
-                t265 * t341,
-                -T::fused(t299, t345, -T::fused(-t270, t346, t267)),
+                t342,
+                t259 * t339,
+                -T::fused(t295, t343, -T::fused(-t264, t344, t261)),
             );
             (
-                t200,
+                t202,
+                t203,
                 t208,
                 t209,
-                t214,
-                t215,
-                t218,
+                t212,
+                t216,
+                t217,
                 t223,
-                t224,
-                t231,
-                t243,
-                t244,
-                t246,
-                t248,
-                t256,
-                t257,
-                t260,
-                t281,
+                t237,
+                t238,
+                t240,
+                t242,
+                t250,
+                t251,
+                t254,
+                t277,
+                t278,
+                t280,
                 t282,
-                t284,
-                t286,
+                t290,
+                t291,
                 t294,
-                t295,
                 t298,
-                t302,
-                t305,
-                t307,
-                t308,
-                t313,
-                t314,
+                t301,
+                t303,
+                t304,
+                t309,
+                t310,
+                t322,
+                t323,
                 t324,
                 t325,
-                t326,
                 t327,
                 t329,
-                t331,
+                t334,
+                t335,
                 t336,
-                t337,
                 t338,
+                t339,
                 t340,
-                t341,
                 t342,
+                t343,
                 t344,
                 t345,
                 t346,
                 t347,
                 t348,
                 t349,
-                t350,
-                t351,
             )
         };
         *out = [
-            T::fused(-t325, t344, T::fused(t282, t345, T::fused(-t244, t346, t194))),
-            T::fused(t327, t344, -T::fused(t284, t345, -T::fused(t246, t346, t197))),
-            T::fused(-t329, t344, T::fused(t286, t345, -T::fused(t248, t346, t200))),
-            t169,
-            -t54,
-            T::fused(-t324, t344, T::fused(t281, t345, T::fused(-t243, t346, t192))),
-            T::fused(-t344, t326 + T::fused(t91, t337, t92 * t338), t347),
-            t348,
-            T::fused(-t340, t344, T::fused(t313, t345, -T::fused(t307, t346, t302))),
-            T::fused(t344, T::fused(-t75, t336, t331), -t349),
-            T::fused(t337, t344, -T::fused(t294, t345, -T::fused(t256, t346, t208))),
-            T::fused(-t338, t344, T::fused(t295, t345, -T::fused(t257, t346, t209))),
-            -t350,
-            t351,
-            T::fused(-t342, t344, T::fused(t314, t345, -T::fused(-t308, t346, t305))),
-            T::fused(t214, t215 * t218, t223 * (t18 * t218)),
-            -t224,
-            T::fused(-t341, t344, T::fused(t298, t345, T::fused(t260, t346, t231))),
-            -t346,
-            t345,
-            t344,
+            T::fused(-t323, t342, T::fused(t278, t343, T::fused(-t238, t344, t188))),
+            T::fused(t325, t342, -T::fused(t280, t343, -T::fused(t240, t344, t191))),
+            T::fused(-t327, t342, T::fused(t282, t343, -T::fused(t242, t344, t194))),
+            t163,
+            -t53,
+            T::fused(-t322, t342, T::fused(t277, t343, T::fused(-t237, t344, t186))),
+            T::fused(-t342, t324 + T::fused(t86, t335, t87 * t336), t345),
+            t346,
+            T::fused(-t338, t342, T::fused(t309, t343, -T::fused(t303, t344, t298))),
+            T::fused(t342, T::fused(-t70, t334, t329), -t347),
+            T::fused(t335, t342, -T::fused(t290, t343, -T::fused(t250, t344, t202))),
+            T::fused(-t336, t342, T::fused(t291, t343, -T::fused(t251, t344, t203))),
+            -t348,
+            t349,
+            T::fused(-t340, t342, T::fused(t310, t343, -T::fused(-t304, t344, t301))),
+            T::fused(t208, t209 * t212, t216 * (t18 * t212)),
+            -t217,
+            T::fused(-t339, t342, T::fused(t294, t343, T::fused(t254, t344, t223))),
+            -t344,
+            t343,
+            t342,
         ];
     }
-    /// Writes λ: 272 operations (104 ±, 165 ×, 3 ÷).
+    /// Writes λ: 255 operations (98 ±, 154 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2462,148 +2451,141 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
         let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = coupler_dsz - closing2;
         let t5 = T::fused(k(0.4), crank_dsz, t4);
-        let t6 = coupler_e0 * coupler_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t6));
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
-        let t10 = coupler_e0 * coupler_e3;
-        let t11 = coupler_e1 * coupler_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = crank_e0 * crank_e3;
-        let t14 = crank_e1 * crank_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = coupler_e0 * coupler_e2;
-        let t17 = coupler_e1 * coupler_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = crank_e0 * crank_e2;
-        let t20 = crank_e1 * crank_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t17 + t16;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = T::fused(
+        let t6 = k(0.02095) * coupler_wx;
+        let t7 = k(2.0) * coupler_e0;
+        let t8 = coupler_e3 * t7;
+        let t9 = k(2.0) * coupler_e1;
+        let t10 = coupler_e2 * t9;
+        let t11 = t10 - t8;
+        let t12 = k(0.25) * t11;
+        let t13 = k(2.0) * coupler_e2;
+        let t14 = T::fused(-coupler_e0, t7, k(1.0));
+        let t15 = T::fused(-coupler_e2, t13, t14);
+        let t16 = k(0.25) * t15;
+        let t17 = T::fused(
             closing1,
-            t28,
-            -T::fused(
-                -closing0,
-                t24,
-                T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
-            ),
+            t16,
+            -T::fused(closing0, t12, -T::fused(coupler_wy, t6, k(0.021) * coupler_dwz)),
         );
-        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t6);
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(t4, t31, -T::fused(t0, t24, t2 * t28))
-            - T::fused(closing2, t31, -t29);
-        let t33 = t11 - t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t6);
-        let t36 = k(2.0) * t35;
-        let t37 = t26 + t25;
-        let t38 = k(2.0) * t37;
-        let t39 = T::fused(
-            t22,
-            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
-            T::fused(t21, t38, -T::fused(t9, t34, t15 * t36)) * t32,
-        );
-        let t40 = k(0.5) * t33;
-        let t41 = k(0.5) * t35;
-        let t42 = T::fused(
+        let t18 = coupler_e1 * t7;
+        let t19 = coupler_e3 * t13;
+        let t20 = t19 + t18;
+        let t21 = k(0.25) * t20;
+        let t22 = T::fused(t4, t21, -T::fused(-t0, t12, t2 * t16))
+            - T::fused(closing2, t21, -t17);
+        let t23 = coupler_e2 * t7;
+        let t24 = coupler_e3 * t9;
+        let t25 = t24 + t23;
+        let t26 = k(2.0) * crank_e0;
+        let t27 = crank_e3 * t26;
+        let t28 = k(2.0) * crank_e1;
+        let t29 = crank_e2 * t28;
+        let t30 = t29 - t27;
+        let t31 = t19 - t18;
+        let t32 = k(2.0) * crank_e2;
+        let t33 = T::fused(-crank_e0, t26, k(1.0));
+        let t34 = T::fused(-crank_e2, t32, t33);
+        let t35 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t14);
+        let t36 = crank_e1 * t26;
+        let t37 = crank_e3 * t32;
+        let t38 = t37 + t36;
+        let t39 = k(0.25) * t25;
+        let t40 = k(0.25) * t31;
+        let t41 = T::fused(
             closing1,
-            t41,
-            T::fused(
-                -closing0,
-                t40,
-                T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
-            ),
+            t40,
+            T::fused(closing0, t39, T::fused(-coupler_wz, t6, k(0.021) * coupler_dwy)),
         );
-        let t43 = k(0.5) * t37;
-        let t44 = T::fused(t4, t43, -T::fused(-t0, t40, t2 * t41))
-            - T::fused(closing2, t43, -t42);
-        let t45 = k(2.0) * t23;
-        let t46 = k(2.0) * t27;
-        let t47 = k(2.0) * t30;
+        let t42 = k(0.25) * t35;
+        let t43 = T::fused(t4, t42, -T::fused(t0, t39, t2 * t40))
+            - T::fused(closing2, t42, -t41);
+        let t44 = T::fused(-coupler_e1, t9, t14);
+        let t45 = t10 + t8;
+        let t46 = t24 - t23;
+        let t47 = k(5e-5) * coupler_dwx;
         let t48 = T::fused(
-            T::fused(t21, t47, -T::fused(-t9, t45, t15 * t46)),
-            t44,
-            -t39,
+            T::fused(t38, t20, T::fused(t30, t11, t34 * t15)),
+            t43,
+            t47 * T::fused(t38, t46, -T::fused(t30, t44, t34 * t45)),
         );
-        let t49 = T::fused(k(2e-5), crank_dwx, -t48);
-        let t50 = k(2.0) * (t14 - t13);
-        let t51 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
-        let t52 = k(1.0) / T::fused(-t50, t15, t9 * t51);
-        let t53 = crank_e0 * crank_e1;
-        let t54 = crank_e2 * crank_e3;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(
+        let t49 = T::fused(
+            -T::fused(t38, t35, T::fused(-t30, t25, t34 * t31)),
             t22,
-            T::fused(t55, t18, -T::fused(t50, t7, t51 * t12)),
-            T::fused(t55, t38, T::fused(t51, t36, t50 * t34)) * t32,
+            t48,
         );
-        let t57 = T::fused(
-            T::fused(t55, t47, -T::fused(-t51, t46, t50 * t45)),
-            t44,
-            -t56,
+        let t50 = crank_e2 * t26;
+        let t51 = crank_e3 * t28;
+        let t52 = t51 + t50;
+        let t53 = k(0.1) * t52;
+        let t54 = t37 - t36;
+        let t55 = k(0.1) * t54;
+        let t56 = T::fused(-crank_e3, k(2.0) * crank_e3, t33);
+        let t57 = k(0.1) * t56;
+        let t58 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
+            - (T::fused(t4, t57, -T::fused(t0, t53, t2 * t55)) + t49);
+        let t59 = T::fused(t5, t57, -T::fused(t1, t53, t3 * t55)) - t58;
+        let t60 = t29 + t27;
+        let t61 = T::fused(-crank_e1, t28, t33);
+        let t62 = k(1.0) / T::fused(-t30, t60, t61 * t34);
+        let t63 = t51 - t50;
+        let t64 = T::fused(
+            T::fused(t63, t20, -T::fused(t61, t11, t60 * t15)),
+            t43,
+            t47 * T::fused(t63, t46, T::fused(t61, t44, t60 * t45)),
         );
-        let t58 = t20 + t19;
-        let t59 = k(0.2) * t58;
-        let t60 = t54 - t53;
-        let t61 = k(0.2) * t60;
-        let t62 = k(0.5) - T::fused(crank_e3, crank_e3, t8);
-        let t63 = k(0.2) * t62;
-        let t64 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
-            - (T::fused(t4, t63, -T::fused(t0, t59, t2 * t61)) - t57);
-        let t65 = T::fused(t5, t63, -T::fused(t1, t59, t3 * t61)) - t64;
-        let t66 = T::fused(k(0.8), rocker_dsx, closing0);
-        let t67 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
-        let t68 = T::fused(k(0.8), rocker_dsz, closing2);
-        let t69 = rocker_e0 * rocker_e3;
-        let t70 = rocker_e1 * rocker_e2;
-        let t71 = k(2.0) * (t70 + t69);
-        let t72 = k(2.0) * (t70 - t69);
-        let t73 = rocker_e0 * rocker_e0;
-        let t74 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t73));
-        let t75 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t73));
-        let t76 = k(1.0) / T::fused(-t72, t71, t75 * t74);
-        let t77 = k(4e-5) * rocker_dwx;
-        let t78 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t79 = k(0.4) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
-        let t80 = T::fused(
+        let t65 = T::fused(
+            -T::fused(t63, t35, -T::fused(-t61, t25, t60 * t31)),
+            t22,
+            t64,
+        );
+        let t66 = T::fused(k(2e-5), crank_dwx, t65);
+        let t67 = T::fused(k(0.8), rocker_dsx, closing0);
+        let t68 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
+        let t69 = T::fused(k(0.8), rocker_dsz, closing2);
+        let t70 = k(2.0) * rocker_e0;
+        let t71 = rocker_e3 * t70;
+        let t72 = k(2.0) * rocker_e1;
+        let t73 = rocker_e2 * t72;
+        let t74 = t73 + t71;
+        let t75 = t73 - t71;
+        let t76 = k(2.0) * rocker_e2;
+        let t77 = T::fused(-rocker_e0, t70, k(1.0));
+        let t78 = T::fused(-rocker_e2, t76, t77);
+        let t79 = T::fused(-rocker_e1, t72, t77);
+        let t80 = k(1.0) / T::fused(-t75, t74, t79 * t78);
+        let t81 = k(4e-5) * rocker_dwx;
+        let t82 = k(0.2) * T::fused(rocker_e2, t70, rocker_e3 * t72);
+        let t83 = k(0.2) * T::fused(-rocker_e1, t70, rocker_e3 * t76);
+        let t84 = T::fused(
             closing1,
-            t79,
+            t83,
             T::fused(
                 closing0,
-                t78,
+                t82,
                 T::fused(-k(0.0108), rocker_dwy, k(0.01076) * (rocker_wx * rocker_wz)),
             ),
         );
-        let t81 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t73));
-        let t82 = T::fused(t68, t81, -T::fused(t66, t78, t67 * t79))
-            + T::fused(closing2, t81, -t80);
-        let t83 = k(2.0) * t62;
-        let t84 = k(2.0) * t60;
-        let t85 = k(2.0) * t58;
-        let t86 = T::fused(t83, t47, T::fused(t84, t46, t85 * t45));
-        let t87 = T::fused(t83, t18, -T::fused(-t85, t7, t84 * t12));
-        let t88 = k(1.0) / T::fused(t86, t86, t87 * t87);
+        let t85 = k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t77);
+        let t86 = T::fused(t69, t85, -T::fused(t67, t82, t68 * t83))
+            + T::fused(closing2, t85, -t84);
+        let t87 = T::fused(t56, t35, T::fused(t52, t25, t54 * t31));
+        let t88 = T::fused(t56, t46, -T::fused(-t52, t44, t54 * t45));
+        let t89 = k(1.0) / T::fused(t87, t87, t88 * t88);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            T::fused(-(t15 * t52), t49, t51 * t52 * t65),
-            T::fused(-(t9 * t52), t49, t50 * t52 * t65),
-            -t66,
+            T::fused(-(t60 * t62), t66, t34 * t62 * t59),
+            T::fused(-(t61 * t62), t66, t30 * t62 * t59),
             -t67,
             -t68,
-            T::fused(-t77, t71 * t76, t74 * t76 * t82),
-            T::fused(-t77, t75 * t76, t72 * t76 * t82),
+            -t69,
+            T::fused(-t81, t74 * t80, t78 * t80 * t86),
+            T::fused(-t81, t79 * t80, t75 * t80 * t86),
             -t0,
             -t2,
             -t4,
-            -T::fused(t22, t86 * t88, t87 * t88 * t44),
+            -T::fused(t88 * t89, t22, t47 * (t87 * t89)),
             closing0,
             closing1,
             closing2,
@@ -2611,7 +2593,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBar<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBar<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 1003 operations (421 ±, 573 ×, 9 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 993 operations (415 ±, 569 ×, 9 ÷).
     fn project(
         &self,
         _t: T,
@@ -2650,63 +2632,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBar<T> {
         let row15 = rows[15];
         let row16 = rows[16];
         let (
-            t10,
-            t16,
+            t11,
+            t21,
             t27,
-            t30,
-            t34,
+            t33,
             t35,
+            t36,
             t37,
+            t38,
+            t39,
             t40,
-            t41,
-            t42,
+            t44,
+            t45,
             t46,
             t47,
             t48,
-            t49,
             t50,
             t52,
-            t54,
+            t55,
             t57,
+            t58,
             t59,
-            t60,
             t61,
-            t63,
+            t64,
+            t65,
             t66,
-            t67,
             t68,
-            t70,
-            t78,
-            t90,
-            t94,
-            t98,
-            t110,
+            t76,
+            t88,
+            t92,
+            t96,
+            t108,
+            t135,
+            t136,
             t138,
-            t139,
             t141,
+            t142,
             t144,
             t145,
-            t147,
-            t148,
-            t149,
-            t154,
+            t146,
+            t151,
+            t152,
+            t153,
             t155,
-            t156,
-            t158,
+            t160,
             t161,
-            t162,
+            t163,
             t164,
             t165,
+            t166,
             t167,
             t168,
             t169,
             t170,
-            t171,
             t172,
-            t174,
+            t173,
             t175,
-            t177,
-            t178,
+            t176,
             t186,
             t187,
             t188,
@@ -2719,329 +2701,325 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBar<T> {
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e3;
-            let t1 = crank_e1 * crank_e2;
-            let t2 = k(2.0) * (t1 + t0);
-            let t3 = t1 - t0;
-            let t4 = k(2.0) * t3;
-            let t5 = crank_e0 * crank_e0;
-            let t6 = k(0.5) - T::fused(crank_e2, crank_e2, t5);
-            let t7 = k(2.0) * t6;
-            let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t5));
-            let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
-            let t10 = T::fused(t7 * t9, row3, t4 * t9 * row4);
-            let t11 = crank_e0 * crank_e2;
-            let t12 = crank_e1 * crank_e3;
-            let t13 = t12 + t11;
-            let t14 = k(0.2) * t13;
-            let t15 = coupler_e0 * coupler_e0;
-            let t16 = k(0.5) - T::fused(coupler_e2, coupler_e2, t15);
-            let t17 = crank_e0 * crank_e1;
-            let t18 = crank_e2 * crank_e3;
-            let t19 = t18 - t17;
-            let t20 = k(2.0) * t19;
-            let t21 = coupler_e0 * coupler_e3;
-            let t22 = coupler_e1 * coupler_e2;
-            let t23 = t22 - t21;
-            let t24 = k(2.0) * t13;
-            let t25 = coupler_e0 * coupler_e1;
-            let t26 = coupler_e2 * coupler_e3;
-            let t27 = t26 + t25;
-            let t28 = k(0.5) - T::fused(crank_e3, crank_e3, t5);
-            let t29 = k(2.0) * t28;
-            let t30 = T::fused(
-                t29,
-                k(2.0) * t27,
-                -T::fused(-t20, k(2.0) * t16, t24 * (k(2.0) * t23)),
-            );
-            let t31 = coupler_e0 * coupler_e2;
-            let t32 = coupler_e1 * coupler_e3;
+            let t0 = k(2.0) * crank_e0;
+            let t1 = crank_e3 * t0;
+            let t2 = k(2.0) * crank_e1;
+            let t3 = crank_e2 * t2;
+            let t4 = t3 + t1;
+            let t5 = t3 - t1;
+            let t6 = k(2.0) * crank_e2;
+            let t7 = T::fused(-crank_e0, t0, k(1.0));
+            let t8 = T::fused(-crank_e2, t6, t7);
+            let t9 = T::fused(-crank_e1, t2, t7);
+            let t10 = k(1.0) / T::fused(-t5, t4, t9 * t8);
+            let t11 = T::fused(t8 * t10, row3, t5 * t10 * row4);
+            let t12 = crank_e2 * t0;
+            let t13 = crank_e3 * t2;
+            let t14 = t13 + t12;
+            let t15 = k(0.1) * t14;
+            let t16 = k(2.0) * coupler_e0;
+            let t17 = coupler_e2 * t16;
+            let t18 = k(2.0) * coupler_e1;
+            let t19 = coupler_e3 * t18;
+            let t20 = t19 + t17;
+            let t21 = k(0.25) * t20;
+            let t22 = coupler_e3 * t16;
+            let t23 = coupler_e2 * t18;
+            let t24 = t23 - t22;
+            let t25 = k(2.0) * coupler_e2;
+            let t26 = T::fused(-coupler_e0, t16, k(1.0));
+            let t27 = T::fused(-coupler_e2, t25, t26);
+            let t28 = crank_e1 * t0;
+            let t29 = crank_e3 * t6;
+            let t30 = t29 - t28;
+            let t31 = coupler_e1 * t16;
+            let t32 = coupler_e3 * t25;
             let t33 = t32 + t31;
-            let t34 = k(0.5) * t33;
-            let t35 = k(0.5) - T::fused(coupler_e3, coupler_e3, t15);
-            let t36 = k(2.0) * t35;
-            let t37 = t26 - t25;
-            let t38 = k(2.0) * t37;
-            let t39 = k(2.0) * t33;
-            let t40 = T::fused(t29, t36, T::fused(t20, t38, t24 * t39));
-            let t41 = k(0.5) * t23;
-            let t42 = T::fused(t34, t30, t41 * t40);
-            let t43 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t15));
-            let t44 = k(2.0) * (t22 + t21);
-            let t45 = k(2.0) * (t32 - t31);
-            let t46 = T::fused(t29, t45, -T::fused(-t24, t43, t20 * t44));
-            let t47 = k(5e-5) * t46;
-            let t48 = k(0.0835) * t30;
-            let t49 = k(0.0835) * t40;
-            let t50 = k(1.0) / T::fused(t40, t49, T::fused(t46, t47, t30 * t48));
-            let t51 = t50 * t42;
-            let t52 = T::fused(-t48, t51, t34);
-            let t53 = t48 * t50;
-            let t54 = k(1.0) / T::fused(-t48, t53, k(0.0835));
-            let t55 = t54 * t52;
-            let t56 = t47 * t50;
-            let t57 = t48 * t56;
-            let t58 = T::fused(-t47, t51, t57 * t55);
-            let t59 = k(0.5) * t37;
-            let t60 = k(0.5) * t16;
-            let t61 = T::fused(-t59, t30, t60 * t40);
-            let t62 = t50 * t61;
-            let t63 = T::fused(t48, t62, t59);
-            let t64 = t54 * t63;
-            let t65 = T::fused(t47, t62, t57 * t64);
-            let t66 = k(0.5) * t35;
-            let t67 = k(0.5) * t27;
-            let t68 = T::fused(-t66, t30, t67 * t40);
-            let t69 = t50 * t68;
-            let t70 = T::fused(t48, t69, t66);
-            let t71 = t54 * t70;
-            let t72 = T::fused(t47, t69, t57 * t71);
-            let t73 = k(1.0) / T::fused(t40, t40, t46 * t46);
-            let t74 = t40 * t73 * row13;
-            let t75 = t54 * t57;
-            let t76 = T::fused(t57, t75, -T::fused(-t47, t56, k(5e-5)));
-            let t77 = t46 * t73 * row13;
-            let t78 = t49 * t53;
-            let t79 = T::fused(t49, t56, t78 * t75);
-            let t80 = T::fused(-t76, t74, t79 * t77)
-                + T::fused(t72, row12, -T::fused(t58, row10, t65 * row11));
-            let t81 = T::fused(t78, t55, T::fused(-t49, t51, t41));
-            let t82 = T::fused(t78, t64, -T::fused(-t49, t62, t60));
-            let t83 = T::fused(t78, t71, -T::fused(-t49, t69, t67));
-            let t84 = T::fused(t78, t54 * t78, -T::fused(-t49, t49 * t50, k(0.0835)));
-            let t85 = T::fused(-t79, t74, t84 * t77)
-                + T::fused(t83, row12, -T::fused(t81, row10, t82 * row11));
-            let t86 = T::fused(t42, t51, t52 * t55);
-            let t87 = T::fused(-t61, t51, t63 * t55);
-            let t88 = T::fused(-t68, t51, t70 * t55);
-            let t89 = T::fused(-t58, t74, t81 * t77)
-                + (row10 + T::fused(t88, row12, -T::fused(t86, row10, t87 * row11)));
-            let t90 = k(0.2) * t3;
-            let t91 = T::fused(t61, t62, t63 * t64);
-            let t92 = T::fused(t68, t62, t70 * t64);
-            let t93 = T::fused(-t65, t74, t82 * t77)
-                + (row11 + T::fused(t92, row12, -T::fused(t87, row10, t91 * row11)));
-            let t94 = k(0.2) * t6;
-            let t95 = T::fused(t68, t69, t70 * t71);
-            let t96 = T::fused(-t72, t74, t83 * t77)
-                - (row12 - T::fused(t95, row12, -T::fused(t88, row10, t92 * row11)));
-            let t97 = t18 + t17;
-            let t98 = k(0.2) * t97;
-            let t99 = T::fused(t98, t96, T::fused(-t90, t89, t94 * t93));
-            let t100 = T::fused(t98, t88, T::fused(-t90, t86, t94 * t87));
-            let t101 = T::fused(t46, t58, t40 * t81);
-            let t102 = t90 + t100 + t101;
-            let t103 = T::fused(t98, t92, T::fused(-t90, t87, t94 * t91));
-            let t104 = T::fused(t46, t65, t40 * t82);
-            let t105 = t94 - t103 - t104;
-            let t106 = T::fused(
-                -(t102 + T::fused(k(0.28), t3, t100)),
+            let t34 = T::fused(-crank_e3, k(2.0) * crank_e3, t7);
+            let t35 = T::fused(t34, t33, T::fused(-t14, t24, t30 * t27));
+            let t36 = k(0.25) * t24;
+            let t37 = t32 - t31;
+            let t38 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t26);
+            let t39 = T::fused(t34, t38, T::fused(t14, t20, t30 * t37));
+            let t40 = T::fused(t35, t21, t39 * t36);
+            let t41 = T::fused(-coupler_e1, t18, t26);
+            let t42 = t23 + t22;
+            let t43 = t19 - t17;
+            let t44 = T::fused(t34, t43, -T::fused(-t14, t41, t30 * t42));
+            let t45 = k(5e-5) * t44;
+            let t46 = k(0.0835) * t35;
+            let t47 = k(0.0835) * t39;
+            let t48 = k(1.0) / T::fused(t39, t47, T::fused(t44, t45, t35 * t46));
+            let t49 = t48 * t40;
+            let t50 = T::fused(-t46, t49, t21);
+            let t51 = t46 * t48;
+            let t52 = k(1.0) / T::fused(-t46, t51, k(0.0835));
+            let t53 = t52 * t50;
+            let t54 = t45 * t48;
+            let t55 = t46 * t54;
+            let t56 = T::fused(-t45, t49, t55 * t53);
+            let t57 = k(0.25) * t37;
+            let t58 = k(0.25) * t27;
+            let t59 = T::fused(-t35, t57, t39 * t58);
+            let t60 = t48 * t59;
+            let t61 = T::fused(t46, t60, t57);
+            let t62 = t52 * t61;
+            let t63 = T::fused(t45, t60, t55 * t62);
+            let t64 = k(0.25) * t38;
+            let t65 = k(0.25) * t33;
+            let t66 = T::fused(-t35, t64, t39 * t65);
+            let t67 = t48 * t66;
+            let t68 = T::fused(t46, t67, t64);
+            let t69 = t52 * t68;
+            let t70 = T::fused(t45, t67, t55 * t69);
+            let t71 = k(1.0) / T::fused(t39, t39, t44 * t44);
+            let t72 = t39 * t71 * row13;
+            let t73 = t52 * t55;
+            let t74 = T::fused(t55, t73, -T::fused(-t45, t54, k(5e-5)));
+            let t75 = t44 * t71 * row13;
+            let t76 = t47 * t51;
+            let t77 = T::fused(t47, t54, t76 * t73);
+            let t78 = T::fused(-t74, t72, t77 * t75)
+                + T::fused(t70, row12, -T::fused(t56, row10, t63 * row11));
+            let t79 = T::fused(t76, t53, T::fused(-t47, t49, t36));
+            let t80 = T::fused(t76, t62, -T::fused(-t47, t60, t58));
+            let t81 = T::fused(t76, t69, -T::fused(-t47, t67, t65));
+            let t82 = T::fused(t76, t52 * t76, -T::fused(-t47, t47 * t48, k(0.0835)));
+            let t83 = T::fused(-t77, t72, t82 * t75)
+                + T::fused(t81, row12, -T::fused(t79, row10, t80 * row11));
+            let t84 = T::fused(t40, t49, t50 * t53);
+            let t85 = T::fused(-t59, t49, t61 * t53);
+            let t86 = T::fused(-t66, t49, t68 * t53);
+            let t87 = T::fused(-t56, t72, t79 * t75)
+                + (row10 + T::fused(t86, row12, -T::fused(t84, row10, t85 * row11)));
+            let t88 = k(0.1) * t5;
+            let t89 = T::fused(t59, t60, t61 * t62);
+            let t90 = T::fused(t66, t60, t68 * t62);
+            let t91 = T::fused(-t63, t72, t80 * t75)
+                + (row11 + T::fused(t90, row12, -T::fused(t85, row10, t89 * row11)));
+            let t92 = k(0.1) * t8;
+            let t93 = T::fused(t66, t67, t68 * t69);
+            let t94 = T::fused(-t70, t72, t81 * t75)
+                - (row12 - T::fused(t93, row12, -T::fused(t86, row10, t90 * row11)));
+            let t95 = t29 + t28;
+            let t96 = k(0.1) * t95;
+            let t97 = T::fused(t96, t94, T::fused(-t88, t87, t92 * t91));
+            let t98 = T::fused(t96, t86, T::fused(-t88, t84, t92 * t85));
+            let t99 = T::fused(t44, t56, t39 * t79);
+            let t100 = t88 + t98 + t99;
+            let t101 = T::fused(t96, t90, T::fused(-t88, t85, t92 * t89));
+            let t102 = T::fused(t44, t63, t39 * t80);
+            let t103 = t92 - t101 - t102;
+            let t104 = T::fused(
+                -(t100 + T::fused(k(0.14), t5, t98)),
                 row0,
-                (t105 - T::fused(-k(0.28), t6, t103)) * row1,
+                (t103 - T::fused(-k(0.14), t8, t101)) * row1,
             );
-            let t107 = T::fused(t98, t95, T::fused(-t90, t88, t94 * t92));
-            let t108 = T::fused(t46, t72, t40 * t83);
-            let t109 = t98 - t107 - t108;
-            let t110 = T::fused(t2 * t9, row3, t8 * t9 * row4);
-            let t111 = k(2.0) * (t12 - t11);
-            let t112 = T::fused(t111, t45, T::fused(t8, t43, t2 * t44));
-            let t113 = T::fused(t111, t36, -T::fused(-t8, t39, t2 * t38));
-            let t114 = T::fused(
-                t46,
-                T::fused(t76, t112, t79 * t113),
-                t40 * T::fused(t79, t112, t84 * t113),
+            let t105 = T::fused(t96, t93, T::fused(-t88, t86, t92 * t90));
+            let t106 = T::fused(t44, t70, t39 * t81);
+            let t107 = t96 - t105 - t106;
+            let t108 = T::fused(t4 * t10, row3, t9 * t10 * row4);
+            let t109 = t13 - t12;
+            let t110 = T::fused(t109, t43, T::fused(t9, t41, t4 * t42));
+            let t111 = T::fused(t109, t38, -T::fused(-t9, t20, t4 * t37));
+            let t112 = T::fused(
+                t44,
+                T::fused(t74, t110, t77 * t111),
+                t39 * T::fused(t77, t110, t82 * t111),
             );
-            let t115 = T::fused(
-                -t90,
-                T::fused(t58, t112, t81 * t113),
-                t94 * T::fused(t65, t112, t82 * t113),
+            let t113 = T::fused(
+                -t88,
+                T::fused(t56, t110, t79 * t111),
+                t92 * T::fused(t63, t110, t80 * t111),
             );
-            let t116 = T::fused(t98, T::fused(t72, t112, t83 * t113), t115);
-            let t117 = k(2.0) * t97;
-            let t118 = T::fused(t117, t45, -T::fused(t4, t43, t7 * t44));
-            let t119 = T::fused(t117, t36, -T::fused(-t7, t38, t4 * t39));
-            let t120 = T::fused(
-                t46,
-                T::fused(t76, t118, t79 * t119),
-                t40 * T::fused(t79, t118, t84 * t119),
+            let t114 = T::fused(t96, T::fused(t70, t110, t81 * t111), t113);
+            let t115 = T::fused(t95, t43, -T::fused(t5, t41, t8 * t42));
+            let t116 = T::fused(t95, t38, T::fused(-t5, t20, t8 * t37));
+            let t117 = T::fused(
+                t44,
+                T::fused(t74, t115, t77 * t116),
+                t39 * T::fused(t77, t115, t82 * t116),
             );
-            let t121 = k(0.2) * t19;
-            let t122 = k(0.2) * t28;
-            let t123 = T::fused(t58, t118, t81 * t119);
-            let t124 = T::fused(t65, t118, t82 * t119);
-            let t125 = T::fused(t72, t118, t83 * t119);
-            let t126 = T::fused(t98, t125, T::fused(-t90, t123, t94 * t124))
-                - T::fused(t122, t108, T::fused(t14, t101, t121 * t104));
-            let t127 = T::fused(t122, t107, T::fused(t14, t100, t121 * t103));
-            let t128 = t14 - T::fused(t122, t88, T::fused(t14, t86, t121 * t87)) + t123;
-            let t129 = t121 - T::fused(t122, t92, T::fused(t14, t87, t121 * t91)) + t124;
-            let t130 = t122 - T::fused(t122, t95, T::fused(t14, t88, t121 * t92)) + t125;
-            let t131 = T::fused(t98, t130, T::fused(-t90, t128, t94 * t129))
-                + T::fused(t122, t109, T::fused(-t14, t102, t121 * t105));
-            let t132 = T::fused(
-                -(t116 + (t116 + t114)),
-                t110,
-                (t131 - t127 - (t127 - t126 - t120)) * t10,
+            let t118 = k(0.1) * t30;
+            let t119 = k(0.1) * t34;
+            let t120 = T::fused(t56, t115, t79 * t116);
+            let t121 = T::fused(t63, t115, t80 * t116);
+            let t122 = T::fused(t70, t115, t81 * t116);
+            let t123 = T::fused(t96, t122, T::fused(-t88, t120, t92 * t121))
+                - T::fused(t106, t119, T::fused(t99, t15, t102 * t118));
+            let t124 = T::fused(t105, t119, T::fused(t98, t15, t101 * t118));
+            let t125 = t15 - T::fused(t86, t119, T::fused(t84, t15, t85 * t118)) + t120;
+            let t126 = t118 - T::fused(t90, t119, T::fused(t85, t15, t89 * t118)) + t121;
+            let t127 = t119 - T::fused(t93, t119, T::fused(t86, t15, t90 * t118)) + t122;
+            let t128 = T::fused(t96, t127, T::fused(-t88, t125, t92 * t126))
+                + T::fused(t107, t119, T::fused(-t100, t15, t103 * t118));
+            let t129 = T::fused(
+                -(t114 + (t114 + t112)),
+                t108,
+                (t128 - t124 - (t124 - t123 - t117)) * t11,
             );
-            let t133 = t132 - T::fused(t109 - T::fused(-k(0.28), t97, t107), row2, -t106)
-                + (t99 + (t99 + T::fused(t46, t80, t40 * t85)));
+            let t130 = t129 - T::fused(t107 - T::fused(-k(0.14), t95, t105), row2, -t104)
+                + (t97 + (t97 + T::fused(t44, t78, t39 * t83)));
+            let t131 = T::fused(
+                t44,
+                T::fused(t44, t74, t39 * t77),
+                t39 * T::fused(t44, t77, t39 * t82),
+            );
+            let t132 = T::fused(t96, t105, T::fused(-t88, t98, t92 * t101));
+            let t133 = T::fused(
+                k(2.0),
+                T::fused(t96, t106, T::fused(-t88, t99, t92 * t102)),
+                t132,
+            );
             let t134 = T::fused(
-                t46,
-                T::fused(t46, t76, t40 * t79),
-                t40 * T::fused(t46, t79, t40 * t84),
-            );
-            let t135 = T::fused(t98, t107, T::fused(-t90, t100, t94 * t103));
-            let t136 = T::fused(
                 k(2.0),
-                T::fused(t98, t108, T::fused(-t90, t101, t94 * t104)),
-                t135,
+                T::fused(t96, t107, T::fused(t88, t100, t92 * t103)),
+                -t132,
             );
-            let t137 = T::fused(
-                k(2.0),
-                T::fused(t98, t109, T::fused(t90, t102, t94 * t105)),
-                -t135,
-            );
-            let t138 = k(1.0)
-                / (t137 + (k(0.014) + (k(0.00135) - (t136 - (k(0.01) - t134)))));
-            let t139 = t138 * t133;
-            let t140 = T::fused(t14, t10, t90 * t139);
-            let t141 = row0 + t140;
-            let t142 = row10 + (t140 + t141);
-            let t143 = T::fused(-t121, t10, t94 * t139);
-            let t144 = row1 - t143;
-            let t145 = row11 - (t143 - t144);
-            let t146 = T::fused(-t122, t10, t98 * t139);
-            let t147 = row2 + t146;
-            let t148 = row12 + (t146 + t147);
-            let t149 = t74 - T::fused(t46, t139, T::fused(-t112, t110, t118 * t10));
-            let t150 = t77 + T::fused(t40, t139, T::fused(-t113, t110, t119 * t10));
-            let t151 = T::fused(-t57, t149, t78 * t150)
-                + T::fused(t70, t148, -T::fused(t52, t142, t63 * t145));
-            let t152 = t54 * t151;
-            let t153 = T::fused(t49, t150, T::fused(-t47, t149, t48 * t152))
-                + T::fused(t68, t148, -T::fused(-t42, t142, t61 * t145));
-            let t154 = t50 * t153;
-            let t155 = T::fused(-t30, t154, t152);
-            let t156 = T::fused(-t40, t154, t150);
-            let t157 = T::fused(t34, t155, t41 * t156);
-            let t158 = t142 + t157;
-            let t159 = rocker_e0 * rocker_e3;
-            let t160 = rocker_e1 * rocker_e2;
-            let t161 = k(2.0) * (t160 + t159);
-            let t162 = t160 - t159;
-            let t163 = k(2.0) * t162;
-            let t164 = rocker_e0 * rocker_e0;
-            let t165 = k(0.5) - T::fused(rocker_e2, rocker_e2, t164);
-            let t166 = k(2.0) * t165;
-            let t167 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t164));
-            let t168 = k(1.0) / T::fused(-t163, t161, t167 * t166);
-            let t169 = T::fused(t166 * t168, row8, t163 * t168 * row9);
-            let t170 = rocker_e0 * rocker_e1;
-            let t171 = rocker_e2 * rocker_e3;
-            let t172 = t171 + t170;
-            let t173 = T::fused(
-                k(0.32) * t172,
+            let t135 = k(1.0)
+                / (t134 + (k(0.014) + (k(0.00135) - (t133 - (k(0.01) - t131)))));
+            let t136 = t135 * t130;
+            let t137 = T::fused(t15, t11, t88 * t136);
+            let t138 = row0 + t137;
+            let t139 = row10 + (t137 + t138);
+            let t140 = T::fused(-t118, t11, t92 * t136);
+            let t141 = row1 - t140;
+            let t142 = row11 - (t140 - t141);
+            let t143 = T::fused(-t119, t11, t96 * t136);
+            let t144 = row2 + t143;
+            let t145 = row12 + (t143 + t144);
+            let t146 = t72 - T::fused(t44, t136, T::fused(-t110, t108, t115 * t11));
+            let t147 = t75 + T::fused(t39, t136, T::fused(-t111, t108, t116 * t11));
+            let t148 = T::fused(-t55, t146, t76 * t147)
+                + T::fused(t68, t145, -T::fused(t50, t139, t61 * t142));
+            let t149 = t52 * t148;
+            let t150 = T::fused(t47, t147, T::fused(-t45, t146, t46 * t149))
+                + T::fused(t66, t145, -T::fused(-t40, t139, t59 * t142));
+            let t151 = t48 * t150;
+            let t152 = T::fused(-t35, t151, t149);
+            let t153 = T::fused(-t39, t151, t147);
+            let t154 = T::fused(t21, t152, t36 * t153);
+            let t155 = t139 + t154;
+            let t156 = k(2.0) * rocker_e0;
+            let t157 = rocker_e3 * t156;
+            let t158 = k(2.0) * rocker_e1;
+            let t159 = rocker_e2 * t158;
+            let t160 = t159 + t157;
+            let t161 = t159 - t157;
+            let t162 = k(2.0) * rocker_e2;
+            let t163 = T::fused(-rocker_e0, t156, k(1.0));
+            let t164 = T::fused(-rocker_e2, t162, t163);
+            let t165 = T::fused(-rocker_e1, t158, t163);
+            let t166 = k(1.0) / T::fused(-t161, t160, t165 * t164);
+            let t167 = T::fused(t164 * t166, row8, t161 * t166 * row9);
+            let t168 = rocker_e1 * t156;
+            let t169 = rocker_e3 * t162;
+            let t170 = t169 + t168;
+            let t171 = T::fused(
+                k(0.16) * t170,
                 row7,
-                -T::fused(-(k(0.32) * t162), row5, k(0.32) * t165 * row6),
+                -T::fused(-(k(0.16) * t161), row5, k(0.16) * t164 * row6),
             );
-            let t174 = k(23.364485981308412) * t173;
-            let t175 = k(0.4) * t162;
-            let t176 = T::fused(
-                -(k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3)),
-                t169,
-                t175 * t174,
+            let t172 = k(23.364485981308412) * t171;
+            let t173 = k(0.2) * t161;
+            let t174 = T::fused(
+                -(k(0.2) * T::fused(rocker_e2, t156, rocker_e3 * t158)),
+                t167,
+                t173 * t172,
             );
-            let t177 = row5 - t176;
-            let t178 = row14 + (t176 - t177 + (t157 + t158));
-            let t179 = T::fused(t33, t30, t23 * t40);
-            let t180 = t179 * t50;
-            let t181 = T::fused(-t48, t180, t33);
-            let t182 = t181 * t54;
+            let t175 = row5 - t174;
+            let t176 = row14 + (t174 - t175 + (t154 + t155));
+            let t177 = k(0.5) * t20;
+            let t178 = k(0.5) * t24;
+            let t179 = T::fused(t177, t35, t178 * t39);
+            let t180 = t179 * t48;
+            let t181 = T::fused(-t46, t180, t177);
+            let t182 = t181 * t52;
             let t183 = T::fused(
-                t46,
-                T::fused(-t47, t180, t182 * t57),
-                t40 * T::fused(t182, t78, T::fused(-t49, t180, t23)),
+                t44,
+                T::fused(-t45, t180, t182 * t55),
+                t39 * T::fused(t182, t76, T::fused(-t47, t180, t178)),
             );
             let t184 = T::fused(
-                -t90,
-                T::fused(t182, t52, -T::fused(-t180, t42, k(1.0))),
-                t94 * T::fused(-t180, t61, t182 * t63),
+                -T::fused(t182, t50, -T::fused(-t180, t40, k(1.0))),
+                t88,
+                T::fused(-t180, t59, t182 * t61) * t92,
             );
-            let t185 = T::fused(t98, T::fused(-t180, t68, t182 * t70), t184);
-            let t186 = (t185 + (t185 + t183)) * t138;
-            let t187 = t90 * t186;
+            let t185 = T::fused(T::fused(-t180, t66, t182 * t68), t96, t184);
+            let t186 = (t185 + (t185 + t183)) * t135;
+            let t187 = t88 * t186;
             let t188 = k(2.0) * t187;
-            let t189 = t94 * t186;
+            let t189 = t92 * t186;
             let t190 = k(2.0) * t189;
-            let t191 = t98 * t186;
+            let t191 = t96 * t186;
             let t192 = k(2.0) * t191;
-            let t193 = t46 * t186;
-            let t194 = t40 * t186;
-            let t195 = T::fused(t57, t193, t78 * t194)
-                + T::fused(t70, t192, T::fused(-t52, t188, t63 * t190));
-            let t196 = t54 * (t181 + t195);
-            let t197 = T::fused(t49, t194, T::fused(t47, t193, t48 * t196))
-                + T::fused(t68, t192, T::fused(t42, t188, t61 * t190));
-            let t198 = t50 * (t179 - t197);
-            let t199 = T::fused(t30, t198, t196);
+            let t193 = t44 * t186;
+            let t194 = t39 * t186;
+            let t195 = T::fused(t55, t193, t76 * t194)
+                + T::fused(t68, t192, T::fused(-t50, t188, t61 * t190));
+            let t196 = t52 * (t181 + t195);
+            let t197 = T::fused(t47, t194, T::fused(t45, t193, t46 * t196))
+                + T::fused(t66, t192, T::fused(t40, t188, t59 * t190));
+            let t198 = t48 * (t179 - t197);
+            let t199 = T::fused(t35, t198, t196);
             (
-                t10,
-                t16,
+                t11,
+                t21,
                 t27,
-                t30,
-                t34,
+                t33,
                 t35,
+                t36,
                 t37,
+                t38,
+                t39,
                 t40,
-                t41,
-                t42,
+                t44,
+                t45,
                 t46,
                 t47,
                 t48,
-                t49,
                 t50,
                 t52,
-                t54,
+                t55,
                 t57,
+                t58,
                 t59,
-                t60,
                 t61,
-                t63,
+                t64,
+                t65,
                 t66,
-                t67,
                 t68,
-                t70,
-                t78,
-                t90,
-                t94,
-                t98,
-                t110,
+                t76,
+                t88,
+                t92,
+                t96,
+                t108,
+                t135,
+                t136,
                 t138,
-                t139,
                 t141,
+                t142,
                 t144,
                 t145,
-                t147,
-                t148,
-                t149,
-                t154,
+                t146,
+                t151,
+                t152,
+                t153,
                 t155,
-                t156,
-                t158,
+                t160,
                 t161,
-                t162,
+                t163,
                 t164,
                 t165,
+                t166,
                 t167,
                 t168,
                 t169,
                 t170,
-                t171,
                 t172,
-                t174,
+                t173,
                 t175,
-                t177,
-                t178,
+                t176,
                 t186,
                 t187,
                 t188,
@@ -3058,249 +3036,253 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBar<T> {
         let (
             t200,
             t203,
-            t224,
-            t225,
+            t226,
             t227,
             t229,
-            t237,
-            t238,
-            t241,
-            t245,
-            t248,
+            t231,
+            t239,
+            t240,
+            t243,
+            t247,
             t250,
-            t251,
-            t255,
-            t256,
-            t267,
-            t268,
-            t269,
-            t270,
+            t252,
+            t253,
+            t257,
+            t258,
+            t271,
             t272,
+            t273,
             t274,
-            t279,
-            t280,
-            t281,
+            t276,
+            t278,
             t283,
             t284,
             t285,
             t287,
             t288,
             t289,
-            t290,
             t291,
             t292,
             t293,
             t294,
+            t295,
+            t296,
+            t297,
+            t298,
         ) = {
-            let t200 = T::fused(t40, t198, t194);
-            let t201 = T::fused(t34, t199, t41 * t200);
+            let t200 = T::fused(t39, t198, t194);
+            let t201 = T::fused(t21, t199, t36 * t200);
             let t202 = t188 + t201;
-            let t203 = k(18.69158878504673) * t162;
-            let t204 = t175 * t203;
+            let t203 = k(9.345794392523365) * t161;
+            let t204 = t203 * t173;
             let t205 = k(1.0) / T::fused(k(2.0), t204, t201 + t202);
-            let t206 = T::fused(-t59, t155, t60 * t156);
-            let t207 = t145 - t206;
-            let t208 = k(0.4) * t165;
-            let t209 = T::fused(k(0.4) * (t171 - t170), t169, t208 * t174);
+            let t206 = T::fused(-t57, t152, t58 * t153);
+            let t207 = t142 - t206;
+            let t208 = k(0.2) * t164;
+            let t209 = T::fused(k(0.2) * (t169 - t168), t167, t208 * t172);
             let t210 = row6 + t209;
-            let t211 = T::fused(-t59, t199, t60 * t200);
+            let t211 = T::fused(-t57, t199, t58 * t200);
             let t212 = t190 + t211;
-            let t213 = t208 * t203;
+            let t213 = t203 * t208;
             let t214 = T::fused(k(2.0), t213, t211 + t212);
             let t215 = t205 * t214;
-            let t216 = T::fused(t215, t178, row15 - (t209 + t210 + (t206 - t207)));
-            let t217 = T::fused(-t37, t30, t16 * t40);
-            let t218 = t50 * t217;
-            let t219 = T::fused(t48, t218, t37);
-            let t220 = t54 * t219;
-            let t221 = T::fused(
-                t46,
-                T::fused(t47, t218, t57 * t220),
-                t40 * T::fused(t78, t220, -T::fused(-t49, t218, t16)),
+            let t216 = T::fused(t215, t176, row15 - (t209 + t210 + (t206 - t207)));
+            let t217 = k(0.5) * t37;
+            let t218 = k(0.5) * t27;
+            let t219 = T::fused(-t35, t217, t39 * t218);
+            let t220 = t48 * t219;
+            let t221 = T::fused(t46, t220, t217);
+            let t222 = t52 * t221;
+            let t223 = T::fused(
+                t44,
+                T::fused(t45, t220, t55 * t222),
+                t39 * T::fused(t76, t222, -T::fused(-t47, t220, t218)),
             );
-            let t222 = T::fused(
-                -t90,
-                T::fused(-t42, t218, t52 * t220),
-                t94 * T::fused(t63, t220, -T::fused(-t61, t218, k(1.0))),
+            let t224 = T::fused(
+                -t88,
+                T::fused(-t40, t220, t50 * t222),
+                t92 * T::fused(t61, t222, -T::fused(-t59, t220, k(1.0))),
             );
-            let t223 = T::fused(t98, T::fused(t68, t218, t70 * t220), t222);
-            let t224 = t138 * (t223 + (t223 + t221));
-            let t225 = t90 * t224;
-            let t226 = k(2.0) * t225;
-            let t227 = t94 * t224;
+            let t225 = T::fused(t96, T::fused(t66, t220, t68 * t222), t224);
+            let t226 = t135 * (t225 + (t225 + t223));
+            let t227 = t88 * t226;
             let t228 = k(2.0) * t227;
-            let t229 = t98 * t224;
+            let t229 = t92 * t226;
             let t230 = k(2.0) * t229;
-            let t231 = t46 * t224;
-            let t232 = t40 * t224;
-            let t233 = T::fused(t57, t231, t78 * t232)
-                + T::fused(t70, t230, T::fused(-t52, t226, t63 * t228));
-            let t234 = t54 * (t219 + t233);
-            let t235 = T::fused(t49, t232, T::fused(t47, t231, t48 * t234))
-                + T::fused(t68, t230, T::fused(t42, t226, t61 * t228));
-            let t236 = t50 * (t217 + t235);
-            let t237 = T::fused(-t30, t236, t234);
-            let t238 = T::fused(-t40, t236, t232);
-            let t239 = T::fused(-t59, t237, t60 * t238);
-            let t240 = t228 + t239;
-            let t241 = k(18.69158878504673) * t165;
-            let t242 = t208 * t241;
-            let t243 = k(1.0)
-                / T::fused(t214, t215, -T::fused(k(2.0), t242, -(t239 + t240)));
-            let t244 = T::fused(-t66, t155, t67 * t156);
-            let t245 = t148 + t244;
-            let t246 = k(0.4) * t172;
-            let t247 = T::fused(
-                k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t164)),
-                t169,
-                t246 * t174,
+            let t231 = t96 * t226;
+            let t232 = k(2.0) * t231;
+            let t233 = t44 * t226;
+            let t234 = t39 * t226;
+            let t235 = T::fused(t55, t233, t76 * t234)
+                + T::fused(t68, t232, T::fused(-t50, t228, t61 * t230));
+            let t236 = t52 * (t221 + t235);
+            let t237 = T::fused(t47, t234, T::fused(t45, t233, t46 * t236))
+                + T::fused(t66, t232, T::fused(t40, t228, t59 * t230));
+            let t238 = t48 * (t219 + t237);
+            let t239 = T::fused(-t35, t238, t236);
+            let t240 = T::fused(-t39, t238, t234);
+            let t241 = T::fused(-t57, t239, t58 * t240);
+            let t242 = t230 + t241;
+            let t243 = k(9.345794392523365) * t164;
+            let t244 = t208 * t243;
+            let t245 = k(1.0)
+                / T::fused(t214, t215, -T::fused(k(2.0), t244, -(t241 + t242)));
+            let t246 = T::fused(-t64, t152, t65 * t153);
+            let t247 = t145 + t246;
+            let t248 = k(0.2) * t170;
+            let t249 = T::fused(
+                k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t163),
+                t167,
+                t248 * t172,
             );
-            let t248 = row7 - t247;
-            let t249 = T::fused(-t66, t199, t67 * t200);
-            let t250 = t192 + t249;
-            let t251 = t246 * t203;
-            let t252 = T::fused(k(2.0), t251, t249 + t250);
-            let t253 = t205 * t252;
-            let t254 = T::fused(-t66, t237, t67 * t238);
-            let t255 = t230 + t254;
-            let t256 = t246 * t241;
-            let t257 = T::fused(t214, t253, -T::fused(k(2.0), t256, -(t254 + t255)));
-            let t258 = t243 * t257;
-            let t259 = T::fused(
-                t258,
+            let t250 = row7 - t249;
+            let t251 = T::fused(-t64, t199, t65 * t200);
+            let t252 = t192 + t251;
+            let t253 = t203 * t248;
+            let t254 = T::fused(k(2.0), t253, t251 + t252);
+            let t255 = t205 * t254;
+            let t256 = T::fused(-t64, t239, t65 * t240);
+            let t257 = t232 + t256;
+            let t258 = t243 * t248;
+            let t259 = T::fused(t214, t255, -T::fused(k(2.0), t258, -(t256 + t257)));
+            let t260 = t245 * t259;
+            let t261 = T::fused(
+                t260,
                 t216,
-                -T::fused(t253, t178, -(row16 + (t247 - t248 + (t244 + t245)))),
+                -T::fused(t255, t176, -(row16 + (t249 - t250 + (t246 + t247)))),
             );
-            let t260 = T::fused(-t35, t30, t27 * t40);
-            let t261 = t50 * t260;
-            let t262 = T::fused(t48, t261, t35);
-            let t263 = t54 * t262;
-            let t264 = T::fused(
-                t46,
-                T::fused(t47, t261, t57 * t263),
-                t40 * T::fused(t78, t263, -T::fused(-t49, t261, t27)),
+            let t262 = k(0.5) * t38;
+            let t263 = k(0.5) * t33;
+            let t264 = T::fused(-t35, t262, t39 * t263);
+            let t265 = t48 * t264;
+            let t266 = T::fused(t46, t265, t262);
+            let t267 = t52 * t266;
+            let t268 = T::fused(
+                t44,
+                T::fused(t45, t265, t55 * t267),
+                t39 * T::fused(t76, t267, -T::fused(-t47, t265, t263)),
             );
-            let t265 = T::fused(
-                -t90,
-                T::fused(-t42, t261, t52 * t263),
-                t94 * T::fused(t61, t261, t63 * t263),
+            let t269 = T::fused(
+                -t88,
+                T::fused(-t40, t265, t50 * t267),
+                t92 * T::fused(t59, t265, t61 * t267),
             );
-            let t266 = T::fused(
-                t98,
-                T::fused(t70, t263, -T::fused(-t68, t261, k(1.0))),
-                t265,
+            let t270 = T::fused(
+                t96,
+                T::fused(t68, t267, -T::fused(-t66, t265, k(1.0))),
+                t269,
             );
-            let t267 = t138 * (t266 + (t266 + t264));
-            let t268 = t90 * t267;
-            let t269 = k(2.0) * t268;
-            let t270 = t94 * t267;
-            let t271 = k(2.0) * t270;
-            let t272 = t98 * t267;
+            let t271 = t135 * (t270 + (t270 + t268));
+            let t272 = t88 * t271;
             let t273 = k(2.0) * t272;
-            let t274 = t46 * t267;
-            let t275 = t40 * t267;
-            let t276 = T::fused(t57, t274, t78 * t275)
-                + T::fused(t70, t273, T::fused(-t52, t269, t63 * t271));
-            let t277 = t54 * (t262 + t276);
-            let t278 = T::fused(t49, t275, T::fused(t47, t274, t48 * t277))
-                + T::fused(t68, t273, T::fused(t42, t269, t61 * t271));
-            let t279 = t50 * (t260 + t278);
-            let t280 = T::fused(-t30, t279, t277);
-            let t281 = T::fused(-t40, t279, t275);
-            let t282 = T::fused(-t66, t280, t67 * t281);
-            let t283 = t273 + t282;
-            let t284 = k(18.69158878504673) * t172;
-            let t285 = t246 * t284;
-            let t286 = T::fused(
-                t257,
-                t258,
-                -T::fused(t252, t253, -T::fused(k(2.0), t285, -(t282 + t283))),
-            );
-            let t287 = t259 / t286;
-            let t288 = T::fused(-t243, t216, t258 * t287);
-            let t289 = T::fused(t253, t287, -T::fused(t205, t178, t215 * t288));
+            let t274 = t92 * t271;
+            let t275 = k(2.0) * t274;
+            let t276 = t96 * t271;
+            let t277 = k(2.0) * t276;
+            let t278 = t44 * t271;
+            let t279 = t39 * t271;
+            let t280 = T::fused(t55, t278, t76 * t279)
+                + T::fused(t68, t277, T::fused(-t50, t273, t61 * t275));
+            let t281 = t52 * (t266 + t280);
+            let t282 = T::fused(t47, t279, T::fused(t45, t278, t46 * t281))
+                + T::fused(t66, t277, T::fused(t40, t273, t59 * t275));
+            let t283 = t48 * (t264 + t282);
+            let t284 = T::fused(-t35, t283, t281);
+            let t285 = T::fused(-t39, t283, t279);
+            let t286 = T::fused(-t64, t284, t65 * t285);
+            let t287 = t277 + t286;
+            let t288 = k(9.345794392523365) * t170;
+            let t289 = t248 * t288;
             let t290 = T::fused(
-                t226 + T::fused(t34, t237, t41 * t238),
-                t288,
-                -T::fused(t202, t289, t158),
+                t259,
+                t260,
+                -T::fused(t254, t255, -T::fused(k(2.0), t289, -(t286 + t287))),
             );
-            let t291 = T::fused(
-                t271 + T::fused(-t59, t280, t60 * t281),
-                t287,
-                -T::fused(t240, t288, T::fused(-t212, t289, t207)),
-            );
-            let t292 = T::fused(
-                T::fused(-t46, t236, t231),
-                t288,
-                -T::fused(T::fused(t46, t198, t193), t289, -T::fused(t46, t154, t149)),
-            );
-            let t293 = T::fused(
-                t175 * t284,
-                t287,
-                -T::fused(t175 * t241, t288, -T::fused(-t204, t289, t177)),
-            );
+            let t291 = t261 / t290;
+            let t292 = T::fused(-t245, t216, t260 * t291);
+            let t293 = T::fused(t255, t291, -T::fused(t205, t176, t215 * t292));
             let t294 = T::fused(
-                t208 * t284,
-                t287,
-                -T::fused(t242, t288, T::fused(t213, t289, t210)),
+                t228 + T::fused(t21, t239, t36 * t240),
+                t292,
+                -T::fused(t202, t293, t155),
+            );
+            let t295 = T::fused(
+                t275 + T::fused(-t57, t284, t58 * t285),
+                t291,
+                -T::fused(t242, t292, T::fused(-t212, t293, t207)),
+            );
+            let t296 = T::fused(
+                T::fused(-t44, t238, t233),
+                t292,
+                -T::fused(T::fused(t44, t198, t193), t293, -T::fused(t44, t151, t146)),
+            );
+            let t297 = T::fused(
+                t173 * t288,
+                t291,
+                -T::fused(t173 * t243, t292, -T::fused(-t204, t293, t175)),
+            );
+            let t298 = T::fused(
+                t208 * t288,
+                t291,
+                -T::fused(t244, t292, T::fused(t213, t293, t210)),
             );
             (
                 t200,
                 t203,
-                t224,
-                t225,
+                t226,
                 t227,
                 t229,
-                t237,
-                t238,
-                t241,
-                t245,
-                t248,
+                t231,
+                t239,
+                t240,
+                t243,
+                t247,
                 t250,
-                t251,
-                t255,
-                t256,
-                t267,
-                t268,
-                t269,
-                t270,
+                t252,
+                t253,
+                t257,
+                t258,
+                t271,
                 t272,
+                t273,
                 t274,
-                t279,
-                t280,
-                t281,
+                t276,
+                t278,
                 t283,
                 t284,
                 t285,
                 t287,
                 t288,
                 t289,
-                t290,
                 t291,
                 t292,
                 t293,
                 t294,
+                t295,
+                t296,
+                t297,
+                t298,
             )
         };
         *out = [
-            T::fused(t268, t287, -T::fused(t225, t288, -T::fused(t187, t289, t141))),
-            T::fused(-t270, t287, T::fused(t227, t288, T::fused(-t189, t289, t144))),
-            T::fused(t272, t287, -T::fused(t229, t288, -T::fused(t191, t289, t147))),
-            t110,
-            -t10,
-            T::fused(t267, t287, -T::fused(t224, t288, -T::fused(t186, t289, t139))),
-            T::fused(t269 + T::fused(t34, t280, t41 * t281), t287, -t290),
-            -t291,
-            T::fused(t283, t287, -T::fused(t255, t288, -T::fused(t250, t289, t245))),
-            T::fused(-T::fused(-t46, t279, t274), t287, t292),
-            T::fused(-t280, t287, T::fused(t237, t288, -T::fused(t199, t289, t155))),
-            T::fused(t281, t287, -T::fused(t238, t288, -T::fused(t200, t289, t156))),
-            t293,
-            -t294,
-            T::fused(t285, t287, -T::fused(t256, t288, -T::fused(-t251, t289, t248))),
-            T::fused(t161 * t168, row8, t167 * t168 * row9),
-            -t169,
-            T::fused(t284, t287, -T::fused(t241, t288, T::fused(t203, t289, t174))),
+            T::fused(t272, t291, -T::fused(t227, t292, -T::fused(t187, t293, t138))),
+            T::fused(-t274, t291, T::fused(t229, t292, T::fused(-t189, t293, t141))),
+            T::fused(t276, t291, -T::fused(t231, t292, -T::fused(t191, t293, t144))),
+            t108,
+            -t11,
+            T::fused(t271, t291, -T::fused(t226, t292, -T::fused(t186, t293, t136))),
+            T::fused(t273 + T::fused(t21, t284, t36 * t285), t291, -t294),
+            -t295,
+            T::fused(t287, t291, -T::fused(t257, t292, -T::fused(t252, t293, t247))),
+            T::fused(-T::fused(-t44, t283, t278), t291, t296),
+            T::fused(-t284, t291, T::fused(t239, t292, -T::fused(t199, t293, t152))),
+            T::fused(t285, t291, -T::fused(t240, t292, -T::fused(t200, t293, t153))),
+            t297,
+            -t298,
+            T::fused(t289, t291, -T::fused(t258, t292, -T::fused(-t253, t293, t250))),
+            T::fused(t160 * t166, row8, t165 * t166 * row9),
+            -t167,
+            T::fused(t288, t291, -T::fused(t243, t292, T::fused(t203, t293, t172))),
         ];
     }
 }

@@ -16,23 +16,23 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 811 operations by rotations of the bodies; 811 operations by relative Euler parameters
-//! * project: 616 operations by rotations of the bodies; 616 operations by relative Euler parameters
+//! * accelerations: 794 operations by rotations of the bodies, doubled; 794 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 607 operations by rotations of the bodies, doubled; 607 operations by relative Euler parameters, doubled; 2 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 59 | 58 | 0 | 117 | 0 of 20 | 194 | 117 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 36 | 93 | 0 | 129 | 0 of 112 | 356 | 129 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 49 | 91 | 0 | 140 | 0 of 64 | 422 | 140 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 35 | 84 | 0 | 119 | 0 of 112 | 396 | 119 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 43 | 81 | 0 | 124 | 0 of 64 | 542 | 124 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 | 0 | 0 |
-//! | gamma | γ | 109 | 174 | 0 | 283 | 0 of 17 | 1165 | 283 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 89 | 120 | 0 | 209 | 0 of 17 | 533 | 209 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 330 | 475 | 6 | 811 | 0 of 20 | 1.9e7 | 812 |
-//! | multipliers | λ, the accelerations being known | 96 | 157 | 3 | 256 | 0 of 17 | 1879 | 256 |
-//! | project | (δr, δπ') that changes the rows as given | 254 | 356 | 6 | 616 | 0 of 18 | 9.2e6 | 617 |
+//! | gamma | γ | 103 | 159 | 0 | 262 | 0 of 17 | 1345 | 262 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 106 | 0 | 189 | 0 of 17 | 621 | 189 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 464 | 6 | 794 | 0 of 20 | 2.3e7 | 795 |
+//! | multipliers | λ, the accelerations being known | 90 | 149 | 3 | 242 | 0 of 17 | 2255 | 242 |
+//! | project | (δr, δπ') that changes the rows as given | 248 | 353 | 6 | 607 | 0 of 18 | 1.2e7 | 608 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 44 | 55 | 0 | 99 | 0 of 12 | 234 | 99 |
@@ -356,7 +356,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
             T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t14)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 209 operations (89 ±, 120 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 189 operations (83 ±, 106 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -389,112 +389,116 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for FourBarRevolute<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_e0 * crank_e3;
-        let t1 = crank_e1 * crank_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = crank_e0 * crank_e2;
-        let t4 = crank_e1 * crank_e3;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(0.1) * T::fused(-t2, crank_wz, t5 * crank_wy);
-        let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
-        let t9 = crank_e0 * crank_e1;
-        let t10 = crank_e2 * crank_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(0.1) * T::fused(t8, crank_wz, t11 * crank_wy);
-        let t13 = k(2.0) * (t10 + t9);
-        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
-        let t15 = k(0.1) * T::fused(t13, crank_wz, t14 * crank_wy);
-        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
-        let t17 = k(2.0) * (t1 + t0);
-        let t18 = rocker_e0 * rocker_e3;
-        let t19 = rocker_e1 * rocker_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = T::fused(
-            -t20,
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e3 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = crank_e2 * t0;
+        let t6 = crank_e3 * t2;
+        let t7 = t6 + t5;
+        let t8 = k(0.1) * T::fused(-crank_wz, t4, crank_wy * t7);
+        let t9 = k(2.0) * crank_e2;
+        let t10 = T::fused(-crank_e0, t0, k(1.0));
+        let t11 = T::fused(-crank_e2, t9, t10);
+        let t12 = crank_e1 * t0;
+        let t13 = crank_e3 * t9;
+        let t14 = t13 - t12;
+        let t15 = k(0.1) * T::fused(crank_wz, t11, crank_wy * t14);
+        let t16 = t13 + t12;
+        let t17 = T::fused(-crank_e3, k(2.0) * crank_e3, t10);
+        let t18 = k(0.1) * T::fused(crank_wz, t16, crank_wy * t17);
+        let t19 = T::fused(-crank_e1, t2, t10);
+        let t20 = t3 + t1;
+        let t21 = k(2.0) * rocker_e0;
+        let t22 = rocker_e3 * t21;
+        let t23 = k(2.0) * rocker_e1;
+        let t24 = rocker_e2 * t23;
+        let t25 = t24 - t22;
+        let t26 = k(0.2)
+            * T::fused(
+                -rocker_wz,
+                t25,
+                rocker_wy * T::fused(rocker_e2, t21, rocker_e3 * t23),
+            );
+        let t27 = k(2.0) * rocker_e2;
+        let t28 = T::fused(-rocker_e0, t21, k(1.0));
+        let t29 = T::fused(-rocker_e2, t27, t28);
+        let t30 = rocker_e1 * t21;
+        let t31 = rocker_e3 * t27;
+        let t32 = k(0.2) * T::fused(rocker_wz, t29, rocker_wy * (t31 - t30));
+        let t33 = T::fused(
             rocker_wz,
-            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+            t31 + t30,
+            rocker_wy * T::fused(-rocker_e3, k(2.0) * rocker_e3, t28),
         );
-        let t22 = k(0.2) * t21;
-        let t23 = rocker_e0 * rocker_e0;
-        let t24 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t23));
-        let t25 = rocker_e0 * rocker_e1;
-        let t26 = rocker_e2 * rocker_e3;
-        let t27 = k(0.2) * T::fused(t24, rocker_wz, k(2.0) * (t26 - t25) * rocker_wy);
-        let t28 = T::fused(
-            k(2.0) * (t26 + t25),
-            rocker_wz,
-            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t23)) * rocker_wy,
-        );
-        let t29 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t23)),
-            rocker_wy,
-            t20 * rocker_wx,
-        );
-        let t30 = coupler_e0 * coupler_e3;
-        let t31 = coupler_e1 * coupler_e2;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = coupler_e0 * coupler_e2;
-        let t34 = coupler_e1 * coupler_e3;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = k(0.25) * T::fused(-t32, coupler_wz, t35 * coupler_wy);
-        let t37 = coupler_e0 * coupler_e0;
-        let t38 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t37));
-        let t39 = coupler_e0 * coupler_e1;
-        let t40 = coupler_e2 * coupler_e3;
-        let t41 = k(2.0) * (t40 - t39);
-        let t42 = k(0.25) * T::fused(t38, coupler_wz, t41 * coupler_wy);
-        let t43 = k(2.0) * (t40 + t39);
-        let t44 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t37));
-        let t45 = crank_sz + t15
+        let t34 = k(2.0) * coupler_e0;
+        let t35 = coupler_e3 * t34;
+        let t36 = k(2.0) * coupler_e1;
+        let t37 = coupler_e2 * t36;
+        let t38 = t37 - t35;
+        let t39 = coupler_e2 * t34;
+        let t40 = coupler_e3 * t36;
+        let t41 = t40 + t39;
+        let t42 = k(0.25) * T::fused(-coupler_wz, t38, coupler_wy * t41);
+        let t43 = k(2.0) * coupler_e2;
+        let t44 = T::fused(-coupler_e0, t34, k(1.0));
+        let t45 = T::fused(-coupler_e2, t43, t44);
+        let t46 = coupler_e1 * t34;
+        let t47 = coupler_e3 * t43;
+        let t48 = t47 - t46;
+        let t49 = k(0.25) * T::fused(coupler_wz, t45, coupler_wy * t48);
+        let t50 = t47 + t46;
+        let t51 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t44);
+        let t52 = crank_sz + t18
             - T::fused(
                 -k(0.25),
-                T::fused(t43, coupler_wz, t44 * coupler_wy),
+                T::fused(coupler_wz, t50, coupler_wy * t51),
                 coupler_sz,
             );
-        let t46 = T::fused(t14, t44, T::fused(t11, t41, t5 * t35));
-        let t47 = T::fused(
-            crank_wz,
-            T::fused(t13, t44, -T::fused(-t8, t41, t2 * t35)),
-            crank_wy * t46,
-        );
-        let t48 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t37));
-        let t49 = k(2.0) * (t31 + t30);
-        let t50 = k(2.0) * (t34 - t33);
-        let t51 = k(2.0) * (t4 - t3);
-        let t52 = T::fused(
-            -coupler_wy,
-            T::fused(t51, t50, T::fused(t16, t48, t17 * t49)),
-            coupler_wx * T::fused(t51, t43, -T::fused(t16, t32, t17 * t38)),
-        );
-        let t53 = T::fused(
-            crank_wz,
-            T::fused(t51, t44, -T::fused(-t16, t35, t17 * t41)),
-            crank_wx * t46,
-        );
+        let t53 = T::fused(t17, t51, T::fused(t7, t41, t14 * t48));
         let t54 = T::fused(
+            crank_wz,
+            T::fused(t16, t51, T::fused(-t4, t41, t11 * t48)),
+            crank_wy * t53,
+        );
+        let t55 = T::fused(-coupler_e1, t36, t44);
+        let t56 = t37 + t35;
+        let t57 = t40 - t39;
+        let t58 = t6 - t5;
+        let t59 = T::fused(
             -coupler_wy,
-            T::fused(t13, t50, -T::fused(t2, t48, t8 * t49)),
-            coupler_wx * T::fused(t13, t43, T::fused(t8, t38, t2 * t32)),
+            T::fused(t58, t57, T::fused(t19, t55, t20 * t56)),
+            coupler_wx * T::fused(t58, t50, -T::fused(t19, t38, t20 * t45)),
+        );
+        let t60 = T::fused(
+            crank_wz,
+            T::fused(t58, t51, -T::fused(-t19, t41, t20 * t48)),
+            crank_wx * t53,
+        );
+        let t61 = T::fused(
+            -coupler_wy,
+            T::fused(t16, t57, -T::fused(t4, t55, t11 * t56)),
+            coupler_wx * T::fused(t16, t50, T::fused(t4, t38, t11 * t45)),
         );
         *out = [
-            crank_sx + t6,
-            crank_sy + t12,
-            crank_sz - t15,
-            -T::fused(t16, crank_wy, t2 * crank_wx),
-            T::fused(t17, crank_wy, t8 * crank_wx),
-            rocker_sx + t22,
-            rocker_sy + t27,
-            T::fused(-k(0.2), t28, rocker_sz),
-            -t29,
-            T::fused(k(2.0) * (t19 + t18), rocker_wy, t24 * rocker_wx),
-            coupler_sx + t36 - (crank_sx - t6),
-            coupler_sy + t42 - (crank_sy - t12),
-            -t45,
-            -(t52 + t47),
-            t53 - t54,
-            rocker_sx - t22 - (coupler_sx - t36),
-            rocker_sy - t27 - (coupler_sy - t42),
+            crank_sx + t8,
+            crank_sy + t15,
+            crank_sz - t18,
+            -T::fused(crank_wy, t19, crank_wx * t4),
+            T::fused(crank_wy, t20, crank_wx * t11),
+            rocker_sx + t26,
+            rocker_sy + t32,
+            T::fused(-k(0.2), t33, rocker_sz),
+            -T::fused(rocker_wy, T::fused(-rocker_e1, t23, t28), rocker_wx * t25),
+            T::fused(rocker_wy, t24 + t22, rocker_wx * t29),
+            coupler_sx + t42 - (crank_sx - t8),
+            coupler_sy + t49 - (crank_sy - t15),
+            -t52,
+            -(t59 + t54),
+            t60 - t61,
+            rocker_sx - t26 - (coupler_sx - t42),
+            rocker_sy - t32 - (coupler_sy - t49),
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -1012,7 +1016,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             (16, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 129 operations (36 ±, 93 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 119 operations (35 ±, 84 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1051,30 +1055,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t21 = k(0.5) * coupler_e2;
         let t22 = k(0.5) * coupler_e1;
         let t23 = k(0.5) * coupler_e0;
-        let t24 = k(2.0)
-            * (k(0.5) - T::fused(coupler_e3, coupler_e3, coupler_e0 * coupler_e0));
-        let t25 = t24 * t6;
-        let t26 = k(2.0) * T::fused(-coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
-        let t27 = k(4.0) * crank_e0;
-        let t28 = k(2.0) * T::fused(coupler_e0, coupler_e2, coupler_e1 * coupler_e3);
-        let t29 = t24 * t7;
-        let t30 = t24 * t8;
-        let t31 = t24 * t9;
-        let t32 = k(4.0) * coupler_e0;
-        let t33 = k(2.0) * T::fused(-crank_e0, crank_e2, crank_e1 * crank_e3);
-        let t34 = k(2.0) * coupler_e1;
-        let t35 = crank_e0 * crank_e3;
-        let t36 = crank_e1 * crank_e2;
-        let t37 = k(2.0) * (t36 + t35);
-        let t38 = k(2.0) * coupler_e2;
-        let t39 = crank_e0 * crank_e0;
-        let t40 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t39));
-        let t41 = k(2.0) * coupler_e0;
-        let t42 = k(2.0) * coupler_e3;
+        let t24 = k(2.0) * coupler_e3;
+        let t25 = k(2.0) * coupler_e0;
+        let t26 = T::fused(-coupler_e3, t24, T::fused(-coupler_e0, t25, k(1.0)));
+        let t27 = t6 * t26;
+        let t28 = k(2.0) * coupler_e2;
+        let t29 = T::fused(-coupler_e1, t25, coupler_e3 * t28);
+        let t30 = k(2.0) * coupler_e1;
+        let t31 = T::fused(coupler_e2, t25, coupler_e3 * t30);
+        let t32 = k(4.0) * crank_e0;
+        let t33 = t7 * t26;
+        let t34 = t8 * t26;
+        let t35 = t9 * t26;
+        let t36 = T::fused(-crank_e2, t8, crank_e3 * t9);
+        let t37 = k(4.0) * coupler_e0;
+        let t38 = crank_e3 * t8;
+        let t39 = crank_e2 * t9;
+        let t40 = t39 + t38;
+        let t41 = T::fused(-crank_e0, t8, k(1.0));
+        let t42 = T::fused(-crank_e1, t9, t41);
         let t43 = k(4.0) * coupler_e3;
-        let t44 = k(2.0) * T::fused(crank_e0, crank_e1, crank_e2 * crank_e3);
-        let t45 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t39));
-        let t46 = k(2.0) * (t36 - t35);
+        let t44 = T::fused(crank_e1, t8, crank_e3 * t6);
+        let t45 = T::fused(-crank_e2, t6, t41);
+        let t46 = t39 - t38;
         *out = [
             k(1.0),
             -t0,
@@ -1144,22 +1147,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             -t20,
             t23,
             -t22,
-            T::fused(t26, t7, t28 * t27) + t25,
-            T::fused(t26, t6, t28 * (k(4.0) * crank_e1)) - t29,
-            T::fused(t26, t9, t30),
-            T::fused(t26, t8, -t31),
-            T::fused(t33, t32, -T::fused(t37, t34, t40 * t38)),
-            -T::fused(t37, t41, t40 * t42),
-            T::fused(-t40, t41, t37 * t42),
-            T::fused(t33, t43, -T::fused(-t37, t38, t40 * t34)),
-            -(t31 + T::fused(-t26, t27, t28 * t7)),
-            T::fused(t28, t6, -t30),
-            T::fused(t26, k(4.0) * crank_e2, t28 * t9) - t29,
-            -T::fused(t28, t8, t25),
-            T::fused(t44, t32, T::fused(t45, t34, t46 * t38)),
-            T::fused(t45, t41, t46 * t42),
-            T::fused(-t45, t42, t46 * t41),
-            T::fused(t44, t43, T::fused(-t45, t38, t46 * t34)),
+            T::fused(t7, t29, t32 * t31) + t27,
+            T::fused(t6, t29, k(4.0) * crank_e1 * t31) - t33,
+            T::fused(t9, t29, t34),
+            T::fused(t8, t29, -t35),
+            T::fused(t37, t36, -T::fused(t30, t40, t28 * t42)),
+            -T::fused(t25, t40, t24 * t42),
+            T::fused(-t25, t42, t24 * t40),
+            T::fused(t43, t36, -T::fused(-t28, t40, t30 * t42)),
+            -(t35 + T::fused(-t32, t29, t7 * t31)),
+            T::fused(t6, t31, -t34),
+            T::fused(k(4.0) * crank_e2, t29, t9 * t31) - t33,
+            -T::fused(t8, t31, t27),
+            T::fused(t37, t44, T::fused(t30, t45, t28 * t46)),
+            T::fused(t25, t45, t24 * t46),
+            T::fused(-t24, t45, t25 * t46),
+            T::fused(t43, t44, T::fused(-t28, t45, t30 * t46)),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1180,17 +1183,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             t9,
             t6,
             t7,
-            t41,
-            t34,
-            t38,
-            t42,
+            t25,
+            t30,
+            t28,
+            t24,
             t18,
             t19,
             t16,
             t17,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 140 operations (49 ±, 91 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 124 operations (43 ±, 81 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1205,138 +1208,134 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_e1 = y[18];
         let rocker_e2 = y[19];
         let rocker_e3 = y[20];
-        let t0 = crank_e0 * crank_e2;
-        let t1 = crank_e1 * crank_e3;
-        let t2 = t1 + t0;
-        let t3 = k(0.2) * t2;
-        let t4 = crank_e0 * crank_e3;
-        let t5 = crank_e1 * crank_e2;
-        let t6 = t5 - t4;
-        let t7 = k(0.2) * t6;
-        let t8 = crank_e0 * crank_e1;
-        let t9 = crank_e2 * crank_e3;
-        let t10 = t9 - t8;
-        let t11 = k(0.2) * t10;
-        let t12 = crank_e0 * crank_e0;
-        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
-        let t14 = k(0.2) * t13;
-        let t15 = k(0.5) - T::fused(crank_e3, crank_e3, t12);
-        let t16 = k(0.2) * t15;
-        let t17 = t9 + t8;
-        let t18 = k(0.2) * t17;
-        let t19 = k(2.0) * t6;
-        let t20 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12));
-        let t21 = k(2.0) * t13;
-        let t22 = k(2.0) * (t5 + t4);
-        let t23 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t24 = rocker_e0 * rocker_e3;
-        let t25 = rocker_e1 * rocker_e2;
-        let t26 = t25 - t24;
-        let t27 = k(0.4) * t26;
-        let t28 = rocker_e0 * rocker_e1;
-        let t29 = rocker_e2 * rocker_e3;
-        let t30 = k(0.4) * (t29 - t28);
-        let t31 = rocker_e0 * rocker_e0;
-        let t32 = k(0.5) - T::fused(rocker_e2, rocker_e2, t31);
-        let t33 = k(0.4) * t32;
-        let t34 = coupler_e0 * coupler_e2;
-        let t35 = coupler_e1 * coupler_e3;
-        let t36 = t35 + t34;
-        let t37 = k(0.5) * t36;
-        let t38 = coupler_e0 * coupler_e3;
-        let t39 = coupler_e1 * coupler_e2;
-        let t40 = t39 - t38;
-        let t41 = k(0.5) * t40;
-        let t42 = coupler_e0 * coupler_e1;
-        let t43 = coupler_e2 * coupler_e3;
-        let t44 = t43 - t42;
-        let t45 = k(0.5) * t44;
-        let t46 = coupler_e0 * coupler_e0;
-        let t47 = k(0.5) - T::fused(coupler_e2, coupler_e2, t46);
-        let t48 = k(0.5) * t47;
-        let t49 = k(0.5) - T::fused(coupler_e3, coupler_e3, t46);
-        let t50 = t43 + t42;
-        let t51 = k(2.0) * t49;
-        let t52 = k(2.0) * t44;
-        let t53 = k(2.0) * t36;
-        let t54 = T::fused(
-            k(2.0) * t15,
-            t51,
-            T::fused(k(2.0) * t10, t52, k(2.0) * t2 * t53),
-        );
-        let t55 = k(2.0) * t17;
-        let t56 = k(2.0) * t40;
-        let t57 = k(2.0) * t47;
-        let t58 = k(2.0) * t50;
-        let t59 = k(2.0) * (t1 - t0);
-        let t60 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t46));
-        let t61 = k(2.0) * (t39 + t38);
-        let t62 = k(2.0) * (t35 - t34);
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e2 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = k(0.1) * t4;
+        let t6 = crank_e3 * t0;
+        let t7 = crank_e2 * t2;
+        let t8 = t7 - t6;
+        let t9 = k(0.1) * t8;
+        let t10 = crank_e1 * t0;
+        let t11 = k(2.0) * crank_e2;
+        let t12 = crank_e3 * t11;
+        let t13 = t12 - t10;
+        let t14 = k(0.1) * t13;
+        let t15 = T::fused(-crank_e0, t0, k(1.0));
+        let t16 = T::fused(-crank_e2, t11, t15);
+        let t17 = k(0.1) * t16;
+        let t18 = T::fused(-crank_e3, k(2.0) * crank_e3, t15);
+        let t19 = k(0.1) * t18;
+        let t20 = t12 + t10;
+        let t21 = k(0.1) * t20;
+        let t22 = T::fused(-crank_e1, t2, t15);
+        let t23 = t7 + t6;
+        let t24 = k(2.0) * rocker_e0;
+        let t25 = k(2.0) * rocker_e1;
+        let t26 = k(0.2) * T::fused(rocker_e2, t24, rocker_e3 * t25);
+        let t27 = rocker_e3 * t24;
+        let t28 = rocker_e2 * t25;
+        let t29 = t28 - t27;
+        let t30 = k(0.2) * t29;
+        let t31 = rocker_e1 * t24;
+        let t32 = k(2.0) * rocker_e2;
+        let t33 = rocker_e3 * t32;
+        let t34 = k(0.2) * (t33 - t31);
+        let t35 = T::fused(-rocker_e0, t24, k(1.0));
+        let t36 = T::fused(-rocker_e2, t32, t35);
+        let t37 = k(0.2) * t36;
+        let t38 = k(2.0) * coupler_e0;
+        let t39 = coupler_e2 * t38;
+        let t40 = k(2.0) * coupler_e1;
+        let t41 = coupler_e3 * t40;
+        let t42 = t41 + t39;
+        let t43 = k(0.25) * t42;
+        let t44 = coupler_e3 * t38;
+        let t45 = coupler_e2 * t40;
+        let t46 = t45 - t44;
+        let t47 = k(0.25) * t46;
+        let t48 = coupler_e1 * t38;
+        let t49 = k(2.0) * coupler_e2;
+        let t50 = coupler_e3 * t49;
+        let t51 = t50 - t48;
+        let t52 = k(0.25) * t51;
+        let t53 = T::fused(-coupler_e0, t38, k(1.0));
+        let t54 = T::fused(-coupler_e2, t49, t53);
+        let t55 = k(0.25) * t54;
+        let t56 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t53);
+        let t57 = t50 + t48;
+        let t58 = T::fused(t18, t56, T::fused(t4, t42, t13 * t51));
+        let t59 = t3 - t1;
+        let t60 = T::fused(-coupler_e1, t40, t53);
+        let t61 = t45 + t44;
+        let t62 = t41 - t39;
         *out = [
             k(1.0),
-            t3,
-            -t7,
+            t5,
+            -t9,
             k(1.0),
-            t11,
             t14,
+            t17,
             k(1.0),
-            -t16,
-            -t18,
             -t19,
-            -t20,
-            t21,
-            t22,
-            k(1.0),
+            -t21,
+            -t8,
+            -t22,
+            t16,
             t23,
-            -t27,
             k(1.0),
-            t30,
-            t33,
-            k(1.0),
-            -(k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t31))),
-            -(k(0.4) * (t29 + t28)),
-            -(k(2.0) * t26),
-            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t31))),
-            k(2.0) * t32,
-            k(2.0) * (t25 + t24),
-            k(-1.0),
-            t3,
-            -t7,
-            k(1.0),
-            t37,
-            -t41,
-            k(-1.0),
-            t11,
-            t14,
-            k(1.0),
-            t45,
-            t48,
-            k(-1.0),
-            -t16,
-            -t18,
-            k(1.0),
-            -(k(0.5) * t49),
-            -(k(0.5) * t50),
-            -t54,
-            T::fused(-t55, t51, T::fused(-t21, t52, t19 * t53)),
-            T::fused(-t59, t58, T::fused(t20, t56, t22 * t57)),
-            T::fused(t59, t62, T::fused(t20, t60, t22 * t61)),
-            t54,
-            T::fused(t59, t51, -T::fused(-t20, t53, t22 * t52)),
-            -T::fused(t55, t58, T::fused(t21, t57, t19 * t56)),
-            T::fused(t55, t62, -T::fused(t19, t60, t21 * t61)),
-            k(-1.0),
-            t37,
-            -t41,
-            k(1.0),
-            -t23,
-            t27,
-            k(-1.0),
-            t45,
-            t48,
-            k(1.0),
+            t26,
             -t30,
-            -t33,
+            k(1.0),
+            t34,
+            t37,
+            k(1.0),
+            -(k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t35)),
+            -(k(0.2) * (t33 + t31)),
+            -t29,
+            T::fused(rocker_e1, t25, -t35),
+            t36,
+            t28 + t27,
+            k(-1.0),
+            t5,
+            -t9,
+            k(1.0),
+            t43,
+            -t47,
+            k(-1.0),
+            t14,
+            t17,
+            k(1.0),
+            t52,
+            t55,
+            k(-1.0),
+            -t19,
+            -t21,
+            k(1.0),
+            -(k(0.25) * t56),
+            -(k(0.25) * t57),
+            -t58,
+            -T::fused(t20, t56, T::fused(-t8, t42, t16 * t51)),
+            T::fused(-t59, t57, T::fused(t22, t46, t23 * t54)),
+            T::fused(t59, t62, T::fused(t22, t60, t23 * t61)),
+            t58,
+            T::fused(t59, t56, -T::fused(-t22, t42, t23 * t51)),
+            -T::fused(t20, t57, T::fused(t8, t46, t16 * t54)),
+            T::fused(t20, t62, -T::fused(t8, t60, t16 * t61)),
+            k(-1.0),
+            t43,
+            -t47,
+            k(1.0),
+            -t26,
+            t30,
+            k(-1.0),
+            t52,
+            t55,
+            k(1.0),
+            -t34,
+            -t37,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1362,7 +1361,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 283 operations (109 ±, 174 ×, 0 ÷).
+    /// Writes γ: 262 operations (103 ±, 159 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1386,142 +1385,149 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_wy * crank_wy;
-        let t1 = crank_wz * crank_wz;
-        let t2 = t1 + t0;
-        let t3 = crank_e0 * crank_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t3));
-        let t5 = crank_wx * crank_wy;
-        let t6 = crank_e0 * crank_e3;
-        let t7 = crank_e1 * crank_e2;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = crank_wx * crank_wz;
-        let t10 = crank_e0 * crank_e2;
-        let t11 = crank_e1 * crank_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = k(0.1) * T::fused(t12, t9, T::fused(t4, t2, t8 * t5));
-        let t14 = k(2.0) * (t7 + t6);
-        let t15 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t3));
-        let t16 = crank_e0 * crank_e1;
-        let t17 = crank_e2 * crank_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = k(0.1) * T::fused(t18, t9, -T::fused(t14, t2, t15 * t5));
-        let t20 = k(2.0) * (t11 - t10);
-        let t21 = k(2.0) * (t17 + t16);
-        let t22 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t3));
-        let t23 = k(0.1) * T::fused(t22, t9, -T::fused(-t20, t2, t21 * t5));
-        let t24 = crank_wy * crank_wz;
-        let t25 = crank_wx * crank_wx;
-        let t26 = t0 + t25;
-        let t27 = rocker_wy * rocker_wy;
-        let t28 = T::fused(rocker_wz, rocker_wz, t27);
-        let t29 = rocker_e0 * rocker_e0;
-        let t30 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t29));
-        let t31 = rocker_wx * rocker_wy;
-        let t32 = rocker_e0 * rocker_e3;
-        let t33 = rocker_e1 * rocker_e2;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = rocker_wx * rocker_wz;
-        let t36 = rocker_e0 * rocker_e2;
-        let t37 = rocker_e1 * rocker_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = k(0.2) * T::fused(t38, t35, T::fused(t30, t28, t34 * t31));
-        let t40 = k(2.0) * (t33 + t32);
-        let t41 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t29));
-        let t42 = rocker_e0 * rocker_e1;
-        let t43 = rocker_e2 * rocker_e3;
-        let t44 = k(2.0) * (t43 - t42);
-        let t45 = k(0.2) * T::fused(t44, t35, -T::fused(t40, t28, t41 * t31));
-        let t46 = T::fused(-(k(2.0) * (t37 - t36)), t28, k(2.0) * (t43 + t42) * t31);
-        let t47 = k(0.2)
-            * T::fused(
-                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t29)),
-                t35,
-                -t46,
-            );
-        let t48 = rocker_wy * rocker_wz;
-        let t49 = T::fused(rocker_wx, rocker_wx, t27);
-        let t50 = coupler_wy * coupler_wy;
-        let t51 = T::fused(coupler_wz, coupler_wz, t50);
-        let t52 = coupler_e0 * coupler_e0;
-        let t53 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t52));
-        let t54 = coupler_wx * coupler_wy;
-        let t55 = coupler_e0 * coupler_e3;
-        let t56 = coupler_e1 * coupler_e2;
-        let t57 = k(2.0) * (t56 - t55);
-        let t58 = coupler_wx * coupler_wz;
-        let t59 = coupler_e0 * coupler_e2;
-        let t60 = coupler_e1 * coupler_e3;
-        let t61 = k(2.0) * (t60 + t59);
-        let t62 = k(0.25) * T::fused(t61, t58, T::fused(t53, t51, t57 * t54));
-        let t63 = k(2.0) * (t56 + t55);
-        let t64 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t52));
-        let t65 = coupler_e0 * coupler_e1;
-        let t66 = coupler_e2 * coupler_e3;
-        let t67 = k(2.0) * (t66 - t65);
-        let t68 = k(0.25) * T::fused(t67, t58, -T::fused(t63, t51, t64 * t54));
-        let t69 = k(2.0) * (t60 - t59);
-        let t70 = k(2.0) * (t66 + t65);
-        let t71 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t52));
-        let t72 = T::fused(
+        let t0 = k(2.0) * crank_e1;
+        let t1 = k(2.0) * crank_e0;
+        let t2 = T::fused(-crank_e0, t1, k(1.0));
+        let t3 = T::fused(-crank_e1, t0, t2);
+        let t4 = crank_wy * crank_wy;
+        let t5 = crank_wz * crank_wz;
+        let t6 = t5 + t4;
+        let t7 = crank_e3 * t1;
+        let t8 = crank_e2 * t0;
+        let t9 = t8 - t7;
+        let t10 = crank_wx * crank_wy;
+        let t11 = crank_e2 * t1;
+        let t12 = crank_e3 * t0;
+        let t13 = t12 + t11;
+        let t14 = crank_wx * crank_wz;
+        let t15 = k(0.1) * T::fused(t14, t13, T::fused(t6, t3, t10 * t9));
+        let t16 = t8 + t7;
+        let t17 = k(2.0) * crank_e2;
+        let t18 = T::fused(-crank_e2, t17, t2);
+        let t19 = crank_e1 * t1;
+        let t20 = crank_e3 * t17;
+        let t21 = t20 - t19;
+        let t22 = k(0.1) * T::fused(t14, t21, -T::fused(t6, t16, t10 * t18));
+        let t23 = t12 - t11;
+        let t24 = t20 + t19;
+        let t25 = T::fused(-crank_e3, k(2.0) * crank_e3, t2);
+        let t26 = k(0.1) * T::fused(t14, t25, -T::fused(-t6, t23, t10 * t24));
+        let t27 = crank_wy * crank_wz;
+        let t28 = crank_wx * crank_wx;
+        let t29 = t4 + t28;
+        let t30 = k(2.0) * rocker_e1;
+        let t31 = k(2.0) * rocker_e0;
+        let t32 = T::fused(-rocker_e0, t31, k(1.0));
+        let t33 = T::fused(-rocker_e1, t30, t32);
+        let t34 = rocker_wy * rocker_wy;
+        let t35 = T::fused(rocker_wz, rocker_wz, t34);
+        let t36 = rocker_e3 * t31;
+        let t37 = rocker_e2 * t30;
+        let t38 = t37 - t36;
+        let t39 = rocker_wx * rocker_wy;
+        let t40 = rocker_e2 * t31;
+        let t41 = rocker_e3 * t30;
+        let t42 = t41 + t40;
+        let t43 = rocker_wx * rocker_wz;
+        let t44 = k(0.2) * T::fused(t43, t42, T::fused(t35, t33, t39 * t38));
+        let t45 = t37 + t36;
+        let t46 = k(2.0) * rocker_e2;
+        let t47 = T::fused(-rocker_e2, t46, t32);
+        let t48 = rocker_e1 * t31;
+        let t49 = rocker_e3 * t46;
+        let t50 = t49 - t48;
+        let t51 = k(0.2) * T::fused(t43, t50, -T::fused(t35, t45, t39 * t47));
+        let t52 = T::fused(
+            t43,
+            T::fused(-rocker_e3, k(2.0) * rocker_e3, t32),
+            -T::fused(-t35, t41 - t40, t39 * (t49 + t48)),
+        );
+        let t53 = rocker_wy * rocker_wz;
+        let t54 = T::fused(rocker_wx, rocker_wx, t34);
+        let t55 = k(2.0) * coupler_e1;
+        let t56 = k(2.0) * coupler_e0;
+        let t57 = T::fused(-coupler_e0, t56, k(1.0));
+        let t58 = T::fused(-coupler_e1, t55, t57);
+        let t59 = coupler_wy * coupler_wy;
+        let t60 = T::fused(coupler_wz, coupler_wz, t59);
+        let t61 = coupler_e3 * t56;
+        let t62 = coupler_e2 * t55;
+        let t63 = t62 - t61;
+        let t64 = coupler_wx * coupler_wy;
+        let t65 = coupler_e2 * t56;
+        let t66 = coupler_e3 * t55;
+        let t67 = t66 + t65;
+        let t68 = coupler_wx * coupler_wz;
+        let t69 = k(0.25) * T::fused(t68, t67, T::fused(t60, t58, t64 * t63));
+        let t70 = t62 + t61;
+        let t71 = k(2.0) * coupler_e2;
+        let t72 = T::fused(-coupler_e2, t71, t57);
+        let t73 = coupler_e1 * t56;
+        let t74 = coupler_e3 * t71;
+        let t75 = t74 - t73;
+        let t76 = k(0.25) * T::fused(t68, t75, -T::fused(t60, t70, t64 * t72));
+        let t77 = t66 - t65;
+        let t78 = t74 + t73;
+        let t79 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t57);
+        let t80 = T::fused(
             k(0.25),
-            T::fused(t71, t58, -T::fused(-t69, t51, t70 * t54)),
-            t23,
+            T::fused(t68, t79, -T::fused(-t60, t77, t64 * t78)),
+            t26,
         );
-        let t73 = T::fused(t20, t71, -T::fused(-t4, t61, t14 * t67));
-        let t74 = T::fused(t21, t71, -T::fused(-t15, t67, t8 * t61));
-        let t75 = T::fused(t22, t71, T::fused(t18, t67, t12 * t61));
-        let t76 = T::fused(t21, t69, -T::fused(t8, t53, t15 * t63));
-        let t77 = T::fused(t21, t70, T::fused(t15, t64, t8 * t57));
-        let t78 = T::fused(
+        let t81 = T::fused(t23, t79, -T::fused(-t3, t67, t16 * t75));
+        let t82 = T::fused(t24, t79, T::fused(-t9, t67, t18 * t75));
+        let t83 = T::fused(t25, t79, T::fused(t13, t67, t21 * t75));
+        let t84 = T::fused(t24, t77, -T::fused(t9, t58, t18 * t70));
+        let t85 = T::fused(t24, t78, T::fused(t9, t63, t18 * t72));
+        let t86 = T::fused(
             -coupler_wy,
-            T::fused(t22, t69, -T::fused(-t12, t53, t18 * t63)),
-            coupler_wx * T::fused(t22, t70, -T::fused(-t18, t64, t12 * t57)),
+            T::fused(t25, t77, -T::fused(-t13, t58, t21 * t70)),
+            coupler_wx * T::fused(t25, t78, T::fused(-t13, t63, t21 * t72)),
         );
-        let t79 = T::fused(t20, t69, T::fused(t4, t53, t14 * t63));
-        let t80 = T::fused(t20, t70, -T::fused(t4, t57, t14 * t64));
-        let t81 = coupler_wy * coupler_wz;
-        let t82 = T::fused(coupler_wx, coupler_wx, t50);
-        let t83 = T::fused(
+        let t87 = T::fused(t23, t77, T::fused(t3, t58, t16 * t70));
+        let t88 = T::fused(t23, t78, -T::fused(t3, t63, t16 * t72));
+        let t89 = coupler_wy * coupler_wz;
+        let t90 = T::fused(coupler_wx, coupler_wx, t59);
+        let t91 = T::fused(
             -k(2.0),
             T::fused(
                 crank_wz,
-                T::fused(-coupler_wy, t76, coupler_wx * t77),
-                crank_wy * t78,
+                T::fused(-coupler_wy, t84, coupler_wx * t85),
+                crank_wy * t86,
             ),
-            T::fused(t82, t73, T::fused(t58, t79, t81 * t80)),
+            T::fused(t90, t81, T::fused(t68, t87, t89 * t88)),
         );
-        let t84 = T::fused(
+        let t92 = T::fused(
             k(2.0),
             T::fused(
                 crank_wz,
-                T::fused(-coupler_wy, t79, coupler_wx * t80),
-                crank_wx * t78,
+                T::fused(-coupler_wy, t87, coupler_wx * t88),
+                crank_wx * t86,
             ),
-            T::fused(t82, t74, T::fused(t58, t76, t81 * t77)),
+            T::fused(t90, t82, T::fused(t68, t84, t89 * t85)),
         );
-        let t85 = t84 + T::fused(t24, t75, T::fused(-t5, t73, (t1 + t25) * t74));
+        let t93 = t92 + T::fused(t27, t83, T::fused(-t10, t81, (t5 + t28) * t82));
         *out = [
-            t13,
-            t19,
-            -t23,
-            T::fused(t12, t26, -T::fused(-t4, t9, t8 * t24)),
-            T::fused(t18, t26, T::fused(-t14, t9, t15 * t24)),
-            t39,
-            t45,
-            -t47,
-            T::fused(t38, t49, -T::fused(-t30, t35, t34 * t48)),
-            T::fused(t44, t49, T::fused(-t40, t35, t41 * t48)),
-            t13 + t62,
-            t19 + t68,
-            -t72,
-            -(t83 + T::fused(t9, t75, -T::fused(-t2, t73, t5 * t74))),
-            -t85,
-            t62 - t39,
-            t68 - t45,
+            t15,
+            t22,
+            -t26,
+            T::fused(t29, t13, -T::fused(-t14, t3, t27 * t9)),
+            T::fused(t29, t21, T::fused(-t14, t16, t27 * t18)),
+            t44,
+            t51,
+            -(k(0.2) * t52),
+            T::fused(t54, t42, -T::fused(-t43, t33, t53 * t38)),
+            T::fused(t54, t50, T::fused(-t43, t45, t53 * t47)),
+            t15 + t69,
+            t22 + t76,
+            -t80,
+            -(t91 + T::fused(t14, t83, -T::fused(-t6, t81, t10 * t82))),
+            -t93,
+            t69 - t44,
+            t76 - t51,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let crank_wx = y[24];
@@ -1533,28 +1539,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
+        let t0 = k(0.00133) * crank_wx;
+        let t1 = k(0.02095) * coupler_wx;
+        let t2 = k(0.01076) * rocker_wx;
         *out = [
             k(0.0),
             k(-3.924),
             k(0.0),
             k(0.0),
-            k(0.00133) * (crank_wx * crank_wz),
-            -(k(0.00133) * (crank_wx * crank_wy)),
+            crank_wz * t0,
+            -(crank_wy * t0),
             k(0.0),
             k(-9.81),
             k(0.0),
             k(0.0),
-            k(0.02095) * (coupler_wx * coupler_wz),
-            -(k(0.02095) * (coupler_wx * coupler_wy)),
+            coupler_wz * t1,
+            -(coupler_wy * t1),
             k(0.0),
             k(-7.848),
             k(0.0),
             k(0.0),
-            k(0.01076) * (rocker_wx * rocker_wz),
-            -(k(0.01076) * (rocker_wx * rocker_wy)),
+            rocker_wz * t2,
+            -(rocker_wy * t2),
         ];
     }
-    /// Solves eq. (17): 811 operations (330 ±, 475 ×, 6 ÷).
+    /// Solves eq. (17): 794 operations (324 ±, 464 ×, 6 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1579,548 +1588,547 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t7,
-            t12,
+            t8,
             t18,
-            t22,
-            t55,
+            t23,
+            t54,
             t56,
-            t64,
+            t62,
+            t67,
+            t68,
             t70,
-            t71,
-            t73,
-            t85,
-            t86,
-            t94,
-            t97,
+            t79,
+            t80,
+            t88,
+            t91,
+            t92,
+            t95,
             t98,
-            t101,
             t104,
-            t110,
-            t115,
-            t119,
-            t120,
-            t124,
-            t128,
-            t161,
+            t109,
+            t113,
+            t114,
+            t118,
+            t122,
+            t155,
+            t156,
+            t157,
+            t159,
             t162,
             t163,
             t165,
-            t168,
+            t166,
+            t167,
             t169,
-            t171,
             t172,
             t173,
             t175,
-            t178,
+            t176,
             t179,
             t180,
+            t181,
             t182,
+            t183,
+            t184,
             t185,
             t187,
             t188,
-            t189,
             t190,
             t191,
-            t193,
+            t194,
             t195,
             t196,
+            t197,
             t198,
             t199,
         ) = {
-            let t0 = coupler_wy * coupler_wy;
-            let t1 = T::fused(coupler_wz, coupler_wz, t0);
-            let t2 = coupler_e0 * coupler_e0;
-            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
-            let t4 = coupler_wx * coupler_wy;
-            let t5 = coupler_e0 * coupler_e3;
-            let t6 = coupler_e1 * coupler_e2;
-            let t7 = t6 - t5;
-            let t8 = k(2.0) * t7;
-            let t9 = coupler_wx * coupler_wz;
-            let t10 = coupler_e0 * coupler_e2;
-            let t11 = coupler_e1 * coupler_e3;
+            let t0 = k(2.0) * coupler_e1;
+            let t1 = k(2.0) * coupler_e0;
+            let t2 = T::fused(-coupler_e0, t1, k(1.0));
+            let t3 = T::fused(-coupler_e1, t0, t2);
+            let t4 = coupler_wy * coupler_wy;
+            let t5 = T::fused(coupler_wz, coupler_wz, t4);
+            let t6 = coupler_e3 * t1;
+            let t7 = coupler_e2 * t0;
+            let t8 = t7 - t6;
+            let t9 = coupler_wx * coupler_wy;
+            let t10 = coupler_e2 * t1;
+            let t11 = coupler_e3 * t0;
             let t12 = t11 + t10;
-            let t13 = k(2.0) * t12;
-            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
-            let t15 = rocker_wy * rocker_wy;
-            let t16 = T::fused(rocker_wz, rocker_wz, t15);
-            let t17 = rocker_e0 * rocker_e0;
-            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
-            let t19 = rocker_wx * rocker_wy;
-            let t20 = rocker_e0 * rocker_e3;
-            let t21 = rocker_e1 * rocker_e2;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = rocker_wx * rocker_wz;
-            let t25 = rocker_e0 * rocker_e2;
-            let t26 = rocker_e1 * rocker_e3;
+            let t13 = coupler_wx * coupler_wz;
+            let t14 = k(0.25) * T::fused(t13, t12, T::fused(t5, t3, t9 * t8));
+            let t15 = k(2.0) * rocker_e1;
+            let t16 = k(2.0) * rocker_e0;
+            let t17 = T::fused(-rocker_e0, t16, k(1.0));
+            let t18 = T::fused(-rocker_e1, t15, t17);
+            let t19 = rocker_wy * rocker_wy;
+            let t20 = T::fused(rocker_wz, rocker_wz, t19);
+            let t21 = rocker_e3 * t16;
+            let t22 = rocker_e2 * t15;
+            let t23 = t22 - t21;
+            let t24 = rocker_wx * rocker_wy;
+            let t25 = rocker_e2 * t16;
+            let t26 = rocker_e3 * t15;
             let t27 = t26 + t25;
-            let t28 = k(2.0) * t27;
-            let t29 = k(0.2) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
-            let t30 = crank_e0 * crank_e3;
-            let t31 = crank_e1 * crank_e2;
-            let t32 = k(2.0) * (t31 + t30);
-            let t33 = t31 - t30;
-            let t34 = k(2.0) * t33;
-            let t35 = crank_e0 * crank_e0;
-            let t36 = k(0.5) - T::fused(crank_e2, crank_e2, t35);
-            let t37 = k(2.0) * t36;
-            let t38 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t35));
-            let t39 = k(1.0) / T::fused(-t34, t32, t38 * t37);
-            let t40 = crank_wx * crank_wz;
-            let t41 = crank_wy * crank_wz;
-            let t42 = crank_wx * crank_wx;
-            let t43 = crank_wy * crank_wy;
-            let t44 = t43 + t42;
-            let t45 = crank_e0 * crank_e2;
-            let t46 = crank_e1 * crank_e3;
-            let t47 = t46 + t45;
-            let t48 = k(2.0) * t47;
-            let t49 = T::fused(t48, t44, -T::fused(-t38, t40, t34 * t41));
-            let t50 = crank_e0 * crank_e1;
-            let t51 = crank_e2 * crank_e3;
+            let t28 = rocker_wx * rocker_wz;
+            let t29 = k(0.2) * T::fused(t28, t27, T::fused(t20, t18, t24 * t23));
+            let t30 = k(2.0) * crank_e0;
+            let t31 = crank_e3 * t30;
+            let t32 = k(2.0) * crank_e1;
+            let t33 = crank_e2 * t32;
+            let t34 = t33 + t31;
+            let t35 = t33 - t31;
+            let t36 = k(2.0) * crank_e2;
+            let t37 = T::fused(-crank_e0, t30, k(1.0));
+            let t38 = T::fused(-crank_e2, t36, t37);
+            let t39 = T::fused(-crank_e1, t32, t37);
+            let t40 = k(1.0) / T::fused(-t35, t34, t39 * t38);
+            let t41 = crank_wx * crank_wz;
+            let t42 = crank_wy * crank_wz;
+            let t43 = crank_e2 * t30;
+            let t44 = crank_e3 * t32;
+            let t45 = t44 + t43;
+            let t46 = crank_wx * crank_wx;
+            let t47 = crank_wy * crank_wy;
+            let t48 = t47 + t46;
+            let t49 = T::fused(t48, t45, -T::fused(-t41, t39, t42 * t35));
+            let t50 = crank_e1 * t30;
+            let t51 = crank_e3 * t36;
             let t52 = t51 - t50;
-            let t53 = k(2.0) * t52;
-            let t54 = T::fused(t53, t44, T::fused(-t32, t40, t37 * t41));
-            let t55 = T::fused(t49, t32 * t39, t54 * (t38 * t39));
-            let t56 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
-            let t57 = k(2.0) * t56;
-            let t58 = coupler_e0 * coupler_e1;
-            let t59 = coupler_e2 * coupler_e3;
-            let t60 = t59 + t58;
-            let t61 = k(2.0) * t60;
-            let t62 = k(2.0) * (t46 - t45);
-            let t63 = T::fused(t62, t61, -T::fused(t38, t8, t32 * t57));
-            let t64 = T::fused(t37 * t39, t49, t34 * t39 * t54);
-            let t65 = t51 + t50;
-            let t66 = k(2.0) * t65;
-            let t67 = T::fused(t66, t61, T::fused(t37, t57, t34 * t8));
-            let t68 = k(2.0) * (t6 + t5);
-            let t69 = k(2.0) * (t11 - t10);
-            let t70 = T::fused(t66, t69, -T::fused(t34, t3, t37 * t68));
-            let t71 = T::fused(t62, t69, T::fused(t38, t3, t32 * t68));
-            let t72 = k(1.0) / T::fused(-t63, t70, t71 * t67);
-            let t73 = t59 - t58;
-            let t74 = k(2.0) * t73;
-            let t75 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
-            let t76 = k(2.0) * t75;
-            let t77 = T::fused(t62, t76, -T::fused(-t38, t13, t32 * t74));
-            let t78 = crank_wz * crank_wz;
-            let t79 = t78 + t43;
-            let t80 = T::fused(t66, t76, -T::fused(-t37, t74, t34 * t13));
-            let t81 = crank_wx * crank_wy;
-            let t82 = k(0.5) - T::fused(crank_e3, crank_e3, t35);
-            let t83 = k(2.0) * t82;
-            let t84 = T::fused(t83, t76, T::fused(t53, t74, t48 * t13));
-            let t85 = T::fused(t83, t69, -T::fused(-t48, t3, t53 * t68));
-            let t86 = T::fused(t83, t61, -T::fused(-t53, t57, t48 * t8));
-            let t87 = T::fused(-coupler_wy, t85, coupler_wx * t86);
-            let t88 = coupler_wy * coupler_wz;
-            let t89 = T::fused(coupler_wx, coupler_wx, t0);
-            let t90 = T::fused(
+            let t53 = T::fused(t48, t52, T::fused(-t41, t34, t42 * t38));
+            let t54 = T::fused(t49, t34 * t40, t53 * (t39 * t40));
+            let t55 = k(2.0) * coupler_e2;
+            let t56 = T::fused(-coupler_e2, t55, t2);
+            let t57 = coupler_e1 * t1;
+            let t58 = coupler_e3 * t55;
+            let t59 = t58 + t57;
+            let t60 = t44 - t43;
+            let t61 = T::fused(t60, t59, -T::fused(t39, t8, t34 * t56));
+            let t62 = T::fused(t38 * t40, t49, t35 * t40 * t53);
+            let t63 = t51 + t50;
+            let t64 = T::fused(t63, t59, T::fused(t35, t8, t38 * t56));
+            let t65 = t7 + t6;
+            let t66 = t11 - t10;
+            let t67 = T::fused(t63, t66, -T::fused(t35, t3, t38 * t65));
+            let t68 = T::fused(t60, t66, T::fused(t39, t3, t34 * t65));
+            let t69 = k(1.0) / T::fused(-t67, t61, t64 * t68);
+            let t70 = t58 - t57;
+            let t71 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t2);
+            let t72 = T::fused(t60, t71, -T::fused(-t39, t12, t34 * t70));
+            let t73 = crank_wz * crank_wz;
+            let t74 = t73 + t47;
+            let t75 = T::fused(t63, t71, T::fused(-t35, t12, t38 * t70));
+            let t76 = crank_wx * crank_wy;
+            let t77 = T::fused(-crank_e3, k(2.0) * crank_e3, t37);
+            let t78 = T::fused(t77, t71, T::fused(t45, t12, t52 * t70));
+            let t79 = T::fused(t77, t66, -T::fused(-t45, t3, t52 * t65));
+            let t80 = T::fused(t77, t59, T::fused(-t45, t8, t52 * t56));
+            let t81 = T::fused(-coupler_wy, t79, coupler_wx * t80);
+            let t82 = coupler_wy * coupler_wz;
+            let t83 = T::fused(coupler_wx, coupler_wx, t4);
+            let t84 = T::fused(
                 -k(2.0),
                 T::fused(
                     crank_wz,
-                    T::fused(-coupler_wy, t70, coupler_wx * t67),
-                    crank_wy * t87,
+                    T::fused(-coupler_wy, t67, coupler_wx * t64),
+                    crank_wy * t81,
                 ),
-                T::fused(t89, t77, T::fused(t9, t71, t88 * t63)),
+                T::fused(t83, t72, T::fused(t13, t68, t82 * t61)),
             );
-            let t91 = t90 + T::fused(t40, t84, -T::fused(-t79, t77, t81 * t80));
-            let t92 = T::fused(
+            let t85 = t84 + T::fused(t41, t78, -T::fused(-t74, t72, t76 * t75));
+            let t86 = T::fused(
                 k(2.0),
                 T::fused(
                     crank_wz,
-                    T::fused(-coupler_wy, t71, coupler_wx * t63),
-                    crank_wx * t87,
+                    T::fused(-coupler_wy, t68, coupler_wx * t61),
+                    crank_wx * t81,
                 ),
-                T::fused(t89, t80, T::fused(t9, t70, t88 * t67)),
+                T::fused(t83, t75, T::fused(t13, t67, t82 * t64)),
             );
-            let t93 = t92 + T::fused(t41, t84, T::fused(-t81, t77, (t78 + t42) * t80));
-            let t94 = T::fused(-t91, t70 * t72, t93 * (t71 * t72));
-            let t95 = k(0.1) * T::fused(t48, t40, T::fused(t38, t79, t34 * t81));
-            let t96 = t95 + t14;
-            let t97 = k(0.5) * t12;
-            let t98 = k(0.25) * T::fused(t74, t9, -T::fused(t68, t1, t57 * t4));
-            let t99 = k(0.1) * T::fused(t53, t40, -T::fused(t32, t79, t37 * t81));
-            let t100 = t99 + t98;
-            let t101 = k(0.5) * t73;
-            let t102 = k(0.1) * T::fused(t83, t40, -T::fused(-t62, t79, t66 * t81));
-            let t103 = T::fused(
+            let t87 = t86 + T::fused(t42, t78, T::fused(-t76, t72, (t73 + t46) * t75));
+            let t88 = T::fused(-t85, t67 * t69, t87 * (t68 * t69));
+            let t89 = k(0.1) * T::fused(t41, t45, T::fused(t74, t39, t76 * t35));
+            let t90 = t89 + t14;
+            let t91 = k(0.25) * t12;
+            let t92 = k(0.25) * T::fused(t13, t70, -T::fused(t5, t65, t9 * t56));
+            let t93 = k(0.1) * T::fused(t41, t52, -T::fused(t74, t34, t76 * t38));
+            let t94 = t93 + t92;
+            let t95 = k(0.25) * t70;
+            let t96 = k(0.1) * T::fused(t41, t77, -T::fused(-t74, t60, t76 * t63));
+            let t97 = T::fused(
                 k(0.25),
-                T::fused(t76, t9, -T::fused(-t69, t1, t61 * t4)),
-                t102,
+                T::fused(t13, t71, -T::fused(-t5, t66, t9 * t59)),
+                t96,
             );
-            let t104 = k(0.5) * t75;
-            let t105 = T::fused(-(t67 * t72), t91, t63 * t72 * t93);
-            let t106 = T::fused(
+            let t98 = k(0.25) * t71;
+            let t99 = T::fused(-(t64 * t69), t85, t61 * t69 * t87);
+            let t100 = T::fused(
                 k(0.0835),
-                t105,
-                -T::fused(t104, t103, T::fused(t97, t96, t101 * t100)),
+                t99,
+                -T::fused(t98, t97, T::fused(t91, t90, t95 * t94)),
             );
-            let t107 = T::fused(
-                t85,
-                k(5e-5) * t94,
-                t86 * (t106 - T::fused(k(4.905), t73, k(0.02095) * t9)),
+            let t101 = T::fused(
+                t79,
+                k(5e-5) * t88,
+                t80 * (t100 - T::fused(k(2.4525), t70, k(0.02095) * t13)),
             );
-            let t108 = T::fused(-k(4.905), t56, k(0.02095) * t4);
-            let t109 = k(11.976047904191617) * t108;
-            let t110 = k(0.5) * t56;
-            let t111 = k(5.9880239520958085) * t7;
-            let t112 = t110 * t111;
-            let t113 = k(5.9880239520958085) * t56;
-            let t114 = t110 * t113;
-            let t115 = k(0.5) * t60;
-            let t116 = t115 * t113;
-            let t117 = T::fused(
-                t101,
-                t105,
-                -(t100 - T::fused(t116, t103, T::fused(-t112, t96, t114 * t100))),
-            );
-            let t118 = t117 - T::fused(t110, t109, k(9.81));
-            let t119 = k(0.2) * t36;
-            let t120 = k(0.5) * t7;
-            let t121 = t120 * t111;
-            let t122 = t115 * t111;
-            let t123 = T::fused(
-                t97,
-                t105,
-                -(t96 + T::fused(t122, t103, T::fused(-t121, t96, t112 * t100))),
-            );
-            let t124 = k(0.2) * t33;
-            let t125 = t124 * T::fused(t120, t109, t123);
-            let t126 = t115 * (k(5.9880239520958085) * t60);
-            let t127 = T::fused(
-                t104,
-                t105,
-                -(t103 - T::fused(t126, t103, T::fused(-t122, t96, t116 * t100))),
-            );
-            let t128 = k(0.2) * t65;
-            let t129 = t128 * T::fused(-t115, t109, t127);
-            let t130 = T::fused(t119, k(3.924) - t118, t125) - t129
-                - T::fused(k(0.00133), t81, t129 - T::fused(-t119, t118, t125) - t107);
-            let t131 = T::fused(t128, t122, T::fused(t124, t121, t119 * t112));
-            let t132 = t97 * t86;
-            let t133 = t124 - t131 + t132;
-            let t134 = T::fused(t128, t116, T::fused(t124, t112, t119 * t114));
-            let t135 = t101 * t86;
-            let t136 = t119 - t134 - t135;
-            let t137 = T::fused(
-                -(t133 - T::fused(-k(0.28), t33, t131)),
+            let t102 = T::fused(-k(2.4525), t56, k(0.02095) * t9);
+            let t103 = k(11.976047904191617) * t102;
+            let t104 = k(0.25) * t56;
+            let t105 = k(2.9940119760479043) * t8;
+            let t106 = t104 * t105;
+            let t107 = k(2.9940119760479043) * t56;
+            let t108 = t104 * t107;
+            let t109 = k(0.25) * t59;
+            let t110 = t109 * t107;
+            let t111 = T::fused(
                 t95,
-                (t136 - T::fused(-k(0.28), t36, t134)) * t99,
+                t99,
+                -(t94 - T::fused(t110, t97, T::fused(-t106, t90, t108 * t94))),
             );
-            let t138 = T::fused(t128, t126, T::fused(t124, t122, t119 * t116));
-            let t139 = t104 * t86;
-            let t140 = t128 - t138 - t139;
-            let t141 = T::fused(
-                t128,
-                t104 * t63,
-                T::fused(-t124, t97 * t63, t119 * (t101 * t63)),
+            let t112 = t111 - T::fused(t104, t103, k(9.81));
+            let t113 = k(0.1) * t38;
+            let t114 = k(0.25) * t8;
+            let t115 = t114 * t105;
+            let t116 = t109 * t105;
+            let t117 = T::fused(
+                t91,
+                t99,
+                -(t90 + T::fused(t116, t97, T::fused(-t115, t90, t106 * t94))),
             );
-            let t142 = t141
-                + (t141 - T::fused(t85, k(5e-5) * t71, t86 * (k(0.0835) * t63)));
-            let t143 = k(0.2) * t47;
-            let t144 = k(0.2) * t52;
-            let t145 = k(0.2) * t82;
-            let t146 = t97 * t67;
-            let t147 = t101 * t67;
-            let t148 = t104 * t67;
-            let t149 = T::fused(t128, t148, T::fused(-t124, t146, t119 * t147))
-                - T::fused(t145, t139, T::fused(t143, t132, t144 * t135));
-            let t150 = T::fused(t145, t138, T::fused(-t143, t131, t144 * t134));
-            let t151 = t150 - t149
-                + T::fused(t85, k(5e-5) * t70, t86 * (k(0.0835) * t67));
-            let t152 = t143 + T::fused(t145, t122, T::fused(-t143, t121, t144 * t112))
-                + t146;
-            let t153 = t144 - T::fused(t145, t116, T::fused(-t143, t112, t144 * t114))
-                + t147;
-            let t154 = t145 - T::fused(t145, t126, T::fused(-t143, t122, t144 * t116))
-                + t148;
-            let t155 = T::fused(t128, t154, T::fused(-t124, t152, t119 * t153))
-                + T::fused(t145, t140, T::fused(-t143, t133, t144 * t136));
-            let t156 = T::fused(-t142, t55, (t155 - t150 - t151) * t64)
-                + T::fused(t140 - T::fused(-k(0.28), t65, t138), t102, t137);
-            let t157 = T::fused(t128, t138, T::fused(t124, t131, t119 * t134));
-            let t158 = T::fused(
-                k(2.0),
-                T::fused(t128, t139, T::fused(-t124, t132, t119 * t135)),
-                t157,
-            );
-            let t159 = t158
-                - (k(0.01) + T::fused(t85, k(5e-5) * t85, t86 * (k(0.0835) * t86)));
-            let t160 = T::fused(
-                k(2.0),
-                T::fused(t128, t140, T::fused(t124, t133, t119 * t136)),
-                -t157,
-            );
-            let t161 = k(1.0) / (t160 + (k(0.014) + (k(0.00135) - t159)));
-            let t162 = t161 * (t156 + t130);
-            let t163 = t105 - T::fused(t86, t162, T::fused(-t63, t55, t67 * t64));
-            let t164 = T::fused(t143, t64, t124 * t162);
-            let t165 = t95 + t164;
-            let t166 = t96 + (t164 + t165);
-            let t167 = T::fused(-t144, t64, t119 * t162);
-            let t168 = t99 - t167;
-            let t169 = t100 - (t167 - t168);
-            let t170 = T::fused(-t145, t64, t128 * t162);
-            let t171 = t102 - t170;
-            let t172 = t103 - (t170 - t171);
-            let t173 = k(11.976047904191617)
-                * (t108 - T::fused(t115, t172, T::fused(-t120, t166, t110 * t169)));
-            let t174 = T::fused(t97, t163, t120 * t173);
-            let t175 = t166 - t174;
-            let t176 = rocker_wy * rocker_wz;
-            let t177 = T::fused(rocker_wx, rocker_wx, t15);
-            let t178 = T::fused(t28, t177, -T::fused(-t18, t24, t23 * t176));
-            let t179 = k(2.0) * (t21 + t20);
-            let t180 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
-            let t181 = k(2.0) * t180;
-            let t182 = k(1.0) / T::fused(-t23, t179, t18 * t181);
-            let t183 = rocker_e0 * rocker_e1;
-            let t184 = rocker_e2 * rocker_e3;
-            let t185 = t184 - t183;
-            let t186 = k(2.0) * t185;
-            let t187 = T::fused(t186, t177, T::fused(-t179, t24, t181 * t176));
-            let t188 = T::fused(t181 * t182, t178, t23 * t182 * t187);
-            let t189 = k(0.2) * T::fused(t186, t24, -T::fused(t179, t16, t181 * t19));
-            let t190 = t184 + t183;
-            let t191 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
-            let t192 = T::fused(
-                k(2.0) * t191,
-                t24,
-                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t190 * t19),
-            );
-            let t193 = k(0.2) * t192;
-            let t194 = T::fused(
-                k(0.32) * t190,
-                t193,
-                T::fused(-(k(0.32) * t22), t29, k(0.32) * t180 * t189),
-            );
-            let t195 = k(23.364485981308412)
-                * (t194 - T::fused(-k(3.1392), t180, k(0.01076) * t19));
-            let t196 = k(0.4) * t22;
-            let t197 = T::fused(k(0.4) * t27, t188, t196 * t195);
-            let t198 = t29 + t197;
-            let t199 = t197 + t198 + (t174 - t175) + (t29 - t14);
-            (
-                t7,
-                t12,
-                t18,
-                t22,
-                t55,
-                t56,
-                t64,
-                t70,
-                t71,
-                t73,
-                t85,
-                t86,
-                t94,
-                t97,
+            let t118 = k(0.1) * t35;
+            let t119 = t118 * T::fused(t114, t103, t117);
+            let t120 = t109 * (k(2.9940119760479043) * t59);
+            let t121 = T::fused(
                 t98,
-                t101,
+                t99,
+                -(t97 - T::fused(t120, t97, T::fused(-t116, t90, t110 * t94))),
+            );
+            let t122 = k(0.1) * t63;
+            let t123 = t122 * T::fused(-t109, t103, t121);
+            let t124 = T::fused(t113, k(3.924) - t112, t119) - t123
+                - T::fused(k(0.00133), t76, t123 - T::fused(-t113, t112, t119) - t101);
+            let t125 = T::fused(t122, t116, T::fused(t118, t115, t113 * t106));
+            let t126 = t80 * t91;
+            let t127 = t118 - t125 + t126;
+            let t128 = T::fused(t122, t110, T::fused(t118, t106, t113 * t108));
+            let t129 = t80 * t95;
+            let t130 = t113 - t128 - t129;
+            let t131 = T::fused(
+                -(t127 - T::fused(-k(0.14), t35, t125)),
+                t89,
+                (t130 - T::fused(-k(0.14), t38, t128)) * t93,
+            );
+            let t132 = T::fused(t122, t120, T::fused(t118, t116, t113 * t110));
+            let t133 = t80 * t98;
+            let t134 = t122 - t132 - t133;
+            let t135 = T::fused(
+                t122,
+                t98 * t61,
+                T::fused(-t118, t91 * t61, t113 * (t95 * t61)),
+            );
+            let t136 = t135
+                + (t135 - T::fused(t79, k(5e-5) * t68, t80 * (k(0.0835) * t61)));
+            let t137 = k(0.1) * t45;
+            let t138 = k(0.1) * t52;
+            let t139 = k(0.1) * t77;
+            let t140 = t91 * t64;
+            let t141 = t95 * t64;
+            let t142 = t98 * t64;
+            let t143 = T::fused(t122, t142, T::fused(-t118, t140, t113 * t141))
+                - T::fused(t133, t139, T::fused(t126, t137, t129 * t138));
+            let t144 = T::fused(t132, t139, T::fused(-t125, t137, t128 * t138));
+            let t145 = t144 - t143
+                + T::fused(t79, k(5e-5) * t67, t80 * (k(0.0835) * t64));
+            let t146 = t137 + T::fused(t116, t139, T::fused(-t115, t137, t106 * t138))
+                + t140;
+            let t147 = t138 - T::fused(t110, t139, T::fused(-t106, t137, t108 * t138))
+                + t141;
+            let t148 = t139 - T::fused(t120, t139, T::fused(-t116, t137, t110 * t138))
+                + t142;
+            let t149 = T::fused(t122, t148, T::fused(-t118, t146, t113 * t147))
+                + T::fused(t134, t139, T::fused(-t127, t137, t130 * t138));
+            let t150 = T::fused(-t136, t54, (t149 - t144 - t145) * t62)
+                + T::fused(t134 - T::fused(-k(0.14), t63, t132), t96, t131);
+            let t151 = T::fused(t122, t132, T::fused(t118, t125, t113 * t128));
+            let t152 = T::fused(
+                k(2.0),
+                T::fused(t122, t133, T::fused(-t118, t126, t113 * t129)),
+                t151,
+            );
+            let t153 = t152
+                - (k(0.01) + T::fused(t79, k(5e-5) * t79, t80 * (k(0.0835) * t80)));
+            let t154 = T::fused(
+                k(2.0),
+                T::fused(t122, t134, T::fused(t118, t127, t113 * t130)),
+                -t151,
+            );
+            let t155 = k(1.0) / (t154 + (k(0.014) + (k(0.00135) - t153)));
+            let t156 = t155 * (t150 + t124);
+            let t157 = t99 - T::fused(t80, t156, T::fused(-t61, t54, t64 * t62));
+            let t158 = T::fused(t137, t62, t118 * t156);
+            let t159 = t89 + t158;
+            let t160 = t90 + (t158 + t159);
+            let t161 = T::fused(-t138, t62, t113 * t156);
+            let t162 = t93 - t161;
+            let t163 = t94 - (t161 - t162);
+            let t164 = T::fused(-t139, t62, t122 * t156);
+            let t165 = t96 - t164;
+            let t166 = t97 - (t164 - t165);
+            let t167 = k(11.976047904191617)
+                * (t102 - T::fused(t109, t166, T::fused(-t114, t160, t104 * t163)));
+            let t168 = T::fused(t91, t157, t114 * t167);
+            let t169 = t160 - t168;
+            let t170 = rocker_wy * rocker_wz;
+            let t171 = T::fused(rocker_wx, rocker_wx, t19);
+            let t172 = T::fused(t171, t27, -T::fused(-t28, t18, t170 * t23));
+            let t173 = t22 + t21;
+            let t174 = k(2.0) * rocker_e2;
+            let t175 = T::fused(-rocker_e2, t174, t17);
+            let t176 = k(1.0) / T::fused(-t23, t173, t18 * t175);
+            let t177 = rocker_e1 * t16;
+            let t178 = rocker_e3 * t174;
+            let t179 = t178 - t177;
+            let t180 = T::fused(t171, t179, T::fused(-t28, t173, t170 * t175));
+            let t181 = T::fused(t175 * t176, t172, t23 * t176 * t180);
+            let t182 = k(0.2) * T::fused(t28, t179, -T::fused(t20, t173, t24 * t175));
+            let t183 = t178 + t177;
+            let t184 = T::fused(-rocker_e3, k(2.0) * rocker_e3, t17);
+            let t185 = k(0.2)
+                * T::fused(t28, t184, -T::fused(-t20, t26 - t25, t24 * t183));
+            let t186 = T::fused(
+                k(0.16) * t183,
+                t185,
+                T::fused(-(k(0.16) * t23), t29, k(0.16) * t175 * t182),
+            );
+            let t187 = k(23.364485981308412)
+                * (t186 - T::fused(-k(1.5696), t175, k(0.01076) * t24));
+            let t188 = k(0.2) * t23;
+            let t189 = T::fused(t181, k(0.2) * t27, t188 * t187);
+            let t190 = t29 + t189;
+            let t191 = t189 + t190 + (t168 - t169) + (t29 - t14);
+            let t192 = k(5.9880239520958085) * t8;
+            let t193 = T::fused(
+                t192 * t109,
+                t122,
+                T::fused(-T::fused(-t192, t114, k(1.0)), t118, t192 * t104 * t113),
+            );
+            let t194 = (t193 + T::fused(-(k(0.5) * t12), t80, t193)) * t155;
+            let t195 = t80 * t194;
+            let t196 = t118 * t194;
+            let t197 = k(2.0) * t196;
+            let t198 = t113 * t194;
+            let t199 = k(2.0) * t198;
+            (
+                t8,
+                t18,
+                t23,
+                t54,
+                t56,
+                t62,
+                t67,
+                t68,
+                t70,
+                t79,
+                t80,
+                t88,
+                t91,
+                t92,
+                t95,
+                t98,
                 t104,
-                t110,
-                t115,
-                t119,
-                t120,
-                t124,
-                t128,
-                t161,
+                t109,
+                t113,
+                t114,
+                t118,
+                t122,
+                t155,
+                t156,
+                t157,
+                t159,
                 t162,
                 t163,
                 t165,
-                t168,
+                t166,
+                t167,
                 t169,
-                t171,
                 t172,
                 t173,
                 t175,
-                t178,
+                t176,
                 t179,
                 t180,
+                t181,
                 t182,
+                t183,
+                t184,
                 t185,
                 t187,
                 t188,
-                t189,
                 t190,
                 t191,
-                t193,
+                t194,
                 t195,
                 t196,
+                t197,
                 t198,
                 t199,
             )
         };
         let (
-            t202,
+            t200,
             t203,
-            t204,
             t206,
-            t208,
+            t207,
             t210,
             t213,
-            t214,
-            t217,
-            t220,
+            t215,
+            t216,
             t222,
             t223,
+            t224,
+            t226,
+            t228,
             t229,
-            t230,
             t231,
             t233,
+            t234,
             t235,
             t236,
             t237,
+            t238,
             t239,
             t240,
             t241,
             t242,
-            t243,
-            t244,
-            t245,
-            t246,
-            t247,
-            t248,
         ) = {
-            let t200 = k(11.976047904191617) * t7;
-            let t201 = T::fused(
-                t128,
-                t115 * t200,
-                T::fused(-t124, T::fused(-t120, t200, k(1.0)), t119 * (t110 * t200)),
+            let t200 = t122 * t194;
+            let t201 = k(2.0) * t200;
+            let t202 = T::fused(
+                k(0.5),
+                t8,
+                T::fused(t109, t201, T::fused(t114, t197, t104 * t199)),
             );
-            let t202 = (t201 + T::fused(-t12, t86, t201)) * t161;
-            let t203 = t86 * t202;
-            let t204 = t124 * t202;
-            let t205 = k(2.0) * t204;
-            let t206 = t119 * t202;
-            let t207 = k(2.0) * t206;
-            let t208 = t128 * t202;
-            let t209 = k(2.0) * t208;
-            let t210 = k(11.976047904191617)
-                * (t7 + T::fused(t115, t209, T::fused(t120, t205, t110 * t207)));
-            let t211 = T::fused(-t97, t203, t120 * t210);
-            let t212 = t205 - t211;
-            let t213 = k(18.69158878504673) * t22;
-            let t214 = t196 * t213;
-            let t215 = k(1.0) / T::fused(k(2.0), t214, t211 - t212);
-            let t216 = T::fused(-t101, t163, t110 * t173);
-            let t217 = t169 + t216;
-            let t218 = k(0.4) * t180;
-            let t219 = T::fused(-(k(0.4) * t185), t188, t218 * t195);
-            let t220 = t189 - t219;
-            let t221 = T::fused(t101, t203, t110 * t210);
-            let t222 = t207 - t221;
-            let t223 = t218 * t213;
-            let t224 = T::fused(k(2.0), t223, t221 - t222);
-            let t225 = t215 * t224;
-            let t226 = T::fused(
-                t225,
-                t199,
-                -(t219 - t220 + (t216 + t217) - (t189 - t98)),
+            let t203 = k(11.976047904191617) * t202;
+            let t204 = T::fused(-t91, t195, t114 * t203);
+            let t205 = t197 - t204;
+            let t206 = k(9.345794392523365) * t23;
+            let t207 = t206 * t188;
+            let t208 = k(1.0) / T::fused(k(2.0), t207, t204 - t205);
+            let t209 = T::fused(-t95, t157, t104 * t167);
+            let t210 = t163 + t209;
+            let t211 = k(0.2) * t175;
+            let t212 = T::fused(-t181, k(0.2) * t179, t211 * t187);
+            let t213 = t182 - t212;
+            let t214 = T::fused(t95, t195, t104 * t203);
+            let t215 = t199 - t214;
+            let t216 = t206 * t211;
+            let t217 = T::fused(k(2.0), t216, t214 - t215);
+            let t218 = t208 * t217;
+            let t219 = T::fused(
+                t218,
+                t191,
+                -(t212 - t213 + (t209 + t210) - (t182 - t92)),
             );
-            let t227 = k(11.976047904191617) * t56;
-            let t228 = T::fused(
-                t128,
-                t115 * t227,
-                -T::fused(-t124, t120 * t227, t119 * T::fused(-t110, t227, k(1.0))),
+            let t220 = k(5.9880239520958085) * t56;
+            let t221 = T::fused(
+                t122,
+                t109 * t220,
+                -T::fused(-t118, t114 * t220, t113 * T::fused(-t104, t220, k(1.0))),
             );
-            let t229 = t161 * (t228 + T::fused(t73, t86, t228));
-            let t230 = t86 * t229;
-            let t231 = t124 * t229;
-            let t232 = k(2.0) * t231;
-            let t233 = t119 * t229;
-            let t234 = k(2.0) * t233;
-            let t235 = t128 * t229;
-            let t236 = k(2.0) * t235;
-            let t237 = k(11.976047904191617)
-                * (t56 + T::fused(t115, t236, T::fused(t120, t232, t110 * t234)));
-            let t238 = T::fused(t101, t230, t110 * t237);
-            let t239 = t234 - t238;
-            let t240 = k(18.69158878504673) * t180;
-            let t241 = t218 * t240;
-            let t242 = t226 / T::fused(t224, t225, -T::fused(k(2.0), t241, t238 - t239));
-            let t243 = T::fused(-t215, t199, t225 * t242);
-            let t244 = T::fused(
-                t242,
-                t232 - T::fused(-t97, t230, t120 * t237),
-                -T::fused(t212, t243, t175),
+            let t222 = t155 * (t221 + T::fused(t80, k(0.5) * t70, t221));
+            let t223 = t80 * t222;
+            let t224 = t118 * t222;
+            let t225 = k(2.0) * t224;
+            let t226 = t113 * t222;
+            let t227 = k(2.0) * t226;
+            let t228 = t122 * t222;
+            let t229 = k(2.0) * t228;
+            let t230 = T::fused(
+                k(0.5),
+                t56,
+                T::fused(t109, t229, T::fused(t114, t225, t104 * t227)),
             );
-            let t245 = T::fused(
-                t243,
-                t209 - T::fused(t104, t203, t115 * t210),
-                -(t172 + T::fused(-t104, t163, t115 * t173)),
+            let t231 = k(11.976047904191617) * t230;
+            let t232 = T::fused(t95, t223, t104 * t231);
+            let t233 = t227 - t232;
+            let t234 = k(9.345794392523365) * t175;
+            let t235 = t211 * t234;
+            let t236 = t219 / T::fused(t217, t218, -T::fused(k(2.0), t235, t232 - t233));
+            let t237 = T::fused(-t208, t191, t218 * t236);
+            let t238 = T::fused(
+                t236,
+                t225 - T::fused(-t91, t223, t114 * t231),
+                -T::fused(t205, t237, t169),
             );
-            let t246 = T::fused(
-                t243,
-                t85 * t202,
-                -(t94 - T::fused(t85, t162, T::fused(-t71, t55, t70 * t64))),
+            let t239 = T::fused(
+                t237,
+                t201 - T::fused(t98, t195, t109 * t203),
+                -(t166 + T::fused(-t98, t157, t109 * t167)),
             );
-            let t247 = k(0.4) * t190;
-            let t248 = T::fused(
-                t243,
-                t247 * t213,
-                -(t193 - T::fused(-(k(0.4) * t191), t188, t247 * t195)),
+            let t240 = T::fused(
+                t237,
+                t79 * t194,
+                -(t88 - T::fused(t79, t156, T::fused(-t68, t54, t67 * t62))),
+            );
+            let t241 = k(0.2) * t183;
+            let t242 = T::fused(
+                t237,
+                t206 * t241,
+                -(t185 - T::fused(-t181, k(0.2) * t184, t187 * t241)),
             );
             (
-                t202,
+                t200,
                 t203,
-                t204,
                 t206,
-                t208,
+                t207,
                 t210,
                 t213,
-                t214,
-                t217,
-                t220,
+                t215,
+                t216,
                 t222,
                 t223,
+                t224,
+                t226,
+                t228,
                 t229,
-                t230,
                 t231,
                 t233,
+                t234,
                 t235,
                 t236,
                 t237,
+                t238,
                 t239,
                 t240,
                 t241,
                 t242,
-                t243,
-                t244,
-                t245,
-                t246,
-                t247,
-                t248,
             )
         };
         *out = [
-            T::fused(-t231, t242, T::fused(t204, t243, t165)),
-            T::fused(t233, t242, T::fused(-t206, t243, t168)),
-            -T::fused(t235, t242, T::fused(-t208, t243, t171)),
-            t55,
-            -t64,
-            T::fused(-t229, t242, T::fused(t202, t243, t162)),
-            -t244,
-            T::fused(t239, t242, T::fused(-t222, t243, t217)),
-            T::fused(-t242, t236 - T::fused(t104, t230, t115 * t237), t245),
-            T::fused(t242, t85 * t229, -t246),
-            T::fused(t230, t242, T::fused(-t203, t243, t163)),
-            T::fused(t237, t242, -T::fused(t210, t243, t173)),
-            T::fused(-t242, t196 * t240, T::fused(t214, t243, t198)),
-            T::fused(t241, t242, T::fused(-t223, t243, t220)),
-            T::fused(-t242, t247 * t240, t248),
-            T::fused(t178, t179 * t182, t187 * (t18 * t182)),
-            -t188,
-            T::fused(-t240, t242, T::fused(t213, t243, t195)),
-            -t243,
-            -t242,
+            T::fused(-t224, t236, T::fused(t196, t237, t159)),
+            T::fused(t226, t236, T::fused(-t198, t237, t162)),
+            -T::fused(t228, t236, T::fused(-t200, t237, t165)),
+            t54,
+            -t62,
+            T::fused(-t222, t236, T::fused(t194, t237, t156)),
+            -t238,
+            T::fused(t233, t236, T::fused(-t215, t237, t210)),
+            T::fused(-t236, t229 - T::fused(t98, t223, t109 * t231), t239),
+            T::fused(t236, t79 * t222, -t240),
+            T::fused(t223, t236, T::fused(-t195, t237, t157)),
+            T::fused(t231, t236, -T::fused(t203, t237, t167)),
+            T::fused(-t236, t188 * t234, T::fused(t207, t237, t190)),
+            T::fused(t235, t236, T::fused(-t216, t237, t213)),
+            T::fused(-t236, t234 * t241, t242),
+            T::fused(t172, t173 * t176, t180 * (t18 * t176)),
+            -t181,
+            T::fused(-t234, t236, T::fused(t206, t237, t187)),
+            -t237,
+            -t236,
         ];
     }
-    /// Writes λ: 256 operations (96 ±, 157 ×, 3 ÷).
+    /// Writes λ: 242 operations (90 ±, 149 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2171,143 +2179,139 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for FourBarRevolute<T> {
         let t2 = k(9.81) + coupler_dsy - closing1;
         let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = T::fused(k(0.4), crank_dsz, coupler_dsz);
-        let t5 = coupler_e0 * coupler_e0;
-        let t6 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t5));
-        let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
-        let t9 = coupler_e0 * coupler_e3;
-        let t10 = coupler_e1 * coupler_e2;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = crank_e0 * crank_e3;
-        let t13 = crank_e1 * crank_e2;
-        let t14 = k(2.0) * (t13 + t12);
-        let t15 = coupler_e0 * coupler_e2;
-        let t16 = coupler_e1 * coupler_e3;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = crank_e0 * crank_e2;
-        let t19 = crank_e1 * crank_e3;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = T::fused(t20, t17, T::fused(t8, t6, t14 * t11));
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t16 + t15;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = T::fused(
+        let t5 = k(0.02095) * coupler_wx;
+        let t6 = k(2.0) * coupler_e0;
+        let t7 = coupler_e3 * t6;
+        let t8 = k(2.0) * coupler_e1;
+        let t9 = coupler_e2 * t8;
+        let t10 = t9 - t7;
+        let t11 = k(0.25) * t10;
+        let t12 = k(2.0) * coupler_e2;
+        let t13 = T::fused(-coupler_e0, t6, k(1.0));
+        let t14 = T::fused(-coupler_e2, t12, t13);
+        let t15 = k(0.25) * t14;
+        let t16 = T::fused(
             closing1,
-            t28,
-            -T::fused(
-                -closing0,
-                t24,
-                T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
-            ),
+            t15,
+            -T::fused(closing0, t11, -T::fused(coupler_wy, t5, k(0.021) * coupler_dwz)),
         );
-        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t5);
-        let t31 = T::fused(coupler_dsz, k(0.5) * t30, -T::fused(t0, t24, t2 * t28))
-            + t29;
-        let t32 = t10 - t9;
-        let t33 = k(2.0) * t32;
-        let t34 = k(0.5) - T::fused(coupler_e2, coupler_e2, t5);
-        let t35 = k(2.0) * t34;
-        let t36 = t26 + t25;
-        let t37 = k(2.0) * t36;
-        let t38 = T::fused(t20, t37, -T::fused(t8, t33, t14 * t35));
-        let t39 = k(0.5) * t32;
-        let t40 = k(0.5) * t34;
-        let t41 = T::fused(
+        let t17 = coupler_e1 * t6;
+        let t18 = coupler_e3 * t12;
+        let t19 = t18 + t17;
+        let t20 = T::fused(coupler_dsz, k(0.25) * t19, -T::fused(-t0, t11, t2 * t15))
+            + t16;
+        let t21 = coupler_e2 * t6;
+        let t22 = coupler_e3 * t8;
+        let t23 = t22 + t21;
+        let t24 = k(2.0) * crank_e0;
+        let t25 = crank_e3 * t24;
+        let t26 = k(2.0) * crank_e1;
+        let t27 = crank_e2 * t26;
+        let t28 = t27 - t25;
+        let t29 = t18 - t17;
+        let t30 = k(2.0) * crank_e2;
+        let t31 = T::fused(-crank_e0, t24, k(1.0));
+        let t32 = T::fused(-crank_e2, t30, t31);
+        let t33 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t13);
+        let t34 = crank_e1 * t24;
+        let t35 = crank_e3 * t30;
+        let t36 = t35 + t34;
+        let t37 = k(0.25) * t23;
+        let t38 = k(0.25) * t29;
+        let t39 = T::fused(
             closing1,
-            t40,
-            T::fused(
-                -closing0,
-                t39,
-                T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
-            ),
+            t38,
+            T::fused(closing0, t37, T::fused(-coupler_wz, t5, k(0.021) * coupler_dwy)),
         );
-        let t42 = T::fused(coupler_dsz, k(0.5) * t36, -T::fused(-t0, t39, t2 * t40))
-            + t41;
-        let t43 = k(2.0) * t23;
-        let t44 = k(2.0) * t27;
-        let t45 = k(2.0) * t30;
-        let t46 = T::fused(
-            T::fused(t20, t45, -T::fused(-t8, t43, t14 * t44)),
-            t42,
-            -T::fused(t22, t21, t38 * t31),
+        let t40 = T::fused(coupler_dsz, k(0.25) * t33, -T::fused(t0, t37, t2 * t38))
+            + t39;
+        let t41 = T::fused(t36, t19, T::fused(t28, t10, t32 * t14));
+        let t42 = T::fused(-coupler_e1, t8, t13);
+        let t43 = t9 + t7;
+        let t44 = t22 - t21;
+        let t45 = T::fused(t36, t44, -T::fused(t28, t42, t32 * t43));
+        let t46 = k(5e-5) * coupler_dwx;
+        let t47 = T::fused(
+            -T::fused(t36, t33, T::fused(-t28, t23, t32 * t29)),
+            t20,
+            T::fused(t41, t40, t46 * t45),
         );
-        let t47 = T::fused(k(2e-5), crank_dwx, -t46);
-        let t48 = k(2.0) * (t13 - t12);
-        let t49 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
-        let t50 = k(1.0) / T::fused(-t48, t14, t8 * t49);
-        let t51 = crank_e0 * crank_e1;
-        let t52 = crank_e2 * crank_e3;
-        let t53 = k(2.0) * (t52 + t51);
-        let t54 = T::fused(t53, t17, -T::fused(t48, t6, t49 * t11));
-        let t55 = T::fused(t53, t37, T::fused(t49, t35, t48 * t33));
-        let t56 = T::fused(
-            T::fused(t53, t45, -T::fused(-t49, t44, t48 * t43)),
-            t42,
-            -T::fused(t22, t54, t55 * t31),
+        let t48 = crank_e2 * t24;
+        let t49 = crank_e3 * t26;
+        let t50 = k(0.1) * (t49 + t48);
+        let t51 = k(0.1) * (t35 - t34);
+        let t52 = k(0.1) * T::fused(-crank_e3, k(2.0) * crank_e3, t31);
+        let t53 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
+            - (T::fused(coupler_dsz, t52, -T::fused(t0, t50, t2 * t51)) + t47);
+        let t54 = T::fused(t4, t52, -T::fused(t1, t50, t3 * t51)) - t53;
+        let t55 = t27 + t25;
+        let t56 = T::fused(-crank_e1, t26, t31);
+        let t57 = k(1.0) / T::fused(-t28, t55, t56 * t32);
+        let t58 = t49 - t48;
+        let t59 = T::fused(t58, t19, -T::fused(t56, t10, t55 * t14));
+        let t60 = T::fused(t58, t44, T::fused(t56, t42, t55 * t43));
+        let t61 = T::fused(
+            -T::fused(t58, t33, -T::fused(-t56, t23, t55 * t29)),
+            t20,
+            T::fused(t59, t40, t46 * t60),
         );
-        let t57 = k(0.2) * (t19 + t18);
-        let t58 = k(0.2) * (t52 - t51);
-        let t59 = k(0.2) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
-        let t60 = T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz))
-            - (T::fused(coupler_dsz, t59, -T::fused(t0, t57, t2 * t58)) - t56);
-        let t61 = T::fused(t4, t59, -T::fused(t1, t57, t3 * t58)) - t60;
-        let t62 = T::fused(k(0.8), rocker_dsx, closing0);
-        let t63 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
-        let t64 = k(0.8) * rocker_dsz;
-        let t65 = rocker_e0 * rocker_e3;
-        let t66 = rocker_e1 * rocker_e2;
-        let t67 = k(2.0) * (t66 + t65);
-        let t68 = k(2.0) * (t66 - t65);
-        let t69 = rocker_e0 * rocker_e0;
-        let t70 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t69));
-        let t71 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t69));
-        let t72 = k(1.0) / T::fused(-t68, t67, t71 * t70);
-        let t73 = k(4e-5) * rocker_dwx;
-        let t74 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t75 = k(0.4) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
-        let t76 = T::fused(
+        let t62 = T::fused(k(2e-5), crank_dwx, t61);
+        let t63 = T::fused(k(0.8), rocker_dsx, closing0);
+        let t64 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
+        let t65 = k(0.8) * rocker_dsz;
+        let t66 = k(2.0) * rocker_e0;
+        let t67 = rocker_e3 * t66;
+        let t68 = k(2.0) * rocker_e1;
+        let t69 = rocker_e2 * t68;
+        let t70 = t69 + t67;
+        let t71 = t69 - t67;
+        let t72 = k(2.0) * rocker_e2;
+        let t73 = T::fused(-rocker_e0, t66, k(1.0));
+        let t74 = T::fused(-rocker_e2, t72, t73);
+        let t75 = T::fused(-rocker_e1, t68, t73);
+        let t76 = k(1.0) / T::fused(-t71, t70, t75 * t74);
+        let t77 = k(4e-5) * rocker_dwx;
+        let t78 = k(0.2) * T::fused(rocker_e2, t66, rocker_e3 * t68);
+        let t79 = k(0.2) * T::fused(-rocker_e1, t66, rocker_e3 * t72);
+        let t80 = T::fused(
             closing1,
-            t75,
+            t79,
             T::fused(
                 closing0,
-                t74,
+                t78,
                 T::fused(-k(0.0108), rocker_dwy, k(0.01076) * (rocker_wx * rocker_wz)),
             ),
         );
-        let t77 = T::fused(
-            t64,
-            k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t69)),
-            -T::fused(t62, t74, t63 * t75),
+        let t81 = T::fused(
+            t65,
+            k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t73),
+            -T::fused(t63, t78, t64 * t79),
         );
-        let t78 = t77 - t76;
-        let t79 = k(1.0) / T::fused(-t38, t54, t21 * t55);
+        let t82 = t81 - t80;
+        let t83 = k(1.0) / T::fused(-t45, t59, t41 * t60);
         *lambda = [
             -t1,
             -t3,
             -t4,
-            T::fused(-(t14 * t50), t47, t49 * t50 * t61),
-            T::fused(-(t8 * t50), t47, t48 * t50 * t61),
-            -t62,
+            T::fused(-(t55 * t57), t62, t32 * t57 * t54),
+            T::fused(-(t56 * t57), t62, t28 * t57 * t54),
             -t63,
             -t64,
-            T::fused(-t73, t67 * t72, t70 * t72 * t78),
-            T::fused(-t73, t71 * t72, t68 * t72 * t78),
+            -t65,
+            T::fused(-t77, t70 * t76, t74 * t76 * t82),
+            T::fused(-t77, t75 * t76, t71 * t76 * t82),
             -t0,
             -t2,
             -coupler_dsz,
-            -T::fused(t22, t54 * t79, t55 * t79 * t31),
-            T::fused(t22, t21 * t79, t38 * t79 * t31),
+            -T::fused(t41 * t83, t40, t46 * (t45 * t83)),
+            T::fused(t59 * t83, t40, t46 * (t60 * t83)),
             closing0,
             closing1,
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBarRevolute<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 616 operations (254 ±, 356 ×, 6 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 607 operations (248 ±, 353 ×, 6 ÷).
     fn project(
         &self,
         _t: T,
@@ -2345,286 +2349,292 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for FourBarRevolute<T> {
         let row14 = rows[14];
         let row15 = rows[15];
         let row16 = rows[16];
-        let t0 = crank_e0 * crank_e3;
-        let t1 = crank_e1 * crank_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = t1 - t0;
-        let t4 = k(2.0) * t3;
-        let t5 = crank_e0 * crank_e0;
-        let t6 = k(0.5) - T::fused(crank_e2, crank_e2, t5);
-        let t7 = k(2.0) * t6;
-        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t5));
-        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
-        let t10 = T::fused(t2 * t9, row3, t8 * t9 * row4);
-        let t11 = coupler_e0 * coupler_e3;
-        let t12 = coupler_e1 * coupler_e2;
-        let t13 = t12 - t11;
-        let t14 = k(2.0) * t13;
-        let t15 = coupler_e0 * coupler_e0;
-        let t16 = k(0.5) - T::fused(coupler_e2, coupler_e2, t15);
-        let t17 = k(2.0) * t16;
-        let t18 = coupler_e0 * coupler_e1;
-        let t19 = coupler_e2 * coupler_e3;
-        let t20 = t19 + t18;
-        let t21 = k(2.0) * t20;
-        let t22 = crank_e0 * crank_e2;
-        let t23 = crank_e1 * crank_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = T::fused(t24, t21, -T::fused(t8, t14, t2 * t17));
-        let t26 = T::fused(t7 * t9, row3, t4 * t9 * row4);
-        let t27 = crank_e0 * crank_e1;
-        let t28 = crank_e2 * crank_e3;
-        let t29 = t28 + t27;
-        let t30 = k(2.0) * t29;
-        let t31 = T::fused(t30, t21, T::fused(t7, t17, t4 * t14));
-        let t32 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t15));
-        let t33 = k(2.0) * (t12 + t11);
-        let t34 = coupler_e0 * coupler_e2;
-        let t35 = coupler_e1 * coupler_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = T::fused(t30, t36, -T::fused(t4, t32, t7 * t33));
-        let t38 = T::fused(t24, t36, T::fused(t8, t32, t2 * t33));
-        let t39 = k(1.0) / T::fused(-t25, t37, t38 * t31);
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e3 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = t3 - t1;
+        let t6 = k(2.0) * crank_e2;
+        let t7 = T::fused(-crank_e0, t0, k(1.0));
+        let t8 = T::fused(-crank_e2, t6, t7);
+        let t9 = T::fused(-crank_e1, t2, t7);
+        let t10 = k(1.0) / T::fused(-t5, t4, t9 * t8);
+        let t11 = T::fused(t4 * t10, row3, t9 * t10 * row4);
+        let t12 = k(2.0) * coupler_e0;
+        let t13 = coupler_e3 * t12;
+        let t14 = k(2.0) * coupler_e1;
+        let t15 = coupler_e2 * t14;
+        let t16 = t15 - t13;
+        let t17 = k(2.0) * coupler_e2;
+        let t18 = T::fused(-coupler_e0, t12, k(1.0));
+        let t19 = T::fused(-coupler_e2, t17, t18);
+        let t20 = coupler_e1 * t12;
+        let t21 = coupler_e3 * t17;
+        let t22 = t21 + t20;
+        let t23 = crank_e2 * t0;
+        let t24 = crank_e3 * t2;
+        let t25 = t24 - t23;
+        let t26 = T::fused(t25, t22, -T::fused(t9, t16, t4 * t19));
+        let t27 = T::fused(t8 * t10, row3, t5 * t10 * row4);
+        let t28 = crank_e1 * t0;
+        let t29 = crank_e3 * t6;
+        let t30 = t29 + t28;
+        let t31 = T::fused(t30, t22, T::fused(t5, t16, t8 * t19));
+        let t32 = T::fused(-coupler_e1, t14, t18);
+        let t33 = t15 + t13;
+        let t34 = coupler_e2 * t12;
+        let t35 = coupler_e3 * t14;
+        let t36 = t35 - t34;
+        let t37 = T::fused(t30, t36, -T::fused(t5, t32, t8 * t33));
+        let t38 = T::fused(t25, t36, T::fused(t9, t32, t4 * t33));
+        let t39 = k(1.0) / T::fused(-t37, t26, t31 * t38);
         let t40 = T::fused(-(t37 * t39), row13, t38 * t39 * row14);
-        let t41 = t23 + t22;
-        let t42 = k(2.0) * t41;
-        let t43 = t28 - t27;
-        let t44 = k(2.0) * t43;
-        let t45 = k(0.5) - T::fused(crank_e3, crank_e3, t5);
-        let t46 = k(2.0) * t45;
-        let t47 = T::fused(t46, t36, -T::fused(-t42, t32, t44 * t33));
-        let t48 = t35 + t34;
-        let t49 = k(0.5) * t48;
-        let t50 = t19 - t18;
-        let t51 = k(0.5) * t50;
-        let t52 = k(0.5) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t15));
-        let t53 = T::fused(-(t31 * t39), row13, t25 * t39 * row14);
-        let t54 = T::fused(
+        let t41 = t24 + t23;
+        let t42 = t29 - t28;
+        let t43 = T::fused(-crank_e3, k(2.0) * crank_e3, t7);
+        let t44 = T::fused(t43, t36, -T::fused(-t41, t32, t42 * t33));
+        let t45 = t35 + t34;
+        let t46 = k(0.25) * t45;
+        let t47 = t21 - t20;
+        let t48 = k(0.25) * t47;
+        let t49 = k(0.25) * T::fused(-coupler_e3, k(2.0) * coupler_e3, t18);
+        let t50 = T::fused(-(t31 * t39), row13, t26 * t39 * row14);
+        let t51 = T::fused(
             k(0.0835),
-            t53,
-            -T::fused(t52, row12, -T::fused(t49, row10, t51 * row11)),
+            t50,
+            -T::fused(t49, row12, -T::fused(t46, row10, t48 * row11)),
         );
-        let t55 = T::fused(t46, t21, -T::fused(-t44, t17, t42 * t14));
-        let t56 = k(5.9880239520958085) * t13;
-        let t57 = k(0.5) * t13;
-        let t58 = t57 * t56;
-        let t59 = k(0.5) * t16;
-        let t60 = t59 * t56;
-        let t61 = k(0.5) * t20;
-        let t62 = t61 * t56;
-        let t63 = T::fused(
-            t49,
-            t53,
-            row10 - T::fused(t62, row12, -T::fused(-t58, row10, t60 * row11)),
+        let t52 = T::fused(t43, t22, T::fused(-t41, t16, t42 * t19));
+        let t53 = k(2.9940119760479043) * t16;
+        let t54 = k(0.25) * t16;
+        let t55 = t54 * t53;
+        let t56 = k(0.25) * t19;
+        let t57 = t56 * t53;
+        let t58 = k(0.25) * t22;
+        let t59 = t58 * t53;
+        let t60 = T::fused(
+            t46,
+            t50,
+            row10 - T::fused(t59, row12, -T::fused(-t55, row10, t57 * row11)),
         );
-        let t64 = k(0.2) * t3;
-        let t65 = k(5.9880239520958085) * t16;
-        let t66 = t59 * t65;
-        let t67 = t61 * t65;
+        let t61 = k(0.1) * t5;
+        let t62 = k(2.9940119760479043) * t19;
+        let t63 = t56 * t62;
+        let t64 = t58 * t62;
+        let t65 = T::fused(
+            t48,
+            t50,
+            row11 + T::fused(t64, row12, -T::fused(-t57, row10, t63 * row11)),
+        );
+        let t66 = k(0.1) * t8;
+        let t67 = t58 * (k(2.9940119760479043) * t22);
         let t68 = T::fused(
-            t51,
-            t53,
-            row11 + T::fused(t67, row12, -T::fused(-t60, row10, t66 * row11)),
+            t49,
+            t50,
+            -(row12 - T::fused(t67, row12, -T::fused(-t59, row10, t64 * row11))),
         );
-        let t69 = k(0.2) * t6;
-        let t70 = t61 * (k(5.9880239520958085) * t20);
-        let t71 = T::fused(
-            t52,
-            t53,
-            -(row12 - T::fused(t70, row12, -T::fused(-t62, row10, t67 * row11))),
-        );
-        let t72 = k(0.2) * t29;
-        let t73 = T::fused(t72, t71, T::fused(-t64, t63, t69 * t68));
-        let t74 = T::fused(t72, t62, T::fused(t64, t58, t69 * t60));
-        let t75 = t49 * t55;
-        let t76 = t64 - t74 + t75;
-        let t77 = T::fused(t72, t67, T::fused(t64, t60, t69 * t66));
-        let t78 = t51 * t55;
-        let t79 = t69 - t77 - t78;
-        let t80 = T::fused(
-            -(t76 - T::fused(-k(0.28), t3, t74)),
+        let t69 = k(0.1) * t30;
+        let t70 = T::fused(t69, t68, T::fused(-t61, t60, t66 * t65));
+        let t71 = T::fused(t69, t59, T::fused(t61, t55, t66 * t57));
+        let t72 = t52 * t46;
+        let t73 = t61 - t71 + t72;
+        let t74 = T::fused(t69, t64, T::fused(t61, t57, t66 * t63));
+        let t75 = t52 * t48;
+        let t76 = t66 - t74 - t75;
+        let t77 = T::fused(
+            -(t73 - T::fused(-k(0.14), t5, t71)),
             row0,
-            (t79 - T::fused(-k(0.28), t6, t77)) * row1,
+            (t76 - T::fused(-k(0.14), t8, t74)) * row1,
         );
-        let t81 = T::fused(t72, t70, T::fused(t64, t62, t69 * t67));
-        let t82 = t52 * t55;
-        let t83 = t72 - t81 - t82;
-        let t84 = T::fused(t72, t52 * t25, T::fused(-t64, t49 * t25, t69 * (t51 * t25)));
-        let t85 = t84 + (t84 - T::fused(t47, k(5e-5) * t38, t55 * (k(0.0835) * t25)));
-        let t86 = k(0.2) * t41;
-        let t87 = k(0.2) * t43;
-        let t88 = k(0.2) * t45;
-        let t89 = t49 * t31;
-        let t90 = t51 * t31;
-        let t91 = t52 * t31;
-        let t92 = T::fused(t72, t91, T::fused(-t64, t89, t69 * t90))
-            - T::fused(t88, t82, T::fused(t86, t75, t87 * t78));
-        let t93 = T::fused(t88, t81, T::fused(-t86, t74, t87 * t77));
-        let t94 = t93 - t92 + T::fused(t47, k(5e-5) * t37, t55 * (k(0.0835) * t31));
-        let t95 = t86 + T::fused(t88, t62, T::fused(-t86, t58, t87 * t60)) + t89;
-        let t96 = t87 - T::fused(t88, t67, T::fused(-t86, t60, t87 * t66)) + t90;
-        let t97 = t88 - T::fused(t88, t70, T::fused(-t86, t62, t87 * t67)) + t91;
-        let t98 = T::fused(t72, t97, T::fused(-t64, t95, t69 * t96))
-            + T::fused(t88, t83, T::fused(-t86, t76, t87 * t79));
-        let t99 = T::fused(-t85, t10, (t98 - t93 - t94) * t26)
-            - T::fused(t83 - T::fused(-k(0.28), t29, t81), row2, -t80);
-        let t100 = t99 + (t73 + (t73 - T::fused(t47, k(5e-5) * t40, t55 * t54)));
-        let t101 = T::fused(t72, t81, T::fused(t64, t74, t69 * t77));
-        let t102 = T::fused(
+        let t78 = T::fused(t69, t67, T::fused(t61, t59, t66 * t64));
+        let t79 = t52 * t49;
+        let t80 = t69 - t78 - t79;
+        let t81 = T::fused(t69, t49 * t26, T::fused(-t61, t46 * t26, t66 * (t48 * t26)));
+        let t82 = t81 + (t81 - T::fused(t44, k(5e-5) * t38, t52 * (k(0.0835) * t26)));
+        let t83 = k(0.1) * t41;
+        let t84 = k(0.1) * t42;
+        let t85 = k(0.1) * t43;
+        let t86 = t46 * t31;
+        let t87 = t48 * t31;
+        let t88 = t49 * t31;
+        let t89 = T::fused(t69, t88, T::fused(-t61, t86, t66 * t87))
+            - T::fused(t79, t85, T::fused(t72, t83, t75 * t84));
+        let t90 = T::fused(t78, t85, T::fused(-t71, t83, t74 * t84));
+        let t91 = t90 - t89 + T::fused(t44, k(5e-5) * t37, t52 * (k(0.0835) * t31));
+        let t92 = t83 + T::fused(t59, t85, T::fused(-t55, t83, t57 * t84)) + t86;
+        let t93 = t84 - T::fused(t64, t85, T::fused(-t57, t83, t63 * t84)) + t87;
+        let t94 = t85 - T::fused(t67, t85, T::fused(-t59, t83, t64 * t84)) + t88;
+        let t95 = T::fused(t69, t94, T::fused(-t61, t92, t66 * t93))
+            + T::fused(t80, t85, T::fused(-t73, t83, t76 * t84));
+        let t96 = T::fused(-t82, t11, (t95 - t90 - t91) * t27)
+            - T::fused(t80 - T::fused(-k(0.14), t30, t78), row2, -t77);
+        let t97 = t96 + (t70 + (t70 - T::fused(t44, k(5e-5) * t40, t52 * t51)));
+        let t98 = T::fused(t69, t78, T::fused(t61, t71, t66 * t74));
+        let t99 = T::fused(
             k(2.0),
-            T::fused(t72, t82, T::fused(-t64, t75, t69 * t78)),
-            t101,
+            T::fused(t69, t79, T::fused(-t61, t72, t66 * t75)),
+            t98,
         );
-        let t103 = t102
-            - (k(0.01) + T::fused(t47, k(5e-5) * t47, t55 * (k(0.0835) * t55)));
-        let t104 = T::fused(
+        let t100 = t99
+            - (k(0.01) + T::fused(t44, k(5e-5) * t44, t52 * (k(0.0835) * t52)));
+        let t101 = T::fused(
             k(2.0),
-            T::fused(t72, t83, T::fused(t64, t76, t69 * t79)),
-            -t101,
+            T::fused(t69, t80, T::fused(t61, t73, t66 * t76)),
+            -t98,
         );
-        let t105 = k(1.0) / (t104 + (k(0.014) + (k(0.00135) - t103)));
-        let t106 = t105 * t100;
-        let t107 = t53 + T::fused(t55, t106, T::fused(-t25, t10, t31 * t26));
-        let t108 = T::fused(t86, t26, t64 * t106);
-        let t109 = row0 + t108;
-        let t110 = row10 + (t108 + t109);
-        let t111 = T::fused(-t87, t26, t69 * t106);
-        let t112 = row1 - t111;
-        let t113 = row11 - (t111 - t112);
-        let t114 = T::fused(-t88, t26, t72 * t106);
-        let t115 = row2 + t114;
-        let t116 = row12 + (t114 + t115);
-        let t117 = k(11.976047904191617)
-            * T::fused(t61, t116, -T::fused(-t57, t110, t59 * t113));
-        let t118 = T::fused(-t49, t107, t57 * t117);
-        let t119 = t110 - t118;
-        let t120 = rocker_e0 * rocker_e3;
-        let t121 = rocker_e1 * rocker_e2;
-        let t122 = k(2.0) * (t121 + t120);
-        let t123 = t121 - t120;
-        let t124 = k(2.0) * t123;
-        let t125 = rocker_e0 * rocker_e0;
-        let t126 = k(0.5) - T::fused(rocker_e2, rocker_e2, t125);
-        let t127 = k(2.0) * t126;
-        let t128 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t125));
-        let t129 = k(1.0) / T::fused(-t124, t122, t128 * t127);
-        let t130 = T::fused(t127 * t129, row8, t124 * t129 * row9);
-        let t131 = rocker_e0 * rocker_e1;
-        let t132 = rocker_e2 * rocker_e3;
-        let t133 = t132 + t131;
-        let t134 = T::fused(
-            k(0.32) * t133,
+        let t102 = k(1.0) / (t101 + (k(0.014) + (k(0.00135) - t100)));
+        let t103 = t102 * t97;
+        let t104 = t50 + T::fused(t52, t103, T::fused(-t26, t11, t31 * t27));
+        let t105 = T::fused(t83, t27, t61 * t103);
+        let t106 = row0 + t105;
+        let t107 = row10 + (t105 + t106);
+        let t108 = T::fused(-t84, t27, t66 * t103);
+        let t109 = row1 - t108;
+        let t110 = row11 - (t108 - t109);
+        let t111 = T::fused(-t85, t27, t69 * t103);
+        let t112 = row2 + t111;
+        let t113 = row12 + (t111 + t112);
+        let t114 = k(11.976047904191617)
+            * T::fused(t58, t113, -T::fused(-t54, t107, t56 * t110));
+        let t115 = T::fused(-t46, t104, t54 * t114);
+        let t116 = t107 - t115;
+        let t117 = k(2.0) * rocker_e0;
+        let t118 = rocker_e3 * t117;
+        let t119 = k(2.0) * rocker_e1;
+        let t120 = rocker_e2 * t119;
+        let t121 = t120 + t118;
+        let t122 = t120 - t118;
+        let t123 = k(2.0) * rocker_e2;
+        let t124 = T::fused(-rocker_e0, t117, k(1.0));
+        let t125 = T::fused(-rocker_e2, t123, t124);
+        let t126 = T::fused(-rocker_e1, t119, t124);
+        let t127 = k(1.0) / T::fused(-t122, t121, t126 * t125);
+        let t128 = T::fused(t125 * t127, row8, t122 * t127 * row9);
+        let t129 = rocker_e1 * t117;
+        let t130 = rocker_e3 * t123;
+        let t131 = t130 + t129;
+        let t132 = T::fused(
+            k(0.16) * t131,
             row7,
-            -T::fused(-(k(0.32) * t123), row5, k(0.32) * t126 * row6),
+            -T::fused(-(k(0.16) * t122), row5, k(0.16) * t125 * row6),
         );
-        let t135 = k(23.364485981308412) * t134;
-        let t136 = k(0.4) * t123;
-        let t137 = T::fused(
-            -(k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3)),
-            t130,
-            t136 * t135,
+        let t133 = k(23.364485981308412) * t132;
+        let t134 = k(0.2) * t122;
+        let t135 = T::fused(
+            -(k(0.2) * T::fused(rocker_e2, t117, rocker_e3 * t119)),
+            t128,
+            t134 * t133,
         );
-        let t138 = row5 - t137;
-        let t139 = row15 + (t137 - t138 - (t118 - t119));
-        let t140 = k(11.976047904191617) * t13;
-        let t141 = T::fused(
-            t72,
-            t61 * t140,
-            T::fused(-t64, T::fused(-t57, t140, k(1.0)), t69 * (t59 * t140)),
+        let t136 = row5 - t135;
+        let t137 = row15 + (t135 - t136 - (t115 - t116));
+        let t138 = k(5.9880239520958085) * t16;
+        let t139 = T::fused(
+            t138 * t58,
+            t69,
+            T::fused(-T::fused(-t138, t54, k(1.0)), t61, t138 * t56 * t66),
         );
-        let t142 = (t141 + T::fused(-t48, t55, t141)) * t105;
-        let t143 = t55 * t142;
-        let t144 = t64 * t142;
+        let t140 = (t139 + T::fused(-(k(0.5) * t45), t52, t139)) * t102;
+        let t141 = t52 * t140;
+        let t142 = t61 * t140;
+        let t143 = k(2.0) * t142;
+        let t144 = t66 * t140;
         let t145 = k(2.0) * t144;
-        let t146 = t69 * t142;
+        let t146 = t69 * t140;
         let t147 = k(2.0) * t146;
-        let t148 = t72 * t142;
-        let t149 = k(2.0) * t148;
-        let t150 = k(11.976047904191617)
-            * (t13 + T::fused(t61, t149, T::fused(t57, t145, t59 * t147)));
-        let t151 = T::fused(-t49, t143, t57 * t150);
-        let t152 = t145 - t151;
-        let t153 = k(18.69158878504673) * t123;
-        let t154 = t136 * t153;
-        let t155 = k(1.0) / T::fused(k(2.0), t154, t151 - t152);
-        let t156 = T::fused(t51, t107, t59 * t117);
-        let t157 = t113 + t156;
-        let t158 = k(0.4) * t126;
-        let t159 = T::fused(k(0.4) * (t132 - t131), t130, t158 * t135);
-        let t160 = row6 + t159;
-        let t161 = T::fused(t51, t143, t59 * t150);
-        let t162 = t147 - t161;
-        let t163 = t158 * t153;
-        let t164 = T::fused(k(2.0), t163, t161 - t162);
-        let t165 = t155 * t164;
-        let t166 = k(11.976047904191617) * t16;
-        let t167 = T::fused(
-            t72,
-            t61 * t166,
-            -T::fused(-t64, t57 * t166, t69 * T::fused(-t59, t166, k(1.0))),
+        let t148 = T::fused(
+            k(0.5),
+            t16,
+            T::fused(t58, t147, T::fused(t54, t143, t56 * t145)),
         );
-        let t168 = t105 * (t167 + T::fused(t50, t55, t167));
-        let t169 = t55 * t168;
-        let t170 = t64 * t168;
-        let t171 = k(2.0) * t170;
-        let t172 = t69 * t168;
-        let t173 = k(2.0) * t172;
-        let t174 = t72 * t168;
-        let t175 = k(2.0) * t174;
-        let t176 = k(11.976047904191617)
-            * (t16 + T::fused(t61, t175, T::fused(t57, t171, t59 * t173)));
-        let t177 = T::fused(t51, t169, t59 * t176);
-        let t178 = t173 - t177;
-        let t179 = k(18.69158878504673) * t126;
-        let t180 = t158 * t179;
-        let t181 = T::fused(t165, t139, row16 - (t159 + t160 - (t156 + t157)))
-            / T::fused(t164, t165, -T::fused(k(2.0), t180, t177 - t178));
-        let t182 = T::fused(-t155, t139, t165 * t181);
+        let t149 = k(11.976047904191617) * t148;
+        let t150 = T::fused(-t46, t141, t54 * t149);
+        let t151 = t143 - t150;
+        let t152 = k(9.345794392523365) * t122;
+        let t153 = t152 * t134;
+        let t154 = k(1.0) / T::fused(k(2.0), t153, t150 - t151);
+        let t155 = T::fused(t48, t104, t56 * t114);
+        let t156 = t110 + t155;
+        let t157 = k(0.2) * t125;
+        let t158 = T::fused(k(0.2) * (t130 - t129), t128, t157 * t133);
+        let t159 = row6 + t158;
+        let t160 = T::fused(t48, t141, t56 * t149);
+        let t161 = t145 - t160;
+        let t162 = t152 * t157;
+        let t163 = T::fused(k(2.0), t162, t160 - t161);
+        let t164 = t154 * t163;
+        let t165 = k(5.9880239520958085) * t19;
+        let t166 = T::fused(
+            t69,
+            t58 * t165,
+            -T::fused(-t61, t54 * t165, t66 * T::fused(-t56, t165, k(1.0))),
+        );
+        let t167 = t102 * (t166 + T::fused(t52, k(0.5) * t47, t166));
+        let t168 = t52 * t167;
+        let t169 = t61 * t167;
+        let t170 = k(2.0) * t169;
+        let t171 = t66 * t167;
+        let t172 = k(2.0) * t171;
+        let t173 = t69 * t167;
+        let t174 = k(2.0) * t173;
+        let t175 = T::fused(
+            k(0.5),
+            t19,
+            T::fused(t58, t174, T::fused(t54, t170, t56 * t172)),
+        );
+        let t176 = k(11.976047904191617) * t175;
+        let t177 = T::fused(t48, t168, t56 * t176);
+        let t178 = t172 - t177;
+        let t179 = k(9.345794392523365) * t125;
+        let t180 = t157 * t179;
+        let t181 = T::fused(t164, t137, row16 - (t158 + t159 - (t155 + t156)))
+            / T::fused(t163, t164, -T::fused(k(2.0), t180, t177 - t178));
+        let t182 = T::fused(-t154, t137, t164 * t181);
         let t183 = T::fused(
-            t171 - T::fused(-t49, t169, t57 * t176),
+            t170 - T::fused(-t46, t168, t54 * t176),
             t181,
-            T::fused(-t152, t182, t119),
+            T::fused(-t151, t182, t116),
         );
         let t184 = T::fused(
-            t149 - T::fused(t52, t143, t61 * t150),
+            t147 - T::fused(t49, t141, t58 * t149),
             t182,
-            -(t116 - T::fused(t52, t107, t61 * t117)),
+            -(t113 - T::fused(t49, t104, t58 * t114)),
         );
         let t185 = T::fused(
-            t47 * t142,
+            t44 * t140,
             t182,
-            -(t40 + T::fused(t47, t106, T::fused(-t38, t10, t37 * t26))),
+            -(t40 + T::fused(t44, t103, T::fused(-t38, t11, t37 * t27))),
         );
-        let t186 = k(0.4) * t133;
+        let t186 = k(0.2) * t131;
         let t187 = T::fused(
-            k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t125)),
-            t130,
-            t186 * t135,
+            k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t124),
+            t128,
+            t186 * t133,
         );
         let t188 = T::fused(
-            t186 * t179,
+            t179 * t186,
             t181,
-            -T::fused(t186 * t153, t182, -(row7 - t187)),
+            -T::fused(t152 * t186, t182, -(row7 - t187)),
         );
         *out = [
-            T::fused(t170, t181, T::fused(-t144, t182, t109)),
-            T::fused(-t172, t181, T::fused(t146, t182, t112)),
-            T::fused(t174, t181, T::fused(-t148, t182, t115)),
-            t10,
-            -t26,
-            T::fused(t168, t181, T::fused(-t142, t182, t106)),
+            T::fused(t169, t181, T::fused(-t142, t182, t106)),
+            T::fused(-t171, t181, T::fused(t144, t182, t109)),
+            T::fused(t173, t181, T::fused(-t146, t182, t112)),
+            t11,
+            -t27,
+            T::fused(t167, t181, T::fused(-t140, t182, t103)),
             t183,
-            T::fused(-t178, t181, T::fused(t162, t182, t157)),
-            T::fused(t175 - T::fused(t52, t169, t61 * t176), t181, -t184),
-            T::fused(-(t47 * t168), t181, t185),
-            -T::fused(t169, t181, T::fused(-t143, t182, t107)),
-            -T::fused(t176, t181, T::fused(-t150, t182, t117)),
-            T::fused(t136 * t179, t181, T::fused(-t154, t182, t138)),
-            T::fused(-t180, t181, T::fused(t163, t182, t160)),
+            T::fused(-t178, t181, T::fused(t161, t182, t156)),
+            T::fused(t174 - T::fused(t49, t168, t58 * t176), t181, -t184),
+            T::fused(-(t44 * t167), t181, t185),
+            -T::fused(t168, t181, T::fused(-t141, t182, t104)),
+            -T::fused(t176, t181, T::fused(-t149, t182, t114)),
+            T::fused(t134 * t179, t181, T::fused(-t153, t182, t136)),
+            T::fused(-t180, t181, T::fused(t162, t182, t159)),
             t188,
-            T::fused(t122 * t129, row8, t128 * t129 * row9),
-            -t130,
-            T::fused(t179, t181, -T::fused(t153, t182, t135)),
+            T::fused(t121 * t127, row8, t126 * t127 * row9),
+            -t128,
+            T::fused(t179, t181, -T::fused(t152, t182, t133)),
         ];
     }
 }

@@ -12,8 +12,8 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 436 operations by relative Euler parameters; 456 operations by rotations of the bodies
-//! * project: 387 operations by relative Euler parameters; 398 operations by rotations of the bodies
+//! * accelerations: 413 operations by relative Euler parameters, doubled; 434 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 381 operations by rotations of the bodies, doubled; 381 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
 //! * joint_accelerations_at: 40 operations by normal form; 59 operations by recursion; 1 more compared
 //! * corrected_accelerations: 150 operations by normal form in the bodies' frames; 152 operations by normal form in the global frame; 5 more compared
@@ -24,15 +24,15 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 50 | 58 | 0 | 108 | 0 of 18 | 178 | 108 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 | 590 | 205 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 | 540 | 169 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 | 670 | 188 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 | 652 | 148 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 122 | 193 | 0 | 315 | 6 of 15 | 1486 | 315 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 172 | 259 | 5 | 436 | 7 of 18 | 505202 | 440 |
-//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 | 3819 | 304 |
-//! | project | (δr, δπ') that changes the rows as given | 147 | 235 | 5 | 387 | 1 of 18 | 413586 | 388 |
+//! | gamma | γ | 116 | 178 | 0 | 294 | 6 of 15 | 1741 | 294 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 113 | 0 | 197 | 0 of 15 | 701 | 197 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 166 | 242 | 5 | 413 | 7 of 18 | 524034 | 417 |
+//! | multipliers | λ, the accelerations being known | 108 | 172 | 3 | 283 | 0 of 15 | 4499 | 283 |
+//! | project | (δr, δπ') that changes the rows as given | 144 | 232 | 5 | 381 | 1 of 18 | 474683 | 382 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -549,7 +549,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
             T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t21)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 218 operations (90 ±, 128 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 197 operations (84 ±, 113 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -581,126 +581,135 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gyroscope<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e2;
-        let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
-        let t19 = outer_ring_e0 * outer_ring_e1;
-        let t20 = outer_ring_e2 * outer_ring_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
-        let t23 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t7 = T::fused(-outer_ring_e1, t2, t5);
+        let t8 = t3 + t1;
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = outer_ring_e3 * t0;
+        let t15 = outer_ring_e2 * t2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e1 * t9;
+        let t18 = k(2.0) * inner_ring_e2;
+        let t19 = inner_ring_e3 * t18;
+        let t20 = t19 - t17;
+        let t21 = k(2.0) * outer_ring_e2;
+        let t22 = T::fused(-outer_ring_e2, t21, t5);
+        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
+        let t25 = outer_ring_e1 * t0;
+        let t26 = outer_ring_e3 * t21;
+        let t27 = t26 + t25;
+        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t29 = T::fused(
             outer_ring_wz,
-            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
-            outer_ring_wy * t22,
+            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
+            outer_ring_wy * t28,
         );
-        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
-        let t25 = inner_ring_e0 * inner_ring_e3;
-        let t26 = inner_ring_e1 * inner_ring_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t15 + t14);
-        let t29 = k(2.0) * (t12 - t11);
-        let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
-        let t32 = k(2.0) * (t8 + t7);
-        let t33 = T::fused(
+        let t30 = T::fused(-inner_ring_e1, t11, t23);
+        let t31 = inner_ring_e3 * t9;
+        let t32 = inner_ring_e2 * t11;
+        let t33 = t32 + t31;
+        let t34 = t15 + t14;
+        let t35 = t12 - t10;
+        let t36 = t32 - t31;
+        let t37 = T::fused(-inner_ring_e2, t18, t23);
+        let t38 = t19 + t17;
+        let t39 = T::fused(
             -inner_ring_wy,
-            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
-            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
+            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
         );
-        let t34 = T::fused(
+        let t40 = T::fused(
             outer_ring_wz,
-            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
-            outer_ring_wx * t22,
+            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
+            outer_ring_wx * t28,
         );
-        let t35 = T::fused(
+        let t41 = T::fused(
             -inner_ring_wy,
-            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
-            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
+            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
         );
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
-        let t38 = rotor_e0 * rotor_e3;
-        let t39 = rotor_e1 * rotor_e2;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = T::fused(t29, t43, T::fused(t24, t37, t27 * t40));
-        let t45 = T::fused(
-            inner_ring_wx,
-            T::fused(t18, t43, -T::fused(-t13, t37, t9 * t40)),
-            inner_ring_wz * t44,
+        let t42 = k(2.0) * rotor_e1;
+        let t43 = k(2.0) * rotor_e0;
+        let t44 = T::fused(-rotor_e0, t43, k(1.0));
+        let t45 = T::fused(-rotor_e1, t42, t44);
+        let t46 = rotor_e3 * t43;
+        let t47 = rotor_e2 * t42;
+        let t48 = t47 + t46;
+        let t49 = rotor_e2 * t43;
+        let t50 = rotor_e3 * t42;
+        let t51 = t50 - t49;
+        let t52 = T::fused(t35, t51, T::fused(t30, t45, t33 * t48));
+        let t53 = T::fused(
+            inner_ring_wz,
+            t52,
+            inner_ring_wx * T::fused(t24, t51, -T::fused(-t13, t45, t20 * t48)),
         );
-        let t46 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
-        let t47 = k(2.0) * (t39 - t38);
-        let t48 = rotor_e0 * rotor_e1;
-        let t49 = rotor_e2 * rotor_e3;
-        let t50 = k(2.0) * (t49 + t48);
-        let t51 = k(2.0) * (t49 - t48);
-        let t52 = k(2.0) * (t42 + t41);
-        let t53 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
-        let t54 = T::fused(
+        let t54 = t47 - t46;
+        let t55 = k(2.0) * rotor_e2;
+        let t56 = T::fused(-rotor_e2, t55, t44);
+        let t57 = rotor_e1 * t43;
+        let t58 = rotor_e3 * t55;
+        let t59 = t58 + t57;
+        let t60 = t50 + t49;
+        let t61 = t58 - t57;
+        let t62 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
+        let t63 = T::fused(
             rotor_wz,
-            T::fused(t32, t50, T::fused(t31, t46, t30 * t47)),
-            rotor_wy * T::fused(t32, t53, -T::fused(-t31, t51, t30 * t52)),
+            T::fused(t38, t59, T::fused(t36, t54, t37 * t56)),
+            rotor_wy * T::fused(t38, t62, T::fused(-t36, t60, t37 * t61)),
         );
-        let t55 = T::fused(
+        let t64 = T::fused(
             -inner_ring_wy,
-            t44,
-            inner_ring_wx * T::fused(t32, t43, -T::fused(t30, t37, t31 * t40)),
+            t52,
+            inner_ring_wx * T::fused(t38, t51, -T::fused(t36, t45, t37 * t48)),
         );
-        let t56 = T::fused(
+        let t65 = T::fused(
             rotor_wz,
-            T::fused(t18, t50, -T::fused(-t9, t46, t13 * t47)),
-            rotor_wy * T::fused(t18, t53, T::fused(t9, t51, t13 * t52)),
+            T::fused(t24, t59, T::fused(-t13, t54, t20 * t56)),
+            rotor_wy * T::fused(t24, t62, T::fused(t13, t60, t20 * t61)),
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
-            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
+            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
+            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t33 + t23),
-            t34 - t35,
+            -(t39 + t29),
+            t40 - t41,
             rotor_sx
                 - T::fused(
-                    k(0.000125),
-                    T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
+                    -k(0.000125),
+                    T::fused(-inner_ring_wz, t36, inner_ring_wy * t13),
                     inner_ring_sx,
                 ),
             rotor_sy
                 - T::fused(
                     -k(0.000125),
-                    T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
+                    T::fused(inner_ring_wz, t37, inner_ring_wy * t20),
                     inner_ring_sy,
                 ),
             rotor_sz
                 - T::fused(
                     k(0.000125),
-                    T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
+                    T::fused(inner_ring_wz, t38, inner_ring_wy * t24),
                     inner_ring_sz,
                 ),
-            t54 - t45,
-            -(t56 + t55),
+            t63 - t53,
+            -(t65 + t64),
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -1641,7 +1650,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 205 operations (68 ±, 137 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 188 operations (66 ±, 122 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1660,56 +1669,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         let t1 = k(2.0) * outer_ring_e0;
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
-        let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
-        let t6 = t5 * t3;
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(4.0) * outer_ring_e0;
-        let t11 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t12 = t5 * t2;
-        let t13 = t5 * t1;
-        let t14 = t5 * t0;
-        let t15 = k(4.0) * inner_ring_e0;
-        let t16 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
-        let t17 = k(2.0) * inner_ring_e1;
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * inner_ring_e2;
-        let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
-        let t24 = k(2.0) * inner_ring_e0;
-        let t25 = k(2.0) * inner_ring_e3;
+        let t4 = k(2.0) * inner_ring_e3;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e3, t4, t6);
+        let t8 = t3 * t7;
+        let t9 = inner_ring_e1 * t5;
+        let t10 = k(2.0) * inner_ring_e2;
+        let t11 = inner_ring_e3 * t10;
+        let t12 = t11 - t9;
+        let t13 = k(2.0) * inner_ring_e1;
+        let t14 = T::fused(inner_ring_e2, t5, inner_ring_e3 * t13);
+        let t15 = k(4.0) * outer_ring_e0;
+        let t16 = t2 * t7;
+        let t17 = t1 * t7;
+        let t18 = t0 * t7;
+        let t19 = T::fused(-outer_ring_e2, t1, outer_ring_e3 * t0);
+        let t20 = k(4.0) * inner_ring_e0;
+        let t21 = outer_ring_e3 * t1;
+        let t22 = outer_ring_e2 * t0;
+        let t23 = t22 + t21;
+        let t24 = T::fused(-outer_ring_e0, t1, k(1.0));
+        let t25 = T::fused(-outer_ring_e1, t0, t24);
         let t26 = k(4.0) * inner_ring_e3;
-        let t27 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
-        let t29 = k(2.0) * (t19 - t18);
+        let t27 = T::fused(outer_ring_e1, t1, outer_ring_e3 * t3);
+        let t28 = T::fused(-outer_ring_e2, t3, t24);
+        let t29 = t22 - t21;
         let t30 = k(0.00025) * inner_ring_e3;
         let t31 = k(0.00025) * inner_ring_e2;
         let t32 = k(0.00025) * inner_ring_e1;
         let t33 = k(0.00025) * inner_ring_e0;
-        let t34 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
-        let t35 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t36 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
-        let t37 = t36 * t25;
-        let t38 = t36 * t21;
-        let t39 = t36 * t17;
-        let t40 = t36 * t24;
-        let t41 = k(2.0) * rotor_e2;
-        let t42 = k(2.0) * (t8 + t7);
-        let t43 = k(2.0) * rotor_e3;
-        let t44 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
-        let t45 = k(4.0) * rotor_e0;
-        let t46 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t47 = k(4.0) * rotor_e1;
-        let t48 = k(2.0) * rotor_e0;
-        let t49 = k(2.0) * rotor_e1;
+        let t34 = k(2.0) * rotor_e0;
+        let t35 = k(2.0) * rotor_e1;
+        let t36 = T::fused(-rotor_e2, t34, rotor_e3 * t35);
+        let t37 = T::fused(rotor_e3, t34, rotor_e2 * t35);
+        let t38 = T::fused(-rotor_e1, t35, T::fused(-rotor_e0, t34, k(1.0)));
+        let t39 = t4 * t38;
+        let t40 = t10 * t38;
+        let t41 = t13 * t38;
+        let t42 = t5 * t38;
+        let t43 = t11 + t9;
+        let t44 = k(2.0) * rotor_e2;
+        let t45 = T::fused(-inner_ring_e2, t10, t6);
+        let t46 = k(2.0) * rotor_e3;
+        let t47 = T::fused(-inner_ring_e3, t5, inner_ring_e2 * t13);
+        let t48 = k(4.0) * rotor_e0;
+        let t49 = k(4.0) * rotor_e1;
         *out = [
             k(1.0),
             k(1.0),
@@ -1728,22 +1733,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t9, t2, t11 * t10) + t6,
-            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
-            T::fused(t9, t0, t13),
-            T::fused(t9, t1, -t14),
-            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
-            -T::fused(t20, t24, t23 * t25),
-            T::fused(-t23, t24, t20 * t25),
-            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
-            -(t14 + T::fused(-t9, t10, t11 * t2)),
-            T::fused(t11, t3, -t13),
-            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
-            -T::fused(t11, t1, t6),
-            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
-            T::fused(t28, t24, t29 * t25),
-            T::fused(-t28, t25, t29 * t24),
-            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
+            T::fused(t2, t12, t15 * t14) + t8,
+            T::fused(t3, t12, k(4.0) * outer_ring_e1 * t14) - t16,
+            T::fused(t0, t12, t17),
+            T::fused(t1, t12, -t18),
+            T::fused(t20, t19, -T::fused(t13, t23, t10 * t25)),
+            -T::fused(t5, t23, t4 * t25),
+            T::fused(-t5, t25, t4 * t23),
+            T::fused(t26, t19, -T::fused(-t10, t23, t13 * t25)),
+            -(t18 + T::fused(-t15, t12, t2 * t14)),
+            T::fused(t3, t14, -t17),
+            T::fused(k(4.0) * outer_ring_e2, t12, t0 * t14) - t16,
+            -T::fused(t1, t14, t8),
+            T::fused(t20, t27, T::fused(t13, t28, t10 * t29)),
+            T::fused(t5, t28, t4 * t29),
+            T::fused(-t4, t28, t5 * t29),
+            T::fused(t26, t27, T::fused(-t10, t28, t13 * t29)),
             k(-1.0),
             -(k(0.0005) * inner_ring_e0),
             -(k(0.0005) * inner_ring_e1),
@@ -1760,37 +1765,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
             t33,
             -t32,
             k(1.0),
-            T::fused(t34, t17, T::fused(t35, t15, t37)),
-            T::fused(t34, t24, -t38),
-            T::fused(t34, t25, -T::fused(-t35, k(4.0) * inner_ring_e2, t39)),
-            T::fused(t34, t21, t40),
-            T::fused(-t42, t41, T::fused(-t44, t43, t46 * t45)),
-            T::fused(t42, t43, T::fused(-t44, t41, t46 * t47)),
-            -T::fused(t42, t48, t44 * t49),
-            T::fused(-t44, t48, t42 * t49),
-            T::fused(t34, t15, -T::fused(t35, t17, t38)),
-            -T::fused(t35, t24, t37),
-            T::fused(t35, t25, -t40),
-            T::fused(t34, t26, -T::fused(-t35, t21, t39)),
-            T::fused(t5, t41, T::fused(t9, t43, t11 * t45)),
-            T::fused(-t5, t43, T::fused(t9, t41, t11 * t47)),
-            T::fused(t5, t48, t9 * t49),
-            T::fused(-t5, t49, t9 * t48),
+            T::fused(t13, t36, T::fused(t20, t37, t39)),
+            T::fused(t5, t36, -t40),
+            T::fused(t4, t36, -T::fused(-(k(4.0) * inner_ring_e2), t37, t41)),
+            T::fused(t10, t36, t42),
+            T::fused(-t44, t43, T::fused(-t46, t45, t48 * t47)),
+            T::fused(t46, t43, T::fused(-t44, t45, t49 * t47)),
+            -T::fused(t34, t43, t35 * t45),
+            T::fused(-t34, t45, t35 * t43),
+            T::fused(t20, t36, -T::fused(t13, t37, t40)),
+            -T::fused(t5, t37, t39),
+            T::fused(t4, t37, -t42),
+            T::fused(t26, t36, -T::fused(-t10, t37, t41)),
+            T::fused(t44, t7, T::fused(t46, t12, t48 * t14)),
+            T::fused(-t46, t7, T::fused(t44, t12, t49 * t14)),
+            T::fused(t34, t7, t35 * t12),
+            T::fused(-t35, t7, t34 * t12),
             t1,
             t0,
             t3,
             t2,
-            t24,
-            t17,
-            t21,
-            t25,
-            t48,
-            t49,
-            t41,
-            t43,
+            t5,
+            t13,
+            t10,
+            t4,
+            t34,
+            t35,
+            t44,
+            t46,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 169 operations (64 ±, 105 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 148 operations (58 ±, 90 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1805,103 +1810,106 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7);
-        let t9 = k(2.0) * t8;
-        let t10 = inner_ring_e0 * inner_ring_e1;
-        let t11 = inner_ring_e2 * inner_ring_e3;
-        let t12 = t11 - t10;
-        let t13 = k(2.0) * t12;
-        let t14 = outer_ring_e0 * outer_ring_e1;
-        let t15 = outer_ring_e2 * outer_ring_e3;
-        let t16 = inner_ring_e0 * inner_ring_e2;
-        let t17 = inner_ring_e1 * inner_ring_e3;
-        let t18 = t17 + t16;
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(t1, t9, T::fused(k(2.0) * (t15 - t14), t13, t5 * t19));
-        let t21 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t22 = outer_ring_e0 * outer_ring_e3;
-        let t23 = outer_ring_e1 * outer_ring_e2;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = k(2.0) * (t15 + t14);
-        let t26 = inner_ring_e0 * inner_ring_e3;
-        let t27 = inner_ring_e1 * inner_ring_e2;
-        let t28 = t27 - t26;
-        let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7);
-        let t31 = k(2.0) * t30;
-        let t32 = k(2.0) * (t23 + t22);
-        let t33 = t11 + t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7));
-        let t36 = k(2.0) * (t27 + t26);
-        let t37 = k(2.0) * (t17 - t16);
-        let t38 = rotor_e0 * rotor_e0;
-        let t39 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t38));
-        let t40 = rotor_e0 * rotor_e3;
-        let t41 = rotor_e1 * rotor_e2;
-        let t42 = k(2.0) * (t41 + t40);
-        let t43 = rotor_e0 * rotor_e2;
-        let t44 = rotor_e1 * rotor_e3;
-        let t45 = k(2.0) * (t44 - t43);
-        let t46 = T::fused(t37, t45, T::fused(t35, t39, t36 * t42));
-        let t47 = rotor_e0 * rotor_e1;
-        let t48 = rotor_e2 * rotor_e3;
-        let t49 = k(2.0) * (t48 - t47);
-        let t50 = k(2.0) * (t44 + t43);
-        let t51 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t38));
-        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t38));
-        let t53 = k(2.0) * (t41 - t40);
-        let t54 = k(2.0) * (t48 + t47);
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = outer_ring_e2 * t0;
+        let t4 = k(2.0) * outer_ring_e1;
+        let t5 = outer_ring_e3 * t4;
+        let t6 = t5 - t3;
+        let t7 = t5 + t3;
+        let t8 = T::fused(-outer_ring_e1, t4, t1);
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = inner_ring_e1 * t9;
+        let t15 = k(2.0) * inner_ring_e2;
+        let t16 = inner_ring_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = outer_ring_e1 * t0;
+        let t19 = k(2.0) * outer_ring_e2;
+        let t20 = outer_ring_e3 * t19;
+        let t21 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t22 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t21);
+        let t23 = T::fused(t2, t22, T::fused(t7, t13, (t20 - t18) * t17));
+        let t24 = outer_ring_e3 * t0;
+        let t25 = outer_ring_e2 * t4;
+        let t26 = t25 - t24;
+        let t27 = T::fused(-outer_ring_e2, t19, t1);
+        let t28 = t20 + t18;
+        let t29 = inner_ring_e3 * t9;
+        let t30 = inner_ring_e2 * t11;
+        let t31 = t30 - t29;
+        let t32 = T::fused(-inner_ring_e2, t15, t21);
+        let t33 = t25 + t24;
+        let t34 = t16 + t14;
+        let t35 = T::fused(-inner_ring_e1, t11, t21);
+        let t36 = t30 + t29;
+        let t37 = t12 - t10;
+        let t38 = k(2.0) * rotor_e1;
+        let t39 = k(2.0) * rotor_e0;
+        let t40 = T::fused(-rotor_e0, t39, k(1.0));
+        let t41 = T::fused(-rotor_e1, t38, t40);
+        let t42 = rotor_e3 * t39;
+        let t43 = rotor_e2 * t38;
+        let t44 = t43 + t42;
+        let t45 = rotor_e2 * t39;
+        let t46 = rotor_e3 * t38;
+        let t47 = t46 - t45;
+        let t48 = T::fused(t37, t47, T::fused(t35, t41, t36 * t44));
+        let t49 = t46 + t45;
+        let t50 = rotor_e1 * t39;
+        let t51 = k(2.0) * rotor_e2;
+        let t52 = rotor_e3 * t51;
+        let t53 = t52 - t50;
+        let t54 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t40);
+        let t55 = t43 - t42;
+        let t56 = T::fused(-rotor_e2, t51, t40);
+        let t57 = t52 + t50;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -t1,
-            -t4,
-            t5,
-            t6,
+            -t2,
+            -t6,
+            t7,
+            t8,
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            -t20,
-            T::fused(-t25, t9, T::fused(-t21, t13, t24 * t19)),
-            T::fused(-t4, t34, T::fused(t6, t29, t32 * t31)),
-            T::fused(t4, t37, T::fused(t6, t35, t32 * t36)),
-            t20,
-            T::fused(t4, t9, -T::fused(-t6, t19, t32 * t13)),
-            -T::fused(t25, t34, T::fused(t21, t31, t24 * t29)),
-            T::fused(t25, t37, -T::fused(t24, t35, t21 * t36)),
+            -t23,
+            -T::fused(t28, t22, T::fused(-t26, t13, t27 * t17)),
+            T::fused(-t6, t34, T::fused(t8, t31, t33 * t32)),
+            T::fused(t6, t37, T::fused(t8, t35, t33 * t36)),
+            t23,
+            T::fused(t6, t22, -T::fused(-t8, t13, t33 * t17)),
+            -T::fused(t28, t34, T::fused(t26, t31, t27 * t32)),
+            T::fused(t28, t37, -T::fused(t26, t35, t27 * t36)),
             k(-1.0),
-            k(0.00025) * t18,
-            -(k(0.00025) * t28),
+            k(0.000125) * t13,
+            -(k(0.000125) * t31),
             k(1.0),
             k(-1.0),
-            k(0.00025) * t12,
-            k(0.00025) * t30,
+            k(0.000125) * t17,
+            k(0.000125) * t32,
             k(1.0),
             k(-1.0),
-            -(k(0.00025) * t8),
-            -(k(0.00025) * t33),
+            -(k(0.000125) * t22),
+            -(k(0.000125) * t34),
             k(1.0),
-            T::fused(-t9, t45, T::fused(-t19, t39, t13 * t42)),
-            -t46,
-            T::fused(t34, t51, -T::fused(-t31, t49, t29 * t50)),
-            T::fused(t34, t54, T::fused(t31, t52, t29 * t53)),
-            T::fused(-t34, t45, T::fused(t29, t39, t31 * t42)),
-            t46,
-            -T::fused(t9, t51, T::fused(t13, t49, t19 * t50)),
-            T::fused(-t9, t54, T::fused(-t13, t52, t19 * t53)),
+            T::fused(-t22, t47, T::fused(-t13, t41, t17 * t44)),
+            -t48,
+            T::fused(t34, t54, T::fused(-t31, t49, t32 * t53)),
+            T::fused(t34, t57, T::fused(t31, t55, t32 * t56)),
+            T::fused(-t34, t47, T::fused(t31, t41, t32 * t44)),
+            t48,
+            -T::fused(t22, t54, T::fused(t13, t49, t17 * t53)),
+            -T::fused(t22, t57, T::fused(-t13, t55, t17 * t56)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1925,7 +1933,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 315 operations (122 ±, 193 ×, 0 ÷).
+    /// Writes γ: 294 operations (116 ±, 178 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1949,154 +1957,163 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
-        let t13 = outer_ring_e0 * outer_ring_e3;
-        let t14 = outer_ring_e1 * outer_ring_e2;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (t2 + t1);
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e1;
-        let t21 = inner_ring_e2 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * (t14 + t13);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
-        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
-        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
-        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
-        let t29 = k(2.0) * (t7 - t6);
-        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
-        let t31 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = outer_ring_wx * outer_ring_wy;
+        let t6 = outer_ring_e1 * t0;
+        let t7 = k(2.0) * outer_ring_e2;
+        let t8 = outer_ring_e3 * t7;
+        let t9 = t8 + t6;
+        let t10 = outer_ring_wz * outer_ring_wz;
+        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
+        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
+        let t14 = outer_ring_wy * outer_ring_wz;
+        let t15 = T::fused(-outer_ring_e1, t2, t12);
+        let t16 = outer_ring_e3 * t0;
+        let t17 = outer_ring_e2 * t2;
+        let t18 = t17 - t16;
+        let t19 = t3 + t1;
+        let t20 = k(2.0) * inner_ring_e0;
+        let t21 = inner_ring_e2 * t20;
+        let t22 = k(2.0) * inner_ring_e1;
+        let t23 = inner_ring_e3 * t22;
+        let t24 = t23 + t21;
+        let t25 = inner_ring_e1 * t20;
+        let t26 = k(2.0) * inner_ring_e2;
+        let t27 = inner_ring_e3 * t26;
+        let t28 = t27 - t25;
+        let t29 = t17 + t16;
+        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
+        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
+        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
+        let t33 = T::fused(-outer_ring_e2, t7, t12);
+        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
+        let t35 = t8 - t6;
+        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
+        let t37 = T::fused(
             outer_ring_wx * outer_ring_wz,
-            t30,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+            t36,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
         );
-        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
-        let t33 = inner_ring_e0 * inner_ring_e3;
-        let t34 = inner_ring_e1 * inner_ring_e2;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = k(2.0) * (t18 - t17);
-        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
-        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
-        let t39 = k(2.0) * (t34 - t33);
-        let t40 = k(2.0) * (t21 + t20);
-        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
-        let t42 = T::fused(
+        let t38 = T::fused(-inner_ring_e1, t22, t30);
+        let t39 = inner_ring_e3 * t20;
+        let t40 = inner_ring_e2 * t22;
+        let t41 = t40 + t39;
+        let t42 = t23 - t21;
+        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
+        let t44 = t40 - t39;
+        let t45 = T::fused(-inner_ring_e2, t26, t30);
+        let t46 = t27 + t25;
+        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
+        let t48 = T::fused(
             -inner_ring_wy,
-            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
-            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
+            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
         );
-        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
-        let t44 = inner_ring_wx * inner_ring_wz;
-        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
-        let t46 = inner_ring_wy * inner_ring_wz;
-        let t47 = inner_ring_wx * inner_ring_wx;
-        let t48 = inner_ring_wy * inner_ring_wy;
-        let t49 = t48 + t47;
-        let t50 = T::fused(
+        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
+        let t50 = inner_ring_wx * inner_ring_wz;
+        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
+        let t52 = inner_ring_wy * inner_ring_wz;
+        let t53 = inner_ring_wx * inner_ring_wx;
+        let t54 = inner_ring_wy * inner_ring_wy;
+        let t55 = t54 + t53;
+        let t56 = T::fused(
             -k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
-                outer_ring_wy * t42,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
+                outer_ring_wy * t48,
             ),
-            T::fused(t49, t26, T::fused(t44, t43, t46 * t45)),
+            T::fused(t55, t32, T::fused(t50, t49, t52 * t51)),
         );
-        let t51 = T::fused(
+        let t57 = T::fused(
             k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
-                outer_ring_wx * t42,
+                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
+                outer_ring_wx * t48,
             ),
-            T::fused(t49, t28, T::fused(t44, t37, t46 * t41)),
+            T::fused(t55, t34, T::fused(t50, t43, t52 * t47)),
         );
-        let t52 = inner_ring_wz * inner_ring_wz;
-        let t53 = t52 + t48;
-        let t54 = inner_ring_wx * inner_ring_wy;
-        let t55 = rotor_e0 * rotor_e0;
-        let t56 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t55));
-        let t57 = rotor_e0 * rotor_e3;
-        let t58 = rotor_e1 * rotor_e2;
-        let t59 = k(2.0) * (t58 + t57);
-        let t60 = rotor_e0 * rotor_e2;
-        let t61 = rotor_e1 * rotor_e3;
-        let t62 = k(2.0) * (t61 - t60);
-        let t63 = T::fused(t36, t62, T::fused(t32, t56, t35 * t59));
-        let t64 = T::fused(t40, t62, -T::fused(t39, t56, t38 * t59));
-        let t65 = T::fused(t25, t62, -T::fused(-t19, t56, t22 * t59));
-        let t66 = k(2.0) * (t58 - t57);
-        let t67 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t55));
-        let t68 = rotor_e0 * rotor_e1;
-        let t69 = rotor_e2 * rotor_e3;
-        let t70 = k(2.0) * (t69 + t68);
-        let t71 = k(2.0) * (t61 + t60);
-        let t72 = k(2.0) * (t69 - t68);
-        let t73 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t55));
-        let t74 = T::fused(
+        let t58 = inner_ring_wz * inner_ring_wz;
+        let t59 = t58 + t54;
+        let t60 = inner_ring_wx * inner_ring_wy;
+        let t61 = k(2.0) * rotor_e1;
+        let t62 = k(2.0) * rotor_e0;
+        let t63 = T::fused(-rotor_e0, t62, k(1.0));
+        let t64 = T::fused(-rotor_e1, t61, t63);
+        let t65 = rotor_e3 * t62;
+        let t66 = rotor_e2 * t61;
+        let t67 = t66 + t65;
+        let t68 = rotor_e2 * t62;
+        let t69 = rotor_e3 * t61;
+        let t70 = t69 - t68;
+        let t71 = T::fused(t42, t70, T::fused(t38, t64, t41 * t67));
+        let t72 = T::fused(t46, t70, -T::fused(t44, t64, t45 * t67));
+        let t73 = T::fused(t31, t70, -T::fused(-t24, t64, t28 * t67));
+        let t74 = t66 - t65;
+        let t75 = k(2.0) * rotor_e2;
+        let t76 = T::fused(-rotor_e2, t75, t63);
+        let t77 = rotor_e1 * t62;
+        let t78 = rotor_e3 * t75;
+        let t79 = t78 + t77;
+        let t80 = t69 + t68;
+        let t81 = t78 - t77;
+        let t82 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t63);
+        let t83 = T::fused(
             rotor_wz,
-            T::fused(t36, t70, -T::fused(t32, t66, t35 * t67)),
-            rotor_wy * T::fused(t36, t73, -T::fused(-t32, t71, t35 * t72)),
+            T::fused(t42, t79, -T::fused(t38, t74, t41 * t76)),
+            rotor_wy * T::fused(t42, t82, -T::fused(-t38, t80, t41 * t81)),
         );
-        let t75 = T::fused(t25, t70, -T::fused(-t22, t67, t19 * t66));
-        let t76 = T::fused(t25, t73, T::fused(t22, t72, t19 * t71));
-        let t77 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t78 = T::fused(t40, t70, T::fused(t38, t67, t39 * t66));
-        let t79 = rotor_wx * rotor_wy;
-        let t80 = T::fused(t40, t73, -T::fused(-t38, t72, t39 * t71));
-        let t81 = rotor_wx * rotor_wz;
-        let t82 = T::fused(
+        let t84 = T::fused(t31, t79, T::fused(-t24, t74, t28 * t76));
+        let t85 = T::fused(t31, t82, T::fused(t24, t80, t28 * t81));
+        let t86 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t87 = T::fused(t46, t79, T::fused(t44, t74, t45 * t76));
+        let t88 = rotor_wx * rotor_wy;
+        let t89 = T::fused(t46, t82, T::fused(-t44, t80, t45 * t81));
+        let t90 = rotor_wx * rotor_wz;
+        let t91 = T::fused(
             k(2.0),
             T::fused(
                 inner_ring_wz,
-                t74,
-                inner_ring_wx * T::fused(rotor_wz, t75, rotor_wy * t76),
+                t83,
+                inner_ring_wx * T::fused(rotor_wz, t84, rotor_wy * t85),
             ),
-            T::fused(t81, t80, -T::fused(-t77, t64, t79 * t78)),
+            T::fused(t90, t89, -T::fused(-t86, t72, t88 * t87)),
         );
-        let t83 = t82 + T::fused(t46, t65, T::fused(-t54, t63, (t52 + t47) * t64));
-        let t84 = T::fused(
+        let t92 = t91 + T::fused(t52, t73, T::fused(-t60, t71, (t58 + t53) * t72));
+        let t93 = T::fused(
             -k(2.0),
             T::fused(
                 -inner_ring_wy,
-                t74,
-                inner_ring_wx * T::fused(rotor_wz, t78, rotor_wy * t80),
+                t83,
+                inner_ring_wx * T::fused(rotor_wz, t87, rotor_wy * t89),
             ),
-            T::fused(t81, t76, -T::fused(-t77, t65, t79 * t75)),
+            T::fused(t90, t85, -T::fused(-t86, t73, t88 * t84)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
-            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
+            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
+            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t50 + t31),
-            -(t51 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
-            k(0.000125) * T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
-            k(0.000125) * T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
-            -(k(0.000125) * T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54))),
-            t83,
-            -(t84 + T::fused(t49, t65, T::fused(t44, t63, t46 * t64))),
+            -(t56 + t37),
+            -(t57 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
+            k(0.000125) * T::fused(t50, t24, T::fused(t59, t38, t60 * t44)),
+            k(0.000125) * T::fused(t50, t28, -T::fused(t59, t41, t60 * t45)),
+            -(k(0.000125) * T::fused(t50, t31, -T::fused(-t59, t42, t60 * t46))),
+            t92,
+            -(t93 + T::fused(t55, t73, T::fused(t50, t71, t52 * t72))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2108,28 +2125,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
         *out = [
             k(0.0),
             k(-0.1),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
             k(0.0),
             k(-0.1),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz),
+            inner_ring_wz * t1,
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
+            -(inner_ring_wx * t1),
             k(0.0),
             k(-0.8),
             k(0.0),
             k(0.0),
-            -(k(5e-6) * (rotor_wx * rotor_wz)),
-            k(5e-6) * (rotor_wx * rotor_wy),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 436 operations (172 ±, 259 ×, 5 ÷).
+    /// Solves eq. (17): 413 operations (166 ±, 242 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2153,34 +2173,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
-            * (k(0.5)
-                / (k(0.5)
-                    - T::fused(
-                        outer_ring_e2,
-                        outer_ring_e2,
-                        outer_ring_e0 * outer_ring_e0,
-                    )));
-        let t1 = T::fused(
-            -(k(2.0)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_e1,
-                    outer_ring_e2 * outer_ring_e3,
-                )),
-            t0,
+        let t0 = k(2.0) * outer_ring_e2;
+        let t1 = k(2.0) * outer_ring_e0;
+        let t2 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
+            / T::fused(-outer_ring_e2, t0, T::fused(-outer_ring_e0, t1, k(1.0)));
+        let t3 = T::fused(
+            -T::fused(-outer_ring_e1, t1, outer_ring_e3 * t0),
+            t2,
             outer_ring_wy * outer_ring_wz,
         );
-        let t2 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t3 = T::fused(
+        let t4 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2189,17 +2191,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t4 = t3 * t2;
-        let t5 = T::fused(
-            -inner_ring_e1,
+        let t5 = k(2.0) * t4;
+        let t6 = T::fused(
+            -inner_ring_e0,
             rotor_e3,
             T::fused(
-                -inner_ring_e0,
+                inner_ring_e1,
                 rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t6 = T::fused(
+        let t7 = t6 * t5;
+        let t8 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2208,37 +2211,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = t6 * t5;
-        let t8 = t7 + t4;
-        let t9 = k(1e-5) * t8;
-        let t10 = k(2.0) * t8;
-        let t11 = t3 * t5;
-        let t12 = t6 * t2;
-        let t13 = t12 - t11;
-        let t14 = k(1e-5) * t13;
-        let t15 = k(2.0) * t13;
-        let t16 = t3 * t6;
-        let t17 = t5 * t2;
-        let t18 = t17 - t16;
-        let t19 = k(2.0) * t18;
-        let t20 = t3 * t3;
-        let t21 = k(0.5) - T::fused(t2, t2, t20);
-        let t22 = k(2.0) * t21;
-        let t23 = T::fused(-t19, t9, t22 * t14);
-        let t24 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t19, k(1e-5) * t18, t22 * (k(1e-5) * t21)));
-        let t25 = k(1.0) / t24;
-        let t26 = t25 * t23;
-        let t27 = T::fused(t23, t26, -(k(1e-6) + T::fused(t10, t9, t15 * t14)));
-        let t28 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+        let t9 = k(2.0) * t8;
+        let t10 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
+        let t11 = t10 * t9;
+        let t12 = t11 + t7;
+        let t13 = k(5e-6) * t12;
+        let t14 = t10 * t5;
+        let t15 = t6 * t9;
+        let t16 = t15 - t14;
+        let t17 = k(5e-6) * t16;
+        let t18 = t8 * t5;
+        let t19 = k(2.0) * t10;
+        let t20 = t6 * t19;
+        let t21 = t20 - t18;
+        let t22 = T::fused(-t4, t5, k(1.0));
+        let t23 = T::fused(-t6, k(2.0) * t6, t22);
+        let t24 = T::fused(-t21, t13, t23 * t17);
+        let t25 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t21, k(5e-6) * t21, t23 * (k(5e-6) * t23)));
+        let t26 = k(1.0) / t25;
+        let t27 = t26 * t24;
+        let t28 = T::fused(t24, t27, -(k(1e-6) + T::fused(t12, t13, t16 * t17)));
         let t29 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
@@ -2248,17 +2249,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t30 = t29 * t28;
+        let t30 = k(2.0) * t29;
         let t31 = T::fused(
-            -outer_ring_e1,
+            -outer_ring_e0,
             inner_ring_e3,
             T::fused(
-                -outer_ring_e0,
+                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t32 = T::fused(
+        let t32 = t31 * t30;
+        let t33 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2267,184 +2269,185 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t33 = t32 * t31;
-        let t34 = k(2.0) * (t33 - t30);
-        let t35 = k(0.5) - T::fused(t5, t5, t20);
-        let t36 = k(2.0) * t35;
-        let t37 = t17 + t16;
-        let t38 = k(2.0) * t37;
-        let t39 = k(1e-5) * t35;
-        let t40 = k(1e-5) * t37;
-        let t41 = T::fused(t19, t39, t22 * t40);
-        let t42 = T::fused(t41, t26, -T::fused(-t36, t9, t38 * t14));
-        let t43 = t29 * t29;
-        let t44 = k(2.0) * (k(0.5) - T::fused(t31, t31, t43));
-        let t45 = T::fused(-t34, t27, t44 * t42);
-        let t46 = T::fused(
-            t41,
-            t25 * t41,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t36, t39, t38 * t40))),
+        let t34 = k(2.0) * t33;
+        let t35 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
         );
-        let t47 = T::fused(-t34, t42, t44 * t46);
-        let t48 = k(0.5) - T::fused(t6, t6, t20);
-        let t49 = T::fused(
-            inner_ring_wz,
-            k(2.0) * (t12 + t11),
-            T::fused(-inner_ring_wx, k(2.0) * t48, inner_ring_wy * (k(2.0) * (t7 - t4))),
+        let t36 = t35 * t34;
+        let t37 = t36 - t32;
+        let t38 = T::fused(-t10, t19, t22);
+        let t39 = t20 + t18;
+        let t40 = k(5e-6) * t38;
+        let t41 = k(5e-6) * t39;
+        let t42 = T::fused(t21, t40, t23 * t41);
+        let t43 = T::fused(t42, t27, -T::fused(-t38, t13, t39 * t17));
+        let t44 = k(2.0) * t35;
+        let t45 = T::fused(-t29, t30, k(1.0));
+        let t46 = T::fused(-t35, t44, t45);
+        let t47 = T::fused(-t37, t28, t46 * t43);
+        let t48 = T::fused(
+            t42,
+            t26 * t42,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t38, t40, t39 * t41))),
         );
-        let t50 = rotor_wx - t49;
+        let t49 = T::fused(-t37, t43, t46 * t48);
+        let t50 = T::fused(-t8, t9, t22);
         let t51 = T::fused(
             inner_ring_wz,
-            t22,
-            -T::fused(inner_ring_wx, t15, inner_ring_wy * t38),
+            t15 + t14,
+            T::fused(-inner_ring_wx, t50, inner_ring_wy * (t11 - t7)),
         );
-        let t52 = rotor_wz + t51;
+        let t52 = rotor_wx - t51;
         let t53 = T::fused(
             inner_ring_wz,
-            t19,
-            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t36),
-        );
-        let t54 = rotor_wy - t53;
-        let t55 = k(0.5) / t48 * T::fused(t52, t52, t54 * t54);
-        let t56 = T::fused(rotor_wx, t51, rotor_wz * t49)
-            + T::fused(-t52, t50, t15 * t55);
-        let t57 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t56);
-        let t58 = T::fused(-rotor_wy, t49, rotor_wx * t53)
-            - T::fused(-t54, t50, t10 * t55);
-        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t58);
-        let t60 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t61 = inner_ring_e0 * inner_ring_e0;
-        let t62 = inner_ring_wx * inner_ring_wy;
-        let t63 = inner_ring_e0 * inner_ring_e3;
-        let t64 = inner_ring_e1 * inner_ring_e2;
-        let t65 = t64 - t63;
-        let t66 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t61)),
-            t60,
-            k(2.0) * t65 * t62,
-        );
-        let t67 = inner_ring_wx * inner_ring_wz;
-        let t68 = inner_ring_e0 * inner_ring_e2;
-        let t69 = inner_ring_e1 * inner_ring_e3;
-        let t70 = t69 + t68;
-        let t71 = T::fused(k(2.0) * t70, t67, t66);
-        let t72 = k(1e-5) * t71;
-        let t73 = k(0.00025) * t65;
-        let t74 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t61);
-        let t75 = inner_ring_e0 * inner_ring_e1;
-        let t76 = inner_ring_e2 * inner_ring_e3;
-        let t77 = t76 - t75;
-        let t78 = T::fused(
-            k(2.0) * t77,
-            t67,
-            -T::fused(k(2.0) * (t64 + t63), t60, k(2.0) * t74 * t62),
-        );
-        let t79 = T::fused(k(1e-5), t78, k(0.8));
-        let t80 = k(0.00025) * t74;
-        let t81 = t76 + t75;
-        let t82 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t61);
-        let t83 = T::fused(
-            k(2.0) * t82,
-            t67,
-            -T::fused(-(k(2.0) * (t69 - t68)), t60, k(2.0) * t81 * t62),
-        );
-        let t84 = k(1e-5) * t83;
-        let t85 = k(0.00025) * t81;
-        let t86 = T::fused(t85, t84, T::fused(-t73, t72, t80 * t79))
-            - T::fused(t19, t57, t22 * t59);
-        let t87 = T::fused(k(1e-6), t62, -t86);
-        let t88 = t25 * t87;
-        let t89 = T::fused(
             t23,
-            t88,
+            -T::fused(inner_ring_wx, t16, inner_ring_wy * t39),
+        );
+        let t54 = rotor_wz + t53;
+        let t55 = T::fused(
+            inner_ring_wz,
+            t21,
+            -T::fused(-inner_ring_wx, t12, inner_ring_wy * t38),
+        );
+        let t56 = rotor_wy - t55;
+        let t57 = T::fused(t54, t54, t56 * t56) / t50;
+        let t58 = T::fused(rotor_wx, t53, rotor_wz * t51)
+            + T::fused(-t54, t52, t16 * t57);
+        let t59 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t58);
+        let t60 = T::fused(-rotor_wy, t51, rotor_wx * t55)
+            - T::fused(-t56, t52, t12 * t57);
+        let t61 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t60);
+        let t62 = k(2.0) * inner_ring_e0;
+        let t63 = inner_ring_e3 * t62;
+        let t64 = k(2.0) * inner_ring_e1;
+        let t65 = inner_ring_e2 * t64;
+        let t66 = t65 - t63;
+        let t67 = k(0.000125) * t66;
+        let t68 = T::fused(-inner_ring_e0, t62, k(1.0));
+        let t69 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t70 = inner_ring_wx * inner_ring_wy;
+        let t71 = inner_ring_e2 * t62;
+        let t72 = inner_ring_e3 * t64;
+        let t73 = t72 + t71;
+        let t74 = inner_ring_wx * inner_ring_wz;
+        let t75 = T::fused(
+            t74,
+            t73,
+            T::fused(t69, T::fused(-inner_ring_e1, t64, t68), t70 * t66),
+        );
+        let t76 = k(1e-5) * t75;
+        let t77 = k(2.0) * inner_ring_e2;
+        let t78 = T::fused(-inner_ring_e2, t77, t68);
+        let t79 = k(0.000125) * t78;
+        let t80 = inner_ring_e1 * t62;
+        let t81 = inner_ring_e3 * t77;
+        let t82 = t81 - t80;
+        let t83 = T::fused(t74, t82, -T::fused(t69, t65 + t63, t70 * t78));
+        let t84 = T::fused(k(1e-5), t83, k(0.8));
+        let t85 = t81 + t80;
+        let t86 = k(0.000125) * t85;
+        let t87 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t68);
+        let t88 = T::fused(t74, t87, -T::fused(-t69, t72 - t71, t70 * t85));
+        let t89 = k(1e-5) * t88;
+        let t90 = T::fused(t89, t86, T::fused(-t76, t67, t84 * t79))
+            - T::fused(t21, t59, t23 * t61);
+        let t91 = T::fused(k(1e-6), t70, -t90);
+        let t92 = t26 * t91;
+        let t93 = T::fused(
+            t24,
+            t92,
             -T::fused(
                 k(1e-6),
                 inner_ring_wy * inner_ring_wz,
-                T::fused(-t10, t57, t15 * t59),
+                T::fused(-t12, t59, t16 * t61),
             ),
         );
-        let t90 = t29 * t31;
-        let t91 = t32 * t28;
-        let t92 = t29 * t32;
-        let t93 = t31 * t28;
-        let t94 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t91 - t90),
-            outer_ring_wy * (k(2.0) * (t93 + t92)),
-        );
-        let t95 = k(0.5) - T::fused(t28, t28, t43);
-        let t96 = T::fused(outer_ring_wz, k(2.0) * t95, -t94);
-        let t97 = inner_ring_wz + t96;
-        let t98 = k(2.0) * (t33 + t30);
-        let t99 = k(2.0) * (t93 - t92);
-        let t100 = T::fused(
+        let t94 = t35 * t30;
+        let t95 = t31 * t34;
+        let t96 = t33 * t30;
+        let t97 = t31 * t44;
+        let t98 = T::fused(-t31, k(2.0) * t31, t45);
+        let t99 = T::fused(
             outer_ring_wz,
-            t99,
-            -T::fused(-outer_ring_wx, t98, outer_ring_wy * t44),
+            t98,
+            -T::fused(outer_ring_wx, t95 - t94, outer_ring_wy * (t97 + t96)),
         );
-        let t101 = inner_ring_wy - t100;
-        let t102 = k(2.0) * (k(0.5) - T::fused(t32, t32, t43));
-        let t103 = k(2.0) * (t91 + t90);
-        let t104 = T::fused(
+        let t100 = inner_ring_wz + t99;
+        let t101 = t36 + t32;
+        let t102 = t97 - t96;
+        let t103 = T::fused(
             outer_ring_wz,
-            t103,
-            T::fused(-outer_ring_wx, t102, outer_ring_wy * t34),
+            t102,
+            -T::fused(-outer_ring_wx, t101, outer_ring_wy * t46),
         );
-        let t105 = inner_ring_wx - t104;
-        let t106 = k(0.5) / t95 * T::fused(t101, t101, t105 * t105);
-        let t107 = T::fused(inner_ring_wz, t100, inner_ring_wy * t96)
-            - T::fused(-t101, t97, t99 * t106);
-        let t108 = T::fused(inner_ring_wx, t96, inner_ring_wz * t104)
-            - T::fused(-t105, t97, t103 * t106);
-        let t109 = k(0.00025) * t70;
-        let t110 = k(0.00025) * t77;
-        let t111 = k(0.00025) * t82;
-        let t112 = T::fused(t111, t84, T::fused(t109, t72, t110 * t79))
-            + T::fused(t36, t57, t38 * t59);
-        let t113 = T::fused(
-            -t34,
-            T::fused(-t27, t107, t42 * t108) + t89,
-            t44 * (T::fused(-t42, t107, t46 * t108) + T::fused(t41, t88, -t112)),
+        let t104 = inner_ring_wy - t103;
+        let t105 = T::fused(-t33, t34, t45);
+        let t106 = t95 + t94;
+        let t107 = T::fused(
+            outer_ring_wz,
+            t106,
+            T::fused(-outer_ring_wx, t105, outer_ring_wy * t37),
         );
-        let t114 = T::fused(
-            -t34,
-            T::fused(-t102, t27, t98 * t42),
-            t44 * T::fused(-t102, t42, t98 * t46),
+        let t108 = inner_ring_wx - t107;
+        let t109 = T::fused(t104, t104, t108 * t108) / t98;
+        let t110 = T::fused(inner_ring_wz, t103, inner_ring_wy * t99)
+            - T::fused(-t104, t100, t102 * t109);
+        let t111 = T::fused(inner_ring_wx, t99, inner_ring_wz * t107)
+            - T::fused(-t108, t100, t106 * t109);
+        let t112 = k(0.000125) * t73;
+        let t113 = k(0.000125) * t82;
+        let t114 = k(0.000125) * t87;
+        let t115 = T::fused(t89, t114, T::fused(t76, t112, t84 * t113))
+            + T::fused(t38, t59, t39 * t61);
+        let t116 = T::fused(
+            -t37,
+            T::fused(-t28, t110, t43 * t111) + t93,
+            t46 * (T::fused(-t43, t110, t48 * t111) + T::fused(t42, t92, -t115)),
         );
-        let t115 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
-            t0,
+        let t117 = T::fused(
+            -t37,
+            T::fused(-t105, t28, t101 * t43),
+            t46 * T::fused(-t105, t43, t101 * t48),
+        );
+        let t118 = T::fused(
+            -T::fused(outer_ring_e3, t1, outer_ring_e2 * (k(2.0) * outer_ring_e1)),
+            t2,
             outer_ring_wx * outer_ring_wy,
         );
-        let t116 = T::fused(-t1, t114, t115 * T::fused(t103, t45, t99 * t47))
-            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t113);
-        let t117 = t116 / (k(1e-6) - T::fused(-t34, t45, t44 * t47));
-        let t118 = t107 + T::fused(t115, t103, -T::fused(-t1, t102, t34 * t117));
-        let t119 = t108 - T::fused(t115, t99, T::fused(-t1, t98, t44 * t117));
-        let t120 = t25 * (t87 + T::fused(-t23, t118, t41 * t119));
+        let t119 = T::fused(-t3, t117, t118 * T::fused(t106, t47, t102 * t49))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t116);
+        let t120 = t119 / (k(1e-6) - T::fused(-t37, t47, t46 * t49));
+        let t121 = t110 + T::fused(t106, t118, -T::fused(-t105, t3, t37 * t120));
+        let t122 = t111 - T::fused(t102, t118, T::fused(-t101, t3, t46 * t120));
+        let t123 = t26 * (t91 + T::fused(-t24, t121, t42 * t122));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t1,
-            -t117,
-            t115,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t118,
-            -t119,
+            -t3,
             -t120,
-            T::fused(k(0.000125), t71, -T::fused(-t109, t119, t73 * t120)),
-            T::fused(k(0.000125), t78, T::fused(t110, t119, t80 * t120)),
-            -T::fused(k(0.000125), t83, T::fused(t111, t119, t85 * t120)),
+            t118,
             k(0.0),
-            -(t56 + T::fused(t19, t120, -T::fused(t10, t118, t36 * t119))),
-            T::fused(t22, t120, -T::fused(-t15, t118, t38 * t119)) - t58,
+            k(0.0),
+            k(0.0),
+            t121,
+            -t122,
+            -t123,
+            T::fused(k(0.000125), t75, -T::fused(-t112, t122, t67 * t123)),
+            T::fused(k(0.000125), t83, T::fused(t113, t122, t79 * t123)),
+            -T::fused(k(0.000125), t88, T::fused(t114, t122, t86 * t123)),
+            k(0.0),
+            -(t58 + T::fused(t21, t123, -T::fused(t12, t121, t38 * t122))),
+            T::fused(t23, t123, -T::fused(-t16, t121, t39 * t122)) - t60,
         ];
     }
-    /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).
+    /// Writes λ: 283 operations (108 ±, 172 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2496,149 +2499,156 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gyroscope<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
-        let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t8));
-        let t10 = rotor_e0 * rotor_e3;
-        let t11 = rotor_e1 * rotor_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e0 * inner_ring_e3;
-        let t14 = inner_ring_e1 * inner_ring_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = rotor_e0 * rotor_e2;
-        let t17 = rotor_e1 * rotor_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = inner_ring_e0 * inner_ring_e2;
-        let t20 = inner_ring_e1 * inner_ring_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(1e-5) * rotor_dwx;
-        let t23 = k(2.0) * (t11 - t10);
-        let t24 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t6));
-        let t25 = rotor_e0 * rotor_e1;
-        let t26 = rotor_e2 * rotor_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t29 = T::fused(
-            t22,
-            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
-            t28 * T::fused(t21, t27, -T::fused(t9, t23, t15 * t24)),
+        let t6 = k(2.0) * rotor_e1;
+        let t7 = k(2.0) * rotor_e0;
+        let t8 = T::fused(-rotor_e0, t7, k(1.0));
+        let t9 = T::fused(-rotor_e1, t6, t8);
+        let t10 = k(2.0) * inner_ring_e1;
+        let t11 = k(2.0) * inner_ring_e0;
+        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
+        let t13 = T::fused(-inner_ring_e1, t10, t12);
+        let t14 = rotor_e3 * t7;
+        let t15 = rotor_e2 * t6;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e3 * t11;
+        let t18 = inner_ring_e2 * t10;
+        let t19 = t18 + t17;
+        let t20 = rotor_e2 * t7;
+        let t21 = rotor_e3 * t6;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e2 * t11;
+        let t24 = inner_ring_e3 * t10;
+        let t25 = t24 - t23;
+        let t26 = k(1e-5) * rotor_dwx;
+        let t27 = t15 - t14;
+        let t28 = k(2.0) * rotor_e2;
+        let t29 = T::fused(-rotor_e2, t28, t8);
+        let t30 = rotor_e1 * t7;
+        let t31 = rotor_e3 * t28;
+        let t32 = t31 + t30;
+        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t34 = T::fused(
+            t26,
+            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
+            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
         );
-        let t30 = k(2.0) * (t17 + t16);
-        let t31 = k(2.0) * (t26 - t25);
-        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t6));
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t34 = T::fused(t33, T::fused(t21, t32, -T::fused(-t9, t30, t15 * t31)), t29);
-        let t35 = T::fused(
+        let t35 = t21 + t20;
+        let t36 = t31 - t30;
+        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
+        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t39 = T::fused(
+            t38,
+            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
+            t34,
+        );
+        let t40 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t34,
+            -t39,
         );
-        let t36 = outer_ring_e0 * outer_ring_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t36));
-        let t38 = outer_ring_e0 * outer_ring_e3;
-        let t39 = outer_ring_e1 * outer_ring_e2;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = outer_ring_e0 * outer_ring_e2;
-        let t42 = outer_ring_e1 * outer_ring_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = T::fused(t43, t21, T::fused(t37, t9, t40 * t15));
-        let t45 = t14 - t13;
-        let t46 = k(2.0) * t45;
-        let t47 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8);
-        let t48 = k(2.0) * t47;
-        let t49 = inner_ring_e0 * inner_ring_e1;
-        let t50 = inner_ring_e2 * inner_ring_e3;
-        let t51 = t50 + t49;
-        let t52 = k(2.0) * t51;
-        let t53 = T::fused(t52, t27, T::fused(t48, t24, t46 * t23));
-        let t54 = T::fused(
-            t22,
-            T::fused(t52, t18, -T::fused(t46, t7, t48 * t12)),
-            t28 * t53,
-        );
-        let t55 = T::fused(t52, t32, -T::fused(-t48, t31, t46 * t30));
-        let t56 = t20 + t19;
-        let t57 = t50 - t49;
-        let t58 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8);
+        let t41 = k(2.0) * outer_ring_e1;
+        let t42 = k(2.0) * outer_ring_e0;
+        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
+        let t44 = T::fused(-outer_ring_e1, t41, t43);
+        let t45 = outer_ring_e3 * t42;
+        let t46 = outer_ring_e2 * t41;
+        let t47 = t46 + t45;
+        let t48 = outer_ring_e2 * t42;
+        let t49 = outer_ring_e3 * t41;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
+        let t52 = t18 - t17;
+        let t53 = k(2.0) * inner_ring_e2;
+        let t54 = T::fused(-inner_ring_e2, t53, t12);
+        let t55 = inner_ring_e1 * t11;
+        let t56 = inner_ring_e3 * t53;
+        let t57 = t56 + t55;
+        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
         let t59 = T::fused(
+            t26,
+            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
+            t33 * t58,
+        );
+        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
+        let t61 = t24 + t23;
+        let t62 = t56 - t55;
+        let t63 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
+        let t64 = T::fused(
             t4,
-            k(0.00025) * t58,
-            -T::fused(t0, k(0.00025) * t56, t2 * (k(0.00025) * t57)),
+            k(0.000125) * t63,
+            -T::fused(t0, k(0.000125) * t61, t2 * (k(0.000125) * t62)),
         );
-        let t60 = T::fused(k(2e-6), inner_ring_dwy, t59 + T::fused(t33, t55, t54));
-        let t61 = T::fused(t43, t52, -T::fused(t37, t46, t40 * t48));
-        let t62 = k(2.0) * t56;
-        let t63 = k(2.0) * t57;
-        let t64 = k(2.0) * t58;
-        let t65 = T::fused(t64, t27, -T::fused(-t63, t24, t62 * t23));
-        let t66 = T::fused(
-            t22,
-            T::fused(t64, t18, -T::fused(-t62, t7, t63 * t12)),
-            t28 * t65,
-        );
-        let t67 = T::fused(t64, t32, T::fused(t63, t31, t62 * t30));
+        let t65 = T::fused(k(2e-6), inner_ring_dwy, t64 + T::fused(t38, t60, t59));
+        let t66 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
+        let t67 = T::fused(t63, t32, T::fused(-t61, t27, t62 * t29));
         let t68 = T::fused(
-            t4,
-            k(0.00025) * t51,
-            -T::fused(-t0, k(0.00025) * t45, t2 * (k(0.00025) * t47)),
+            t26,
+            T::fused(t63, t22, -T::fused(-t61, t9, t62 * t16)),
+            t33 * t67,
         );
-        let t69 = T::fused(
+        let t69 = T::fused(t63, t37, T::fused(t61, t35, t62 * t36));
+        let t70 = T::fused(
+            t4,
+            k(0.000125) * t57,
+            -T::fused(-t0, k(0.000125) * t52, t2 * (k(0.000125) * t54)),
+        );
+        let t71 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t68 - T::fused(t33, t67, t66),
+            t70 - T::fused(t38, t69, t68),
         );
-        let t70 = T::fused(
-            T::fused(t43, t64, -T::fused(-t37, t62, t40 * t63)),
-            t69,
-            -T::fused(-t44, t35, t61 * t60),
+        let t72 = T::fused(
+            T::fused(t50, t63, -T::fused(-t44, t61, t47 * t62)),
+            t71,
+            -T::fused(-t51, t40, t66 * t65),
         );
-        let t71 = T::fused(k(2e-6), outer_ring_dwx, -t70);
-        let t72 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t36));
-        let t73 = k(2.0) * (t42 + t41);
-        let t74 = k(1.0) / T::fused(-t37, t72, t73 * t43);
-        let t75 = outer_ring_e0 * outer_ring_e1;
-        let t76 = outer_ring_e2 * outer_ring_e3;
-        let t77 = k(2.0) * (t76 - t75);
-        let t78 = T::fused(
-            -T::fused(t72, t21, -T::fused(-t73, t9, t77 * t15)),
-            t35,
-            T::fused(t72, t52, -T::fused(-t77, t48, t73 * t46)) * t60,
+        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
+        let t74 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
+        let t75 = t49 + t48;
+        let t76 = k(1.0) / T::fused(-t44, t74, t75 * t50);
+        let t77 = outer_ring_e1 * t42;
+        let t78 = k(2.0) * outer_ring_e2;
+        let t79 = outer_ring_e3 * t78;
+        let t80 = t79 - t77;
+        let t81 = T::fused(
+            -T::fused(t74, t25, -T::fused(-t75, t13, t80 * t19)),
+            t40,
+            T::fused(t74, t57, T::fused(-t75, t52, t80 * t54)) * t65,
         );
-        let t79 = T::fused(T::fused(t72, t64, T::fused(t77, t63, t73 * t62)), t69, -t78);
-        let t80 = T::fused(
+        let t82 = T::fused(T::fused(t74, t63, T::fused(t75, t61, t80 * t62)), t71, -t81);
+        let t83 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t79,
+            -t82,
         );
-        let t81 = k(2.0) * (t39 - t38);
-        let t82 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t36));
-        let t83 = k(2.0) * (t76 + t75);
-        let t84 = T::fused(t83, t21, -T::fused(t81, t9, t82 * t15));
-        let t85 = T::fused(t83, t52, T::fused(t82, t48, t81 * t46));
-        let t86 = k(1.0) / T::fused(-t61, t84, t44 * t85);
-        let t87 = k(1.0) / T::fused(-t55, t65, t53 * t67);
+        let t84 = t46 - t45;
+        let t85 = T::fused(-outer_ring_e2, t78, t43);
+        let t86 = t79 + t77;
+        let t87 = T::fused(t86, t25, -T::fused(t84, t13, t85 * t19));
+        let t88 = T::fused(t86, t57, T::fused(t84, t52, t85 * t54));
+        let t89 = k(1.0) / T::fused(-t87, t66, t88 * t51);
+        let t90 = k(1.0) / T::fused(-t67, t60, t69 * t58);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t37 * t74, t71, t73 * t74 * t80),
-            -T::fused(t43 * t74, t71, t72 * t74 * t80),
+            -T::fused(t44 * t76, t73, t75 * t76 * t83),
+            -T::fused(t50 * t76, t73, t74 * t76 * t83),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t85 * t86), t60, t84 * t86 * t35),
-            T::fused(-(t44 * t86), t35, t61 * t86 * t60),
+            T::fused(-(t88 * t89), t65, t87 * t89 * t40),
+            T::fused(-(t51 * t89), t40, t66 * t89 * t65),
             -t0,
             -t2,
             -t4,
-            T::fused(t28, t65 * t87, t33 * (t67 * t87)),
-            T::fused(t28, t53 * t87, t33 * (t55 * t87)),
+            T::fused(t33, t67 * t90, t38 * (t69 * t90)),
+            T::fused(t33, t58 * t90, t38 * (t60 * t90)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gyroscope<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 387 operations (147 ±, 235 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 381 operations (144 ±, 232 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2674,223 +2684,173 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gyroscope<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
-        let t9 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = k(2.0) * outer_ring_e1;
+        let t4 = T::fused(-outer_ring_e1, t3, t1);
+        let t5 = outer_ring_e2 * t0;
+        let t6 = outer_ring_e3 * t3;
+        let t7 = t6 - t5;
+        let t8 = t6 + t5;
+        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
+        let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
+        let t11 = k(2.0) * rotor_e0;
+        let t12 = k(2.0) * rotor_e1;
+        let t13 = T::fused(rotor_e2, t11, rotor_e3 * t12);
+        let t14 = k(2.0) * inner_ring_e0;
+        let t15 = inner_ring_e3 * t14;
+        let t16 = k(2.0) * inner_ring_e1;
+        let t17 = inner_ring_e2 * t16;
+        let t18 = t17 - t15;
+        let t19 = rotor_e1 * t11;
+        let t20 = k(2.0) * rotor_e2;
+        let t21 = rotor_e3 * t20;
+        let t22 = t21 - t19;
+        let t23 = k(2.0) * inner_ring_e2;
+        let t24 = T::fused(-inner_ring_e0, t14, k(1.0));
+        let t25 = T::fused(-inner_ring_e2, t23, t24);
+        let t26 = T::fused(-rotor_e0, t11, k(1.0));
+        let t27 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t26);
+        let t28 = inner_ring_e1 * t14;
+        let t29 = inner_ring_e3 * t23;
+        let t30 = t29 + t28;
+        let t31 = T::fused(t30, t27, T::fused(-t18, t13, t25 * t22));
+        let t32 = T::fused(-rotor_e3, t11, rotor_e2 * t12);
+        let t33 = inner_ring_e2 * t14;
+        let t34 = inner_ring_e3 * t16;
+        let t35 = t34 + t33;
+        let t36 = T::fused(-rotor_e2, t20, t26);
+        let t37 = t29 - t28;
+        let t38 = t21 + t19;
+        let t39 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t24);
+        let t40 = T::fused(t39, t38, T::fused(-t35, t32, t37 * t36));
+        let t41 = T::fused(t30, t38, T::fused(t18, t32, t25 * t36));
+        let t42 = T::fused(t39, t27, T::fused(t35, t13, t37 * t22));
+        let t43 = k(1.0) / T::fused(-t40, t31, t42 * t41);
+        let t44 = T::fused(row13, t40 * t43, row14 * (t41 * t43));
+        let t45 = k(5e-6) * t44;
+        let t46 = T::fused(-inner_ring_e1, t16, t24);
+        let t47 = t17 + t15;
+        let t48 = t34 - t33;
+        let t49 = T::fused(t48, t38, -T::fused(t46, t32, t47 * t36));
+        let t50 = T::fused(row13, t42 * t43, row14 * (t31 * t43));
+        let t51 = k(5e-6) * t50;
+        let t52 = T::fused(t48, t27, -T::fused(-t46, t13, t47 * t22));
+        let t53 = k(0.08) * row10;
+        let t54 = k(0.000125) * t18;
+        let t55 = k(0.08) * row11;
+        let t56 = k(0.000125) * t25;
+        let t57 = k(0.08) * row12;
+        let t58 = k(0.000125) * t30;
+        let t59 = T::fused(t58, t57, -T::fused(-t54, t53, t56 * t55))
+            + T::fused(t40, t45, t42 * t51);
+        let t60 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t40, k(5e-6) * t40, t42 * (k(5e-6) * t42)));
+        let t61 = k(1.0) / t60;
+        let t62 = t61 * t59;
+        let t63 = k(5e-6) * t49;
+        let t64 = k(5e-6) * t52;
+        let t65 = T::fused(t40, t63, t42 * t64);
+        let t66 = k(1e-5) * t18;
+        let t67 = t61 * t66;
+        let t68 = t65 * t67;
+        let t69 = k(1e-5) * t25;
+        let t70 = t61 * t69;
+        let t71 = t65 * t70;
+        let t72 = k(1e-5) * t30;
+        let t73 = t61 * t72;
+        let t74 = t65 * t73;
+        let t75 = outer_ring_e3 * t0;
+        let t76 = outer_ring_e2 * t3;
+        let t77 = t76 + t75;
+        let t78 = T::fused(t7, t30, -T::fused(t4, t18, t77 * t25));
+        let t79 = t76 - t75;
+        let t80 = k(2.0) * outer_ring_e2;
+        let t81 = T::fused(-outer_ring_e2, t80, t1);
+        let t82 = outer_ring_e1 * t0;
+        let t83 = outer_ring_e3 * t80;
+        let t84 = t83 + t82;
+        let t85 = T::fused(t84, t48, -T::fused(t79, t46, t81 * t47));
+        let t86 = T::fused(t7, t48, T::fused(t4, t46, t77 * t47));
+        let t87 = T::fused(t84, t30, T::fused(t79, t18, t81 * t25));
+        let t88 = k(1.0) / T::fused(-t85, t78, t87 * t86);
+        let t89 = T::fused(-row8, t85 * t88, row9 * (t86 * t88));
+        let t90 = t61 * t65;
+        let t91 = T::fused(t65, t90, -(k(1e-6) + T::fused(t49, t63, t52 * t64)));
+        let t92 = T::fused(-row8, t87 * t88, row9 * (t78 * t88));
+        let t93 = k(5e-6) * t41;
+        let t94 = k(5e-6) * t31;
+        let t95 = T::fused(t40, t93, t42 * t94);
+        let t96 = T::fused(t95, t90, -T::fused(t41, t63, t31 * t64));
+        let t97 = T::fused(t91, t89, t96 * t92)
+            + T::fused(row7, t74, -T::fused(-row5, t68, row6 * t71));
+        let t98 = k(0.000125) * t35;
+        let t99 = k(0.000125) * t37;
+        let t100 = k(0.000125) * t39;
+        let t101 = T::fused(t100, t57, -T::fused(t98, t53, t99 * t55))
+            - T::fused(t41, t45, t31 * t51);
+        let t102 = T::fused(-k(1e-5), t35, t95 * t67);
+        let t103 = T::fused(k(1e-5), t37, t95 * t70);
+        let t104 = T::fused(k(1e-5), t39, t95 * t73);
+        let t105 = T::fused(
+            t95,
+            t61 * t95,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t41, t93, t31 * t94))),
         );
-        let t10 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
+        let t106 = T::fused(t96, t89, t105 * t92)
+            + T::fused(row7, t104, -T::fused(-row5, t102, row6 * t103));
+        let t107 = T::fused(
+            t85,
+            t97 + T::fused(t65, t62, -T::fused(t49, t45, t52 * t51)),
+            t87 * (t106 + T::fused(t95, t62, t101)),
         );
-        let t11 = t10 * t9;
-        let t12 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
+        let t108 = T::fused(
+            -row0,
+            T::fused(t85, t68, t87 * t102),
+            row1 * T::fused(t85, t71, t87 * t103),
         );
-        let t13 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
+        let t109 = T::fused(
+            t85,
+            T::fused(t91, t86, t96 * t78),
+            t87 * T::fused(t96, t86, t105 * t78),
         );
-        let t14 = t13 * t12;
-        let t15 = t14 - t11;
-        let t16 = k(2.0) * t15;
-        let t17 = t14 + t11;
-        let t18 = k(2.0) * t17;
-        let t19 = t10 * t10;
-        let t20 = k(0.5) - T::fused(t12, t12, t19);
-        let t21 = k(2.0) * t20;
-        let t22 = k(0.5) - T::fused(t13, t13, t19);
-        let t23 = k(2.0) * t22;
-        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
-        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
-        let t26 = k(5e-6) * t25;
-        let t27 = T::fused(t10, t12, t9 * t13);
-        let t28 = k(2.0) * t27;
-        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
-        let t30 = k(5e-6) * t29;
-        let t31 = T::fused(-t10, t13, t9 * t12);
-        let t32 = k(2.0) * t31;
-        let t33 = k(0.08) * row10;
-        let t34 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t35 = k(0.00025) * t34;
-        let t36 = k(0.08) * row11;
-        let t37 = inner_ring_e0 * inner_ring_e0;
-        let t38 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t37);
-        let t39 = k(0.00025) * t38;
-        let t40 = k(0.08) * row12;
-        let t41 = inner_ring_e0 * inner_ring_e1;
-        let t42 = inner_ring_e2 * inner_ring_e3;
-        let t43 = t42 + t41;
-        let t44 = k(0.00025) * t43;
-        let t45 = T::fused(t44, t40, -T::fused(-t35, t33, t39 * t36))
-            + T::fused(t16, t26, t21 * t30);
-        let t46 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
-        let t47 = k(1.0) / t46;
-        let t48 = t47 * t45;
-        let t49 = k(1e-5) * t27;
-        let t50 = k(1e-5) * t31;
-        let t51 = T::fused(-t16, t49, t21 * t50);
-        let t52 = k(2e-5) * t34;
-        let t53 = t47 * t52;
-        let t54 = t51 * t53;
-        let t55 = k(2e-5) * t38;
-        let t56 = t47 * t55;
-        let t57 = t51 * t56;
-        let t58 = k(2e-5) * t43;
-        let t59 = t47 * t58;
-        let t60 = t51 * t59;
-        let t61 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t62 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t63 = t62 * t61;
-        let t64 = T::fused(
-            -outer_ring_e1,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e0,
-                inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
-            ),
-        );
-        let t65 = T::fused(
-            outer_ring_e2,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e3,
-                inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
-            ),
-        );
-        let t66 = t65 * t64;
-        let t67 = k(2.0) * (t66 - t63);
-        let t68 = k(2.0) * (t66 + t63);
-        let t69 = t62 * t62;
-        let t70 = k(2.0) * (k(0.5) - T::fused(t64, t64, t69));
-        let t71 = k(2.0) * (k(0.5) - T::fused(t65, t65, t69));
-        let t72 = k(1.0) / T::fused(-t68, t67, t71 * t70);
-        let t73 = T::fused(row8, t67 * t72, row9 * (t71 * t72));
-        let t74 = t47 * t51;
-        let t75 = T::fused(t51, t74, -(k(1e-6) + T::fused(t28, t49, t32 * t50)));
-        let t76 = T::fused(row8, t70 * t72, row9 * (t68 * t72));
-        let t77 = k(1e-5) * t22;
-        let t78 = k(1e-5) * t17;
-        let t79 = T::fused(t16, t77, t21 * t78);
-        let t80 = T::fused(t79, t74, -T::fused(-t23, t49, t18 * t50));
-        let t81 = T::fused(-t75, t73, t80 * t76)
-            + T::fused(row7, t60, -T::fused(-row5, t54, row6 * t57));
-        let t82 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t83 = k(0.00025) * t82;
-        let t84 = t42 - t41;
-        let t85 = k(0.00025) * t84;
-        let t86 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t37);
-        let t87 = k(0.00025) * t86;
-        let t88 = T::fused(t87, t40, -T::fused(t83, t33, t85 * t36))
-            - T::fused(t23, t26, t18 * t30);
-        let t89 = T::fused(-t79, t53, k(2e-5) * t82);
-        let t90 = T::fused(t79, t56, k(2e-5) * t84);
-        let t91 = T::fused(t79, t59, k(2e-5) * t86);
-        let t92 = T::fused(
-            t79,
-            t47 * t79,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t23, t77, t18 * t78))),
-        );
-        let t93 = T::fused(-t80, t73, t92 * t76)
-            + T::fused(row7, t91, -T::fused(row5, t89, row6 * t90));
-        let t94 = T::fused(
-            -t67,
-            t81 + T::fused(t51, t48, -T::fused(-t28, t26, t32 * t30)),
-            t70 * (t93 + T::fused(t79, t48, t88)),
-        );
-        let t95 = T::fused(
-            row0,
-            T::fused(t67, t54, t70 * t89),
-            row1 * T::fused(-t67, t57, t70 * t90),
-        );
-        let t96 = T::fused(
-            -t67,
-            T::fused(-t71, t75, t68 * t80),
-            t70 * T::fused(-t71, t80, t68 * t92),
-        );
-        let t97 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-        let t98 = T::fused(-t67, t75, t70 * t80);
-        let t99 = k(2.0) * T::fused(t62, t64, t65 * t61);
-        let t100 = T::fused(-t67, t80, t70 * t92);
-        let t101 = k(2.0) * T::fused(-t62, t65, t64 * t61);
-        let t102 = T::fused(-t96, t8, T::fused(t99, t98, t101 * t100) * t97)
-            + T::fused(row2, T::fused(-t67, t60, t70 * t91), -t95);
-        let t103 = (t102 + t94) / (k(1e-6) - T::fused(-t67, t98, t70 * t100));
-        let t104 = row0 + row5;
-        let t105 = row1 + row6;
-        let t106 = row2 + row7;
-        let t107 = t73 - T::fused(t99, t97, -T::fused(-t71, t8, t67 * t103));
-        let t108 = t76 + T::fused(t101, t97, T::fused(-t68, t8, t70 * t103));
-        let t109 = T::fused(t106, t58, -T::fused(-t104, t52, t105 * t55))
-            + T::fused(-t51, t107, t79 * t108);
-        let t110 = t47 * (t45 + t109);
+        let t110 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
+        let t111 = t83 - t82;
+        let t112 = T::fused(t2, t48, -T::fused(-t8, t46, t111 * t47));
+        let t113 = T::fused(t85, t91, t87 * t96);
+        let t114 = T::fused(t2, t30, T::fused(-t8, t18, t111 * t25));
+        let t115 = T::fused(t96, t85, t105 * t87);
+        let t116 = T::fused(t109, t10, T::fused(t113, t112, t115 * t114) * t110)
+            - T::fused(row2, T::fused(t85, t74, t87 * t104), -t108);
+        let t117 = (t116 - t107) / (k(1e-6) - T::fused(t85, t113, t87 * t115));
+        let t118 = row0 + row5;
+        let t119 = row1 + row6;
+        let t120 = row2 + row7;
+        let t121 = t89 - T::fused(t112, t110, T::fused(t86, t10, t85 * t117));
+        let t122 = t92 - T::fused(t114, t110, T::fused(t78, t10, t87 * t117));
+        let t123 = T::fused(t65, t121, t95 * t122)
+            + T::fused(t120, t72, -T::fused(-t118, t66, t119 * t69));
+        let t124 = t61 * (t59 + t123);
         *out = [
             row0,
             row1,
             row2,
-            t8,
-            t103,
-            -t97,
-            t104,
-            t105,
-            t106,
-            t107,
-            -t108,
+            t10,
+            t117,
             -t110,
-            row10 + (t104 - T::fused(-t83, t108, t35 * t110)),
-            row11 + (t105 + T::fused(t85, t108, t39 * t110)),
-            row12 + (t106 - T::fused(t87, t108, t44 * t110)),
+            t118,
+            t119,
+            t120,
+            -t121,
+            -t122,
+            -t124,
+            row10 + (t118 - T::fused(-t98, t122, t54 * t124)),
+            row11 + (t119 + T::fused(t99, t122, t56 * t124)),
+            row12 + (t120 - T::fused(t100, t122, t58 * t124)),
             k(0.0),
-            t25 - T::fused(t16, t110, -T::fused(t28, t107, t23 * t108)),
-            T::fused(t21, t110, -T::fused(-t32, t107, t18 * t108)) - t29,
+            T::fused(t40, t124, -T::fused(t49, t121, t41 * t122)) - t44,
+            t50 - T::fused(t42, t124, -T::fused(t52, t121, t31 * t122)),
         ];
     }
 }

@@ -11,8 +11,8 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 785 operations by relative Euler parameters; 805 operations by rotations of the bodies
-//! * project: 656 operations by rotations of the bodies; 707 operations by relative Euler parameters
+//! * accelerations: 762 operations by relative Euler parameters, doubled; 783 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 635 operations by rotations of the bodies, doubled; 656 operations by rotations of the bodies; 2 more compared
 //! * joint_accelerations: 138 operations by normal form; 366 operations by recursion
 //! * joint_accelerations_at: 176 operations by normal form; 404 operations by recursion; 1 more compared
 //! * corrected_accelerations: 321 operations by normal form in the bodies' frames; 421 operations by normal form in the global frame; 5 more compared
@@ -23,15 +23,15 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 73 | 75 | 0 | 148 | 0 of 18 | 258 | 148 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 104 | 167 | 0 | 271 | 0 of 91 | 674 | 271 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 82 | 135 | 0 | 217 | 0 of 53 | 688 | 217 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 102 | 152 | 0 | 254 | 0 of 91 | 754 | 254 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 120 | 0 | 196 | 0 of 53 | 860 | 196 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 169 | 255 | 0 | 424 | 6 of 15 | 1861 | 424 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 120 | 173 | 0 | 293 | 0 of 15 | 800 | 293 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 324 | 456 | 5 | 785 | 6 of 18 | 6.3e7 | 789 |
-//! | multipliers | λ, the accelerations being known | 144 | 229 | 3 | 376 | 0 of 15 | 6241 | 376 |
-//! | project | (δr, δπ') that changes the rows as given | 267 | 383 | 6 | 656 | 0 of 18 | 1.5e7 | 657 |
+//! | gamma | γ | 163 | 240 | 0 | 403 | 6 of 15 | 2161 | 403 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 158 | 0 | 272 | 0 of 15 | 936 | 272 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 318 | 437 | 5 | 760 | 6 of 18 | 6.6e7 | 764 |
+//! | multipliers | λ, the accelerations being known | 138 | 214 | 3 | 355 | 0 of 15 | 7677 | 355 |
+//! | project | (δr, δπ') that changes the rows as given | 261 | 368 | 6 | 635 | 0 of 18 | 1.8e7 | 636 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 132 | 187 | 2 | 321 | 6 of 18 | 458822 | 322 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 100 | 133 | 0 | 233 | 0 of 15 | 1747 | 233 |
 //! | corrected_solution | both | 198 | 280 | 2 | 480 | 6 of 33 | 1.4e7 | 481 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 170 | 258 | 2 | 430 | 24 of 42 | 27498 | 430 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 170 | 253 | 2 | 425 | 24 of 42 | 27498 | 425 |
 //!
 //! # Proof
 //!
@@ -591,7 +591,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
             t45 + (t27 + t38) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 293 operations (120 ±, 173 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 272 operations (114 ±, 158 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -624,153 +624,162 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e2;
-        let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
-        let t19 = outer_ring_e0 * outer_ring_e1;
-        let t20 = outer_ring_e2 * outer_ring_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
-        let t23 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t7 = T::fused(-outer_ring_e1, t2, t5);
+        let t8 = t3 + t1;
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = outer_ring_e3 * t0;
+        let t15 = outer_ring_e2 * t2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e1 * t9;
+        let t18 = k(2.0) * inner_ring_e2;
+        let t19 = inner_ring_e3 * t18;
+        let t20 = t19 - t17;
+        let t21 = k(2.0) * outer_ring_e2;
+        let t22 = T::fused(-outer_ring_e2, t21, t5);
+        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
+        let t25 = outer_ring_e1 * t0;
+        let t26 = outer_ring_e3 * t21;
+        let t27 = t26 + t25;
+        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t29 = T::fused(
             outer_ring_wz,
-            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
-            outer_ring_wy * t22,
+            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
+            outer_ring_wy * t28,
         );
-        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
-        let t25 = inner_ring_e0 * inner_ring_e3;
-        let t26 = inner_ring_e1 * inner_ring_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t15 + t14);
-        let t29 = k(2.0) * (t12 - t11);
-        let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
-        let t32 = k(2.0) * (t8 + t7);
-        let t33 = T::fused(
+        let t30 = T::fused(-inner_ring_e1, t11, t23);
+        let t31 = inner_ring_e3 * t9;
+        let t32 = inner_ring_e2 * t11;
+        let t33 = t32 + t31;
+        let t34 = t15 + t14;
+        let t35 = t12 - t10;
+        let t36 = t32 - t31;
+        let t37 = T::fused(-inner_ring_e2, t18, t23);
+        let t38 = t19 + t17;
+        let t39 = T::fused(
             -inner_ring_wy,
-            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
-            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
+            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
         );
-        let t34 = T::fused(
+        let t40 = T::fused(
             outer_ring_wz,
-            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
-            outer_ring_wx * t22,
+            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
+            outer_ring_wx * t28,
         );
-        let t35 = T::fused(
+        let t41 = T::fused(
             -inner_ring_wy,
-            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
-            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
+            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
         );
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
-        let t38 = rotor_e0 * rotor_e3;
-        let t39 = rotor_e1 * rotor_e2;
-        let t40 = k(2.0) * (t39 - t38);
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = T::fused(
-            -k(0.0002),
-            T::fused(t37, rotor_wz, t43 * rotor_wx),
-            k(0.0001) * T::fused(-t40, rotor_wz, t43 * rotor_wy),
-        );
-        let t45 = T::fused(
-            k(5e-5),
-            T::fused(t13, inner_ring_wx, t24 * inner_ring_wz),
-            k(0.000125) * T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
-        );
-        let t46 = inner_ring_sx
-            + T::fused(k(3e-5), T::fused(t24, inner_ring_wy, t30 * inner_ring_wx), t45)
-            - (rotor_sx
-                - T::fused(-k(0.00015), T::fused(t37, rotor_wy, t40 * rotor_wx), t44));
-        let t47 = k(2.0) * (t39 + t38);
-        let t48 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
-        let t49 = rotor_e0 * rotor_e1;
-        let t50 = rotor_e2 * rotor_e3;
-        let t51 = k(2.0) * (t50 - t49);
+        let t42 = k(2.0) * rotor_e1;
+        let t43 = k(2.0) * rotor_e0;
+        let t44 = T::fused(-rotor_e0, t43, k(1.0));
+        let t45 = T::fused(-rotor_e1, t42, t44);
+        let t46 = rotor_e3 * t43;
+        let t47 = rotor_e2 * t42;
+        let t48 = t47 - t46;
+        let t49 = rotor_e2 * t43;
+        let t50 = rotor_e3 * t42;
+        let t51 = t50 + t49;
         let t52 = T::fused(
             -k(0.0002),
-            T::fused(-t47, rotor_wz, t51 * rotor_wx),
-            k(0.0001) * T::fused(t48, rotor_wz, t51 * rotor_wy),
+            T::fused(rotor_wz, t45, rotor_wx * t51),
+            k(0.0001) * T::fused(-rotor_wz, t48, rotor_wy * t51),
         );
         let t53 = T::fused(
-            k(5e-5),
-            T::fused(-t9, inner_ring_wx, t27 * inner_ring_wz),
-            k(0.000125) * T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
-        );
-        let t54 = inner_ring_sy
-            - T::fused(k(3e-5), T::fused(t27, inner_ring_wy, t31 * inner_ring_wx), t53)
-            - (rotor_sy
-                - T::fused(k(0.00015), T::fused(t47, rotor_wy, t48 * rotor_wx), t52));
-        let t55 = k(2.0) * (t42 - t41);
-        let t56 = k(2.0) * (t50 + t49);
-        let t57 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
-        let t58 = T::fused(
-            -k(0.0002),
-            T::fused(t55, rotor_wz, t57 * rotor_wx),
-            k(0.0001) * T::fused(t56, rotor_wz, t57 * rotor_wy),
-        );
-        let t59 = T::fused(
             -k(5e-5),
-            T::fused(t18, inner_ring_wx, t29 * inner_ring_wz),
-            k(0.000125) * T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
+            T::fused(inner_ring_wz, t30, inner_ring_wx * t13),
+            k(0.000125) * T::fused(-inner_ring_wz, t36, inner_ring_wy * t13),
         );
-        let t60 = inner_ring_sz
-            + T::fused(k(3e-5), T::fused(-t29, inner_ring_wy, t32 * inner_ring_wx), t59)
-            - (rotor_sz
-                + T::fused(k(0.00015), T::fused(-t55, rotor_wy, t56 * rotor_wx), t58));
-        let t61 = T::fused(t29, t55, T::fused(t24, t37, t27 * t47));
+        let t54 = inner_ring_sx
+            - T::fused(-k(3e-5), T::fused(inner_ring_wy, t30, inner_ring_wx * t36), t53)
+            - (rotor_sx
+                - T::fused(-k(0.00015), T::fused(rotor_wy, t45, rotor_wx * t48), t52));
+        let t55 = t47 + t46;
+        let t56 = k(2.0) * rotor_e2;
+        let t57 = T::fused(-rotor_e2, t56, t44);
+        let t58 = rotor_e1 * t43;
+        let t59 = rotor_e3 * t56;
+        let t60 = t59 - t58;
+        let t61 = T::fused(
+            -k(0.0002),
+            T::fused(-rotor_wz, t55, rotor_wx * t60),
+            k(0.0001) * T::fused(rotor_wz, t57, rotor_wy * t60),
+        );
         let t62 = T::fused(
-            inner_ring_wx,
-            T::fused(t18, t55, -T::fused(-t13, t37, t9 * t47)),
-            inner_ring_wz * t61,
+            -k(5e-5),
+            T::fused(-inner_ring_wz, t33, inner_ring_wx * t20),
+            k(0.000125) * T::fused(inner_ring_wz, t37, inner_ring_wy * t20),
         );
-        let t63 = T::fused(
+        let t63 = inner_ring_sy
+            - T::fused(k(3e-5), T::fused(inner_ring_wy, t33, inner_ring_wx * t37), t62)
+            - (rotor_sy
+                - T::fused(k(0.00015), T::fused(rotor_wy, t55, rotor_wx * t57), t61));
+        let t64 = t50 - t49;
+        let t65 = t59 + t58;
+        let t66 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
+        let t67 = T::fused(
+            -k(0.0002),
+            T::fused(rotor_wz, t64, rotor_wx * t66),
+            k(0.0001) * T::fused(rotor_wz, t65, rotor_wy * t66),
+        );
+        let t68 = T::fused(
+            -k(5e-5),
+            T::fused(inner_ring_wz, t35, inner_ring_wx * t24),
+            k(0.000125) * T::fused(inner_ring_wz, t38, inner_ring_wy * t24),
+        );
+        let t69 = inner_ring_sz
+            + T::fused(k(3e-5), T::fused(-inner_ring_wy, t35, inner_ring_wx * t38), t68)
+            - (rotor_sz
+                + T::fused(k(0.00015), T::fused(-rotor_wy, t64, rotor_wx * t65), t67));
+        let t70 = T::fused(t35, t64, T::fused(t30, t45, t33 * t55));
+        let t71 = T::fused(
+            inner_ring_wz,
+            t70,
+            inner_ring_wx * T::fused(t24, t64, -T::fused(-t13, t45, t20 * t55)),
+        );
+        let t72 = T::fused(
             rotor_wz,
-            T::fused(t32, t56, T::fused(t31, t48, t30 * t40)),
-            rotor_wy * T::fused(t32, t57, -T::fused(-t31, t51, t30 * t43)),
+            T::fused(t38, t65, T::fused(t36, t48, t37 * t57)),
+            rotor_wy * T::fused(t38, t66, T::fused(-t36, t51, t37 * t60)),
         );
-        let t64 = T::fused(
+        let t73 = T::fused(
             -inner_ring_wy,
-            t61,
-            inner_ring_wx * T::fused(t32, t55, -T::fused(t30, t37, t31 * t47)),
+            t70,
+            inner_ring_wx * T::fused(t38, t64, -T::fused(t36, t45, t37 * t55)),
         );
-        let t65 = T::fused(
+        let t74 = T::fused(
             rotor_wz,
-            T::fused(t18, t56, -T::fused(-t9, t48, t13 * t40)),
-            rotor_wy * T::fused(t18, t57, T::fused(t9, t51, t13 * t43)),
+            T::fused(t24, t65, T::fused(-t13, t48, t20 * t57)),
+            rotor_wy * T::fused(t24, t66, T::fused(t13, t51, t20 * t60)),
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
-            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
+            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
+            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t33 + t23),
-            t34 - t35,
-            -t46,
+            -(t39 + t29),
+            t40 - t41,
             -t54,
-            -t60,
-            t63 - t62,
-            -(t65 + t64),
+            -t63,
+            -t69,
+            t72 - t71,
+            -(t74 + t73),
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -1821,7 +1830,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 271 operations (104 ±, 167 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 254 operations (102 ±, 152 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1840,35 +1849,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t1 = k(2.0) * outer_ring_e0;
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
-        let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
-        let t6 = t5 * t3;
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(4.0) * outer_ring_e0;
-        let t11 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t12 = t5 * t2;
-        let t13 = t5 * t1;
-        let t14 = t5 * t0;
-        let t15 = k(4.0) * inner_ring_e0;
-        let t16 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
-        let t17 = k(2.0) * inner_ring_e1;
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * inner_ring_e2;
-        let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
-        let t24 = k(2.0) * inner_ring_e0;
-        let t25 = k(2.0) * inner_ring_e3;
+        let t4 = k(2.0) * inner_ring_e3;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e3, t4, t6);
+        let t8 = t3 * t7;
+        let t9 = inner_ring_e1 * t5;
+        let t10 = k(2.0) * inner_ring_e2;
+        let t11 = inner_ring_e3 * t10;
+        let t12 = t11 - t9;
+        let t13 = k(2.0) * inner_ring_e1;
+        let t14 = T::fused(inner_ring_e2, t5, inner_ring_e3 * t13);
+        let t15 = k(4.0) * outer_ring_e0;
+        let t16 = t2 * t7;
+        let t17 = t1 * t7;
+        let t18 = t0 * t7;
+        let t19 = T::fused(-outer_ring_e2, t1, outer_ring_e3 * t0);
+        let t20 = k(4.0) * inner_ring_e0;
+        let t21 = outer_ring_e3 * t1;
+        let t22 = outer_ring_e2 * t0;
+        let t23 = t22 + t21;
+        let t24 = T::fused(-outer_ring_e0, t1, k(1.0));
+        let t25 = T::fused(-outer_ring_e1, t0, t24);
         let t26 = k(4.0) * inner_ring_e3;
-        let t27 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
-        let t29 = k(2.0) * (t19 - t18);
+        let t27 = T::fused(outer_ring_e1, t1, outer_ring_e3 * t3);
+        let t28 = T::fused(-outer_ring_e2, t3, t24);
+        let t29 = t22 - t21;
         let t30 = k(0.0001) * inner_ring_e3;
         let t31 = k(6e-5) * inner_ring_e2;
         let t32 = k(0.0001) * inner_ring_e2;
@@ -1891,23 +1897,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t49 = k(0.0002) * rotor_e2;
         let t50 = k(0.0002) * rotor_e1;
         let t51 = k(0.0002) * rotor_e0;
-        let t52 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
-        let t53 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t54 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
-        let t55 = t54 * t25;
-        let t56 = t54 * t21;
-        let t57 = t54 * t17;
-        let t58 = t54 * t24;
-        let t59 = k(2.0) * rotor_e2;
-        let t60 = k(2.0) * (t8 + t7);
-        let t61 = k(2.0) * rotor_e3;
-        let t62 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
-        let t63 = k(4.0) * rotor_e0;
-        let t64 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t65 = k(4.0) * rotor_e1;
-        let t66 = k(2.0) * rotor_e0;
-        let t67 = k(2.0) * rotor_e1;
+        let t52 = k(2.0) * rotor_e0;
+        let t53 = k(2.0) * rotor_e1;
+        let t54 = T::fused(-rotor_e2, t52, rotor_e3 * t53);
+        let t55 = T::fused(rotor_e3, t52, rotor_e2 * t53);
+        let t56 = T::fused(-rotor_e1, t53, T::fused(-rotor_e0, t52, k(1.0)));
+        let t57 = t4 * t56;
+        let t58 = t10 * t56;
+        let t59 = t13 * t56;
+        let t60 = t5 * t56;
+        let t61 = t11 + t9;
+        let t62 = k(2.0) * rotor_e2;
+        let t63 = T::fused(-inner_ring_e2, t10, t6);
+        let t64 = k(2.0) * rotor_e3;
+        let t65 = T::fused(-inner_ring_e3, t5, inner_ring_e2 * t13);
+        let t66 = k(4.0) * rotor_e0;
+        let t67 = k(4.0) * rotor_e1;
         *out = [
             k(1.0),
             k(1.0),
@@ -1926,22 +1931,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t9, t2, t11 * t10) + t6,
-            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
-            T::fused(t9, t0, t13),
-            T::fused(t9, t1, -t14),
-            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
-            -T::fused(t20, t24, t23 * t25),
-            T::fused(-t23, t24, t20 * t25),
-            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
-            -(t14 + T::fused(-t9, t10, t11 * t2)),
-            T::fused(t11, t3, -t13),
-            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
-            -T::fused(t11, t1, t6),
-            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
-            T::fused(t28, t24, t29 * t25),
-            T::fused(-t28, t25, t29 * t24),
-            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
+            T::fused(t2, t12, t15 * t14) + t8,
+            T::fused(t3, t12, k(4.0) * outer_ring_e1 * t14) - t16,
+            T::fused(t0, t12, t17),
+            T::fused(t1, t12, -t18),
+            T::fused(t20, t19, -T::fused(t13, t23, t10 * t25)),
+            -T::fused(t5, t23, t4 * t25),
+            T::fused(-t5, t25, t4 * t23),
+            T::fused(t26, t19, -T::fused(-t10, t23, t13 * t25)),
+            -(t18 + T::fused(-t15, t12, t2 * t14)),
+            T::fused(t3, t14, -t17),
+            T::fused(k(4.0) * outer_ring_e2, t12, t0 * t14) - t16,
+            -T::fused(t1, t14, t8),
+            T::fused(t20, t27, T::fused(t13, t28, t10 * t29)),
+            T::fused(t5, t28, t4 * t29),
+            T::fused(-t4, t28, t5 * t29),
+            T::fused(t26, t27, T::fused(-t10, t28, t13 * t29)),
             k(-1.0),
             t31 + T::fused(-k(0.0005), inner_ring_e0, t30),
             t33 - T::fused(k(0.0005), inner_ring_e1, t32),
@@ -1972,37 +1977,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             t43 + t48,
             T::fused(k(0.0004), rotor_e3, -t51),
             T::fused(-k(0.0006), rotor_e3, T::fused(k(0.0004), rotor_e2, t50)),
-            T::fused(t52, t17, T::fused(t53, t15, t55)),
-            T::fused(t52, t24, -t56),
-            T::fused(t52, t25, -T::fused(-t53, k(4.0) * inner_ring_e2, t57)),
-            T::fused(t52, t21, t58),
-            T::fused(-t60, t59, T::fused(-t62, t61, t64 * t63)),
-            T::fused(t60, t61, T::fused(-t62, t59, t64 * t65)),
-            -T::fused(t60, t66, t62 * t67),
-            T::fused(-t62, t66, t60 * t67),
-            T::fused(t52, t15, -T::fused(t53, t17, t56)),
-            -T::fused(t53, t24, t55),
-            T::fused(t53, t25, -t58),
-            T::fused(t52, t26, -T::fused(-t53, t21, t57)),
-            T::fused(t5, t59, T::fused(t9, t61, t11 * t63)),
-            T::fused(-t5, t61, T::fused(t9, t59, t11 * t65)),
-            T::fused(t5, t66, t9 * t67),
-            T::fused(-t5, t67, t9 * t66),
+            T::fused(t13, t54, T::fused(t20, t55, t57)),
+            T::fused(t5, t54, -t58),
+            T::fused(t4, t54, -T::fused(-(k(4.0) * inner_ring_e2), t55, t59)),
+            T::fused(t10, t54, t60),
+            T::fused(-t62, t61, T::fused(-t64, t63, t66 * t65)),
+            T::fused(t64, t61, T::fused(-t62, t63, t67 * t65)),
+            -T::fused(t52, t61, t53 * t63),
+            T::fused(-t52, t63, t53 * t61),
+            T::fused(t20, t54, -T::fused(t13, t55, t58)),
+            -T::fused(t5, t55, t57),
+            T::fused(t4, t55, -t60),
+            T::fused(t26, t54, -T::fused(-t10, t55, t59)),
+            T::fused(t62, t7, T::fused(t64, t12, t66 * t14)),
+            T::fused(-t64, t7, T::fused(t62, t12, t67 * t14)),
+            T::fused(t52, t7, t53 * t12),
+            T::fused(-t53, t7, t52 * t12),
             t1,
             t0,
             t3,
             t2,
-            t24,
-            t17,
-            t21,
-            t25,
-            t66,
-            t67,
-            t59,
-            t61,
+            t5,
+            t13,
+            t10,
+            t4,
+            t52,
+            t53,
+            t62,
+            t64,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 217 operations (82 ±, 135 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 196 operations (76 ±, 120 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2017,127 +2022,118 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7);
-        let t9 = k(2.0) * t8;
-        let t10 = inner_ring_e0 * inner_ring_e1;
-        let t11 = inner_ring_e2 * inner_ring_e3;
-        let t12 = t11 - t10;
-        let t13 = k(2.0) * t12;
-        let t14 = outer_ring_e0 * outer_ring_e1;
-        let t15 = outer_ring_e2 * outer_ring_e3;
-        let t16 = inner_ring_e0 * inner_ring_e2;
-        let t17 = inner_ring_e1 * inner_ring_e3;
-        let t18 = t17 + t16;
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(t1, t9, T::fused(k(2.0) * (t15 - t14), t13, t5 * t19));
-        let t21 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t22 = outer_ring_e0 * outer_ring_e3;
-        let t23 = outer_ring_e1 * outer_ring_e2;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = k(2.0) * (t15 + t14);
-        let t26 = inner_ring_e0 * inner_ring_e3;
-        let t27 = inner_ring_e1 * inner_ring_e2;
-        let t28 = t27 - t26;
-        let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7);
-        let t31 = k(2.0) * t30;
-        let t32 = k(2.0) * (t23 + t22);
-        let t33 = t11 + t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7);
-        let t36 = k(2.0) * t35;
-        let t37 = t27 + t26;
-        let t38 = k(2.0) * t37;
-        let t39 = t17 - t16;
-        let t40 = k(2.0) * t39;
-        let t41 = rotor_e0 * rotor_e3;
-        let t42 = rotor_e1 * rotor_e2;
-        let t43 = t42 - t41;
-        let t44 = rotor_e0 * rotor_e2;
-        let t45 = rotor_e1 * rotor_e3;
-        let t46 = t45 + t44;
-        let t47 = rotor_e0 * rotor_e0;
-        let t48 = k(0.5) - T::fused(rotor_e1, rotor_e1, t47);
-        let t49 = k(0.5) - T::fused(rotor_e2, rotor_e2, t47);
-        let t50 = rotor_e0 * rotor_e1;
-        let t51 = rotor_e2 * rotor_e3;
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = outer_ring_e2 * t0;
+        let t4 = k(2.0) * outer_ring_e1;
+        let t5 = outer_ring_e3 * t4;
+        let t6 = t5 - t3;
+        let t7 = t5 + t3;
+        let t8 = T::fused(-outer_ring_e1, t4, t1);
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = inner_ring_e1 * t9;
+        let t15 = k(2.0) * inner_ring_e2;
+        let t16 = inner_ring_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = outer_ring_e1 * t0;
+        let t19 = k(2.0) * outer_ring_e2;
+        let t20 = outer_ring_e3 * t19;
+        let t21 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t22 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t21);
+        let t23 = T::fused(t2, t22, T::fused(t7, t13, (t20 - t18) * t17));
+        let t24 = outer_ring_e3 * t0;
+        let t25 = outer_ring_e2 * t4;
+        let t26 = t25 - t24;
+        let t27 = T::fused(-outer_ring_e2, t19, t1);
+        let t28 = t20 + t18;
+        let t29 = inner_ring_e3 * t9;
+        let t30 = inner_ring_e2 * t11;
+        let t31 = t30 - t29;
+        let t32 = T::fused(-inner_ring_e2, t15, t21);
+        let t33 = t25 + t24;
+        let t34 = t16 + t14;
+        let t35 = T::fused(-inner_ring_e1, t11, t21);
+        let t36 = t30 + t29;
+        let t37 = t12 - t10;
+        let t38 = k(2.0) * rotor_e0;
+        let t39 = rotor_e3 * t38;
+        let t40 = k(2.0) * rotor_e1;
+        let t41 = rotor_e2 * t40;
+        let t42 = t41 - t39;
+        let t43 = rotor_e2 * t38;
+        let t44 = rotor_e3 * t40;
+        let t45 = t44 + t43;
+        let t46 = T::fused(-rotor_e0, t38, k(1.0));
+        let t47 = T::fused(-rotor_e1, t40, t46);
+        let t48 = k(2.0) * rotor_e2;
+        let t49 = T::fused(-rotor_e2, t48, t46);
+        let t50 = rotor_e1 * t38;
+        let t51 = rotor_e3 * t48;
         let t52 = t51 - t50;
-        let t53 = t42 + t41;
+        let t53 = t41 + t39;
         let t54 = t51 + t50;
-        let t55 = k(0.5) - T::fused(rotor_e3, rotor_e3, t47);
-        let t56 = t45 - t44;
-        let t57 = k(2.0) * t48;
-        let t58 = k(2.0) * t53;
-        let t59 = k(2.0) * t56;
-        let t60 = T::fused(t40, t59, T::fused(t36, t57, t38 * t58));
-        let t61 = k(2.0) * t52;
-        let t62 = k(2.0) * t46;
-        let t63 = k(2.0) * t55;
-        let t64 = k(2.0) * t49;
-        let t65 = k(2.0) * t43;
-        let t66 = k(2.0) * t54;
+        let t55 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t46);
+        let t56 = t44 - t43;
+        let t57 = T::fused(t37, t56, T::fused(t35, t47, t36 * t53));
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -t1,
-            -t4,
-            t5,
-            t6,
+            -t2,
+            -t6,
+            t7,
+            t8,
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            -t20,
-            T::fused(-t25, t9, T::fused(-t21, t13, t24 * t19)),
-            T::fused(-t4, t34, T::fused(t6, t29, t32 * t31)),
-            T::fused(t4, t40, T::fused(t6, t36, t32 * t38)),
-            t20,
-            T::fused(t4, t9, -T::fused(-t6, t19, t32 * t13)),
-            -T::fused(t25, t34, T::fused(t21, t31, t24 * t29)),
-            T::fused(t25, t40, -T::fused(t24, t36, t21 * t38)),
+            -t23,
+            -T::fused(t28, t22, T::fused(-t26, t13, t27 * t17)),
+            T::fused(-t6, t34, T::fused(t8, t31, t33 * t32)),
+            T::fused(t6, t37, T::fused(t8, t35, t33 * t36)),
+            t23,
+            T::fused(t6, t22, -T::fused(-t8, t13, t33 * t17)),
+            -T::fused(t28, t34, T::fused(t26, t31, t27 * t32)),
+            T::fused(t28, t37, -T::fused(t26, t35, t27 * t36)),
             k(-1.0),
-            -T::fused(k(6e-5), t28, k(0.0001) * t18),
-            T::fused(-k(6e-5), t35, k(0.00025) * t18),
-            -T::fused(k(0.0001), t35, k(0.00025) * t28),
+            -T::fused(k(3e-5), t31, k(5e-5) * t13),
+            T::fused(-k(3e-5), t35, k(0.000125) * t13),
+            -T::fused(k(5e-5), t35, k(0.000125) * t31),
             k(1.0),
-            T::fused(k(0.0003), t43, k(0.0004) * t46),
-            T::fused(-k(0.0002), t46, k(0.0003) * t48),
-            T::fused(k(0.0004), t48, k(0.0002) * t43),
+            T::fused(k(0.00015), t42, k(0.0002) * t45),
+            T::fused(-k(0.0001), t45, k(0.00015) * t47),
+            T::fused(k(0.0002), t47, k(0.0001) * t42),
             k(-1.0),
-            T::fused(-k(0.0001), t12, k(6e-5) * t30),
-            T::fused(k(6e-5), t37, k(0.00025) * t12),
-            T::fused(k(0.0001), t37, k(0.00025) * t30),
+            T::fused(-k(5e-5), t17, k(3e-5) * t32),
+            T::fused(k(3e-5), t36, k(0.000125) * t17),
+            T::fused(k(5e-5), t36, k(0.000125) * t32),
             k(1.0),
-            T::fused(-k(0.0003), t49, k(0.0004) * t52),
-            -T::fused(k(0.0003), t53, k(0.0002) * t52),
-            -T::fused(k(0.0004), t53, k(0.0002) * t49),
+            T::fused(-k(0.00015), t49, k(0.0002) * t52),
+            -T::fused(k(0.00015), t53, k(0.0001) * t52),
+            -T::fused(k(0.0002), t53, k(0.0001) * t49),
             k(-1.0),
-            T::fused(-k(6e-5), t33, k(0.0001) * t8),
-            T::fused(-k(0.00025), t8, k(6e-5) * t39),
-            T::fused(-k(0.00025), t33, k(0.0001) * t39),
+            T::fused(-k(3e-5), t34, k(5e-5) * t22),
+            T::fused(-k(0.000125), t22, k(3e-5) * t37),
+            T::fused(-k(0.000125), t34, k(5e-5) * t37),
             k(1.0),
-            T::fused(-k(0.0004), t55, k(0.0003) * t54),
-            T::fused(-k(0.0003), t56, k(0.0002) * t55),
-            T::fused(-k(0.0004), t56, k(0.0002) * t54),
-            T::fused(-t9, t59, T::fused(-t19, t57, t13 * t58)),
-            -t60,
-            T::fused(t34, t63, -T::fused(-t31, t61, t29 * t62)),
-            T::fused(t34, t66, T::fused(t31, t64, t29 * t65)),
-            T::fused(-t34, t59, T::fused(t29, t57, t31 * t58)),
-            t60,
-            -T::fused(t9, t63, T::fused(t13, t61, t19 * t62)),
-            T::fused(-t9, t66, T::fused(-t13, t64, t19 * t65)),
+            T::fused(-k(0.0002), t55, k(0.00015) * t54),
+            T::fused(-k(0.00015), t56, k(0.0001) * t55),
+            T::fused(-k(0.0002), t56, k(0.0001) * t54),
+            T::fused(-t22, t56, T::fused(-t13, t47, t17 * t53)),
+            -t57,
+            T::fused(t34, t55, T::fused(-t31, t45, t32 * t52)),
+            T::fused(t34, t54, T::fused(t31, t42, t32 * t49)),
+            T::fused(-t34, t56, T::fused(t31, t47, t32 * t53)),
+            t57,
+            -T::fused(t22, t55, T::fused(t13, t45, t17 * t52)),
+            -T::fused(t22, t54, T::fused(-t13, t42, t17 * t49)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2161,7 +2157,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 424 operations (169 ±, 255 ×, 0 ÷).
+    /// Writes γ: 403 operations (163 ±, 240 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2185,220 +2181,229 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
-        let t13 = outer_ring_e0 * outer_ring_e3;
-        let t14 = outer_ring_e1 * outer_ring_e2;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (t2 + t1);
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e1;
-        let t21 = inner_ring_e2 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * (t14 + t13);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
-        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
-        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
-        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
-        let t29 = k(2.0) * (t7 - t6);
-        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
-        let t31 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = outer_ring_wx * outer_ring_wy;
+        let t6 = outer_ring_e1 * t0;
+        let t7 = k(2.0) * outer_ring_e2;
+        let t8 = outer_ring_e3 * t7;
+        let t9 = t8 + t6;
+        let t10 = outer_ring_wz * outer_ring_wz;
+        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
+        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
+        let t14 = outer_ring_wy * outer_ring_wz;
+        let t15 = T::fused(-outer_ring_e1, t2, t12);
+        let t16 = outer_ring_e3 * t0;
+        let t17 = outer_ring_e2 * t2;
+        let t18 = t17 - t16;
+        let t19 = t3 + t1;
+        let t20 = k(2.0) * inner_ring_e0;
+        let t21 = inner_ring_e2 * t20;
+        let t22 = k(2.0) * inner_ring_e1;
+        let t23 = inner_ring_e3 * t22;
+        let t24 = t23 + t21;
+        let t25 = inner_ring_e1 * t20;
+        let t26 = k(2.0) * inner_ring_e2;
+        let t27 = inner_ring_e3 * t26;
+        let t28 = t27 - t25;
+        let t29 = t17 + t16;
+        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
+        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
+        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
+        let t33 = T::fused(-outer_ring_e2, t7, t12);
+        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
+        let t35 = t8 - t6;
+        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
+        let t37 = T::fused(
             outer_ring_wx * outer_ring_wz,
-            t30,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+            t36,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
         );
-        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
-        let t33 = inner_ring_e0 * inner_ring_e3;
-        let t34 = inner_ring_e1 * inner_ring_e2;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = k(2.0) * (t18 - t17);
-        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
-        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
-        let t39 = k(2.0) * (t34 - t33);
-        let t40 = k(2.0) * (t21 + t20);
-        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
-        let t42 = T::fused(
+        let t38 = T::fused(-inner_ring_e1, t22, t30);
+        let t39 = inner_ring_e3 * t20;
+        let t40 = inner_ring_e2 * t22;
+        let t41 = t40 + t39;
+        let t42 = t23 - t21;
+        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
+        let t44 = t40 - t39;
+        let t45 = T::fused(-inner_ring_e2, t26, t30);
+        let t46 = t27 + t25;
+        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
+        let t48 = T::fused(
             -inner_ring_wy,
-            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
-            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
+            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
         );
-        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
-        let t44 = inner_ring_wx * inner_ring_wz;
-        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
-        let t46 = inner_ring_wy * inner_ring_wz;
-        let t47 = inner_ring_wx * inner_ring_wx;
-        let t48 = inner_ring_wy * inner_ring_wy;
-        let t49 = t48 + t47;
-        let t50 = T::fused(
+        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
+        let t50 = inner_ring_wx * inner_ring_wz;
+        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
+        let t52 = inner_ring_wy * inner_ring_wz;
+        let t53 = inner_ring_wx * inner_ring_wx;
+        let t54 = inner_ring_wy * inner_ring_wy;
+        let t55 = t54 + t53;
+        let t56 = T::fused(
             -k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
-                outer_ring_wy * t42,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
+                outer_ring_wy * t48,
             ),
-            T::fused(t49, t26, T::fused(t44, t43, t46 * t45)),
+            T::fused(t55, t32, T::fused(t50, t49, t52 * t51)),
         );
-        let t51 = T::fused(
+        let t57 = T::fused(
             k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
-                outer_ring_wx * t42,
+                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
+                outer_ring_wx * t48,
             ),
-            T::fused(t49, t28, T::fused(t44, t37, t46 * t41)),
+            T::fused(t55, t34, T::fused(t50, t43, t52 * t47)),
         );
-        let t52 = inner_ring_wz * inner_ring_wz;
-        let t53 = t52 + t48;
-        let t54 = inner_ring_wx * inner_ring_wy;
-        let t55 = t52 + t47;
-        let t56 = T::fused(
+        let t58 = inner_ring_wz * inner_ring_wz;
+        let t59 = t58 + t54;
+        let t60 = inner_ring_wx * inner_ring_wy;
+        let t61 = t58 + t53;
+        let t62 = T::fused(
             k(0.000125),
-            T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
-            k(5e-5) * T::fused(t19, t46, -T::fused(t32, t54, t39 * t55)),
+            T::fused(t50, t24, T::fused(t59, t38, t60 * t44)),
+            k(5e-5) * T::fused(t52, t24, -T::fused(t60, t38, t61 * t44)),
         );
-        let t57 = T::fused(
+        let t63 = T::fused(
             k(3e-5),
-            T::fused(t19, t49, -T::fused(-t32, t44, t39 * t46)),
-            t56,
+            T::fused(t55, t24, -T::fused(-t50, t38, t52 * t44)),
+            t62,
         );
-        let t58 = rotor_wy * rotor_wy;
-        let t59 = rotor_wz * rotor_wz;
-        let t60 = t59 + t58;
-        let t61 = rotor_e0 * rotor_e0;
-        let t62 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t61));
-        let t63 = rotor_wx * rotor_wy;
-        let t64 = rotor_e0 * rotor_e3;
-        let t65 = rotor_e1 * rotor_e2;
-        let t66 = k(2.0) * (t65 - t64);
-        let t67 = rotor_wx * rotor_wz;
-        let t68 = rotor_e0 * rotor_e2;
-        let t69 = rotor_e1 * rotor_e3;
-        let t70 = k(2.0) * (t69 + t68);
-        let t71 = rotor_wx * rotor_wx;
-        let t72 = t59 + t71;
-        let t73 = rotor_wy * rotor_wz;
-        let t74 = T::fused(
+        let t64 = k(2.0) * rotor_e1;
+        let t65 = k(2.0) * rotor_e0;
+        let t66 = T::fused(-rotor_e0, t65, k(1.0));
+        let t67 = T::fused(-rotor_e1, t64, t66);
+        let t68 = rotor_wy * rotor_wy;
+        let t69 = rotor_wz * rotor_wz;
+        let t70 = t69 + t68;
+        let t71 = rotor_e3 * t65;
+        let t72 = rotor_e2 * t64;
+        let t73 = t72 - t71;
+        let t74 = rotor_wx * rotor_wy;
+        let t75 = rotor_e2 * t65;
+        let t76 = rotor_e3 * t64;
+        let t77 = t76 + t75;
+        let t78 = rotor_wx * rotor_wz;
+        let t79 = rotor_wx * rotor_wx;
+        let t80 = t69 + t79;
+        let t81 = rotor_wy * rotor_wz;
+        let t82 = T::fused(
             k(0.0001),
-            T::fused(t70, t67, T::fused(t62, t60, t66 * t63)),
-            k(0.0002) * T::fused(t70, t73, -T::fused(t62, t63, t66 * t72)),
+            T::fused(t78, t77, T::fused(t70, t67, t74 * t73)),
+            k(0.0002) * T::fused(t81, t77, -T::fused(t74, t67, t80 * t73)),
         );
-        let t75 = t58 + t71;
-        let t76 = T::fused(
-            k(0.00015),
-            T::fused(t70, t75, -T::fused(-t62, t67, t66 * t73)),
-            t74,
-        );
-        let t77 = T::fused(
-            k(0.000125),
-            T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
-            k(5e-5) * T::fused(t22, t46, T::fused(t35, t54, t38 * t55)),
-        );
-        let t78 = T::fused(
-            k(3e-5),
-            T::fused(t22, t49, T::fused(-t35, t44, t38 * t46)),
-            t77,
-        );
-        let t79 = k(2.0) * (t65 + t64);
-        let t80 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t61));
-        let t81 = rotor_e0 * rotor_e1;
-        let t82 = rotor_e2 * rotor_e3;
-        let t83 = k(2.0) * (t82 - t81);
+        let t83 = t68 + t79;
         let t84 = T::fused(
-            k(0.0001),
-            T::fused(t83, t67, -T::fused(t79, t60, t80 * t63)),
-            k(0.0002) * T::fused(t83, t73, T::fused(t79, t63, t80 * t72)),
+            k(0.00015),
+            T::fused(t83, t77, -T::fused(-t78, t67, t81 * t73)),
+            t82,
         );
         let t85 = T::fused(
-            k(0.00015),
-            T::fused(t83, t75, T::fused(-t79, t67, t80 * t73)),
-            t84,
+            k(0.000125),
+            T::fused(t50, t28, -T::fused(t59, t41, t60 * t45)),
+            k(5e-5) * T::fused(t52, t28, T::fused(t60, t41, t61 * t45)),
         );
         let t86 = T::fused(
-            k(0.000125),
-            T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54)),
-            k(5e-5) * T::fused(t25, t46, T::fused(-t36, t54, t40 * t55)),
-        );
-        let t87 = T::fused(
             k(3e-5),
-            T::fused(t25, t49, T::fused(t36, t44, t40 * t46)),
-            t86,
+            T::fused(t55, t28, T::fused(-t50, t41, t52 * t45)),
+            t85,
         );
-        let t88 = k(2.0) * (t69 - t68);
-        let t89 = k(2.0) * (t82 + t81);
-        let t90 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t61));
-        let t91 = T::fused(
+        let t87 = t72 + t71;
+        let t88 = k(2.0) * rotor_e2;
+        let t89 = T::fused(-rotor_e2, t88, t66);
+        let t90 = rotor_e1 * t65;
+        let t91 = rotor_e3 * t88;
+        let t92 = t91 - t90;
+        let t93 = T::fused(
             k(0.0001),
-            T::fused(t90, t67, -T::fused(-t88, t60, t89 * t63)),
-            k(0.0002) * T::fused(t90, t73, T::fused(-t88, t63, t89 * t72)),
+            T::fused(t78, t92, -T::fused(t70, t87, t74 * t89)),
+            k(0.0002) * T::fused(t81, t92, T::fused(t74, t87, t80 * t89)),
         );
-        let t92 = T::fused(
+        let t94 = T::fused(
             k(0.00015),
-            T::fused(t90, t75, T::fused(t88, t67, t89 * t73)),
-            t91,
+            T::fused(t83, t92, T::fused(-t78, t87, t81 * t89)),
+            t93,
         );
-        let t93 = T::fused(t36, t88, T::fused(t32, t62, t35 * t79));
-        let t94 = T::fused(t40, t88, -T::fused(t39, t62, t38 * t79));
-        let t95 = T::fused(t25, t88, -T::fused(-t19, t62, t22 * t79));
+        let t95 = T::fused(
+            k(0.000125),
+            T::fused(t50, t31, -T::fused(-t59, t42, t60 * t46)),
+            k(5e-5) * T::fused(t52, t31, T::fused(-t60, t42, t61 * t46)),
+        );
         let t96 = T::fused(
-            rotor_wz,
-            T::fused(t36, t89, -T::fused(t32, t66, t35 * t80)),
-            rotor_wy * T::fused(t36, t90, -T::fused(-t32, t70, t35 * t83)),
+            k(3e-5),
+            T::fused(t55, t31, T::fused(t50, t42, t52 * t46)),
+            t95,
         );
-        let t97 = T::fused(t25, t89, -T::fused(-t22, t80, t19 * t66));
-        let t98 = T::fused(t25, t90, T::fused(t22, t83, t19 * t70));
-        let t99 = T::fused(t40, t89, T::fused(t38, t80, t39 * t66));
-        let t100 = T::fused(t40, t90, -T::fused(-t38, t83, t39 * t70));
+        let t97 = t76 - t75;
+        let t98 = t91 + t90;
+        let t99 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t66);
+        let t100 = T::fused(
+            k(0.0001),
+            T::fused(t78, t99, -T::fused(-t70, t97, t74 * t98)),
+            k(0.0002) * T::fused(t81, t99, T::fused(-t74, t97, t80 * t98)),
+        );
         let t101 = T::fused(
+            k(0.00015),
+            T::fused(t83, t99, T::fused(t78, t97, t81 * t98)),
+            t100,
+        );
+        let t102 = T::fused(t42, t97, T::fused(t38, t67, t41 * t87));
+        let t103 = T::fused(t46, t97, -T::fused(t44, t67, t45 * t87));
+        let t104 = T::fused(t31, t97, -T::fused(-t24, t67, t28 * t87));
+        let t105 = T::fused(
+            rotor_wz,
+            T::fused(t42, t98, -T::fused(t38, t73, t41 * t89)),
+            rotor_wy * T::fused(t42, t99, -T::fused(-t38, t77, t41 * t92)),
+        );
+        let t106 = T::fused(t31, t98, T::fused(-t24, t73, t28 * t89));
+        let t107 = T::fused(t31, t99, T::fused(t24, t77, t28 * t92));
+        let t108 = T::fused(t46, t98, T::fused(t44, t73, t45 * t89));
+        let t109 = T::fused(t46, t99, T::fused(-t44, t77, t45 * t92));
+        let t110 = T::fused(
             k(2.0),
             T::fused(
                 inner_ring_wz,
-                t96,
-                inner_ring_wx * T::fused(rotor_wz, t97, rotor_wy * t98),
+                t105,
+                inner_ring_wx * T::fused(rotor_wz, t106, rotor_wy * t107),
             ),
-            T::fused(t67, t100, -T::fused(-t60, t94, t63 * t99)),
+            T::fused(t78, t109, -T::fused(-t70, t103, t74 * t108)),
         );
-        let t102 = T::fused(
+        let t111 = T::fused(
             -k(2.0),
             T::fused(
                 -inner_ring_wy,
-                t96,
-                inner_ring_wx * T::fused(rotor_wz, t99, rotor_wy * t100),
+                t105,
+                inner_ring_wx * T::fused(rotor_wz, t108, rotor_wy * t109),
             ),
-            T::fused(t67, t98, -T::fused(-t60, t95, t63 * t97)),
+            T::fused(t78, t107, -T::fused(-t70, t104, t74 * t106)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
-            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
+            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
+            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t50 + t31),
-            -(t51 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
-            t57 - t76,
-            t78 - t85,
-            t92 - t87,
-            t101 + T::fused(t46, t95, T::fused(-t54, t93, t55 * t94)),
-            -(t102 + T::fused(t49, t95, T::fused(t44, t93, t46 * t94))),
+            -(t56 + t37),
+            -(t57 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
+            t63 - t84,
+            t86 - t94,
+            t101 - t96,
+            t110 + T::fused(t52, t104, T::fused(-t60, t102, t61 * t103)),
+            -(t111 + T::fused(t55, t104, T::fused(t50, t102, t52 * t103))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2410,28 +2415,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
         *out = [
             k(0.0),
             k(-0.1),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
             k(0.0),
             k(-0.1),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz),
+            inner_ring_wz * t1,
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
+            -(inner_ring_wx * t1),
             k(0.0),
             k(-0.8),
             k(0.0),
             k(0.0),
-            -(k(5e-6) * (rotor_wx * rotor_wz)),
-            k(5e-6) * (rotor_wx * rotor_wy),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 785 operations (324 ±, 456 ×, 5 ÷).
+    /// Solves eq. (17): 760 operations (318 ±, 437 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2455,53 +2463,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
-            * (k(0.5)
-                / (k(0.5)
-                    - T::fused(
-                        outer_ring_e2,
-                        outer_ring_e2,
-                        outer_ring_e0 * outer_ring_e0,
-                    )));
-        let t1 = T::fused(
-            -(k(2.0)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_e1,
-                    outer_ring_e2 * outer_ring_e3,
-                )),
-            t0,
+        let t0 = k(2.0) * outer_ring_e2;
+        let t1 = k(2.0) * outer_ring_e0;
+        let t2 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
+            / T::fused(-outer_ring_e2, t0, T::fused(-outer_ring_e0, t1, k(1.0)));
+        let t3 = T::fused(
+            -T::fused(-outer_ring_e1, t1, outer_ring_e3 * t0),
+            t2,
             outer_ring_wy * outer_ring_wz,
         );
-        let t2 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
+        let t4 = k(5e-6) * rotor_wx;
+        let t5 = k(2.0) * rotor_e0;
+        let t6 = rotor_e3 * t5;
+        let t7 = k(2.0) * rotor_e1;
+        let t8 = rotor_e2 * t7;
+        let t9 = t8 + t6;
+        let t10 = k(2.0) * rotor_e2;
+        let t11 = T::fused(-rotor_e0, t5, k(1.0));
+        let t12 = T::fused(-rotor_e2, t10, t11);
+        let t13 = rotor_e1 * t5;
+        let t14 = rotor_e3 * t10;
+        let t15 = t14 - t13;
+        let t16 = T::fused(-k(0.00012), t12, k(0.00016) * t15);
+        let t17 = T::fused(
+            k(0.0001199400299850075),
+            t16,
+            T::fused(-rotor_wy, t4, T::fused(k(0.00016), t9, k(8e-5) * t12)),
         );
-        let t3 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t4 = t3 * t2;
-        let t5 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t6 = T::fused(
+        let t18 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2510,126 +2499,210 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = t6 * t5;
-        let t8 = t7 + t4;
-        let t9 = t3 * t5;
-        let t10 = t6 * t2;
-        let t11 = t10 - t9;
-        let t12 = T::fused(k(1.0005199488255872e-5), t8, k(4.800383808095952e-9) * t11);
-        let t13 = k(2.0) * t8;
-        let t14 = T::fused(k(4.800383808095952e-9), t8, k(1.0007999712143928e-5) * t11);
-        let t15 = k(2.0) * t11;
-        let t16 = t3 * t3;
-        let t17 = k(0.5) - T::fused(t5, t5, t16);
-        let t18 = t3 * t6;
-        let t19 = t5 * t2;
-        let t20 = t19 + t18;
-        let t21 = T::fused(-k(2.87856071964018e-5), t17, k(3.8380809595202396e-5) * t20);
-        let t22 = k(2.0) * t17;
-        let t23 = T::fused(
-            -k(3.8380809595202396e-5),
-            t17,
-            k(5.1174412793603195e-5) * t20,
-        );
-        let t24 = k(2.0) * t20;
-        let t25 = T::fused(-t22, t21, t24 * t23);
-        let t26 = t19 - t18;
-        let t27 = k(2.0) * t26;
-        let t28 = k(0.5) - T::fused(t2, t2, t16);
-        let t29 = k(2.0) * t28;
-        let t30 = T::fused(-t27, t21, t29 * t23);
-        let t31 = T::fused(
-            -t27,
-            T::fused(-k(2.87856071964018e-5), t26, k(3.8380809595202396e-5) * t28),
-            t29
-                * T::fused(
-                    -k(3.8380809595202396e-5),
-                    t26,
-                    k(5.1174412793603195e-5) * t28,
-                ),
-        );
-        let t32 = T::fused(
-            -k(3e-5),
-            T::fused(-k(3e-5), t25, k(5e-5) * t30),
-            k(5e-5) * T::fused(-k(3e-5), t30, k(5e-5) * t31),
-        );
-        let t33 = t7 - t4;
-        let t34 = T::fused(
-            k(1.599488255872064e-5),
-            t20,
-            T::fused(k(2.4e-5), t33, k(3.8380809595202396e-9) * t17),
-        );
-        let t35 = T::fused(
-            k(3.8380809595202396e-9),
-            t20,
-            T::fused(k(3.2e-5), t33, k(1.599712143928036e-5) * t17),
-        );
-        let t36 = T::fused(t13, t34, t15 * t35);
-        let t37 = t10 + t9;
-        let t38 = T::fused(
-            k(1.599488255872064e-5),
-            t28,
-            T::fused(-k(2.4e-5), t37, k(3.8380809595202396e-9) * t26),
-        );
-        let t39 = T::fused(
-            k(3.8380809595202396e-9),
-            t28,
-            T::fused(-k(3.2e-5), t37, k(1.599712143928036e-5) * t26),
-        );
-        let t40 = T::fused(t13, t38, t15 * t39);
-        let t41 = T::fused(k(2.0), T::fused(-k(3e-5), t36, k(5e-5) * t40), t32)
-            - (k(2.72e-10) + T::fused(t13, t12, t15 * t14));
-        let t42 = T::fused(k(2.87856071964018e-5), t8, k(3.8380809595202396e-5) * t11);
-        let t43 = T::fused(k(3.8380809595202396e-5), t8, k(5.1174412793603195e-5) * t11);
-        let t44 = T::fused(-t22, t42, t24 * t43);
-        let t45 = T::fused(-k(5e-5), t44, k(0.000125) * t25);
-        let t46 = T::fused(-t27, t42, t29 * t43);
-        let t47 = k(0.000125) * t30;
-        let t48 = T::fused(-k(5e-5), t46, t47);
-        let t49 = T::fused(-t27, t34, t29 * t35);
-        let t50 = T::fused(-t27, t38, t29 * t39);
-        let t51 = k(0.5) - T::fused(t6, t6, t16);
-        let t52 = T::fused(
-            k(1.599488255872064e-5),
-            t11,
-            -T::fused(k(2.4e-5), t51, k(3.8380809595202396e-9) * t8),
-        );
-        let t53 = T::fused(
-            k(3.8380809595202396e-9),
-            t11,
-            -T::fused(k(3.2e-5), t51, k(1.599712143928036e-5) * t8),
-        );
-        let t54 = T::fused(t13, t52, t15 * t53);
-        let t55 = T::fused(-k(5e-5), t54, k(0.000125) * t36)
-            + T::fused(-k(3e-5), t49, k(5e-5) * t50);
-        let t56 = t55 + T::fused(-k(3e-5), t45, k(5e-5) * t48)
-            + (k(3e-10) - T::fused(-t27, t12, t29 * t14));
-        let t57 = T::fused(
-            -t27,
-            T::fused(-k(1.0005199488255872e-5), t26, k(4.800383808095952e-9) * t28),
-            t29 * T::fused(-k(4.800383808095952e-9), t26, k(1.0007999712143928e-5) * t28),
-        );
-        let t58 = T::fused(t13, t42, t15 * t43);
-        let t59 = T::fused(-k(5e-5), t58, k(0.000125) * t44);
-        let t60 = T::fused(-t27, t52, t29 * t53);
-        let t61 = T::fused(
-            k(2.0),
-            T::fused(-k(5e-5), t60, k(0.000125) * t49),
-            T::fused(-k(5e-5), t59, k(0.000125) * t45),
-        );
-        let t62 = k(1.0) / (k(1e-6) - (t61 - (k(1.45e-9) + t57)));
-        let t63 = t62 * t56;
-        let t64 = T::fused(t56, t63, -(k(1e-6) - t41));
-        let t65 = T::fused(
-            -outer_ring_e0,
+        let t19 = k(2.0) * t18;
+        let t20 = T::fused(
             inner_ring_e3,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t66 = T::fused(
+        let t21 = k(2.0) * t20;
+        let t22 = T::fused(-t20, t21, k(1.0));
+        let t23 = T::fused(-t18, t19, t22);
+        let t24 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t25 = t24 * t21;
+        let t26 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t27 = t26 * t19;
+        let t28 = t27 - t25;
+        let t29 = t26 * t21;
+        let t30 = t24 * t19;
+        let t31 = t30 + t29;
+        let t32 = T::fused(
+            inner_ring_wz,
+            t31,
+            T::fused(-inner_ring_wx, t23, inner_ring_wy * t28),
+        );
+        let t33 = rotor_wx - t32;
+        let t34 = t30 - t29;
+        let t35 = t18 * t21;
+        let t36 = k(2.0) * t26;
+        let t37 = t24 * t36;
+        let t38 = t37 + t35;
+        let t39 = T::fused(-t24, k(2.0) * t24, t22);
+        let t40 = T::fused(
+            inner_ring_wz,
+            t39,
+            -T::fused(inner_ring_wx, t34, inner_ring_wy * t38),
+        );
+        let t41 = rotor_wz + t40;
+        let t42 = t27 + t25;
+        let t43 = T::fused(-t26, t36, t22);
+        let t44 = t37 - t35;
+        let t45 = T::fused(
+            inner_ring_wz,
+            t44,
+            -T::fused(-inner_ring_wx, t42, inner_ring_wy * t43),
+        );
+        let t46 = rotor_wy - t45;
+        let t47 = T::fused(t41, t41, t46 * t46) / t23;
+        let t48 = T::fused(rotor_wx, t40, rotor_wz * t32)
+            + T::fused(-t41, t33, t34 * t47);
+        let t49 = T::fused(-rotor_wy, t32, rotor_wx * t45)
+            - T::fused(-t46, t33, t42 * t47);
+        let t50 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
+        let t51 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
+        let t52 = T::fused(-inner_ring_wz, t50, inner_ring_wy * t51);
+        let t53 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
+        let t54 = T::fused(inner_ring_wx, t51, inner_ring_wz * t53);
+        let t55 = T::fused(inner_ring_wy, t53, inner_ring_wx * t50);
+        let t56 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
+        let t57 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
+        let t58 = T::fused(-rotor_wz, t56, rotor_wy * t57)
+            - T::fused(t55, t31, -T::fused(t52, t23, t54 * t28));
+        let t59 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
+        let t60 = T::fused(rotor_wx, t57, rotor_wz * t59)
+            + T::fused(t55, t44, T::fused(t52, t42, t54 * t43));
+        let t61 = T::fused(rotor_wy, t59, rotor_wx * t56)
+            + T::fused(t55, t39, T::fused(-t52, t34, t54 * t38));
+        let t62 = T::fused(
+            k(1.9190404797601198e-9),
+            t61,
+            T::fused(k(1.6e-5), t58, k(7.99856071964018e-6) * t60),
+        ) + T::fused(k(2.400191904047976e-9), t48, k(5.003999856071964e-6) * t49);
+        let t63 = t62 - t17;
+        let t64 = T::fused(
+            k(0.00015992003998001),
+            t16,
+            -T::fused(rotor_wz, t4, T::fused(k(0.00012), t9, k(8e-5) * t15)),
+        );
+        let t65 = T::fused(
+            k(7.99744127936032e-6),
+            t61,
+            T::fused(k(1.2e-5), t58, k(1.9190404797601198e-9) * t60),
+        ) + T::fused(k(5.002599744127936e-6), t48, k(2.400191904047976e-9) * t49);
+        let t66 = t65 + t64;
+        let t67 = T::fused(
+            k(0.8),
+            t9,
+            -T::fused(k(0.08), t58, T::fused(k(1.2e-5), t48, k(1.6e-5) * t49)),
+        );
+        let t68 = T::fused(k(1.9190404797601198e-9), t48, k(7.99856071964018e-6) * t49)
+            + T::fused(
+                k(0.08),
+                t60,
+                T::fused(-k(1.43928035982009e-5), t60, k(1.9190404797601198e-5) * t61),
+            );
+        let t69 = T::fused(k(0.8), t12, k(1.199400299850075) * t16) - t68;
+        let t70 = T::fused(k(7.99744127936032e-6), t48, k(1.9190404797601198e-9) * t49)
+            - T::fused(
+                -k(0.08),
+                t61,
+                T::fused(-k(1.9190404797601198e-5), t60, k(2.5587206396801598e-5) * t61),
+            );
+        let t71 = T::fused(-k(0.8), t15, k(1.5992003998000999) * t16) + t70;
+        let t72 = T::fused(t34, t71, T::fused(t23, t67, t42 * t69));
+        let t73 = T::fused(t38, t71, -T::fused(t28, t67, t43 * t69));
+        let t74 = T::fused(-k(5e-5), t72, k(0.000125) * t73)
+            + T::fused(-t39, t63, t44 * t66);
+        let t75 = k(1e-6) * inner_ring_wy;
+        let t76 = T::fused(inner_ring_wx, t75, -t74);
+        let t77 = T::fused(
+            -t44,
+            T::fused(-k(5.002599744127936e-6), t44, k(2.400191904047976e-9) * t39),
+            t39 * T::fused(-k(2.400191904047976e-9), t44, k(5.003999856071964e-6) * t39),
+        );
+        let t78 = T::fused(k(1.43928035982009e-5), t42, k(1.9190404797601198e-5) * t34);
+        let t79 = T::fused(
+            k(1.9190404797601198e-5),
+            t42,
+            k(2.5587206396801598e-5) * t34,
+        );
+        let t80 = T::fused(t42, t78, t34 * t79);
+        let t81 = T::fused(-t43, t78, t38 * t79);
+        let t82 = T::fused(-k(5e-5), t80, k(0.000125) * t81);
+        let t83 = T::fused(-k(1.43928035982009e-5), t43, k(1.9190404797601198e-5) * t38);
+        let t84 = T::fused(
+            -k(1.9190404797601198e-5),
+            t43,
+            k(2.5587206396801598e-5) * t38,
+        );
+        let t85 = T::fused(-t43, t83, t38 * t84);
+        let t86 = T::fused(-k(5e-5), t81, k(0.000125) * t85);
+        let t87 = T::fused(
+            k(7.99744127936032e-6),
+            t34,
+            -T::fused(k(1.2e-5), t23, k(1.9190404797601198e-9) * t42),
+        );
+        let t88 = T::fused(
+            k(1.9190404797601198e-9),
+            t34,
+            -T::fused(k(1.6e-5), t23, k(7.99856071964018e-6) * t42),
+        );
+        let t89 = T::fused(-t44, t87, t39 * t88);
+        let t90 = T::fused(
+            k(7.99744127936032e-6),
+            t38,
+            T::fused(k(1.2e-5), t28, k(1.9190404797601198e-9) * t43),
+        );
+        let t91 = T::fused(
+            k(1.9190404797601198e-9),
+            t38,
+            T::fused(k(1.6e-5), t28, k(7.99856071964018e-6) * t43),
+        );
+        let t92 = T::fused(-t44, t90, t39 * t91);
+        let t93 = T::fused(
+            k(2.0),
+            T::fused(-k(5e-5), t89, k(0.000125) * t92),
+            T::fused(-k(5e-5), t82, k(0.000125) * t86),
+        );
+        let t94 = k(1.0) / (k(1e-6) - (t93 - (k(1.45e-9) + t77)));
+        let t95 = t94 * t76;
+        let t96 = T::fused(-k(5.002599744127936e-6), t43, k(2.400191904047976e-9) * t38);
+        let t97 = T::fused(-k(2.400191904047976e-9), t43, k(5.003999856071964e-6) * t38);
+        let t98 = T::fused(-t44, t78, t39 * t79);
+        let t99 = T::fused(-t44, t83, t39 * t84);
+        let t100 = k(0.000125) * t99;
+        let t101 = T::fused(-k(5e-5), t98, t100);
+        let t102 = T::fused(
+            k(7.99744127936032e-6),
+            t39,
+            T::fused(-k(1.2e-5), t31, k(1.9190404797601198e-9) * t44),
+        );
+        let t103 = T::fused(
+            k(1.9190404797601198e-9),
+            t39,
+            T::fused(-k(1.6e-5), t31, k(7.99856071964018e-6) * t44),
+        );
+        let t104 = T::fused(-t44, t102, t39 * t103);
+        let t105 = T::fused(-t43, t87, t38 * t88);
+        let t106 = T::fused(-t43, t90, t38 * t91);
+        let t107 = T::fused(-k(5e-5), t105, k(0.000125) * t106)
+            - T::fused(-k(3e-5), t89, k(0.000125) * t104);
+        let t108 = t107 - T::fused(-k(3e-5), t82, k(0.000125) * t101)
+            + (k(1.2e-10) - T::fused(-t44, t96, t39 * t97));
+        let t109 = T::fused(t39, t71, -T::fused(-t31, t67, t44 * t69));
+        let t110 = T::fused(-k(3e-5), t72, k(0.000125) * t109)
+            - T::fused(-t38, t63, t43 * t66);
+        let t111 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2638,8 +2711,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t67 = t66 * t65;
-        let t68 = T::fused(
+        let t112 = k(2.0) * t111;
+        let t113 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2648,7 +2721,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t69 = T::fused(
+        let t114 = t113 * t112;
+        let t115 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2657,277 +2731,178 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t70 = t69 * t68;
-        let t71 = k(2.0) * (t70 - t67);
-        let t72 = T::fused(-k(3e-5), t46, k(0.000125) * t31);
-        let t73 = T::fused(-t22, t34, t24 * t35);
-        let t74 = T::fused(-t22, t38, t24 * t39);
-        let t75 = T::fused(-k(3e-5), t54, k(0.000125) * t40)
-            - T::fused(-k(3e-5), t73, k(5e-5) * t74);
-        let t76 = t75 + T::fused(-k(3e-5), T::fused(-k(3e-5), t44, t47), k(5e-5) * t72)
-            - (k(5e-10) - T::fused(-t22, t12, t24 * t14));
-        let t77 = T::fused(
-            -k(1.0005199488255872e-5),
-            t17,
-            k(4.800383808095952e-9) * t20,
+        let t116 = k(2.0) * t115;
+        let t117 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
         );
-        let t78 = T::fused(
-            -k(4.800383808095952e-9),
-            t17,
-            k(1.0007999712143928e-5) * t20,
+        let t118 = t117 * t116;
+        let t119 = t115 * t112;
+        let t120 = k(2.0) * t113;
+        let t121 = t117 * t120;
+        let t122 = T::fused(-t111, t112, k(1.0));
+        let t123 = T::fused(-t117, k(2.0) * t117, t122);
+        let t124 = T::fused(
+            outer_ring_wz,
+            t123,
+            -T::fused(outer_ring_wx, t118 - t114, outer_ring_wy * (t121 + t119)),
         );
-        let t79 = T::fused(-t22, t52, t24 * t53);
-        let t80 = T::fused(-k(5e-5), t79, k(0.000125) * t73)
-            - T::fused(-k(3e-5), t60, k(0.000125) * t50);
-        let t81 = t80 - T::fused(-k(3e-5), t59, k(0.000125) * t48)
-            + (k(1.2e-10) - T::fused(-t27, t77, t29 * t78));
-        let t82 = T::fused(t81, t63, -t76);
-        let t83 = t66 * t66;
-        let t84 = k(2.0) * (k(0.5) - T::fused(t68, t68, t83));
-        let t85 = T::fused(-t71, t64, t84 * t82);
-        let t86 = T::fused(
+        let t125 = inner_ring_wz + t124;
+        let t126 = t117 * t112;
+        let t127 = t113 * t116;
+        let t128 = t127 + t126;
+        let t129 = T::fused(-t113, t120, t122);
+        let t130 = t121 - t119;
+        let t131 = T::fused(
+            outer_ring_wz,
+            t130,
+            -T::fused(-outer_ring_wx, t128, outer_ring_wy * t129),
+        );
+        let t132 = inner_ring_wy - t131;
+        let t133 = T::fused(-t115, t116, t122);
+        let t134 = t127 - t126;
+        let t135 = t118 + t114;
+        let t136 = T::fused(
+            outer_ring_wz,
+            t135,
+            T::fused(-outer_ring_wx, t133, outer_ring_wy * t134),
+        );
+        let t137 = inner_ring_wx - t136;
+        let t138 = T::fused(t132, t132, t137 * t137) / t123;
+        let t139 = T::fused(inner_ring_wz, t131, inner_ring_wy * t124)
+            - T::fused(-t132, t125, t130 * t138);
+        let t140 = T::fused(k(5.002599744127936e-6), t42, k(2.400191904047976e-9) * t34);
+        let t141 = T::fused(k(2.400191904047976e-9), t42, k(5.003999856071964e-6) * t34);
+        let t142 = T::fused(
+            -t44,
+            T::fused(-k(1.43928035982009e-5), t44, k(1.9190404797601198e-5) * t39),
+            t39
+                * T::fused(
+                    -k(1.9190404797601198e-5),
+                    t44,
+                    k(2.5587206396801598e-5) * t39,
+                ),
+        );
+        let t143 = T::fused(-k(3e-5), t98, k(0.000125) * t142);
+        let t144 = T::fused(-t43, t102, t38 * t103);
+        let t145 = T::fused(t42, t87, t34 * t88);
+        let t146 = T::fused(t42, t102, t34 * t103);
+        let t147 = T::fused(-k(3e-5), t145, k(0.000125) * t146)
+            - T::fused(-k(3e-5), t106, k(5e-5) * t144);
+        let t148 = t147
+            + T::fused(-k(3e-5), T::fused(-k(3e-5), t81, t100), k(5e-5) * t143)
+            - (k(5e-10) - T::fused(-t43, t140, t38 * t141));
+        let t149 = T::fused(t42, t90, t34 * t91);
+        let t150 = T::fused(-k(5e-5), t145, k(0.000125) * t149)
+            + T::fused(-k(3e-5), t92, k(5e-5) * t104);
+        let t151 = t150 + T::fused(-k(3e-5), t86, k(5e-5) * t101)
+            + (k(3e-10) - T::fused(-t44, t140, t39 * t141));
+        let t152 = t94 * t151;
+        let t153 = T::fused(t108, t152, -t148);
+        let t154 = T::fused(inner_ring_wx, t124, inner_ring_wz * t136)
+            - T::fused(-t137, t125, t135 * t138);
+        let t155 = T::fused(
             k(2.0),
-            T::fused(-k(3e-5), t79, k(0.000125) * t74),
+            T::fused(-k(3e-5), t105, k(0.000125) * t144),
             -T::fused(
                 -k(3e-5),
-                T::fused(-k(3e-5), t58, k(0.000125) * t46),
-                k(0.000125) * t72,
+                T::fused(-k(3e-5), t80, k(0.000125) * t98),
+                k(0.000125) * t143,
             ),
         );
-        let t87 = T::fused(
-            t81,
-            t62 * t81,
-            -(k(2e-6) + (t86 + (k(1.322e-9) + T::fused(-t22, t77, t24 * t78)))),
+        let t156 = T::fused(
+            t108,
+            t94 * t108,
+            -(k(2e-6) + (t155 + (k(1.322e-9) + T::fused(-t43, t96, t38 * t97)))),
         );
-        let t88 = T::fused(-t71, t82, t84 * t87);
-        let t89 = k(2.0) * t51;
-        let t90 = k(2.0) * t33;
-        let t91 = k(2.0) * t37;
-        let t92 = T::fused(
-            inner_ring_wz,
-            t91,
-            T::fused(-inner_ring_wx, t89, inner_ring_wy * t90),
+        let t157 = T::fused(-k(3e-5), t73, k(5e-5) * t109)
+            - T::fused(t34, t63, t42 * t66);
+        let t158 = T::fused(
+            -k(3e-5),
+            T::fused(-k(3e-5), t85, k(5e-5) * t99),
+            k(5e-5) * T::fused(-k(3e-5), t99, k(5e-5) * t142),
         );
-        let t93 = rotor_wx - t92;
-        let t94 = T::fused(
-            inner_ring_wz,
-            t29,
-            -T::fused(inner_ring_wx, t15, inner_ring_wy * t24),
-        );
-        let t95 = rotor_wz + t94;
-        let t96 = T::fused(
-            inner_ring_wz,
-            t27,
-            -T::fused(-inner_ring_wx, t13, inner_ring_wy * t22),
-        );
-        let t97 = rotor_wy - t96;
-        let t98 = k(0.5) / t51 * T::fused(t95, t95, t97 * t97);
-        let t99 = T::fused(rotor_wx, t94, rotor_wz * t92)
-            + T::fused(-t95, t93, t15 * t98);
-        let t100 = T::fused(-rotor_wy, t92, rotor_wx * t96)
-            - T::fused(-t97, t93, t13 * t98);
-        let t101 = T::fused(k(3e-5), inner_ring_wx, k(0.000125) * inner_ring_wz);
-        let t102 = T::fused(-k(0.000125), inner_ring_wy, k(5e-5) * inner_ring_wx);
-        let t103 = T::fused(-inner_ring_wz, t101, inner_ring_wy * t102);
-        let t104 = T::fused(k(5e-5), inner_ring_wz, k(3e-5) * inner_ring_wy);
-        let t105 = T::fused(inner_ring_wx, t102, inner_ring_wz * t104);
-        let t106 = T::fused(inner_ring_wy, t104, inner_ring_wx * t101);
-        let t107 = T::fused(k(0.00015), rotor_wx, k(0.0001) * rotor_wz);
-        let t108 = T::fused(-k(0.0001), rotor_wy, k(0.0002) * rotor_wx);
-        let t109 = T::fused(-rotor_wz, t107, rotor_wy * t108)
-            - T::fused(t106, t91, -T::fused(t103, t89, t105 * t90));
-        let t110 = T::fused(k(0.0002), rotor_wz, k(0.00015) * rotor_wy);
-        let t111 = T::fused(rotor_wx, t108, rotor_wz * t110)
-            + T::fused(t106, t27, T::fused(t103, t13, t105 * t22));
-        let t112 = T::fused(rotor_wy, t110, rotor_wx * t107)
-            + T::fused(t106, t29, T::fused(-t103, t15, t105 * t24));
-        let t113 = T::fused(
-            k(7.99744127936032e-6),
-            t112,
-            T::fused(k(1.2e-5), t109, k(1.9190404797601198e-9) * t111),
-        ) + T::fused(k(5.002599744127936e-6), t99, k(2.400191904047976e-9) * t100);
-        let t114 = rotor_e0 * rotor_e3;
-        let t115 = rotor_e1 * rotor_e2;
-        let t116 = t115 + t114;
-        let t117 = rotor_e0 * rotor_e1;
-        let t118 = rotor_e2 * rotor_e3;
-        let t119 = t118 - t117;
-        let t120 = rotor_e0 * rotor_e0;
-        let t121 = k(0.5) - T::fused(rotor_e2, rotor_e2, t120);
-        let t122 = T::fused(-k(0.00024), t121, k(0.00032) * t119);
-        let t123 = T::fused(
-            k(0.00015992003998001),
-            t122,
-            -T::fused(
-                k(5e-6),
-                rotor_wx * rotor_wz,
-                T::fused(k(0.00024), t116, k(0.00016) * t119),
-            ),
-        );
-        let t124 = t123 + t113;
-        let t125 = T::fused(
-            k(1.9190404797601198e-9),
-            t112,
-            T::fused(k(1.6e-5), t109, k(7.99856071964018e-6) * t111),
-        ) + T::fused(k(2.400191904047976e-9), t99, k(5.003999856071964e-6) * t100);
-        let t126 = T::fused(
-            k(0.0001199400299850075),
-            t122,
-            -T::fused(
-                k(5e-6),
-                rotor_wx * rotor_wy,
-                -T::fused(k(0.00032), t116, k(0.00016) * t121),
-            ),
-        );
-        let t127 = t126 - t125;
-        let t128 = T::fused(
-            k(1.6),
-            t116,
-            -T::fused(k(0.08), t109, T::fused(k(1.2e-5), t99, k(1.6e-5) * t100)),
-        );
-        let t129 = T::fused(k(1.9190404797601198e-9), t99, k(7.99856071964018e-6) * t100)
-            + T::fused(
-                k(0.08),
-                t111,
-                T::fused(-k(1.43928035982009e-5), t111, k(1.9190404797601198e-5) * t112),
-            );
-        let t130 = T::fused(k(1.6), t121, k(1.199400299850075) * t122) - t129;
-        let t131 = T::fused(k(7.99744127936032e-6), t99, k(1.9190404797601198e-9) * t100)
-            - T::fused(
-                -k(0.08),
-                t112,
-                T::fused(
-                    -k(1.9190404797601198e-5),
-                    t111,
-                    k(2.5587206396801598e-5) * t112,
-                ),
-            );
-        let t132 = T::fused(-k(1.6), t119, k(1.5992003998000999) * t122) + t131;
-        let t133 = T::fused(t24, t132, -T::fused(t90, t128, t22 * t130));
-        let t134 = T::fused(t29, t132, -T::fused(-t91, t128, t27 * t130));
-        let t135 = T::fused(-k(3e-5), t133, k(5e-5) * t134)
-            + T::fused(-t13, t124, t15 * t127);
-        let t136 = T::fused(t15, t132, T::fused(t89, t128, t13 * t130));
-        let t137 = T::fused(-k(5e-5), t136, k(0.000125) * t133)
-            + T::fused(t27, t124, t29 * t127);
-        let t138 = T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, -t137);
-        let t139 = t62 * t138;
-        let t140 = t66 * t68;
-        let t141 = t69 * t65;
-        let t142 = t66 * t69;
-        let t143 = t68 * t65;
-        let t144 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t141 - t140),
-            outer_ring_wy * (k(2.0) * (t143 + t142)),
-        );
-        let t145 = k(0.5) - T::fused(t65, t65, t83);
-        let t146 = T::fused(outer_ring_wz, k(2.0) * t145, -t144);
-        let t147 = inner_ring_wz + t146;
-        let t148 = k(2.0) * (t70 + t67);
-        let t149 = k(2.0) * (t143 - t142);
-        let t150 = T::fused(
-            outer_ring_wz,
-            t149,
-            -T::fused(-outer_ring_wx, t148, outer_ring_wy * t84),
-        );
-        let t151 = inner_ring_wy - t150;
-        let t152 = k(2.0) * (k(0.5) - T::fused(t69, t69, t83));
-        let t153 = k(2.0) * (t141 + t140);
-        let t154 = T::fused(
-            outer_ring_wz,
-            t153,
-            T::fused(-outer_ring_wx, t152, outer_ring_wy * t71),
-        );
-        let t155 = inner_ring_wx - t154;
-        let t156 = k(0.5) / t145 * T::fused(t151, t151, t155 * t155);
-        let t157 = T::fused(inner_ring_wz, t150, inner_ring_wy * t146)
-            - T::fused(-t151, t147, t149 * t156);
-        let t158 = T::fused(inner_ring_wx, t146, inner_ring_wz * t154)
-            - T::fused(-t155, t147, t153 * t156);
-        let t159 = T::fused(-t64, t157, t82 * t158)
-            - T::fused(
-                t56,
-                t139,
-                T::fused(k(1e-6), inner_ring_wy * inner_ring_wz, -t135),
-            );
-        let t160 = T::fused(-k(3e-5), t136, k(0.000125) * t134)
-            - T::fused(t22, t124, t24 * t127);
-        let t161 = T::fused(
-            -t71,
-            t159,
-            t84 * (T::fused(-t82, t157, t87 * t158) - T::fused(t81, t139, t160)),
-        );
+        let t159 = T::fused(k(2.0), T::fused(-k(3e-5), t149, k(5e-5) * t146), t158)
+            - (k(2.72e-10) + T::fused(t42, t140, t34 * t141));
+        let t160 = T::fused(t151, t152, -(k(1e-6) - t159));
+        let t161 = T::fused(-t160, t139, t153 * t154)
+            - T::fused(t151, t95, T::fused(inner_ring_wz, t75, -t157));
         let t162 = T::fused(
-            -t71,
-            T::fused(-t152, t64, t148 * t82),
-            t84 * T::fused(-t152, t82, t148 * t87),
+            -t129,
+            T::fused(-t153, t139, t156 * t154) - T::fused(t108, t95, t110),
+            t134 * t161,
         );
         let t163 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
-            t0,
+            -t134,
+            T::fused(-t133, t160, t128 * t153),
+            t129 * T::fused(-t133, t153, t128 * t156),
+        );
+        let t164 = T::fused(-t134, t160, t129 * t153);
+        let t165 = T::fused(-t134, t153, t129 * t156);
+        let t166 = T::fused(
+            -T::fused(outer_ring_e3, t1, outer_ring_e2 * (k(2.0) * outer_ring_e1)),
+            t2,
             outer_ring_wx * outer_ring_wy,
         );
-        let t164 = T::fused(-t1, t162, t163 * T::fused(t153, t85, t149 * t88))
-            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t161);
-        let t165 = t164 / (k(1e-6) - T::fused(-t71, t85, t84 * t88));
-        let t166 = t157 - T::fused(-t163, t153, T::fused(-t1, t152, t71 * t165));
-        let t167 = t158 - T::fused(t163, t149, T::fused(-t1, t148, t84 * t165));
-        let t168 = t62 * (t138 - T::fused(-t56, t166, t81 * t167));
-        let t169 = T::fused(k(3e-5), t167, k(5e-5) * t168);
-        let t170 = T::fused(-k(3e-5), t166, k(0.000125) * t168);
-        let t171 = T::fused(k(5e-5), t166, k(0.000125) * t167);
-        let t172 = t99 + T::fused(t27, t168, -T::fused(t13, t166, t22 * t167));
-        let t173 = t100 - T::fused(t29, t168, -T::fused(-t15, t166, t24 * t167));
-        let t174 = T::fused(k(0.00015), t172, k(0.0002) * t173)
-            + (t109 - T::fused(t91, t171, -T::fused(t89, t169, t90 * t170)));
-        let t175 = t111 + T::fused(t27, t171, T::fused(t13, t169, t22 * t170));
-        let t176 = t112 + T::fused(t29, t171, T::fused(-t15, t169, t24 * t170));
-        let t177 = T::fused(-k(1.6e-9), t172, k(1.2e-9) * t173)
-            - T::fused(-k(1.2e-5), t175, k(1.6e-5) * t176);
-        let t178 = t122 + t177;
-        let t179 = t175 + T::fused(-k(14.992503748125937), t178, k(0.0001) * t173);
-        let t180 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t120)),
-            t174,
-            k(2.0) * (t115 - t114) * t179,
-        );
-        let t181 = t176 + T::fused(k(19.99000499750125), t178, k(0.0001) * t172);
-        let t182 = rotor_e0 * rotor_e2;
-        let t183 = rotor_e1 * rotor_e3;
-        let t184 = T::fused(
-            k(2.0) * t119,
+        let t167 = T::fused(-t3, t163, t166 * T::fused(t135, t164, t130 * t165))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t162);
+        let t168 = t167 / (k(1e-6) - T::fused(-t134, t164, t129 * t165));
+        let t169 = t139 + T::fused(t135, t166, T::fused(-t134, t168, t133 * t3));
+        let t170 = t154 - T::fused(t130, t166, -T::fused(-t129, t168, t128 * t3));
+        let t171 = t94 * (t76 + T::fused(-t108, t170, t151 * t169));
+        let t172 = t48 - T::fused(-t44, t171, T::fused(t43, t170, t42 * t169));
+        let t173 = t49 - T::fused(t39, t171, T::fused(-t38, t170, t34 * t169));
+        let t174 = T::fused(k(0.000125), t170, k(5e-5) * t169);
+        let t175 = T::fused(-k(0.000125), t171, k(3e-5) * t169);
+        let t176 = T::fused(k(5e-5), t171, k(3e-5) * t170);
+        let t177 = t61 - T::fused(-t39, t174, T::fused(t38, t175, t34 * t176));
+        let t178 = t60 + T::fused(t44, t174, T::fused(-t43, t175, t42 * t176));
+        let t179 = T::fused(-k(1.6e-5), t177, k(1.2e-5) * t178)
+            - T::fused(-k(1.2e-9), t173, k(1.6e-9) * t172);
+        let t180 = t16 + t179;
+        let t181 = t177 + T::fused(k(0.0001), t172, k(19.99000499750125) * t180);
+        let t182 = rotor_e2 * t5;
+        let t183 = rotor_e3 * t7;
+        let t184 = t178 - T::fused(-k(0.0001), t173, k(14.992503748125937) * t180);
+        let t185 = t58 + T::fused(-t31, t174, T::fused(-t28, t175, t23 * t176))
+            + T::fused(k(0.0002), t173, k(0.00015) * t172);
+        let t186 = T::fused(
+            -(t183 + t182),
             t181,
-            T::fused(k(2.0) * t116, t174, k(2.0) * t121 * t179),
+            T::fused(t8 - t6, t184, T::fused(-rotor_e1, t7, t11) * t185),
         );
-        let t185 = T::fused(
-            -(k(2.0) * (t183 - t182)),
-            t174,
-            k(2.0) * (t118 + t117) * t179,
+        let t187 = T::fused(
+            -T::fused(-rotor_e3, k(2.0) * rotor_e3, t11),
+            t181,
+            T::fused(-(t14 + t13), t184, (t183 - t182) * t185),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t1,
-            -t165,
-            t163,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t166,
-            -t167,
+            -t3,
             -t168,
-            T::fused(-(k(2.0) * (t183 + t182)), t181, t180),
-            -t184,
-            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t120)), t181, t185),
-            k(99950.02498750624) * t178,
+            t166,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t169,
+            -t170,
+            -t171,
+            t186,
+            -T::fused(t15, t181, T::fused(t12, t184, t9 * t185)),
+            -t187,
+            k(99950.02498750624) * t180,
             -t172,
             -t173,
         ];
     }
-    /// Writes λ: 376 operations (144 ±, 229 ×, 3 ÷).
+    /// Writes λ: 355 operations (138 ±, 214 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2979,201 +2954,192 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeCombinedOffsets<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e3;
-        let t7 = rotor_e1 * rotor_e2;
-        let t8 = t7 - t6;
-        let t9 = rotor_e0 * rotor_e2;
-        let t10 = rotor_e1 * rotor_e3;
-        let t11 = t10 + t9;
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(0.5) - T::fused(rotor_e2, rotor_e2, t12);
-        let t14 = rotor_e0 * rotor_e1;
-        let t15 = rotor_e2 * rotor_e3;
-        let t16 = t15 - t14;
-        let t17 = T::fused(
-            t0,
-            T::fused(k(0.0003), t8, k(0.0004) * t11),
-            t2 * T::fused(-k(0.0003), t13, k(0.0004) * t16),
-        );
-        let t18 = t15 + t14;
-        let t19 = k(0.5) - T::fused(rotor_e3, rotor_e3, t12);
+        let t6 = k(2.0) * rotor_e0;
+        let t7 = rotor_e3 * t6;
+        let t8 = k(2.0) * rotor_e1;
+        let t9 = rotor_e2 * t8;
+        let t10 = t9 - t7;
+        let t11 = rotor_e2 * t6;
+        let t12 = rotor_e3 * t8;
+        let t13 = t12 + t11;
+        let t14 = k(2.0) * rotor_e2;
+        let t15 = T::fused(-rotor_e0, t6, k(1.0));
+        let t16 = T::fused(-rotor_e2, t14, t15);
+        let t17 = rotor_e1 * t6;
+        let t18 = rotor_e3 * t14;
+        let t19 = t18 - t17;
         let t20 = T::fused(
+            t0,
+            T::fused(k(0.00015), t10, k(0.0002) * t13),
+            t2 * T::fused(-k(0.00015), t16, k(0.0002) * t19),
+        );
+        let t21 = t18 + t17;
+        let t22 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t15);
+        let t23 = T::fused(
             k(1e-5),
             rotor_dwx,
-            T::fused(t4, T::fused(-k(0.0003), t18, k(0.0004) * t19), -t17),
+            T::fused(t4, T::fused(-k(0.00015), t21, k(0.0002) * t22), -t20),
         );
-        let t21 = k(0.5) - T::fused(rotor_e1, rotor_e1, t12);
-        let t22 = k(2.0) * t21;
-        let t23 = inner_ring_e0 * inner_ring_e0;
-        let t24 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t23);
-        let t25 = k(2.0) * t24;
-        let t26 = t7 + t6;
-        let t27 = k(2.0) * t26;
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = t29 + t28;
-        let t31 = k(2.0) * t30;
-        let t32 = t10 - t9;
-        let t33 = k(2.0) * t32;
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
+        let t24 = T::fused(-rotor_e1, t8, t15);
+        let t25 = k(2.0) * inner_ring_e1;
+        let t26 = k(2.0) * inner_ring_e0;
+        let t27 = T::fused(-inner_ring_e0, t26, k(1.0));
+        let t28 = T::fused(-inner_ring_e1, t25, t27);
+        let t29 = t9 + t7;
+        let t30 = inner_ring_e3 * t26;
+        let t31 = inner_ring_e2 * t25;
+        let t32 = t31 + t30;
+        let t33 = t12 - t11;
+        let t34 = inner_ring_e2 * t26;
+        let t35 = inner_ring_e3 * t25;
         let t36 = t35 - t34;
-        let t37 = k(2.0) * t36;
-        let t38 = T::fused(
+        let t37 = T::fused(
             t0,
-            T::fused(-k(0.0003), t21, k(0.0002) * t11),
-            t2 * T::fused(k(0.0003), t26, k(0.0002) * t16),
+            T::fused(-k(0.00015), t24, k(0.0001) * t13),
+            t2 * T::fused(k(0.00015), t29, k(0.0001) * t19),
         );
-        let t39 = T::fused(
+        let t38 = T::fused(
             k(5e-6),
             T::fused(rotor_wx, rotor_wz, rotor_dwy),
-            -T::fused(t4, T::fused(-k(0.0003), t32, k(0.0002) * t19), -t38),
+            -T::fused(t4, T::fused(-k(0.00015), t33, k(0.0001) * t22), -t37),
         );
-        let t40 = k(2.0) * t8;
-        let t41 = k(2.0) * t13;
-        let t42 = k(2.0) * t18;
-        let t43 = T::fused(
-            T::fused(t37, t33, T::fused(t25, t22, t31 * t27)),
-            t20,
-            T::fused(t37, t42, -T::fused(t25, t40, t31 * t41)) * t39,
+        let t39 = T::fused(
+            T::fused(t36, t33, T::fused(t28, t24, t32 * t29)),
+            t23,
+            T::fused(t36, t21, -T::fused(t28, t10, t32 * t16)) * t38,
         );
-        let t44 = T::fused(
+        let t40 = T::fused(
             -t0,
-            T::fused(k(0.0004), t21, k(0.0002) * t8),
-            t2 * T::fused(k(0.0004), t26, k(0.0002) * t13),
+            T::fused(k(0.0002), t24, k(0.0001) * t10),
+            t2 * T::fused(k(0.0002), t29, k(0.0001) * t16),
         );
-        let t45 = T::fused(
+        let t41 = T::fused(
             k(5e-6),
             T::fused(rotor_wx, rotor_wy, -rotor_dwz),
-            T::fused(t4, T::fused(-k(0.0004), t32, k(0.0002) * t18), -t44),
+            T::fused(t4, T::fused(-k(0.0002), t33, k(0.0001) * t21), -t40),
         );
-        let t46 = k(2.0) * t11;
-        let t47 = k(2.0) * t16;
-        let t48 = k(2.0) * t19;
-        let t49 = T::fused(
-            T::fused(t37, t48, -T::fused(-t25, t46, t31 * t47)),
-            t45,
-            t43,
+        let t42 = T::fused(
+            T::fused(t36, t22, -T::fused(-t28, t13, t32 * t19)),
+            t41,
+            t39,
         );
-        let t50 = t29 - t28;
-        let t51 = t35 + t34;
-        let t52 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t23);
-        let t53 = inner_ring_e0 * inner_ring_e1;
-        let t54 = inner_ring_e2 * inner_ring_e3;
-        let t55 = t54 - t53;
-        let t56 = T::fused(
+        let t43 = t31 - t30;
+        let t44 = t35 + t34;
+        let t45 = k(2.0) * inner_ring_e2;
+        let t46 = T::fused(-inner_ring_e2, t45, t27);
+        let t47 = inner_ring_e1 * t26;
+        let t48 = inner_ring_e3 * t45;
+        let t49 = t48 - t47;
+        let t50 = T::fused(
             t0,
-            T::fused(k(6e-5), t50, k(0.0001) * t51),
-            t2 * T::fused(-k(6e-5), t52, k(0.0001) * t55),
+            T::fused(k(3e-5), t43, k(5e-5) * t44),
+            t2 * T::fused(-k(3e-5), t46, k(5e-5) * t49),
         );
-        let t57 = t54 + t53;
-        let t58 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t23);
-        let t59 = T::fused(
+        let t51 = t48 + t47;
+        let t52 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t27);
+        let t53 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            T::fused(t4, T::fused(-k(6e-5), t57, k(0.0001) * t58), -t56) - t49,
+            T::fused(t4, T::fused(-k(3e-5), t51, k(5e-5) * t52), -t50) - t42,
         );
-        let t60 = outer_ring_e0 * outer_ring_e0;
-        let t61 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t60));
-        let t62 = outer_ring_e0 * outer_ring_e3;
-        let t63 = outer_ring_e1 * outer_ring_e2;
-        let t64 = k(2.0) * (t63 + t62);
-        let t65 = outer_ring_e0 * outer_ring_e2;
-        let t66 = outer_ring_e1 * outer_ring_e3;
-        let t67 = k(2.0) * (t66 - t65);
-        let t68 = T::fused(t67, t37, T::fused(t61, t25, t64 * t31));
-        let t69 = k(2.0) * t50;
-        let t70 = k(2.0) * t52;
-        let t71 = k(2.0) * t57;
-        let t72 = T::fused(t71, t42, T::fused(t70, t41, t69 * t40));
-        let t73 = T::fused(
-            T::fused(t71, t33, -T::fused(t69, t22, t70 * t27)),
-            t20,
-            t72 * t39,
+        let t54 = k(2.0) * outer_ring_e1;
+        let t55 = k(2.0) * outer_ring_e0;
+        let t56 = T::fused(-outer_ring_e0, t55, k(1.0));
+        let t57 = T::fused(-outer_ring_e1, t54, t56);
+        let t58 = outer_ring_e3 * t55;
+        let t59 = outer_ring_e2 * t54;
+        let t60 = t59 + t58;
+        let t61 = outer_ring_e2 * t55;
+        let t62 = outer_ring_e3 * t54;
+        let t63 = t62 - t61;
+        let t64 = T::fused(t63, t36, T::fused(t57, t28, t60 * t32));
+        let t65 = T::fused(t51, t21, T::fused(t43, t10, t46 * t16));
+        let t66 = T::fused(
+            T::fused(t51, t33, -T::fused(t43, t24, t46 * t29)),
+            t23,
+            t65 * t38,
         );
-        let t74 = T::fused(t71, t48, -T::fused(-t70, t47, t69 * t46));
-        let t75 = T::fused(
+        let t67 = T::fused(t51, t22, T::fused(-t43, t13, t46 * t19));
+        let t68 = T::fused(
             t0,
-            T::fused(-k(6e-5), t24, k(0.00025) * t51),
-            t2 * T::fused(k(6e-5), t30, k(0.00025) * t55),
+            T::fused(-k(3e-5), t28, k(0.000125) * t44),
+            t2 * T::fused(k(3e-5), t32, k(0.000125) * t49),
         );
-        let t76 = T::fused(t4, T::fused(-k(6e-5), t36, k(0.00025) * t58), -t75)
-            + T::fused(t74, t45, t73);
-        let t77 = T::fused(k(2e-6), inner_ring_dwy, t76);
-        let t78 = T::fused(t67, t71, -T::fused(t61, t69, t64 * t70));
-        let t79 = k(2.0) * t51;
-        let t80 = k(2.0) * t55;
-        let t81 = k(2.0) * t58;
-        let t82 = T::fused(t81, t42, -T::fused(-t80, t41, t79 * t40));
-        let t83 = T::fused(
-            T::fused(t81, t33, -T::fused(-t79, t22, t80 * t27)),
-            t20,
-            t82 * t39,
+        let t69 = T::fused(t4, T::fused(-k(3e-5), t36, k(0.000125) * t52), -t68)
+            + T::fused(t67, t41, t66);
+        let t70 = T::fused(k(2e-6), inner_ring_dwy, t69);
+        let t71 = T::fused(t63, t51, -T::fused(t57, t43, t60 * t46));
+        let t72 = T::fused(t52, t21, T::fused(-t44, t10, t49 * t16));
+        let t73 = T::fused(
+            T::fused(t52, t33, -T::fused(-t44, t24, t49 * t29)),
+            t23,
+            t72 * t38,
         );
-        let t84 = T::fused(t81, t48, T::fused(t80, t47, t79 * t46));
-        let t85 = T::fused(
+        let t74 = T::fused(t52, t22, T::fused(t44, t13, t49 * t19));
+        let t75 = T::fused(
             -t0,
-            T::fused(k(0.0001), t24, k(0.00025) * t50),
-            t2 * T::fused(k(0.0001), t30, k(0.00025) * t52),
+            T::fused(k(5e-5), t28, k(0.000125) * t43),
+            t2 * T::fused(k(5e-5), t32, k(0.000125) * t46),
         );
-        let t86 = T::fused(t4, T::fused(-k(0.0001), t36, k(0.00025) * t57), -t85)
-            - T::fused(t84, t45, t83);
-        let t87 = T::fused(
+        let t76 = T::fused(t4, T::fused(-k(5e-5), t36, k(0.000125) * t51), -t75)
+            - T::fused(t74, t41, t73);
+        let t77 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t86,
+            t76,
         );
-        let t88 = T::fused(
-            T::fused(t67, t81, -T::fused(-t61, t79, t64 * t80)),
-            t87,
-            -T::fused(-t68, t59, t78 * t77),
+        let t78 = T::fused(
+            T::fused(t63, t52, -T::fused(-t57, t44, t60 * t49)),
+            t77,
+            -T::fused(-t64, t53, t71 * t70),
         );
-        let t89 = T::fused(k(2e-6), outer_ring_dwx, -t88);
-        let t90 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t60));
-        let t91 = k(2.0) * (t66 + t65);
-        let t92 = k(1.0) / T::fused(-t61, t90, t91 * t67);
-        let t93 = outer_ring_e0 * outer_ring_e1;
-        let t94 = outer_ring_e2 * outer_ring_e3;
-        let t95 = k(2.0) * (t94 - t93);
-        let t96 = T::fused(
-            -T::fused(t90, t37, -T::fused(-t91, t25, t95 * t31)),
-            t59,
-            T::fused(t90, t71, -T::fused(-t95, t70, t91 * t69)) * t77,
+        let t79 = T::fused(k(2e-6), outer_ring_dwx, -t78);
+        let t80 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t56);
+        let t81 = t62 + t61;
+        let t82 = k(1.0) / T::fused(-t57, t80, t81 * t63);
+        let t83 = outer_ring_e1 * t55;
+        let t84 = k(2.0) * outer_ring_e2;
+        let t85 = outer_ring_e3 * t84;
+        let t86 = t85 - t83;
+        let t87 = T::fused(
+            -T::fused(t80, t36, -T::fused(-t81, t28, t86 * t32)),
+            t53,
+            T::fused(t80, t51, T::fused(-t81, t43, t86 * t46)) * t70,
         );
-        let t97 = T::fused(T::fused(t90, t81, T::fused(t95, t80, t91 * t79)), t87, -t96);
-        let t98 = T::fused(
+        let t88 = T::fused(T::fused(t80, t52, T::fused(t81, t44, t86 * t49)), t77, -t87);
+        let t89 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t97,
+            -t88,
         );
-        let t99 = k(2.0) * (t63 - t62);
-        let t100 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t60));
-        let t101 = k(2.0) * (t94 + t93);
-        let t102 = T::fused(t101, t37, -T::fused(t99, t25, t100 * t31));
-        let t103 = T::fused(t101, t71, T::fused(t100, t70, t99 * t69));
-        let t104 = k(1.0) / T::fused(-t78, t102, t68 * t103);
-        let t105 = k(1.0) / T::fused(-t74, t82, t72 * t84);
+        let t90 = t59 - t58;
+        let t91 = T::fused(-outer_ring_e2, t84, t56);
+        let t92 = t85 + t83;
+        let t93 = T::fused(t92, t36, -T::fused(t90, t28, t91 * t32));
+        let t94 = T::fused(t92, t51, T::fused(t90, t43, t91 * t46));
+        let t95 = k(1.0) / T::fused(-t93, t71, t94 * t64);
+        let t96 = k(1.0) / T::fused(-t67, t72, t65 * t74);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t61 * t92, t89, t91 * t92 * t98),
-            -T::fused(t67 * t92, t89, t90 * t92 * t98),
+            -T::fused(t57 * t82, t79, t81 * t82 * t89),
+            -T::fused(t63 * t82, t79, t80 * t82 * t89),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t103 * t104), t77, t102 * t104 * t59),
-            T::fused(-(t68 * t104), t59, t78 * t104 * t77),
+            T::fused(-(t94 * t95), t70, t93 * t95 * t53),
+            T::fused(-(t64 * t95), t53, t71 * t95 * t70),
             -t0,
             -t2,
             -t4,
-            T::fused(t82 * t105, t39, t84 * t105 * t45),
-            T::fused(t72 * t105, t39, t74 * t105 * t45),
+            T::fused(t72 * t96, t38, t74 * t96 * t41),
+            T::fused(t65 * t96, t38, t67 * t96 * t41),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeCombinedOffsets<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 656 operations (267 ±, 383 ×, 6 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 635 operations (261 ±, 368 ×, 6 ÷).
     fn project(
         &self,
         _t: T,
@@ -3209,125 +3175,125 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeCombinedOffsets<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e3;
-        let t1 = outer_ring_e1 * outer_ring_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = outer_ring_e0 * outer_ring_e1;
-        let t8 = outer_ring_e2 * outer_ring_e3;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = outer_ring_e0 * outer_ring_e2;
-        let t11 = outer_ring_e1 * outer_ring_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = T::fused(t12, t9, -T::fused(t4, t2, t6 * t5));
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t14);
-        let t16 = k(2.0) * t15;
-        let t17 = inner_ring_e0 * inner_ring_e3;
-        let t18 = inner_ring_e1 * inner_ring_e2;
-        let t19 = t18 - t17;
-        let t20 = k(2.0) * t19;
-        let t21 = inner_ring_e0 * inner_ring_e1;
-        let t22 = inner_ring_e2 * inner_ring_e3;
-        let t23 = t22 + t21;
-        let t24 = k(2.0) * t23;
-        let t25 = T::fused(t9, t24, T::fused(t5, t16, t2 * t20));
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(0.5) - T::fused(rotor_e1, rotor_e1, t26);
-        let t28 = k(2.0) * t27;
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = t30 + t29;
-        let t32 = k(2.0) * t31;
-        let t33 = rotor_e0 * rotor_e2;
-        let t34 = rotor_e1 * rotor_e3;
-        let t35 = t34 - t33;
-        let t36 = k(2.0) * t35;
-        let t37 = T::fused(t9, t36, -T::fused(t2, t28, t5 * t32));
-        let t38 = k(5e-6) * t37;
-        let t39 = inner_ring_e0 * inner_ring_e2;
-        let t40 = inner_ring_e1 * inner_ring_e3;
-        let t41 = t40 - t39;
-        let t42 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t14);
-        let t43 = rotor_e0 * rotor_e1;
-        let t44 = rotor_e2 * rotor_e3;
-        let t45 = t44 + t43;
-        let t46 = k(0.5) - T::fused(rotor_e3, rotor_e3, t26);
-        let t47 = T::fused(k(0.0003), t46, T::fused(k(0.0002), t35, k(0.0004) * t45));
-        let t48 = t47
-            - T::fused(k(6e-5), t42, T::fused(k(0.00025), t41, k(0.0001) * t23));
-        let t49 = t18 + t17;
-        let t50 = t22 - t21;
-        let t51 = k(0.5) - T::fused(rotor_e2, rotor_e2, t26);
-        let t52 = t44 - t43;
-        let t53 = T::fused(k(0.0003), t52, T::fused(-k(0.0002), t31, k(0.0004) * t51));
-        let t54 = t53
-            - T::fused(k(6e-5), t50, T::fused(-k(0.00025), t49, k(0.0001) * t15));
-        let t55 = T::fused(-t5, t48, t9 * t54);
-        let t56 = k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t57 = t40 + t39;
-        let t58 = t30 - t29;
-        let t59 = t34 + t33;
-        let t60 = T::fused(k(0.0003), t59, -T::fused(-k(0.0002), t27, k(0.0004) * t58));
-        let t61 = t60
-            - T::fused(k(6e-5), t57, -T::fused(-k(0.00025), t56, k(0.0001) * t19));
-        let t62 = T::fused(t2, t48, t9 * t61);
-        let t63 = T::fused(t2, t54, t5 * t61);
-        let t64 = T::fused(
-            t37,
-            t38,
-            k(0.08) * T::fused(t63, t63, T::fused(t55, t55, t62 * t62)),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e1, t2, t5);
+        let t7 = k(2.0) * outer_ring_e2;
+        let t8 = T::fused(-outer_ring_e2, t7, t5);
+        let t9 = t3 + t1;
+        let t10 = outer_ring_e1 * t0;
+        let t11 = outer_ring_e3 * t7;
+        let t12 = t11 + t10;
+        let t13 = outer_ring_e2 * t0;
+        let t14 = outer_ring_e3 * t2;
+        let t15 = t14 - t13;
+        let t16 = T::fused(t15, t12, -T::fused(t6, t4, t9 * t8));
+        let t17 = k(2.0) * inner_ring_e0;
+        let t18 = inner_ring_e3 * t17;
+        let t19 = k(2.0) * inner_ring_e1;
+        let t20 = inner_ring_e2 * t19;
+        let t21 = t20 - t18;
+        let t22 = k(2.0) * inner_ring_e2;
+        let t23 = T::fused(-inner_ring_e0, t17, k(1.0));
+        let t24 = T::fused(-inner_ring_e2, t22, t23);
+        let t25 = inner_ring_e1 * t17;
+        let t26 = inner_ring_e3 * t22;
+        let t27 = t26 + t25;
+        let t28 = T::fused(t12, t27, T::fused(t4, t21, t8 * t24));
+        let t29 = k(2.0) * rotor_e1;
+        let t30 = k(2.0) * rotor_e0;
+        let t31 = T::fused(-rotor_e0, t30, k(1.0));
+        let t32 = T::fused(-rotor_e1, t29, t31);
+        let t33 = rotor_e3 * t30;
+        let t34 = rotor_e2 * t29;
+        let t35 = t34 + t33;
+        let t36 = rotor_e2 * t30;
+        let t37 = rotor_e3 * t29;
+        let t38 = t37 - t36;
+        let t39 = T::fused(t12, t38, -T::fused(t4, t32, t8 * t35));
+        let t40 = k(5e-6) * t39;
+        let t41 = inner_ring_e2 * t17;
+        let t42 = inner_ring_e3 * t19;
+        let t43 = t42 - t41;
+        let t44 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
+        let t45 = rotor_e1 * t30;
+        let t46 = k(2.0) * rotor_e2;
+        let t47 = rotor_e3 * t46;
+        let t48 = t47 + t45;
+        let t49 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t31);
+        let t50 = T::fused(k(0.00015), t49, T::fused(k(0.0001), t38, k(0.0002) * t48));
+        let t51 = t50
+            - T::fused(k(3e-5), t44, T::fused(k(0.000125), t43, k(5e-5) * t27));
+        let t52 = t20 + t18;
+        let t53 = t26 - t25;
+        let t54 = T::fused(-rotor_e2, t46, t31);
+        let t55 = t47 - t45;
+        let t56 = T::fused(k(0.00015), t55, T::fused(-k(0.0001), t35, k(0.0002) * t54));
+        let t57 = t56
+            - T::fused(k(3e-5), t53, T::fused(-k(0.000125), t52, k(5e-5) * t24));
+        let t58 = T::fused(-t8, t51, t12 * t57);
+        let t59 = T::fused(-inner_ring_e1, t19, t23);
+        let t60 = t42 + t41;
+        let t61 = t34 - t33;
+        let t62 = t37 + t36;
+        let t63 = T::fused(k(0.00015), t62, -T::fused(-k(0.0001), t32, k(0.0002) * t61));
+        let t64 = t63
+            - T::fused(k(3e-5), t60, -T::fused(-k(0.000125), t59, k(5e-5) * t21));
+        let t65 = T::fused(t4, t51, t12 * t64);
+        let t66 = T::fused(t4, t57, t8 * t64);
+        let t67 = T::fused(
+            t39,
+            t40,
+            k(0.08) * T::fused(t66, t66, T::fused(t58, t58, t65 * t65)),
         );
-        let t65 = k(7e-6) + (t64 + T::fused(t13, k(1e-6) * t13, t25 * (k(1e-6) * t25)));
-        let t66 = T::fused(t36, t36, T::fused(t28, t28, t32 * t32));
-        let t67 = k(5e-6) * t66;
-        let t68 = T::fused(t36, t53, t32 * t47);
-        let t69 = T::fused(-t28, t47, t36 * t60);
-        let t70 = T::fused(t32, t60, t28 * t53);
-        let t71 = T::fused(
-            -t67,
-            t37,
-            k(0.08) * T::fused(t70, t63, -T::fused(t68, t55, t69 * t62)),
+        let t68 = k(7e-6) + (t67 + T::fused(t16, k(1e-6) * t16, t28 * (k(1e-6) * t28)));
+        let t69 = T::fused(t38, t38, T::fused(t32, t32, t35 * t35));
+        let t70 = k(5e-6) * t69;
+        let t71 = T::fused(t38, t56, t35 * t50);
+        let t72 = T::fused(-t32, t50, t38 * t63);
+        let t73 = T::fused(t35, t63, t32 * t56);
+        let t74 = T::fused(
+            -t70,
+            t39,
+            k(0.08) * T::fused(t73, t66, -T::fused(t71, t58, t72 * t65)),
         );
-        let t72 = t71 - t38;
-        let t73 = T::fused(
-            t66,
-            t67,
-            k(0.08) * T::fused(t70, t70, T::fused(t68, t68, t69 * t69)),
+        let t75 = t74 - t40;
+        let t76 = T::fused(
+            t69,
+            t70,
+            k(0.08) * T::fused(t73, t73, T::fused(t71, t71, t72 * t72)),
         );
-        let t74 = k(1.0) / (k(5e-6) + t73);
-        let t75 = t74 * t72;
-        let t76 = k(2.0) * t57;
-        let t77 = k(2.0) * t50;
-        let t78 = k(2.0) * t42;
-        let t79 = T::fused(t24, t78, T::fused(-t20, t76, t16 * t77));
+        let t77 = k(1.0) / (k(5e-6) + t76);
+        let t78 = t77 * t75;
+        let t79 = T::fused(t27, t44, T::fused(-t21, t60, t24 * t53));
         let t80 = k(1e-6) * t79;
-        let t81 = T::fused(t78, t36, -T::fused(-t76, t28, t77 * t32));
+        let t81 = T::fused(t44, t38, -T::fused(-t60, t32, t53 * t35));
         let t82 = k(5e-6) * t81;
-        let t83 = T::fused(-t77, t48, t78 * t54);
-        let t84 = T::fused(-t76, t48, t78 * t61);
-        let t85 = T::fused(-t76, t54, t77 * t61);
+        let t83 = T::fused(-t53, t51, t44 * t57);
+        let t84 = T::fused(-t60, t51, t44 * t64);
+        let t85 = T::fused(-t60, t57, t53 * t64);
         let t86 = T::fused(
             t82,
-            t37,
-            k(0.08) * T::fused(t85, t63, T::fused(t83, t55, t84 * t62)),
+            t39,
+            k(0.08) * T::fused(t85, t66, T::fused(t83, t58, t84 * t65)),
         );
         let t87 = T::fused(
             k(6e-6),
-            T::fused(t9, t78, -T::fused(-t5, t77, t2 * t76)),
-            T::fused(t25, t80, t86),
+            T::fused(t12, t44, T::fused(-t4, t60, t8 * t53)),
+            T::fused(t28, t80, t86),
         );
         let t88 = T::fused(
             -t81,
-            t67,
-            k(0.08) * T::fused(t70, t85, -T::fused(t68, t83, t69 * t84)),
+            t70,
+            k(0.08) * T::fused(t73, t85, -T::fused(t71, t83, t72 * t84)),
         );
         let t89 = t88 - t82;
-        let t90 = t74 * t89;
-        let t91 = T::fused(t90, t72, -t87);
+        let t90 = t77 * t89;
+        let t91 = T::fused(t90, t75, -t87);
         let t92 = T::fused(
             t81,
             t82,
@@ -3335,173 +3301,164 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeCombinedOffsets<T> {
         );
         let t93 = k(1.0) / T::fused(t89, t90, -(k(6e-6) + T::fused(t79, t80, t92)));
         let t94 = t93 * t91;
-        let t95 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
-        let t96 = k(2.0) * (t11 + t10);
-        let t97 = k(1.0) / T::fused(-t4, t95, t96 * t12);
-        let t98 = t4 * t97;
+        let t95 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t96 = t14 + t13;
+        let t97 = k(1.0) / T::fused(-t6, t95, t96 * t15);
+        let t98 = t6 * t97;
         let t99 = t96 * t97;
-        let t100 = t12 * t97;
+        let t100 = t15 * t97;
         let t101 = t95 * t97;
         let t102 = T::fused(
             row3,
-            T::fused(t4, t98, t96 * t99),
-            row4 * T::fused(t4, t100, t96 * t101),
+            T::fused(t6, t98, t96 * t99),
+            row4 * T::fused(t6, t100, t96 * t101),
         );
-        let t103 = k(2.0) * (t8 - t7);
+        let t103 = t11 - t10;
         let t104 = T::fused(
             row3,
-            T::fused(-t6, t98, t103 * t99),
-            row4 * T::fused(-t6, t100, t103 * t101),
+            T::fused(-t9, t98, t103 * t99),
+            row4 * T::fused(-t9, t100, t103 * t101),
         );
         let t105 = T::fused(
             row3,
-            T::fused(t12, t98, t95 * t99),
-            row4 * T::fused(t12, t100, t95 * t101),
+            T::fused(t15, t98, t95 * t99),
+            row4 * T::fused(t15, t100, t95 * t101),
         );
-        let t106 = k(1e-6) * T::fused(t12, t105, -T::fused(-t4, t102, t6 * t104));
-        let t107 = k(2.0) * t56;
-        let t108 = k(2.0) * t49;
-        let t109 = k(2.0) * t41;
-        let t110 = T::fused(t9, t109, -T::fused(t2, t107, t5 * t108));
-        let t111 = T::fused(t12, t24, -T::fused(t4, t20, t6 * t16));
-        let t112 = T::fused(t12, t109, T::fused(t4, t107, t6 * t108));
-        let t113 = k(1.0) / T::fused(-t111, t110, t112 * t25);
-        let t114 = t110 * t113;
-        let t115 = t25 * t113;
-        let t116 = t112 * t113;
-        let t117 = t111 * t113;
-        let t118 = T::fused(
+        let t106 = k(1e-6) * T::fused(t15, t105, -T::fused(-t6, t102, t9 * t104));
+        let t107 = T::fused(t15, t27, -T::fused(t6, t21, t9 * t24));
+        let t108 = T::fused(t12, t43, -T::fused(t4, t59, t8 * t52));
+        let t109 = T::fused(t15, t43, T::fused(t6, t59, t9 * t52));
+        let t110 = k(1.0) / T::fused(-t108, t107, t28 * t109);
+        let t111 = t108 * t110;
+        let t112 = t28 * t110;
+        let t113 = t109 * t110;
+        let t114 = t107 * t110;
+        let t115 = T::fused(
             -row8,
-            T::fused(-t107, t114, t20 * t115),
-            row9 * T::fused(-t107, t116, t20 * t117),
+            T::fused(-t59, t111, t21 * t112),
+            row9 * T::fused(-t59, t113, t21 * t114),
         );
-        let t119 = t118 + t102;
-        let t120 = T::fused(
+        let t116 = t115 + t102;
+        let t117 = T::fused(
             -row8,
-            T::fused(-t108, t114, t16 * t115),
-            row9 * T::fused(-t108, t116, t16 * t117),
+            T::fused(-t52, t111, t24 * t112),
+            row9 * T::fused(-t52, t113, t24 * t114),
         );
-        let t121 = t120 - t104;
-        let t122 = T::fused(
+        let t118 = t117 - t104;
+        let t119 = T::fused(
             -row8,
-            T::fused(t109, t114, t24 * t115),
-            row9 * T::fused(t109, t116, t24 * t117),
+            T::fused(t43, t111, t27 * t112),
+            row9 * T::fused(t43, t113, t27 * t114),
         );
-        let t123 = t122 - t105;
-        let t124 = k(1e-6) * T::fused(t24, t123, T::fused(t20, t119, t16 * t121));
-        let t125 = k(2.0) * t51;
-        let t126 = k(2.0) * t58;
-        let t127 = k(2.0) * t45;
-        let t128 = T::fused(t78, t127, -T::fused(-t77, t125, t76 * t126));
-        let t129 = k(2.0) * t52;
-        let t130 = k(2.0) * t59;
-        let t131 = k(2.0) * t46;
-        let t132 = T::fused(t24, t131, -T::fused(-t16, t129, t20 * t130));
-        let t133 = T::fused(t78, t131, T::fused(t77, t129, t76 * t130));
-        let t134 = T::fused(t24, t127, T::fused(t16, t125, t20 * t126));
-        let t135 = k(1.0) / T::fused(-t132, t128, t134 * t133);
-        let t136 = t134 * t135;
-        let t137 = t132 * t135;
-        let t138 = T::fused(-t126, t136, t130 * t137);
-        let t139 = T::fused(t127, t136, t131 * t137);
-        let t140 = t128 * t135;
-        let t141 = t133 * t135;
-        let t142 = T::fused(-t126, t140, t130 * t141);
-        let t143 = T::fused(t127, t140, t131 * t141);
-        let t144 = T::fused(
+        let t120 = t119 - t105;
+        let t121 = k(1e-6) * T::fused(t27, t120, T::fused(t21, t116, t24 * t118));
+        let t122 = T::fused(t44, t48, T::fused(-t60, t61, t53 * t54));
+        let t123 = T::fused(t27, t49, T::fused(-t21, t62, t24 * t55));
+        let t124 = T::fused(t44, t49, T::fused(t60, t62, t53 * t55));
+        let t125 = T::fused(t27, t48, T::fused(t21, t61, t24 * t54));
+        let t126 = k(1.0) / T::fused(-t123, t122, t125 * t124);
+        let t127 = t125 * t126;
+        let t128 = t123 * t126;
+        let t129 = T::fused(-t61, t127, t62 * t128);
+        let t130 = T::fused(t48, t127, t49 * t128);
+        let t131 = t122 * t126;
+        let t132 = t124 * t126;
+        let t133 = T::fused(-t61, t131, t62 * t132);
+        let t134 = T::fused(t48, t131, t49 * t132);
+        let t135 = T::fused(
             -row14,
-            T::fused(-t138, t47, t139 * t60),
-            T::fused(-row13, T::fused(-t142, t47, t143 * t60), row11),
+            T::fused(-t129, t50, t130 * t63),
+            T::fused(-row13, T::fused(-t133, t50, t134 * t63), row11),
         );
-        let t145 = row1 + row6;
-        let t146 = t145 - T::fused(t119, t48, t123 * t61) + t144;
-        let t147 = k(0.08) * t146;
-        let t148 = T::fused(t125, t136, t129 * t137);
-        let t149 = T::fused(t125, t140, t129 * t141);
-        let t150 = T::fused(
+        let t136 = row1 + row6;
+        let t137 = t136 - T::fused(t116, t51, t120 * t64) + t135;
+        let t138 = k(0.08) * t137;
+        let t139 = T::fused(t54, t127, t55 * t128);
+        let t140 = T::fused(t54, t131, t55 * t132);
+        let t141 = T::fused(
             row14,
-            T::fused(-t148, t60, t138 * t53),
-            T::fused(row13, T::fused(-t149, t60, t142 * t53), row12),
+            T::fused(-t139, t63, t129 * t56),
+            T::fused(row13, T::fused(-t140, t63, t133 * t56), row12),
         );
-        let t151 = row2 + row7;
-        let t152 = t151 - T::fused(t119, t54, t121 * t61) + t150;
-        let t153 = k(0.08) * t152;
-        let t154 = t119 - T::fused(row13, t142, row14 * t138);
-        let t155 = t121 + T::fused(row13, t149, row14 * t148);
-        let t156 = t123 + T::fused(row13, t143, row14 * t139);
-        let t157 = k(5e-6) * T::fused(t36, t156, -T::fused(t28, t154, t32 * t155));
-        let t158 = T::fused(-t28, t157, k(5e-6) * t154);
-        let t159 = t158 - T::fused(t48, t147, t54 * t153)
-            + T::fused(t20, t124, k(1e-6) * t119);
-        let t160 = T::fused(
+        let t142 = row2 + row7;
+        let t143 = t142 - T::fused(t116, t57, t118 * t64) + t141;
+        let t144 = k(0.08) * t143;
+        let t145 = t116 - T::fused(row13, t133, row14 * t129);
+        let t146 = t118 + T::fused(row13, t140, row14 * t139);
+        let t147 = t120 + T::fused(row13, t134, row14 * t130);
+        let t148 = k(5e-6) * T::fused(t38, t147, -T::fused(t32, t145, t35 * t146));
+        let t149 = T::fused(-t32, t148, k(5e-6) * t145);
+        let t150 = t149 - T::fused(t51, t138, t57 * t144)
+            + T::fused(t21, t121, k(1e-6) * t116);
+        let t151 = T::fused(
             -row14,
-            T::fused(-t139, t53, t148 * t47),
-            T::fused(-row13, T::fused(-t143, t53, t149 * t47), row10),
+            T::fused(-t130, t56, t139 * t50),
+            T::fused(-row13, T::fused(-t134, t56, t140 * t50), row10),
         );
-        let t161 = row0 + row5;
-        let t162 = t161 + T::fused(-t121, t48, t123 * t54) + t160;
-        let t163 = k(0.08) * t162;
-        let t164 = T::fused(-t32, t157, k(5e-6) * t155);
-        let t165 = t164 - T::fused(t48, t163, t61 * t153)
-            + T::fused(t16, t124, k(1e-6) * t121);
-        let t166 = T::fused(
-            t2,
-            t159 + T::fused(t4, t106, k(1e-6) * t102),
-            t5 * (t165 - T::fused(-t6, t106, k(1e-6) * t104)),
+        let t152 = row0 + row5;
+        let t153 = t152 + T::fused(-t118, t51, t120 * t57) + t151;
+        let t154 = k(0.08) * t153;
+        let t155 = T::fused(-t35, t148, k(5e-6) * t146);
+        let t156 = t155 - T::fused(t51, t154, t64 * t144)
+            + T::fused(t24, t121, k(1e-6) * t118);
+        let t157 = T::fused(
+            t4,
+            t150 + T::fused(t6, t106, k(1e-6) * t102),
+            t8 * (t156 - T::fused(-t9, t106, k(1e-6) * t104)),
         );
-        let t167 = T::fused(t36, t157, k(5e-6) * t156);
-        let t168 = t167 - T::fused(-t54, t163, t61 * t147)
-            + T::fused(t24, t124, k(1e-6) * t123);
-        let t169 = T::fused(t36, t167, -T::fused(t28, t158, t32 * t164))
-            + T::fused(t153, t70, -T::fused(-t163, t68, t147 * t69));
-        let t170 = T::fused(
-            t169,
-            t75,
-            T::fused(t9, t168 - T::fused(t12, t106, k(1e-6) * t105), t166),
+        let t158 = T::fused(t38, t148, k(5e-6) * t147);
+        let t159 = t158 - T::fused(-t57, t154, t64 * t138)
+            + T::fused(t27, t121, k(1e-6) * t120);
+        let t160 = T::fused(t38, t158, -T::fused(t32, t149, t35 * t155))
+            + T::fused(t144, t73, -T::fused(-t154, t71, t138 * t72));
+        let t161 = T::fused(
+            t160,
+            t78,
+            T::fused(t12, t159 - T::fused(t15, t106, k(1e-6) * t105), t157),
         );
-        let t171 = T::fused(
-            t169,
+        let t162 = T::fused(
+            t160,
             t90,
-            T::fused(t78, t168, T::fused(-t76, t159, t77 * t165)),
+            T::fused(t44, t159, T::fused(-t60, t150, t53 * t156)),
         );
-        let t172 = T::fused(t171, t94, -t170)
-            / T::fused(t91, t94, -T::fused(t72, t75, -t65));
-        let t173 = t2 * t172;
-        let t174 = t102 + t173;
-        let t175 = t5 * t172;
-        let t176 = t104 - t175;
-        let t177 = t9 * t172;
-        let t178 = t105 - t177;
-        let t179 = T::fused(-t171, t93, t94 * t172);
-        let t180 = t76 * t179;
-        let t181 = t180 + (t119 + t173);
-        let t182 = t77 * t179;
-        let t183 = t182 - (t121 + t175);
-        let t184 = t78 * t179;
-        let t185 = t184 - (t123 + t177);
-        let t186 = T::fused(t90, t179, -T::fused(-t169, t74, t75 * t172));
-        let t187 = T::fused(t28, t186, t180 + (t154 + t173));
-        let t188 = T::fused(t32, t186, -(t182 - (t155 + t175)));
-        let t189 = T::fused(t36, t186, t184 - (t156 + t177));
+        let t163 = T::fused(t162, t94, -t161)
+            / T::fused(t91, t94, -T::fused(t75, t78, -t68));
+        let t164 = t4 * t163;
+        let t165 = t102 + t164;
+        let t166 = t8 * t163;
+        let t167 = t104 - t166;
+        let t168 = t12 * t163;
+        let t169 = t105 - t168;
+        let t170 = T::fused(-t162, t93, t94 * t163);
+        let t171 = t60 * t170;
+        let t172 = t171 + (t116 + t164);
+        let t173 = t53 * t170;
+        let t174 = t173 - (t118 + t166);
+        let t175 = t44 * t170;
+        let t176 = t175 - (t120 + t168);
+        let t177 = T::fused(t90, t170, -T::fused(-t160, t77, t78 * t163));
+        let t178 = T::fused(t32, t177, t171 + (t145 + t164));
+        let t179 = T::fused(t35, t177, -(t173 - (t146 + t166)));
+        let t180 = T::fused(t38, t177, t175 - (t147 + t168));
         *out = [
             row0,
             row1,
             row2,
-            T::fused(t12, t178, -T::fused(-t4, t174, t6 * t176)),
-            T::fused(t9, t178, T::fused(-t2, t174, t5 * t176)),
-            -T::fused(t95, t178, T::fused(t96, t174, t103 * t176)),
-            t161,
-            t145,
-            t151,
-            T::fused(t109, t185, -T::fused(-t107, t181, t108 * t183)),
-            T::fused(t24, t185, T::fused(-t20, t181, t16 * t183)),
-            -T::fused(t78, t185, T::fused(t76, t181, t77 * t183)),
-            -T::fused(t68, t186, T::fused(t83, t179, -T::fused(t55, t172, t162))),
-            T::fused(t69, t186, T::fused(t84, t179, T::fused(-t62, t172, t146))),
-            T::fused(-t70, t186, T::fused(t85, t179, T::fused(-t63, t172, t152))),
-            T::fused(t36, t189, T::fused(t28, t187, t32 * t188)),
-            T::fused(t127, t189, -T::fused(t126, t187, t125 * t188)),
-            T::fused(-t131, t189, T::fused(-t130, t187, t129 * t188)),
+            T::fused(t15, t169, -T::fused(-t6, t165, t9 * t167)),
+            T::fused(t12, t169, T::fused(-t4, t165, t8 * t167)),
+            -T::fused(t95, t169, T::fused(t96, t165, t103 * t167)),
+            t152,
+            t136,
+            t142,
+            T::fused(t43, t176, -T::fused(-t59, t172, t52 * t174)),
+            T::fused(t27, t176, T::fused(-t21, t172, t24 * t174)),
+            -T::fused(t44, t176, T::fused(t60, t172, t53 * t174)),
+            -T::fused(t71, t177, T::fused(t83, t170, -T::fused(t58, t163, t153))),
+            T::fused(t72, t177, T::fused(t84, t170, T::fused(-t65, t163, t137))),
+            T::fused(-t73, t177, T::fused(t85, t170, T::fused(-t66, t163, t143))),
+            T::fused(t38, t180, T::fused(t32, t178, t35 * t179)),
+            T::fused(t48, t180, -T::fused(t61, t178, t54 * t179)),
+            T::fused(-t49, t180, T::fused(-t62, t178, t55 * t179)),
         ];
     }
 }
@@ -4751,7 +4708,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeCombinedOffsets<T
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 430 operations (170 ±, 258 ×, 2 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 425 operations (170 ±, 253 ×, 2 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -4765,173 +4722,172 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeCombinedOffsets<T
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x2.cos();
-        let t1 = x2.sin();
-        let t2 = T::fused(-k(3e-10), t0, k(4e-10) * t1);
-        let t3 = x1.sin();
-        let t4 = t3 * t2;
-        let t5 = T::fused(k(1.6e-9), t0, k(1.2e-9) * t1);
-        let t6 = t3 * t5;
-        let t7 = k(0.5) * t5;
-        let t8 = x1.cos();
-        let t9 = T::fused(k(1.4e-9), t0, k(4.8e-9) * t1);
-        let t10 = t0 * t9;
-        let t11 = T::fused(k(2.0), t10, k(1.00036e-5));
-        let t12 = u0 * (T::fused(t8, t7, t3 * t11) - t6);
-        let t13 = T::fused(-k(4.8e-9), t0, k(1.4e-9) * t1);
-        let t14 = t0 * t13;
-        let t15 = k(2.4e-9) + t14;
-        let t16 = T::fused(k(2.0), t2, -t15);
-        let t17 = t8 * t2;
-        let t18 = T::fused(-t3, t16, t17);
-        let t19 = u0 * T::fused(-t3, T::fused(t8, t16, t4), t8 * t18);
-        let t20 = T::fused(u0, t19, -T::fused(k(400000.0), t4, u1 * t12));
-        let t21 = k(99950.02498750624) * t2;
-        let t22 = t10 - t5;
-        let t23 = k(4.00195e-6) + t22;
-        let t24 = k(2e-10) - t7;
-        let t25 = t3 * t24;
-        let t26 = T::fused(t8, t23, t25);
-        let t27 = t8 * t24;
-        let t28 = T::fused(-t3, t23, t27);
-        let t29 = t3 * t28;
-        let t30 = u0 * (k(2.0) * T::fused(t8, t26, t29));
-        let t31 = T::fused(
+        let t0 = k(0.25) * u2;
+        let t1 = x2.cos();
+        let t2 = x2.sin();
+        let t3 = T::fused(k(1.6e-9), t1, k(1.2e-9) * t2);
+        let t4 = T::fused(-k(4.8e-9), t1, k(1.4e-9) * t2);
+        let t5 = t1 * t4;
+        let t6 = k(2.4e-9) + t5;
+        let t7 = T::fused(-k(3e-10), t1, k(4e-10) * t2);
+        let t8 = T::fused(k(2.0), t7, -t6);
+        let t9 = u1 * t8;
+        let t10 = T::fused(k(1.4e-9), t1, k(4.8e-9) * t2);
+        let t11 = t1 * t10;
+        let t12 = T::fused(k(2.0), t11, k(1.00036e-5));
+        let t13 = x1.cos();
+        let t14 = k(0.5) * t3;
+        let t15 = x1.sin();
+        let t16 = t13 * t3;
+        let t17 = t16 + T::fused(-t13, t12, t15 * t14);
+        let t18 = u0 * t17;
+        let t19 = T::fused(t3, t0, T::fused(k(2.0), t9, t18));
+        let t20 = k(0.5) * u0;
+        let t21 = t11 - t3;
+        let t22 = k(4.00195e-6) + t21;
+        let t23 = k(2e-10) - t14;
+        let t24 = t15 * t23;
+        let t25 = T::fused(t13, t22, t24);
+        let t26 = t15 * t25;
+        let t27 = T::fused(-k(2.0), t26, t23);
+        let t28 = u0 * t27;
+        let t29 = T::fused(
             k(200000.0),
-            t27,
-            T::fused(k(0.5), u0 * t30, T::fused(-u2, t12, k(2e-5) * t3)),
+            t24,
+            -T::fused(t28, t20, T::fused(u2, t19, k(2e-5) * t13)),
         );
-        let t32 = T::fused(t21, t20, t31);
-        let t33 = k(6e-11) + t2;
-        let t34 = k(2.28e-9) + T::fused(k(1.08e-9), t0, T::fused(-k(4.4e-10), t1, t14));
-        let t35 = T::fused(-t3, t33, t8 * t34);
-        let t36 = T::fused(k(0.10344827586206896), t1, t0 - k(8625.0));
-        let t37 = t8 * t5;
-        let t38 = T::fused(-k(1.16e-9), t3 * t36, k(0.25) * t37);
-        let t39 = T::fused(t21, t38, t35);
-        let t40 = k(1.0) / T::fused(t2, t21, -(k(6.00205e-6) + t22));
-        let t41 = t40 * t39;
-        let t42 = T::fused(k(0.25), t6, k(1.16e-9) * (t8 * t36));
-        let t43 = T::fused(t3, t34, t8 * t33);
-        let t44 = T::fused(t21, t42, t43);
-        let t45 = t40 * t44;
-        let t46 = t3 * t26;
-        let t47 = T::fused(-k(2.0), t46, t24);
-        let t48 = u0 * t47;
-        let t49 = u1 * t16;
-        let t50 = t37 + T::fused(-t8, t11, t3 * t7);
-        let t51 = u0 * t50;
-        let t52 = T::fused(k(0.25), u2 * t5, T::fused(k(2.0), t49, t51));
-        let t53 = T::fused(
-            -k(200000.0),
-            t25,
-            T::fused(k(0.5), u0 * t48, T::fused(k(2e-5), t8, u2 * t52)),
+        let t30 = t13 * t7;
+        let t31 = T::fused(-t15, t8, t30);
+        let t32 = t6 - T::fused(-k(0.3), t3, t15 * t31);
+        let t33 = u0 * t32;
+        let t34 = t18 + t9;
+        let t35 = T::fused(-u0, t33, T::fused(-u1, t34, k(400000.0) * t30));
+        let t36 = k(99950.02498750624) * t7;
+        let t37 = T::fused(t36, t35, t29);
+        let t38 = k(1.16e-9) * T::fused(k(0.10344827586206896), t2, t1 - k(8625.0));
+        let t39 = T::fused(-t15, t38, k(0.25) * t16);
+        let t40 = k(6e-11) + t7;
+        let t41 = k(2.28e-9) + T::fused(k(1.08e-9), t1, T::fused(-k(4.4e-10), t2, t5));
+        let t42 = T::fused(-t15, t40, t13 * t41);
+        let t43 = T::fused(t36, t39, t42);
+        let t44 = k(1.0) / T::fused(t7, t36, -(k(6.00205e-6) + t21));
+        let t45 = t44 * t43;
+        let t46 = k(99950.02498750624) * t39;
+        let t47 = k(1.2e-10) * T::fused(-k(9.666666666666666), t2, t1);
+        let t48 = u2 * T::fused(t15, t47, t30);
+        let t49 = u1 * t13;
+        let t50 = T::fused(-k(1.2), k(4.1693333333333335e-6) + t7, t11);
+        let t51 = T::fused(k(2.0), T::fused(-t50, t49, t33), -t48);
+        let t52 = T::fused(t15, t41, t13 * t40);
+        let t53 = u1 * t52;
+        let t54 = t28 - t53;
+        let t55 = T::fused(-t45, t37, T::fused(t35, t46, T::fused(-u2, t51, u1 * t54)));
+        let t56 = t13 * t23;
+        let t57 = T::fused(-t15, t22, t56);
+        let t58 = t15 * t57;
+        let t59 = T::fused(
+            -t43,
+            t45,
+            T::fused(t39, t46, t11 - (T::fused(k(2.4), t7, k(8.003322e-6)) - t58)),
         );
-        let t54 = t15 - T::fused(-k(0.3), t5, t3 * t18);
-        let t55 = u0 * t54;
-        let t56 = t51 + t49;
-        let t57 = T::fused(-u0, t55, T::fused(-u1, t56, k(400000.0) * t17));
-        let t58 = T::fused(t21, t57, -t53);
-        let t59 = k(99950.02498750624) * t38;
-        let t60 = k(99950.02498750624) * t42;
-        let t61 = T::fused(-k(1.2), k(4.1693333333333335e-6) + t2, t10);
-        let t62 = T::fused(-k(9.666666666666666), t1, t0);
-        let t63 = T::fused(
-            -k(2.0),
-            T::fused(t61, u1 * t3, -t19),
-            u2 * T::fused(k(1.2e-10), t8 * t62, -t4),
+        let t60 = k(1.0) / t59;
+        let t61 = t60 * t60;
+        let t62 = t15 * t3;
+        let t63 = T::fused(t13, t38, k(0.25) * t62);
+        let t64 = k(99950.02498750624) * t63;
+        let t65 = T::fused(t36, t63, t52);
+        let t66 = t44 * t65;
+        let t67 = T::fused(t45, t65, t43 * t66)
+            - (T::fused(-t13, t57, t26) + T::fused(t63, t46, t39 * t64));
+        let t68 = t15 * t7;
+        let t69 = u0 * T::fused(-t15, T::fused(t13, t8, t68), t13 * t31);
+        let t70 = T::fused(
+            u2,
+            T::fused(-t13, t47, t68),
+            k(2.0) * T::fused(t50, u1 * t15, -t69),
         );
-        let t64 = T::fused(-u2, t63, u1 * T::fused(u1, t35, t30))
-            + T::fused(-t59, t20, t57 * t60);
-        let t65 = T::fused(
-            t39,
-            t41,
-            -T::fused(t38, t59, t10 - (T::fused(k(2.4), t2, k(8.003322e-6)) - t29)),
-        );
-        let t66 = k(1.0) / t65;
-        let t67 = T::fused(-t8, t28, t46) + T::fused(t38, t60, t59 * t42)
-            - T::fused(t39, t45, t41 * t44);
-        let t68 = t66 * t66;
-        let t69 = u1 * t43;
-        let t70 = t48 - t69;
-        let t71 = u2 * T::fused(k(1.2e-10), t3 * t62, t17);
-        let t72 = u1 * t8;
-        let t73 = T::fused(k(2.0), T::fused(-t61, t72, t55), -t71);
-        let t74 = T::fused(t41, t58, -T::fused(t59, t57, -T::fused(-u1, t70, u2 * t73)));
+        let t71 = u0 * (k(2.0) * T::fused(t13, t25, t58));
+        let t72 = u0 * (T::fused(t13, t14, t15 * t12) - t62);
+        let t73 = T::fused(u0, t69, -T::fused(k(400000.0), t68, u1 * t72));
+        let t74 = T::fused(-t35, t64, t73 * t46)
+            - T::fused(u2, t70, u1 * T::fused(u1, t42, t71));
         let t75 = T::fused(
-            -t66,
-            t64 - T::fused(-t41, t32, t58 * t45),
-            t74 * (t68 * t67),
+            k(200000.0),
+            t56,
+            T::fused(t71, t20, T::fused(-u2, t72, k(2e-5) * t15)),
         );
-        let t76 = T::fused(k(4e-10), t0, k(3e-10) * t1);
-        let t77 = t8 * t76;
-        let t78 = T::fused(-k(1.2e-9), t0, k(1.6e-9) * t1);
-        let t79 = t8 * t78;
-        let t80 = T::fused(t1, t9, t14);
-        let t81 = k(0.5) * t78;
-        let t82 = t3 * t81;
-        let t83 = u0 * (T::fused(-t8, k(2.0) * t80, t82) + t79);
-        let t84 = T::fused(-t1, t13, t10);
-        let t85 = T::fused(-k(2.0), t76, t84);
-        let t86 = u1 * t85;
-        let t87 = u0 * (t84 - T::fused(t3, T::fused(t3, t85, t77), k(0.3) * t78));
-        let t88 = T::fused(u0, t87, -T::fused(k(400000.0), t77, u1 * (t86 + t83)));
-        let t89 = k(99950.02498750624) * t76;
-        let t90 = t78 - t80;
-        let t91 = u0 * T::fused(-k(2.0), t3 * T::fused(t8, t90, t82), t81);
-        let t92 = T::fused(
-            -u2,
-            T::fused(k(0.25), u2 * t78, T::fused(k(2.0), t86, t83)),
-            k(0.5) * (u0 * t91),
-        );
-        let t93 = T::fused(k(200000.0), t82, -t92) + T::fused(-t21, t88, t57 * t89);
-        let t94 = T::fused(
+        let t76 = T::fused(t36, t73, t75);
+        let t77 = T::fused(t67 * t61, t55, (T::fused(-t66, t37, t76 * t45) - t74) * t60);
+        let t78 = T::fused(-k(1.2e-9), t1, k(1.6e-9) * t2);
+        let t79 = t13 * t78;
+        let t80 = T::fused(
             -k(0.25),
             t79,
-            k(1.16e-9) * (t3 * T::fused(-k(0.10344827586206896), t0, t1)),
+            k(1.16e-9) * (t15 * T::fused(-k(0.10344827586206896), t1, t2)),
         );
-        let t95 = T::fused(k(1.08e-9), t1, T::fused(k(4.4e-10), t0, -t84));
-        let t96 = T::fused(t8, t95, t3 * t76) - T::fused(t21, t94, t38 * t89);
-        let t97 = t40 * t40 * (t90 - T::fused(t2, t89, t21 * t76));
-        let t98 = T::fused(-t40, t96, t39 * t97);
-        let t99 = k(99950.02498750624) * t94;
-        let t100 = T::fused(
+        let t81 = k(99950.02498750624) * t80;
+        let t82 = T::fused(k(4e-10), t1, k(3e-10) * t2);
+        let t83 = k(0.5) * t78;
+        let t84 = T::fused(t2, t10, t5);
+        let t85 = t78 - t84;
+        let t86 = t84 + T::fused(k(2.4), t82, t15 * T::fused(-t13, t83, t15 * t85));
+        let t87 = k(99950.02498750624) * t82;
+        let t88 = T::fused(-t2, t4, t11);
+        let t89 = T::fused(k(1.08e-9), t2, T::fused(k(4.4e-10), t1, -t88));
+        let t90 = T::fused(t13, t89, t15 * t82) - T::fused(t87, t39, t36 * t80);
+        let t91 = t44 * t44 * (t85 - T::fused(t7, t87, t36 * t82));
+        let t92 = T::fused(-t91, t43, t44 * t90);
+        let t93 = T::fused(t45, t90, t43 * t92) - (t86 - T::fused(t80, t46, t81 * t39));
+        let t94 = t13 * t82;
+        let t95 = t15 * t83;
+        let t96 = u0 * (T::fused(-t13, k(2.0) * t84, t95) + t79);
+        let t97 = T::fused(-k(2.0), t82, t88);
+        let t98 = u1 * t97;
+        let t99 = u0 * (t88 - T::fused(t15, T::fused(t15, t97, t94), k(0.3) * t78));
+        let t100 = T::fused(u0, t99, -T::fused(k(400000.0), t94, u1 * (t98 + t96)));
+        let t101 = T::fused(
             -k(2.0),
-            T::fused(t72, T::fused(k(1.2), t76, t80), t87),
-            u2 * T::fused(-k(1.2e-10), t3 * T::fused(k(9.666666666666666), t0, t1), t77),
+            T::fused(t49, T::fused(k(1.2), t82, t84), t99),
+            u2 * T::fused(-k(1.2e-10), t15 * T::fused(k(9.666666666666666), t1, t2), t94),
         );
-        let t101 = T::fused(u2, t100, u1 * T::fused(u1, T::fused(t3, t95, -t77), t91));
-        let t102 = t101 + T::fused(-t59, t88, t57 * t99) - T::fused(t41, t93, t58 * t98);
-        let t103 = t80 + T::fused(k(2.4), t76, t3 * T::fused(-t8, t81, t3 * t90));
-        let t104 = t103 - T::fused(t38, t99, t59 * t94) - T::fused(-t39, t98, t41 * t96);
-        let t105 = T::fused(t66, t102, t74 * (t68 * t104));
-        let t106 = T::fused(u1, t50, k(2.0) * t55);
-        let t107 = T::fused(t21, t106, T::fused(u2, t50, t48));
-        let t108 = T::fused(
-            t41,
-            t107,
-            T::fused(-t59, t106, T::fused(-u2, k(2.0) * t54, u1 * t47)),
+        let t102 = u0 * T::fused(-k(2.0), t15 * T::fused(t13, t85, t95), t83);
+        let t103 = T::fused(u2, t101, u1 * T::fused(u1, T::fused(t15, t89, -t94), t102));
+        let t104 = T::fused(
+            -t102,
+            t20,
+            u2 * T::fused(t78, t0, T::fused(k(2.0), t98, t96)),
         );
-        let t109 = t66 * t108;
-        let t110 = t49 + t56;
-        let t111 = T::fused(t21, t110, u2 * (k(2.0) * t16));
-        let t112 = T::fused(t59, t110, T::fused(-u2, k(2.0) * (t8 * t61), t69 - t70));
-        let t113 = t66 * T::fused(-t41, t111, t112);
-        let t114 = T::fused(u2, k(0.25) * t5, t52);
-        let t115 = t66 * T::fused(t41, t114, t71 - t73);
-        let t116 = t66 * t74;
-        let t117 = T::fused(t40, t32, T::fused(t41, t75, t116 * t45));
-        let t118 = T::fused(t40, t93, t58 * t97) - T::fused(-t41, t105, t116 * t98);
-        let t119 = T::fused(-t41, t109, t40 * t107);
-        let t120 = T::fused(t41, t113, t40 * t111);
-        let t121 = T::fused(-t41, t115, t40 * t114);
-        let t122 = T::fused(
-            -t21,
-            t117,
-            T::fused(k(99950.02498750624), t20, T::fused(t59, t75, t116 * t60)),
+        let t105 = T::fused(-t36, t100, t35 * t87) + T::fused(k(200000.0), t95, t104);
+        let t106 = T::fused(-t37, t92, t45 * t105)
+            - (t103 + T::fused(-t100, t46, t35 * t81));
+        let t107 = T::fused(t55, t61 * t93, t60 * t106);
+        let t108 = T::fused(u1, t17, k(2.0) * t33);
+        let t109 = T::fused(t36, t108, T::fused(u2, t17, t28));
+        let t110 = T::fused(
+            t109,
+            t45,
+            T::fused(-t108, t46, T::fused(-u2, k(2.0) * t32, u1 * t27)),
         );
-        let t123 = T::fused(k(99950.02498750624), t88, T::fused(-t59, t105, t116 * t99))
-            - T::fused(-t21, t118, T::fused(-t40, t58, t41 * t116) * t89);
+        let t111 = t60 * t110;
+        let t112 = t9 + t34;
+        let t113 = T::fused(t112, t46, T::fused(-u2, k(2.0) * (t13 * t50), t53 - t54));
+        let t114 = T::fused(t36, t112, u2 * (k(2.0) * t8));
+        let t115 = t60 * T::fused(t114, t45, -t113);
+        let t116 = T::fused(u2, k(0.25) * t3, t19);
+        let t117 = t60 * T::fused(t45, t116, t48 - t51);
+        let t118 = t60 * t55;
+        let t119 = T::fused(t44, t76, T::fused(t66, t118, t45 * t77));
+        let t120 = T::fused(t92, t118, t45 * t107) + T::fused(t91, t37, t44 * t105);
+        let t121 = T::fused(t45, t111, t44 * t109);
+        let t122 = T::fused(t45, t115, t44 * t114);
+        let t123 = T::fused(t44, t116, t45 * t117);
+        let t124 = T::fused(
+            t36,
+            t119,
+            -T::fused(k(99950.02498750624), t73, T::fused(t64, t118, t46 * t77)),
+        );
+        let t125 = T::fused(t87, T::fused(-t45, t118, t44 * t37), t36 * t120)
+            + T::fused(k(99950.02498750624), t100, -T::fused(-t81, t118, t46 * t107));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -4952,23 +4908,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeCombinedOffsets<T
             k(0.0),
             k(1.0),
             k(0.0),
-            t75,
-            t105,
-            t109,
-            -t113,
-            t115,
-            k(0.0),
+            t77,
+            t107,
+            -t111,
+            -t115,
             -t117,
-            -t118,
-            t119,
-            t120,
-            t121,
             k(0.0),
-            -t122,
+            -t119,
+            -t120,
+            t121,
+            t122,
             t123,
-            T::fused(-t21, t119, T::fused(-t59, t109, k(99950.02498750624) * t106)),
-            T::fused(-t21, t120, T::fused(t59, t113, k(99950.02498750624) * t110)),
-            -T::fused(t21, t121, t59 * t115),
+            k(0.0),
+            t124,
+            t125,
+            T::fused(-t36, t121, T::fused(t46, t111, k(99950.02498750624) * t108)),
+            T::fused(-t36, t122, T::fused(t46, t115, k(99950.02498750624) * t112)),
+            T::fused(-t36, t123, t46 * t117),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

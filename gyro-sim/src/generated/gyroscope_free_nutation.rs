@@ -13,8 +13,8 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 347 operations by relative Euler parameters; 398 operations by rotations of the bodies
-//! * project: 284 operations by relative Euler parameters; 312 operations by rotations of the bodies
+//! * accelerations: 331 operations by relative Euler parameters, doubled; 347 operations by relative Euler parameters; 2 more compared
+//! * project: 275 operations by relative Euler parameters, doubled; 284 operations by relative Euler parameters; 2 more compared
 //! * joint_accelerations: 19 operations by normal form; 29 operations by recursion
 //! * joint_accelerations_at: 39 operations by normal form; 49 operations by recursion; 1 more compared
 //! * corrected_accelerations: 80 operations by normal form in the bodies' frames; 80 operations by normal form in the global frame; 5 more compared
@@ -25,15 +25,15 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 44 | 55 | 0 | 99 | 0 of 18 | 162 | 99 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 131 | 0 | 199 | 0 of 67 | 580 | 199 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 99 | 0 | 163 | 0 of 35 | 514 | 163 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 116 | 0 | 182 | 0 of 67 | 660 | 182 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 84 | 0 | 142 | 0 of 35 | 614 | 142 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 115 | 181 | 0 | 296 | 9 of 15 | 1414 | 296 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 119 | 0 | 203 | 0 of 15 | 554 | 203 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 12 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 138 | 204 | 5 | 347 | 10 of 18 | 293426 | 351 |
-//! | multipliers | λ, the accelerations being known | 105 | 175 | 3 | 283 | 0 of 15 | 3583 | 283 |
-//! | project | (δr, δπ') that changes the rows as given | 107 | 172 | 5 | 284 | 1 of 18 | 196446 | 285 |
+//! | gamma | γ | 109 | 166 | 0 | 275 | 9 of 15 | 1660 | 275 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 78 | 104 | 0 | 182 | 0 of 15 | 654 | 182 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 12 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 134 | 191 | 5 | 330 | 10 of 18 | 303876 | 334 |
+//! | multipliers | λ, the accelerations being known | 99 | 160 | 3 | 262 | 0 of 15 | 4203 | 262 |
+//! | project | (δr, δπ') that changes the rows as given | 104 | 166 | 5 | 275 | 1 of 18 | 204496 | 276 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 17 | 31 | 0 | 48 | 1 of 2 | 48 | 48 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -547,7 +547,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
             T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t16)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 203 operations (84 ±, 119 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 182 operations (78 ±, 104 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -579,111 +579,120 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeFreeNutation<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e2;
-        let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
-        let t19 = outer_ring_e0 * outer_ring_e1;
-        let t20 = outer_ring_e2 * outer_ring_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
-        let t23 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t7 = T::fused(-outer_ring_e1, t2, t5);
+        let t8 = t3 + t1;
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = outer_ring_e3 * t0;
+        let t15 = outer_ring_e2 * t2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e1 * t9;
+        let t18 = k(2.0) * inner_ring_e2;
+        let t19 = inner_ring_e3 * t18;
+        let t20 = t19 - t17;
+        let t21 = k(2.0) * outer_ring_e2;
+        let t22 = T::fused(-outer_ring_e2, t21, t5);
+        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
+        let t25 = outer_ring_e1 * t0;
+        let t26 = outer_ring_e3 * t21;
+        let t27 = t26 + t25;
+        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t29 = T::fused(
             outer_ring_wz,
-            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
-            outer_ring_wy * t22,
+            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
+            outer_ring_wy * t28,
         );
-        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
-        let t25 = inner_ring_e0 * inner_ring_e3;
-        let t26 = inner_ring_e1 * inner_ring_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t15 + t14);
-        let t29 = k(2.0) * (t12 - t11);
-        let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
-        let t32 = k(2.0) * (t8 + t7);
-        let t33 = T::fused(
+        let t30 = T::fused(-inner_ring_e1, t11, t23);
+        let t31 = inner_ring_e3 * t9;
+        let t32 = inner_ring_e2 * t11;
+        let t33 = t32 + t31;
+        let t34 = t15 + t14;
+        let t35 = t12 - t10;
+        let t36 = t32 - t31;
+        let t37 = T::fused(-inner_ring_e2, t18, t23);
+        let t38 = t19 + t17;
+        let t39 = T::fused(
             -inner_ring_wy,
-            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
-            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
+            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
         );
-        let t34 = T::fused(
+        let t40 = T::fused(
             outer_ring_wz,
-            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
-            outer_ring_wx * t22,
+            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
+            outer_ring_wx * t28,
         );
-        let t35 = T::fused(
+        let t41 = T::fused(
             -inner_ring_wy,
-            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
-            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
+            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
         );
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
-        let t38 = rotor_e0 * rotor_e3;
-        let t39 = rotor_e1 * rotor_e2;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = T::fused(t29, t43, T::fused(t24, t37, t27 * t40));
-        let t45 = T::fused(
-            inner_ring_wx,
-            T::fused(t18, t43, -T::fused(-t13, t37, t9 * t40)),
-            inner_ring_wz * t44,
+        let t42 = k(2.0) * rotor_e1;
+        let t43 = k(2.0) * rotor_e0;
+        let t44 = T::fused(-rotor_e0, t43, k(1.0));
+        let t45 = T::fused(-rotor_e1, t42, t44);
+        let t46 = rotor_e3 * t43;
+        let t47 = rotor_e2 * t42;
+        let t48 = t47 + t46;
+        let t49 = rotor_e2 * t43;
+        let t50 = rotor_e3 * t42;
+        let t51 = t50 - t49;
+        let t52 = T::fused(t35, t51, T::fused(t30, t45, t33 * t48));
+        let t53 = T::fused(
+            inner_ring_wz,
+            t52,
+            inner_ring_wx * T::fused(t24, t51, -T::fused(-t13, t45, t20 * t48)),
         );
-        let t46 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
-        let t47 = k(2.0) * (t39 - t38);
-        let t48 = rotor_e0 * rotor_e1;
-        let t49 = rotor_e2 * rotor_e3;
-        let t50 = k(2.0) * (t49 + t48);
-        let t51 = k(2.0) * (t49 - t48);
-        let t52 = k(2.0) * (t42 + t41);
-        let t53 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
-        let t54 = T::fused(
+        let t54 = t47 - t46;
+        let t55 = k(2.0) * rotor_e2;
+        let t56 = T::fused(-rotor_e2, t55, t44);
+        let t57 = rotor_e1 * t43;
+        let t58 = rotor_e3 * t55;
+        let t59 = t58 + t57;
+        let t60 = t50 + t49;
+        let t61 = t58 - t57;
+        let t62 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
+        let t63 = T::fused(
             rotor_wz,
-            T::fused(t32, t50, T::fused(t31, t46, t30 * t47)),
-            rotor_wy * T::fused(t32, t53, -T::fused(-t31, t51, t30 * t52)),
+            T::fused(t38, t59, T::fused(t36, t54, t37 * t56)),
+            rotor_wy * T::fused(t38, t62, T::fused(-t36, t60, t37 * t61)),
         );
-        let t55 = T::fused(
+        let t64 = T::fused(
             -inner_ring_wy,
-            t44,
-            inner_ring_wx * T::fused(t32, t43, -T::fused(t30, t37, t31 * t40)),
+            t52,
+            inner_ring_wx * T::fused(t38, t51, -T::fused(t36, t45, t37 * t48)),
         );
-        let t56 = T::fused(
+        let t65 = T::fused(
             rotor_wz,
-            T::fused(t18, t50, -T::fused(-t9, t46, t13 * t47)),
-            rotor_wy * T::fused(t18, t53, T::fused(t9, t51, t13 * t52)),
+            T::fused(t24, t59, T::fused(-t13, t54, t20 * t56)),
+            rotor_wy * T::fused(t24, t62, T::fused(t13, t60, t20 * t61)),
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
-            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
+            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
+            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t33 + t23),
-            t34 - t35,
+            -(t39 + t29),
+            t40 - t41,
             rotor_sx - inner_ring_sx,
             rotor_sy - inner_ring_sy,
             rotor_sz - inner_ring_sz,
-            t54 - t45,
-            -(t56 + t55),
+            t63 - t53,
+            -(t65 + t64),
         ];
     }
     /// Kinetic and potential energy: 48 operations (17 ±, 31 ×, 0 ÷).
@@ -1597,7 +1606,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 199 operations (68 ±, 131 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 182 operations (66 ±, 116 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1616,52 +1625,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t1 = k(2.0) * outer_ring_e0;
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
-        let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
-        let t6 = t5 * t3;
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(4.0) * outer_ring_e0;
-        let t11 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t12 = t5 * t2;
-        let t13 = t5 * t1;
-        let t14 = t5 * t0;
-        let t15 = k(4.0) * inner_ring_e0;
-        let t16 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
-        let t17 = k(2.0) * inner_ring_e1;
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * inner_ring_e2;
-        let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
-        let t24 = k(2.0) * inner_ring_e0;
-        let t25 = k(2.0) * inner_ring_e3;
+        let t4 = k(2.0) * inner_ring_e3;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e3, t4, t6);
+        let t8 = t3 * t7;
+        let t9 = inner_ring_e1 * t5;
+        let t10 = k(2.0) * inner_ring_e2;
+        let t11 = inner_ring_e3 * t10;
+        let t12 = t11 - t9;
+        let t13 = k(2.0) * inner_ring_e1;
+        let t14 = T::fused(inner_ring_e2, t5, inner_ring_e3 * t13);
+        let t15 = k(4.0) * outer_ring_e0;
+        let t16 = t2 * t7;
+        let t17 = t1 * t7;
+        let t18 = t0 * t7;
+        let t19 = T::fused(-outer_ring_e2, t1, outer_ring_e3 * t0);
+        let t20 = k(4.0) * inner_ring_e0;
+        let t21 = outer_ring_e3 * t1;
+        let t22 = outer_ring_e2 * t0;
+        let t23 = t22 + t21;
+        let t24 = T::fused(-outer_ring_e0, t1, k(1.0));
+        let t25 = T::fused(-outer_ring_e1, t0, t24);
         let t26 = k(4.0) * inner_ring_e3;
-        let t27 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
-        let t29 = k(2.0) * (t19 - t18);
-        let t30 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
-        let t31 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
-        let t33 = t32 * t25;
-        let t34 = t32 * t21;
-        let t35 = t32 * t17;
-        let t36 = t32 * t24;
-        let t37 = k(2.0) * rotor_e2;
-        let t38 = k(2.0) * (t8 + t7);
-        let t39 = k(2.0) * rotor_e3;
-        let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
-        let t41 = k(4.0) * rotor_e0;
-        let t42 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t43 = k(4.0) * rotor_e1;
-        let t44 = k(2.0) * rotor_e0;
-        let t45 = k(2.0) * rotor_e1;
+        let t27 = T::fused(outer_ring_e1, t1, outer_ring_e3 * t3);
+        let t28 = T::fused(-outer_ring_e2, t3, t24);
+        let t29 = t22 - t21;
+        let t30 = k(2.0) * rotor_e0;
+        let t31 = k(2.0) * rotor_e1;
+        let t32 = T::fused(-rotor_e2, t30, rotor_e3 * t31);
+        let t33 = T::fused(rotor_e3, t30, rotor_e2 * t31);
+        let t34 = T::fused(-rotor_e1, t31, T::fused(-rotor_e0, t30, k(1.0)));
+        let t35 = t4 * t34;
+        let t36 = t10 * t34;
+        let t37 = t13 * t34;
+        let t38 = t5 * t34;
+        let t39 = t11 + t9;
+        let t40 = k(2.0) * rotor_e2;
+        let t41 = T::fused(-inner_ring_e2, t10, t6);
+        let t42 = k(2.0) * rotor_e3;
+        let t43 = T::fused(-inner_ring_e3, t5, inner_ring_e2 * t13);
+        let t44 = k(4.0) * rotor_e0;
+        let t45 = k(4.0) * rotor_e1;
         *out = [
             k(1.0),
             k(1.0),
@@ -1680,59 +1685,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t9, t2, t11 * t10) + t6,
-            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
-            T::fused(t9, t0, t13),
-            T::fused(t9, t1, -t14),
-            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
-            -T::fused(t20, t24, t23 * t25),
-            T::fused(-t23, t24, t20 * t25),
-            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
-            -(t14 + T::fused(-t9, t10, t11 * t2)),
-            T::fused(t11, t3, -t13),
-            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
-            -T::fused(t11, t1, t6),
-            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
-            T::fused(t28, t24, t29 * t25),
-            T::fused(-t28, t25, t29 * t24),
-            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
+            T::fused(t2, t12, t15 * t14) + t8,
+            T::fused(t3, t12, k(4.0) * outer_ring_e1 * t14) - t16,
+            T::fused(t0, t12, t17),
+            T::fused(t1, t12, -t18),
+            T::fused(t20, t19, -T::fused(t13, t23, t10 * t25)),
+            -T::fused(t5, t23, t4 * t25),
+            T::fused(-t5, t25, t4 * t23),
+            T::fused(t26, t19, -T::fused(-t10, t23, t13 * t25)),
+            -(t18 + T::fused(-t15, t12, t2 * t14)),
+            T::fused(t3, t14, -t17),
+            T::fused(k(4.0) * outer_ring_e2, t12, t0 * t14) - t16,
+            -T::fused(t1, t14, t8),
+            T::fused(t20, t27, T::fused(t13, t28, t10 * t29)),
+            T::fused(t5, t28, t4 * t29),
+            T::fused(-t4, t28, t5 * t29),
+            T::fused(t26, t27, T::fused(-t10, t28, t13 * t29)),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t30, t17, T::fused(t31, t15, t33)),
-            T::fused(t30, t24, -t34),
-            T::fused(t30, t25, -T::fused(-t31, k(4.0) * inner_ring_e2, t35)),
-            T::fused(t30, t21, t36),
-            T::fused(-t38, t37, T::fused(-t40, t39, t42 * t41)),
-            T::fused(t38, t39, T::fused(-t40, t37, t42 * t43)),
-            -T::fused(t38, t44, t40 * t45),
-            T::fused(-t40, t44, t38 * t45),
-            T::fused(t30, t15, -T::fused(t31, t17, t34)),
-            -T::fused(t31, t24, t33),
-            T::fused(t31, t25, -t36),
-            T::fused(t30, t26, -T::fused(-t31, t21, t35)),
-            T::fused(t5, t37, T::fused(t9, t39, t11 * t41)),
-            T::fused(-t5, t39, T::fused(t9, t37, t11 * t43)),
-            T::fused(t5, t44, t9 * t45),
-            T::fused(-t5, t45, t9 * t44),
+            T::fused(t13, t32, T::fused(t20, t33, t35)),
+            T::fused(t5, t32, -t36),
+            T::fused(t4, t32, -T::fused(-(k(4.0) * inner_ring_e2), t33, t37)),
+            T::fused(t10, t32, t38),
+            T::fused(-t40, t39, T::fused(-t42, t41, t44 * t43)),
+            T::fused(t42, t39, T::fused(-t40, t41, t45 * t43)),
+            -T::fused(t30, t39, t31 * t41),
+            T::fused(-t30, t41, t31 * t39),
+            T::fused(t20, t32, -T::fused(t13, t33, t36)),
+            -T::fused(t5, t33, t35),
+            T::fused(t4, t33, -t38),
+            T::fused(t26, t32, -T::fused(-t10, t33, t37)),
+            T::fused(t40, t7, T::fused(t42, t12, t44 * t14)),
+            T::fused(-t42, t7, T::fused(t40, t12, t45 * t14)),
+            T::fused(t30, t7, t31 * t12),
+            T::fused(-t31, t7, t30 * t12),
             t1,
             t0,
             t3,
             t2,
-            t24,
-            t17,
-            t21,
-            t25,
-            t44,
-            t45,
-            t37,
-            t39,
+            t5,
+            t13,
+            t10,
+            t4,
+            t30,
+            t31,
+            t40,
+            t42,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 163 operations (64 ±, 99 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 142 operations (58 ±, 84 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1747,91 +1752,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7));
-        let t9 = inner_ring_e0 * inner_ring_e1;
-        let t10 = inner_ring_e2 * inner_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = outer_ring_e0 * outer_ring_e1;
-        let t13 = outer_ring_e2 * outer_ring_e3;
-        let t14 = inner_ring_e0 * inner_ring_e2;
-        let t15 = inner_ring_e1 * inner_ring_e3;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = T::fused(t1, t8, T::fused(k(2.0) * (t13 - t12), t11, t5 * t16));
-        let t18 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(2.0) * (t13 + t12);
-        let t23 = inner_ring_e0 * inner_ring_e3;
-        let t24 = inner_ring_e1 * inner_ring_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7));
-        let t27 = k(2.0) * (t20 + t19);
-        let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7));
-        let t30 = k(2.0) * (t24 + t23);
-        let t31 = k(2.0) * (t15 - t14);
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32));
-        let t34 = rotor_e0 * rotor_e3;
-        let t35 = rotor_e1 * rotor_e2;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = rotor_e0 * rotor_e2;
-        let t38 = rotor_e1 * rotor_e3;
-        let t39 = k(2.0) * (t38 - t37);
-        let t40 = T::fused(t31, t39, T::fused(t29, t33, t30 * t36));
-        let t41 = rotor_e0 * rotor_e1;
-        let t42 = rotor_e2 * rotor_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = k(2.0) * (t38 + t37);
-        let t45 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32));
-        let t46 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32));
-        let t47 = k(2.0) * (t35 - t34);
-        let t48 = k(2.0) * (t42 + t41);
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = outer_ring_e2 * t0;
+        let t4 = k(2.0) * outer_ring_e1;
+        let t5 = outer_ring_e3 * t4;
+        let t6 = t5 - t3;
+        let t7 = t5 + t3;
+        let t8 = T::fused(-outer_ring_e1, t4, t1);
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = inner_ring_e1 * t9;
+        let t15 = k(2.0) * inner_ring_e2;
+        let t16 = inner_ring_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = outer_ring_e1 * t0;
+        let t19 = k(2.0) * outer_ring_e2;
+        let t20 = outer_ring_e3 * t19;
+        let t21 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t22 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t21);
+        let t23 = T::fused(t2, t22, T::fused(t7, t13, (t20 - t18) * t17));
+        let t24 = outer_ring_e3 * t0;
+        let t25 = outer_ring_e2 * t4;
+        let t26 = t25 - t24;
+        let t27 = T::fused(-outer_ring_e2, t19, t1);
+        let t28 = t20 + t18;
+        let t29 = inner_ring_e3 * t9;
+        let t30 = inner_ring_e2 * t11;
+        let t31 = t30 - t29;
+        let t32 = T::fused(-inner_ring_e2, t15, t21);
+        let t33 = t25 + t24;
+        let t34 = t16 + t14;
+        let t35 = T::fused(-inner_ring_e1, t11, t21);
+        let t36 = t30 + t29;
+        let t37 = t12 - t10;
+        let t38 = k(2.0) * rotor_e1;
+        let t39 = k(2.0) * rotor_e0;
+        let t40 = T::fused(-rotor_e0, t39, k(1.0));
+        let t41 = T::fused(-rotor_e1, t38, t40);
+        let t42 = rotor_e3 * t39;
+        let t43 = rotor_e2 * t38;
+        let t44 = t43 + t42;
+        let t45 = rotor_e2 * t39;
+        let t46 = rotor_e3 * t38;
+        let t47 = t46 - t45;
+        let t48 = T::fused(t37, t47, T::fused(t35, t41, t36 * t44));
+        let t49 = t46 + t45;
+        let t50 = rotor_e1 * t39;
+        let t51 = k(2.0) * rotor_e2;
+        let t52 = rotor_e3 * t51;
+        let t53 = t52 - t50;
+        let t54 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t40);
+        let t55 = t43 - t42;
+        let t56 = T::fused(-rotor_e2, t51, t40);
+        let t57 = t52 + t50;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -t1,
-            -t4,
-            t5,
-            t6,
+            -t2,
+            -t6,
+            t7,
+            t8,
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            -t17,
-            T::fused(-t22, t8, T::fused(-t18, t11, t21 * t16)),
-            T::fused(-t4, t28, T::fused(t6, t25, t27 * t26)),
-            T::fused(t4, t31, T::fused(t6, t29, t27 * t30)),
-            t17,
-            T::fused(t4, t8, -T::fused(-t6, t16, t27 * t11)),
-            -T::fused(t22, t28, T::fused(t18, t26, t21 * t25)),
-            T::fused(t22, t31, -T::fused(t21, t29, t18 * t30)),
+            -t23,
+            -T::fused(t28, t22, T::fused(-t26, t13, t27 * t17)),
+            T::fused(-t6, t34, T::fused(t8, t31, t33 * t32)),
+            T::fused(t6, t37, T::fused(t8, t35, t33 * t36)),
+            t23,
+            T::fused(t6, t22, -T::fused(-t8, t13, t33 * t17)),
+            -T::fused(t28, t34, T::fused(t26, t31, t27 * t32)),
+            T::fused(t28, t37, -T::fused(t26, t35, t27 * t36)),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(-t8, t39, T::fused(-t16, t33, t11 * t36)),
-            -t40,
-            T::fused(t28, t45, -T::fused(-t26, t43, t25 * t44)),
-            T::fused(t28, t48, T::fused(t26, t46, t25 * t47)),
-            T::fused(-t28, t39, T::fused(t25, t33, t26 * t36)),
-            t40,
-            -T::fused(t8, t45, T::fused(t11, t43, t16 * t44)),
-            T::fused(-t8, t48, T::fused(-t11, t46, t16 * t47)),
+            T::fused(-t22, t47, T::fused(-t13, t41, t17 * t44)),
+            -t48,
+            T::fused(t34, t54, T::fused(-t31, t49, t32 * t53)),
+            T::fused(t34, t57, T::fused(t31, t55, t32 * t56)),
+            T::fused(-t34, t47, T::fused(t31, t41, t32 * t44)),
+            t48,
+            -T::fused(t22, t54, T::fused(t13, t49, t17 * t53)),
+            -T::fused(t22, t57, T::fused(-t13, t55, t17 * t56)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1855,7 +1869,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 296 operations (115 ±, 181 ×, 0 ÷).
+    /// Writes γ: 275 operations (109 ±, 166 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1879,158 +1893,167 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
-        let t13 = outer_ring_e0 * outer_ring_e3;
-        let t14 = outer_ring_e1 * outer_ring_e2;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (t2 + t1);
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e1;
-        let t21 = inner_ring_e2 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * (t14 + t13);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
-        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
-        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
-        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
-        let t29 = k(2.0) * (t7 - t6);
-        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
-        let t31 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = outer_ring_wx * outer_ring_wy;
+        let t6 = outer_ring_e1 * t0;
+        let t7 = k(2.0) * outer_ring_e2;
+        let t8 = outer_ring_e3 * t7;
+        let t9 = t8 + t6;
+        let t10 = outer_ring_wz * outer_ring_wz;
+        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
+        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
+        let t14 = outer_ring_wy * outer_ring_wz;
+        let t15 = T::fused(-outer_ring_e1, t2, t12);
+        let t16 = outer_ring_e3 * t0;
+        let t17 = outer_ring_e2 * t2;
+        let t18 = t17 - t16;
+        let t19 = t3 + t1;
+        let t20 = k(2.0) * inner_ring_e0;
+        let t21 = inner_ring_e2 * t20;
+        let t22 = k(2.0) * inner_ring_e1;
+        let t23 = inner_ring_e3 * t22;
+        let t24 = t23 + t21;
+        let t25 = inner_ring_e1 * t20;
+        let t26 = k(2.0) * inner_ring_e2;
+        let t27 = inner_ring_e3 * t26;
+        let t28 = t27 - t25;
+        let t29 = t17 + t16;
+        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
+        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
+        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
+        let t33 = T::fused(-outer_ring_e2, t7, t12);
+        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
+        let t35 = t8 - t6;
+        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
+        let t37 = T::fused(
             outer_ring_wx * outer_ring_wz,
-            t30,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+            t36,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
         );
-        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
-        let t33 = inner_ring_e0 * inner_ring_e3;
-        let t34 = inner_ring_e1 * inner_ring_e2;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = k(2.0) * (t18 - t17);
-        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
-        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
-        let t39 = k(2.0) * (t34 - t33);
-        let t40 = k(2.0) * (t21 + t20);
-        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
-        let t42 = T::fused(
+        let t38 = T::fused(-inner_ring_e1, t22, t30);
+        let t39 = inner_ring_e3 * t20;
+        let t40 = inner_ring_e2 * t22;
+        let t41 = t40 + t39;
+        let t42 = t23 - t21;
+        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
+        let t44 = t40 - t39;
+        let t45 = T::fused(-inner_ring_e2, t26, t30);
+        let t46 = t27 + t25;
+        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
+        let t48 = T::fused(
             -inner_ring_wy,
-            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
-            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
+            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
         );
-        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
-        let t44 = inner_ring_wx * inner_ring_wz;
-        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
-        let t46 = inner_ring_wy * inner_ring_wz;
-        let t47 = inner_ring_wx * inner_ring_wx;
-        let t48 = T::fused(inner_ring_wy, inner_ring_wy, t47);
-        let t49 = T::fused(
+        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
+        let t50 = inner_ring_wx * inner_ring_wz;
+        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
+        let t52 = inner_ring_wy * inner_ring_wz;
+        let t53 = inner_ring_wx * inner_ring_wx;
+        let t54 = T::fused(inner_ring_wy, inner_ring_wy, t53);
+        let t55 = T::fused(
             -k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
-                outer_ring_wy * t42,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
+                outer_ring_wy * t48,
             ),
-            T::fused(t48, t26, T::fused(t44, t43, t46 * t45)),
+            T::fused(t54, t32, T::fused(t50, t49, t52 * t51)),
         );
-        let t50 = T::fused(
+        let t56 = T::fused(
             k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
-                outer_ring_wx * t42,
+                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
+                outer_ring_wx * t48,
             ),
-            T::fused(t48, t28, T::fused(t44, t37, t46 * t41)),
+            T::fused(t54, t34, T::fused(t50, t43, t52 * t47)),
         );
-        let t51 = rotor_e0 * rotor_e0;
-        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t51));
-        let t53 = rotor_e0 * rotor_e3;
-        let t54 = rotor_e1 * rotor_e2;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = rotor_e0 * rotor_e2;
-        let t57 = rotor_e1 * rotor_e3;
-        let t58 = k(2.0) * (t57 - t56);
-        let t59 = T::fused(t36, t58, T::fused(t32, t52, t35 * t55));
-        let t60 = T::fused(t40, t58, -T::fused(t39, t52, t38 * t55));
-        let t61 = T::fused(t25, t58, -T::fused(-t19, t52, t22 * t55));
-        let t62 = T::fused(
-            t46,
-            t61,
+        let t57 = k(2.0) * rotor_e1;
+        let t58 = k(2.0) * rotor_e0;
+        let t59 = T::fused(-rotor_e0, t58, k(1.0));
+        let t60 = T::fused(-rotor_e1, t57, t59);
+        let t61 = rotor_e3 * t58;
+        let t62 = rotor_e2 * t57;
+        let t63 = t62 + t61;
+        let t64 = rotor_e2 * t58;
+        let t65 = rotor_e3 * t57;
+        let t66 = t65 - t64;
+        let t67 = T::fused(t42, t66, T::fused(t38, t60, t41 * t63));
+        let t68 = T::fused(t46, t66, -T::fused(t44, t60, t45 * t63));
+        let t69 = T::fused(t31, t66, -T::fused(-t24, t60, t28 * t63));
+        let t70 = T::fused(
+            t52,
+            t69,
             T::fused(
                 -(inner_ring_wx * inner_ring_wy),
-                t59,
-                T::fused(inner_ring_wz, inner_ring_wz, t47) * t60,
+                t67,
+                T::fused(inner_ring_wz, inner_ring_wz, t53) * t68,
             ),
         );
-        let t63 = k(2.0) * (t54 - t53);
-        let t64 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t51));
-        let t65 = rotor_e0 * rotor_e1;
-        let t66 = rotor_e2 * rotor_e3;
-        let t67 = k(2.0) * (t66 + t65);
-        let t68 = k(2.0) * (t57 + t56);
-        let t69 = k(2.0) * (t66 - t65);
-        let t70 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t51));
-        let t71 = T::fused(
+        let t71 = t62 - t61;
+        let t72 = k(2.0) * rotor_e2;
+        let t73 = T::fused(-rotor_e2, t72, t59);
+        let t74 = rotor_e1 * t58;
+        let t75 = rotor_e3 * t72;
+        let t76 = t75 + t74;
+        let t77 = t65 + t64;
+        let t78 = t75 - t74;
+        let t79 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t59);
+        let t80 = T::fused(
             rotor_wz,
-            T::fused(t36, t67, -T::fused(t32, t63, t35 * t64)),
-            rotor_wy * T::fused(t36, t70, -T::fused(-t32, t68, t35 * t69)),
+            T::fused(t42, t76, -T::fused(t38, t71, t41 * t73)),
+            rotor_wy * T::fused(t42, t79, -T::fused(-t38, t77, t41 * t78)),
         );
-        let t72 = T::fused(t25, t67, -T::fused(-t22, t64, t19 * t63));
-        let t73 = T::fused(t25, t70, T::fused(t22, t69, t19 * t68));
-        let t74 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t75 = T::fused(t40, t67, T::fused(t38, t64, t39 * t63));
-        let t76 = rotor_wx * rotor_wy;
-        let t77 = T::fused(t40, t70, -T::fused(-t38, t69, t39 * t68));
-        let t78 = rotor_wx * rotor_wz;
-        let t79 = T::fused(
+        let t81 = T::fused(t31, t76, T::fused(-t24, t71, t28 * t73));
+        let t82 = T::fused(t31, t79, T::fused(t24, t77, t28 * t78));
+        let t83 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t84 = T::fused(t46, t76, T::fused(t44, t71, t45 * t73));
+        let t85 = rotor_wx * rotor_wy;
+        let t86 = T::fused(t46, t79, T::fused(-t44, t77, t45 * t78));
+        let t87 = rotor_wx * rotor_wz;
+        let t88 = T::fused(
             k(2.0),
             T::fused(
                 inner_ring_wz,
-                t71,
-                inner_ring_wx * T::fused(rotor_wz, t72, rotor_wy * t73),
+                t80,
+                inner_ring_wx * T::fused(rotor_wz, t81, rotor_wy * t82),
             ),
-            T::fused(t78, t77, -T::fused(-t74, t60, t76 * t75)),
+            T::fused(t87, t86, -T::fused(-t83, t68, t85 * t84)),
         );
-        let t80 = T::fused(
+        let t89 = T::fused(
             -k(2.0),
             T::fused(
                 -inner_ring_wy,
-                t71,
-                inner_ring_wx * T::fused(rotor_wz, t75, rotor_wy * t77),
+                t80,
+                inner_ring_wx * T::fused(rotor_wz, t84, rotor_wy * t86),
             ),
-            T::fused(t78, t73, -T::fused(-t74, t61, t76 * t72)),
+            T::fused(t87, t82, -T::fused(-t83, t69, t85 * t81)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
-            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
+            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
+            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t49 + t31),
-            -(t50 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
+            -(t55 + t37),
+            -(t56 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
             k(0.0),
             k(0.0),
             k(0.0),
-            t79 + t62,
-            -(t80 + T::fused(t48, t61, T::fused(t44, t59, t46 * t60))),
+            t88 + t70,
+            -(t89 + T::fused(t54, t69, T::fused(t50, t67, t52 * t68))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2042,28 +2065,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
             k(0.0),
             k(0.0),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz),
+            inner_ring_wz * t1,
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
-            k(0.0),
-            k(0.0),
+            -(inner_ring_wx * t1),
             k(0.0),
             k(0.0),
-            -(k(5e-6) * (rotor_wx * rotor_wz)),
-            k(5e-6) * (rotor_wx * rotor_wy),
+            k(0.0),
+            k(0.0),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 347 operations (138 ±, 204 ×, 5 ÷).
+    /// Solves eq. (17): 330 operations (134 ±, 191 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2087,53 +2113,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
-            * (k(0.5)
-                / (k(0.5)
-                    - T::fused(
-                        outer_ring_e2,
-                        outer_ring_e2,
-                        outer_ring_e0 * outer_ring_e0,
-                    )));
-        let t1 = T::fused(
-            -(k(2.0)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_e1,
-                    outer_ring_e2 * outer_ring_e3,
-                )),
-            t0,
+        let t0 = k(2.0) * outer_ring_e2;
+        let t1 = k(2.0) * outer_ring_e0;
+        let t2 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
+            / T::fused(-outer_ring_e2, t0, T::fused(-outer_ring_e0, t1, k(1.0)));
+        let t3 = T::fused(
+            -T::fused(-outer_ring_e1, t1, outer_ring_e3 * t0),
+            t2,
             outer_ring_wy * outer_ring_wz,
         );
-        let t2 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t3 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t4 = t3 * t2;
+        let t4 = k(1e-6) * inner_ring_wy;
         let t5 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t6 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2142,37 +2132,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = t6 * t5;
-        let t8 = t7 + t4;
-        let t9 = k(1e-5) * t8;
-        let t10 = k(2.0) * t8;
-        let t11 = t3 * t5;
-        let t12 = t6 * t2;
-        let t13 = t12 - t11;
-        let t14 = k(1e-5) * t13;
-        let t15 = k(2.0) * t13;
-        let t16 = t3 * t6;
-        let t17 = t5 * t2;
-        let t18 = t17 - t16;
-        let t19 = k(2.0) * t18;
-        let t20 = t3 * t3;
-        let t21 = k(0.5) - T::fused(t2, t2, t20);
-        let t22 = k(2.0) * t21;
-        let t23 = T::fused(-t19, t9, t22 * t14);
-        let t24 = k(1.0)
-            / (k(1e-6) + T::fused(t19, k(1e-5) * t18, t22 * (k(1e-5) * t21)));
-        let t25 = t24 * t23;
-        let t26 = T::fused(t23, t25, -(k(1e-6) + T::fused(t10, t9, t15 * t14)));
-        let t27 = T::fused(
-            -outer_ring_e0,
+        let t6 = k(2.0) * t5;
+        let t7 = T::fused(
             inner_ring_e3,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t28 = T::fused(
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = T::fused(-t5, t6, t9);
+        let t11 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t12 = t11 * t8;
+        let t13 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t6;
+        let t15 = t13 * t8;
+        let t16 = t11 * t6;
+        let t17 = T::fused(
+            inner_ring_wz,
+            t16 + t15,
+            T::fused(-inner_ring_wx, t10, inner_ring_wy * (t14 - t12)),
+        );
+        let t18 = rotor_wx - t17;
+        let t19 = t16 - t15;
+        let t20 = t5 * t8;
+        let t21 = k(2.0) * t13;
+        let t22 = t11 * t21;
+        let t23 = t22 + t20;
+        let t24 = T::fused(-t11, k(2.0) * t11, t9);
+        let t25 = T::fused(
+            inner_ring_wz,
+            t24,
+            -T::fused(inner_ring_wx, t19, inner_ring_wy * t23),
+        );
+        let t26 = rotor_wz + t25;
+        let t27 = t14 + t12;
+        let t28 = T::fused(-t13, t21, t9);
+        let t29 = t22 - t20;
+        let t30 = T::fused(
+            inner_ring_wz,
+            t29,
+            -T::fused(-inner_ring_wx, t27, inner_ring_wy * t28),
+        );
+        let t31 = rotor_wy - t30;
+        let t32 = T::fused(t26, t26, t31 * t31) / t10;
+        let t33 = T::fused(rotor_wx, t25, rotor_wz * t17)
+            + T::fused(-t26, t18, t19 * t32);
+        let t34 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t33);
+        let t35 = T::fused(-rotor_wy, t17, rotor_wx * t30)
+            - T::fused(-t31, t18, t27 * t32);
+        let t36 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t35);
+        let t37 = T::fused(inner_ring_wx, t4, T::fused(t29, t34, t24 * t36));
+        let t38 = k(1.0)
+            / (k(1e-6) + T::fused(t29, k(5e-6) * t29, t24 * (k(5e-6) * t24)));
+        let t39 = t38 * t37;
+        let t40 = k(5e-6) * t28;
+        let t41 = k(5e-6) * t23;
+        let t42 = T::fused(t29, t40, t24 * t41);
+        let t43 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2181,8 +2217,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t29 = t28 * t27;
-        let t30 = T::fused(
+        let t44 = k(2.0) * t43;
+        let t45 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2191,7 +2227,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t31 = T::fused(
+        let t46 = t45 * t44;
+        let t47 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2200,137 +2237,108 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t32 = t31 * t30;
-        let t33 = k(2.0) * (t32 - t29);
-        let t34 = k(0.5) - T::fused(t5, t5, t20);
-        let t35 = k(2.0) * t34;
-        let t36 = t17 + t16;
-        let t37 = k(2.0) * t36;
-        let t38 = k(1e-5) * t34;
-        let t39 = k(1e-5) * t36;
-        let t40 = T::fused(t19, t38, t22 * t39);
-        let t41 = T::fused(t40, t25, -T::fused(-t35, t9, t37 * t14));
-        let t42 = t28 * t28;
-        let t43 = k(2.0) * (k(0.5) - T::fused(t30, t30, t42));
-        let t44 = T::fused(-t33, t26, t43 * t41);
-        let t45 = T::fused(t40, t24 * t40, -(k(2e-6) + T::fused(t35, t38, t37 * t39)));
-        let t46 = T::fused(-t33, t41, t43 * t45);
-        let t47 = k(0.5) - T::fused(t6, t6, t20);
-        let t48 = T::fused(
-            inner_ring_wz,
-            k(2.0) * (t12 + t11),
-            T::fused(-inner_ring_wx, k(2.0) * t47, inner_ring_wy * (k(2.0) * (t7 - t4))),
-        );
-        let t49 = rotor_wx - t48;
-        let t50 = T::fused(
-            inner_ring_wz,
-            t22,
-            -T::fused(inner_ring_wx, t15, inner_ring_wy * t37),
-        );
-        let t51 = rotor_wz + t50;
-        let t52 = T::fused(
-            inner_ring_wz,
-            t19,
-            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t35),
-        );
-        let t53 = rotor_wy - t52;
-        let t54 = k(0.5) / t47 * T::fused(t51, t51, t53 * t53);
-        let t55 = T::fused(rotor_wx, t50, rotor_wz * t48)
-            + T::fused(-t51, t49, t15 * t54);
-        let t56 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t55);
-        let t57 = T::fused(-rotor_wy, t48, rotor_wx * t52)
-            - T::fused(-t53, t49, t10 * t54);
-        let t58 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t57);
-        let t59 = T::fused(
-            k(1e-6),
-            inner_ring_wx * inner_ring_wy,
-            T::fused(t19, t56, t22 * t58),
-        );
-        let t60 = t24 * t59;
-        let t61 = T::fused(
-            t23,
-            t60,
-            -T::fused(
-                k(1e-6),
-                inner_ring_wy * inner_ring_wz,
-                T::fused(-t10, t56, t15 * t58),
+        let t48 = k(2.0) * t47;
+        let t49 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t62 = t28 * t30;
-        let t63 = t31 * t27;
-        let t64 = t28 * t31;
-        let t65 = t30 * t27;
-        let t66 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t63 - t62),
-            outer_ring_wy * (k(2.0) * (t65 + t64)),
-        );
-        let t67 = k(0.5) - T::fused(t27, t27, t42);
-        let t68 = T::fused(outer_ring_wz, k(2.0) * t67, -t66);
-        let t69 = inner_ring_wz + t68;
-        let t70 = k(2.0) * (t32 + t29);
-        let t71 = k(2.0) * (t65 - t64);
-        let t72 = T::fused(
+        let t50 = t49 * t48;
+        let t51 = t47 * t44;
+        let t52 = k(2.0) * t45;
+        let t53 = t49 * t52;
+        let t54 = T::fused(-t43, t44, k(1.0));
+        let t55 = T::fused(-t49, k(2.0) * t49, t54);
+        let t56 = T::fused(
             outer_ring_wz,
-            t71,
-            -T::fused(-outer_ring_wx, t70, outer_ring_wy * t43),
+            t55,
+            -T::fused(outer_ring_wx, t50 - t46, outer_ring_wy * (t53 + t51)),
         );
-        let t73 = inner_ring_wy - t72;
-        let t74 = k(2.0) * (k(0.5) - T::fused(t31, t31, t42));
-        let t75 = k(2.0) * (t63 + t62);
-        let t76 = T::fused(
+        let t57 = inner_ring_wz + t56;
+        let t58 = t49 * t44;
+        let t59 = t45 * t48;
+        let t60 = t59 + t58;
+        let t61 = T::fused(-t45, t52, t54);
+        let t62 = t53 - t51;
+        let t63 = T::fused(
             outer_ring_wz,
-            t75,
-            T::fused(-outer_ring_wx, t74, outer_ring_wy * t33),
+            t62,
+            -T::fused(-outer_ring_wx, t60, outer_ring_wy * t61),
         );
-        let t77 = inner_ring_wx - t76;
-        let t78 = k(0.5) / t67 * T::fused(t73, t73, t77 * t77);
-        let t79 = T::fused(inner_ring_wz, t72, inner_ring_wy * t68)
-            - T::fused(-t73, t69, t71 * t78);
-        let t80 = T::fused(inner_ring_wx, t68, inner_ring_wz * t76)
-            - T::fused(-t77, t69, t75 * t78);
-        let t81 = T::fused(-t41, t79, t45 * t80)
-            + T::fused(t40, t60, -T::fused(t35, t56, t37 * t58));
-        let t82 = T::fused(-t33, T::fused(-t26, t79, t41 * t80) + t61, t43 * t81);
+        let t64 = inner_ring_wy - t63;
+        let t65 = T::fused(-t47, t48, t54);
+        let t66 = t59 - t58;
+        let t67 = t50 + t46;
+        let t68 = T::fused(
+            outer_ring_wz,
+            t67,
+            T::fused(-outer_ring_wx, t65, outer_ring_wy * t66),
+        );
+        let t69 = inner_ring_wx - t68;
+        let t70 = T::fused(t64, t64, t69 * t69) / t55;
+        let t71 = T::fused(inner_ring_wz, t63, inner_ring_wy * t56)
+            - T::fused(-t64, t57, t62 * t70);
+        let t72 = k(5e-6) * t27;
+        let t73 = k(5e-6) * t19;
+        let t74 = T::fused(-t29, t72, t24 * t73);
+        let t75 = t38 * t74;
+        let t76 = T::fused(t42, t75, -T::fused(-t28, t72, t23 * t73));
+        let t77 = T::fused(inner_ring_wx, t56, inner_ring_wz * t68)
+            - T::fused(-t69, t57, t67 * t70);
+        let t78 = T::fused(t42, t38 * t42, -(k(2e-6) + T::fused(t28, t40, t23 * t41)));
+        let t79 = T::fused(-t76, t71, t78 * t77)
+            - T::fused(-t42, t39, T::fused(t28, t34, t23 * t36));
+        let t80 = T::fused(
+            -t74,
+            t39,
+            T::fused(inner_ring_wz, t4, T::fused(-t27, t34, t19 * t36)),
+        );
+        let t81 = T::fused(t74, t75, -(k(1e-6) + T::fused(t27, t72, t19 * t73)));
+        let t82 = T::fused(-t61, t79, t66 * (T::fused(-t81, t71, t76 * t77) - t80));
         let t83 = T::fused(
-            -t33,
-            T::fused(-t74, t26, t70 * t41),
-            t43 * T::fused(-t74, t41, t70 * t45),
+            -t66,
+            T::fused(-t65, t81, t60 * t76),
+            t61 * T::fused(-t65, t76, t60 * t78),
         );
-        let t84 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
-            t0,
+        let t84 = T::fused(-t66, t81, t61 * t76);
+        let t85 = T::fused(-t66, t76, t61 * t78);
+        let t86 = T::fused(
+            -T::fused(outer_ring_e3, t1, outer_ring_e2 * (k(2.0) * outer_ring_e1)),
+            t2,
             outer_ring_wx * outer_ring_wy,
         );
-        let t85 = T::fused(-t1, t83, t84 * T::fused(t75, t44, t71 * t46))
-            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t82);
-        let t86 = t85 / (k(1e-6) - T::fused(-t33, t44, t43 * t46));
-        let t87 = t79 + T::fused(t84, t75, -T::fused(-t1, t74, t33 * t86));
-        let t88 = t80 - T::fused(t84, t71, T::fused(-t1, t70, t43 * t86));
-        let t89 = t24 * (t59 + T::fused(-t23, t87, t40 * t88));
+        let t87 = T::fused(-t3, t83, t86 * T::fused(t67, t84, t62 * t85))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t82);
+        let t88 = t87 / (k(1e-6) - T::fused(-t66, t84, t61 * t85));
+        let t89 = t71 + T::fused(t67, t86, T::fused(-t66, t88, t65 * t3));
+        let t90 = t77 - T::fused(t62, t86, -T::fused(-t61, t88, t60 * t3));
+        let t91 = t38 * (t37 - T::fused(-t42, t90, t74 * t89));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t1,
-            -t86,
-            t84,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t87,
+            -t3,
             -t88,
-            -t89,
+            t86,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t89,
+            -t90,
+            -t91,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t55 + T::fused(t19, t89, -T::fused(t10, t87, t35 * t88))),
-            T::fused(t22, t89, -T::fused(-t15, t87, t37 * t88)) - t57,
+            T::fused(-t29, t91, T::fused(t28, t90, t27 * t89)) - t33,
+            T::fused(t24, t91, T::fused(-t23, t90, t19 * t89)) - t35,
         ];
     }
-    /// Writes λ: 283 operations (105 ±, 175 ×, 3 ÷).
+    /// Writes λ: 262 operations (99 ±, 160 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2382,133 +2390,146 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeFreeNutation<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, t2);
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
-        let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t8));
-        let t10 = rotor_e0 * rotor_e3;
-        let t11 = rotor_e1 * rotor_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e0 * inner_ring_e3;
-        let t14 = inner_ring_e1 * inner_ring_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = rotor_e0 * rotor_e2;
-        let t17 = rotor_e1 * rotor_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = inner_ring_e0 * inner_ring_e2;
-        let t20 = inner_ring_e1 * inner_ring_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(1e-5) * rotor_dwx;
-        let t23 = k(2.0) * (t11 - t10);
-        let t24 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t6));
-        let t25 = rotor_e0 * rotor_e1;
-        let t26 = rotor_e2 * rotor_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t29 = T::fused(
-            t22,
-            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
-            t28 * T::fused(t21, t27, -T::fused(t9, t23, t15 * t24)),
+        let t6 = k(2.0) * rotor_e1;
+        let t7 = k(2.0) * rotor_e0;
+        let t8 = T::fused(-rotor_e0, t7, k(1.0));
+        let t9 = T::fused(-rotor_e1, t6, t8);
+        let t10 = k(2.0) * inner_ring_e1;
+        let t11 = k(2.0) * inner_ring_e0;
+        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
+        let t13 = T::fused(-inner_ring_e1, t10, t12);
+        let t14 = rotor_e3 * t7;
+        let t15 = rotor_e2 * t6;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e3 * t11;
+        let t18 = inner_ring_e2 * t10;
+        let t19 = t18 + t17;
+        let t20 = rotor_e2 * t7;
+        let t21 = rotor_e3 * t6;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e2 * t11;
+        let t24 = inner_ring_e3 * t10;
+        let t25 = t24 - t23;
+        let t26 = k(1e-5) * rotor_dwx;
+        let t27 = t15 - t14;
+        let t28 = k(2.0) * rotor_e2;
+        let t29 = T::fused(-rotor_e2, t28, t8);
+        let t30 = rotor_e1 * t7;
+        let t31 = rotor_e3 * t28;
+        let t32 = t31 + t30;
+        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t34 = T::fused(
+            t26,
+            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
+            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
         );
-        let t30 = k(2.0) * (t17 + t16);
-        let t31 = k(2.0) * (t26 - t25);
-        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t6));
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t34 = T::fused(t33, T::fused(t21, t32, -T::fused(-t9, t30, t15 * t31)), t29);
-        let t35 = T::fused(
+        let t35 = t21 + t20;
+        let t36 = t31 - t30;
+        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
+        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t39 = T::fused(
+            t38,
+            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
+            t34,
+        );
+        let t40 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t34,
+            -t39,
         );
-        let t36 = outer_ring_e0 * outer_ring_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t36));
-        let t38 = outer_ring_e0 * outer_ring_e3;
-        let t39 = outer_ring_e1 * outer_ring_e2;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = outer_ring_e0 * outer_ring_e2;
-        let t42 = outer_ring_e1 * outer_ring_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = T::fused(t43, t21, T::fused(t37, t9, t40 * t15));
-        let t45 = k(2.0) * (t14 - t13);
-        let t46 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8));
-        let t47 = inner_ring_e0 * inner_ring_e1;
-        let t48 = inner_ring_e2 * inner_ring_e3;
-        let t49 = k(2.0) * (t48 + t47);
-        let t50 = T::fused(t49, t27, T::fused(t46, t24, t45 * t23));
-        let t51 = T::fused(
-            t22,
-            T::fused(t49, t18, -T::fused(t45, t7, t46 * t12)),
-            t28 * t50,
-        );
-        let t52 = T::fused(t49, t32, -T::fused(-t46, t31, t45 * t30));
-        let t53 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t33, t52, t51));
-        let t54 = T::fused(t43, t49, -T::fused(t37, t45, t40 * t46));
-        let t55 = k(2.0) * (t20 + t19);
-        let t56 = k(2.0) * (t48 - t47);
-        let t57 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8));
-        let t58 = T::fused(t57, t27, -T::fused(-t56, t24, t55 * t23));
+        let t41 = k(2.0) * outer_ring_e1;
+        let t42 = k(2.0) * outer_ring_e0;
+        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
+        let t44 = T::fused(-outer_ring_e1, t41, t43);
+        let t45 = outer_ring_e3 * t42;
+        let t46 = outer_ring_e2 * t41;
+        let t47 = t46 + t45;
+        let t48 = outer_ring_e2 * t42;
+        let t49 = outer_ring_e3 * t41;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
+        let t52 = t18 - t17;
+        let t53 = k(2.0) * inner_ring_e2;
+        let t54 = T::fused(-inner_ring_e2, t53, t12);
+        let t55 = inner_ring_e1 * t11;
+        let t56 = inner_ring_e3 * t53;
+        let t57 = t56 + t55;
+        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
         let t59 = T::fused(
-            t22,
-            T::fused(t57, t18, -T::fused(-t55, t7, t56 * t12)),
-            t28 * t58,
+            t26,
+            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
+            t33 * t58,
         );
-        let t60 = T::fused(t57, t32, T::fused(t56, t31, t55 * t30));
-        let t61 = T::fused(
+        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
+        let t61 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t38, t60, t59));
+        let t62 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
+        let t63 = t24 + t23;
+        let t64 = t56 - t55;
+        let t65 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
+        let t66 = T::fused(t65, t32, T::fused(-t63, t27, t64 * t29));
+        let t67 = T::fused(
+            t26,
+            T::fused(t65, t22, -T::fused(-t63, t9, t64 * t16)),
+            t33 * t66,
+        );
+        let t68 = T::fused(t65, t37, T::fused(t63, t35, t64 * t36));
+        let t69 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -T::fused(t33, t60, t59),
+            -T::fused(t38, t68, t67),
         );
-        let t62 = T::fused(
-            T::fused(t43, t57, -T::fused(-t37, t55, t40 * t56)),
-            t61,
-            -T::fused(-t44, t35, t54 * t53),
-        );
-        let t63 = T::fused(k(2e-6), outer_ring_dwx, -t62);
-        let t64 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t36));
-        let t65 = k(2.0) * (t42 + t41);
-        let t66 = k(1.0) / T::fused(-t37, t64, t65 * t43);
-        let t67 = outer_ring_e0 * outer_ring_e1;
-        let t68 = outer_ring_e2 * outer_ring_e3;
-        let t69 = k(2.0) * (t68 - t67);
         let t70 = T::fused(
-            -T::fused(t64, t21, -T::fused(-t65, t9, t69 * t15)),
-            t35,
-            T::fused(t64, t49, -T::fused(-t69, t46, t65 * t45)) * t53,
+            T::fused(t50, t65, -T::fused(-t44, t63, t47 * t64)),
+            t69,
+            -T::fused(-t51, t40, t62 * t61),
         );
-        let t71 = T::fused(T::fused(t64, t57, T::fused(t69, t56, t65 * t55)), t61, -t70);
-        let t72 = T::fused(
+        let t71 = T::fused(k(2e-6), outer_ring_dwx, -t70);
+        let t72 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
+        let t73 = t49 + t48;
+        let t74 = k(1.0) / T::fused(-t44, t72, t73 * t50);
+        let t75 = outer_ring_e1 * t42;
+        let t76 = k(2.0) * outer_ring_e2;
+        let t77 = outer_ring_e3 * t76;
+        let t78 = t77 - t75;
+        let t79 = T::fused(
+            -T::fused(t72, t25, -T::fused(-t73, t13, t78 * t19)),
+            t40,
+            T::fused(t72, t57, T::fused(-t73, t52, t78 * t54)) * t61,
+        );
+        let t80 = T::fused(T::fused(t72, t65, T::fused(t73, t63, t78 * t64)), t69, -t79);
+        let t81 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t71,
+            -t80,
         );
-        let t73 = k(2.0) * (t39 - t38);
-        let t74 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t36));
-        let t75 = k(2.0) * (t68 + t67);
-        let t76 = T::fused(t75, t21, -T::fused(t73, t9, t74 * t15));
-        let t77 = T::fused(t75, t49, T::fused(t74, t46, t73 * t45));
-        let t78 = k(1.0) / T::fused(-t54, t76, t44 * t77);
-        let t79 = k(1.0) / T::fused(-t52, t58, t50 * t60);
+        let t82 = t46 - t45;
+        let t83 = T::fused(-outer_ring_e2, t76, t43);
+        let t84 = t77 + t75;
+        let t85 = T::fused(t84, t25, -T::fused(t82, t13, t83 * t19));
+        let t86 = T::fused(t84, t57, T::fused(t82, t52, t83 * t54));
+        let t87 = k(1.0) / T::fused(-t85, t62, t86 * t51);
+        let t88 = k(1.0) / T::fused(-t66, t60, t68 * t58);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -T::fused(k(0.01), outer_ring_dsy, t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t37 * t66, t63, t65 * t66 * t72),
-            -T::fused(t43 * t66, t63, t64 * t66 * t72),
+            -T::fused(t44 * t74, t71, t73 * t74 * t81),
+            -T::fused(t50 * t74, t71, t72 * t74 * t81),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t77 * t78), t53, t76 * t78 * t35),
-            T::fused(-(t44 * t78), t35, t54 * t78 * t53),
+            T::fused(-(t86 * t87), t61, t85 * t87 * t40),
+            T::fused(-(t51 * t87), t40, t62 * t87 * t61),
             -t0,
             -t2,
             -t4,
-            T::fused(t28, t58 * t79, t33 * (t60 * t79)),
-            T::fused(t28, t50 * t79, t33 * (t52 * t79)),
+            T::fused(t33, t66 * t88, t38 * (t68 * t88)),
+            T::fused(t33, t58 * t88, t38 * (t60 * t88)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 284 operations (107 ±, 172 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 275 operations (104 ±, 166 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2544,25 +2565,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
-        let t9 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t10 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = k(2.0) * outer_ring_e1;
+        let t4 = T::fused(-outer_ring_e1, t3, t1);
+        let t5 = outer_ring_e2 * t0;
+        let t6 = outer_ring_e3 * t3;
+        let t7 = t6 - t5;
+        let t8 = t6 + t5;
+        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
+        let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
+        let t11 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2571,17 +2585,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t11 = t10 * t9;
-        let t12 = T::fused(
-            -inner_ring_e0,
+        let t12 = k(2.0) * t11;
+        let t13 = T::fused(
+            inner_ring_e2,
             rotor_e3,
             T::fused(
-                inner_ring_e1,
+                -inner_ring_e3,
                 rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t13 = T::fused(
+        let t14 = t13 * t12;
+        let t15 = T::fused(
             -inner_ring_e1,
             rotor_e3,
             T::fused(
@@ -2590,42 +2605,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
                 T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t14 = t13 * t12;
-        let t15 = t14 - t11;
         let t16 = k(2.0) * t15;
-        let t17 = t14 + t11;
-        let t18 = k(2.0) * t17;
-        let t19 = t10 * t10;
-        let t20 = k(0.5) - T::fused(t12, t12, t19);
-        let t21 = k(2.0) * t20;
-        let t22 = k(0.5) - T::fused(t13, t13, t19);
-        let t23 = k(2.0) * t22;
-        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
-        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
-        let t26 = k(5e-6) * t25;
-        let t27 = T::fused(t10, t12, t9 * t13);
-        let t28 = k(2.0) * t27;
-        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
-        let t30 = k(5e-6) * t29;
-        let t31 = T::fused(-t10, t13, t9 * t12);
-        let t32 = k(2.0) * t31;
-        let t33 = T::fused(t16, t26, t21 * t30);
-        let t34 = k(1.0)
-            / (k(1e-6) + T::fused(t16, k(1e-5) * t15, t21 * (k(1e-5) * t20)));
-        let t35 = t34 * t33;
-        let t36 = k(1e-5) * t27;
-        let t37 = k(1e-5) * t31;
-        let t38 = T::fused(-t16, t36, t21 * t37);
-        let t39 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+        let t17 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t40 = T::fused(
+        let t18 = t17 * t16;
+        let t19 = t18 - t14;
+        let t20 = t18 + t14;
+        let t21 = T::fused(-t11, t12, k(1.0));
+        let t22 = T::fused(-t17, k(2.0) * t17, t21);
+        let t23 = T::fused(-t15, t16, t21);
+        let t24 = k(1.0) / T::fused(-t20, t19, t23 * t22);
+        let t25 = T::fused(row13, t19 * t24, row14 * (t23 * t24));
+        let t26 = k(5e-6) * t25;
+        let t27 = k(2.0) * t13;
+        let t28 = T::fused(t17, t12, t15 * t27);
+        let t29 = T::fused(row13, t22 * t24, row14 * (t20 * t24));
+        let t30 = k(5e-6) * t29;
+        let t31 = T::fused(-t15, t12, t17 * t27);
+        let t32 = T::fused(t19, t26, t22 * t30);
+        let t33 = k(1.0)
+            / (k(1e-6) + T::fused(t19, k(5e-6) * t19, t22 * (k(5e-6) * t22)));
+        let t34 = t33 * t32;
+        let t35 = k(5e-6) * t28;
+        let t36 = k(5e-6) * t31;
+        let t37 = T::fused(-t19, t35, t22 * t36);
+        let t38 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2634,17 +2645,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t41 = t40 * t39;
-        let t42 = T::fused(
-            -outer_ring_e1,
+        let t39 = k(2.0) * t38;
+        let t40 = T::fused(
+            -outer_ring_e0,
             inner_ring_e3,
             T::fused(
-                -outer_ring_e0,
+                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t43 = T::fused(
+        let t41 = t40 * t39;
+        let t42 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2653,64 +2665,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeFreeNutation<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t44 = t43 * t42;
-        let t45 = k(2.0) * (t44 - t41);
-        let t46 = k(2.0) * (t44 + t41);
-        let t47 = t40 * t40;
-        let t48 = k(2.0) * (k(0.5) - T::fused(t42, t42, t47));
-        let t49 = k(2.0) * (k(0.5) - T::fused(t43, t43, t47));
-        let t50 = k(1.0) / T::fused(-t46, t45, t49 * t48);
-        let t51 = T::fused(row8, t45 * t50, row9 * (t49 * t50));
-        let t52 = t34 * t38;
-        let t53 = T::fused(t38, t52, -(k(1e-6) + T::fused(t28, t36, t32 * t37)));
-        let t54 = T::fused(row8, t48 * t50, row9 * (t46 * t50));
-        let t55 = k(1e-5) * t22;
-        let t56 = k(1e-5) * t17;
-        let t57 = T::fused(t16, t55, t21 * t56);
-        let t58 = T::fused(t57, t52, -T::fused(-t23, t36, t18 * t37));
-        let t59 = T::fused(-t53, t51, t58 * t54)
-            + T::fused(t38, t35, -T::fused(-t28, t26, t32 * t30));
-        let t60 = T::fused(t57, t34 * t57, -(k(2e-6) + T::fused(t23, t55, t18 * t56)));
-        let t61 = T::fused(-t58, t51, t60 * t54)
-            + T::fused(t57, t35, -T::fused(t23, t26, t18 * t30));
-        let t62 = T::fused(
-            -t45,
-            T::fused(-t49, t53, t46 * t58),
-            t48 * T::fused(-t49, t58, t46 * t60),
+        let t43 = k(2.0) * t42;
+        let t44 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
         );
-        let t63 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-        let t64 = T::fused(-t45, t53, t48 * t58);
-        let t65 = k(2.0) * T::fused(t40, t42, t43 * t39);
-        let t66 = T::fused(-t45, t58, t48 * t60);
-        let t67 = k(2.0) * T::fused(-t40, t43, t42 * t39);
-        let t68 = T::fused(-t62, t8, T::fused(t65, t64, t67 * t66) * t63)
-            + T::fused(-t45, t59, t48 * t61);
-        let t69 = t68 / (k(1e-6) - T::fused(-t45, t64, t48 * t66));
-        let t70 = row0 + row5;
-        let t71 = row1 + row6;
-        let t72 = row2 + row7;
-        let t73 = t51 - T::fused(t65, t63, -T::fused(-t49, t8, t45 * t69));
-        let t74 = t54 + T::fused(t67, t63, T::fused(-t46, t8, t48 * t69));
-        let t75 = t34 * (t33 + T::fused(-t38, t73, t57 * t74));
+        let t45 = t44 * t43;
+        let t46 = t45 - t41;
+        let t47 = t45 + t41;
+        let t48 = k(2.0) * t44;
+        let t49 = T::fused(-t38, t39, k(1.0));
+        let t50 = T::fused(-t44, t48, t49);
+        let t51 = T::fused(-t42, t43, t49);
+        let t52 = k(1.0) / T::fused(-t47, t46, t51 * t50);
+        let t53 = T::fused(row8, t46 * t52, row9 * (t51 * t52));
+        let t54 = t33 * t37;
+        let t55 = T::fused(t37, t54, -(k(1e-6) + T::fused(t28, t35, t31 * t36)));
+        let t56 = T::fused(row8, t50 * t52, row9 * (t47 * t52));
+        let t57 = k(5e-6) * t23;
+        let t58 = k(5e-6) * t20;
+        let t59 = T::fused(t19, t57, t22 * t58);
+        let t60 = T::fused(t59, t54, -T::fused(-t23, t35, t20 * t36));
+        let t61 = T::fused(-t55, t53, t60 * t56)
+            + T::fused(t37, t34, -T::fused(-t28, t26, t31 * t30));
+        let t62 = T::fused(t59, t33 * t59, -(k(2e-6) + T::fused(t23, t57, t20 * t58)));
+        let t63 = T::fused(-t60, t53, t62 * t56)
+            + T::fused(t59, t34, -T::fused(t23, t26, t20 * t30));
+        let t64 = T::fused(
+            -t46,
+            T::fused(-t51, t55, t47 * t60),
+            t50 * T::fused(-t51, t60, t47 * t62),
+        );
+        let t65 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
+        let t66 = T::fused(-t46, t55, t50 * t60);
+        let t67 = T::fused(t44, t39, t40 * t43);
+        let t68 = T::fused(-t46, t60, t50 * t62);
+        let t69 = T::fused(-t42, t39, t40 * t48);
+        let t70 = T::fused(-t64, t10, T::fused(t67, t66, t69 * t68) * t65)
+            + T::fused(-t46, t61, t50 * t63);
+        let t71 = t70 / (k(1e-6) - T::fused(-t46, t66, t50 * t68));
+        let t72 = row0 + row5;
+        let t73 = row1 + row6;
+        let t74 = row2 + row7;
+        let t75 = t53 - T::fused(t67, t65, -T::fused(-t51, t10, t46 * t71));
+        let t76 = t56 + T::fused(t69, t65, T::fused(-t47, t10, t50 * t71));
+        let t77 = t33 * (t32 + T::fused(-t37, t75, t59 * t76));
         *out = [
             row0,
             row1,
             row2,
-            t8,
-            t69,
-            -t63,
-            t70,
+            t10,
             t71,
+            -t65,
             t72,
             t73,
-            -t74,
-            -t75,
-            row10 + t70,
-            row11 + t71,
-            row12 + t72,
+            t74,
+            t75,
+            -t76,
+            -t77,
+            row10 + t72,
+            row11 + t73,
+            row12 + t74,
             k(0.0),
-            t25 - T::fused(t16, t75, -T::fused(t28, t73, t23 * t74)),
-            T::fused(t21, t75, -T::fused(-t32, t73, t18 * t74)) - t29,
+            t25 - T::fused(t19, t77, -T::fused(t28, t75, t23 * t76)),
+            T::fused(t22, t77, -T::fused(-t31, t75, t20 * t76)) - t29,
         ];
     }
 }

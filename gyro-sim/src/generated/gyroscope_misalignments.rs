@@ -10,8 +10,8 @@
 //! * left out: coordinates of `base` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 792 operations by relative Euler parameters; 812 operations by rotations of the bodies
-//! * project: 763 operations by rotations of the bodies; 789 operations by relative Euler parameters
+//! * accelerations: 769 operations by relative Euler parameters, doubled; 790 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 742 operations by rotations of the bodies, doubled; 763 operations by rotations of the bodies; 2 more compared
 //! * joint_accelerations: 165 operations by normal form; 392 operations by recursion
 //! * joint_accelerations_at: 203 operations by normal form; 430 operations by recursion; 1 more compared
 //! * corrected_accelerations: 340 operations by normal form in the bodies' frames; 432 operations by normal form in the global frame; 5 more compared
@@ -21,17 +21,17 @@
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | set_up | what depends on parameters alone | 16 | 57 | 2 | 75 | 0 of 48 | 178 | 75 |
-//! | phi | Φ | 70 | 72 | 0 | 142 | 0 of 18 | 248 | 142 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 94 | 161 | 0 | 255 | 0 of 91 | 703 | 255 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 76 | 129 | 0 | 205 | 0 of 53 | 686 | 205 |
+//! | set_up | what depends on parameters alone | 16 | 59 | 2 | 77 | 0 of 50 | 182 | 77 |
+//! | phi | Φ | 68 | 79 | 0 | 147 | 0 of 18 | 298 | 147 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 92 | 146 | 0 | 238 | 0 of 91 | 783 | 238 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 70 | 114 | 0 | 184 | 0 of 53 | 816 | 184 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 160 | 243 | 0 | 403 | 6 of 15 | 1786 | 403 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 114 | 164 | 0 | 278 | 0 of 15 | 759 | 278 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 22 | 0 | 29 | 8 of 18 | 32 | 29 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 326 | 454 | 5 | 785 | 6 of 18 | 5.9e7 | 789 |
-//! | multipliers | λ, the accelerations being known | 150 | 239 | 3 | 392 | 0 of 15 | 6505 | 392 |
-//! | project | (δr, δπ') that changes the rows as given | 316 | 442 | 5 | 763 | 0 of 18 | 1.8e7 | 764 |
+//! | gamma | γ | 154 | 228 | 0 | 382 | 6 of 15 | 2077 | 382 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 108 | 149 | 0 | 257 | 0 of 15 | 889 | 257 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 8 of 18 | 32 | 26 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 320 | 435 | 5 | 760 | 6 of 18 | 6.0e7 | 764 |
+//! | multipliers | λ, the accelerations being known | 144 | 223 | 3 | 370 | 0 of 15 | 7425 | 370 |
+//! | project | (δr, δπ') that changes the rows as given | 310 | 427 | 5 | 742 | 0 of 18 | 2.0e7 | 743 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 23 | 36 | 0 | 59 | 0 of 2 | 59 | 59 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -44,9 +44,9 @@
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 85 | 115 | 2 | 202 | 0 of 3 | 32466 | 203 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 140 | 197 | 2 | 339 | 6 of 18 | 540714 | 340 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 106 | 155 | 0 | 261 | 0 of 15 | 1811 | 261 |
-//! | corrected_solution | both | 212 | 309 | 2 | 523 | 6 of 33 | 1.7e7 | 524 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 198 | 296 | 2 | 496 | 24 of 42 | 44042 | 496 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 106 | 154 | 0 | 260 | 0 of 15 | 1811 | 260 |
+//! | corrected_solution | both | 212 | 308 | 2 | 522 | 6 of 33 | 1.7e7 | 523 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 198 | 292 | 2 | 492 | 24 of 42 | 44042 | 492 |
 //!
 //! # Proof
 //!
@@ -105,7 +105,7 @@ impl<T: gyro_sim::Scalar> ::core::default::Default for Parameters<T> {
 pub struct GyroscopeMisalignments<T> {
     parameters: Parameters<T>,
     /// What depends on parameters alone.
-    derived: [T; 48],
+    derived: [T; 50],
 }
 impl<T: gyro_sim::Scalar> ::core::default::Default for GyroscopeMisalignments<T> {
     fn default() -> Self {
@@ -127,7 +127,7 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
     pub fn new(parameters: Parameters<T>) -> Self {
         let mut mechanism = Self {
             parameters,
-            derived: [T::constant(0.0); 48],
+            derived: [T::constant(0.0); 50],
         };
         mechanism.set_parameters(parameters);
         mechanism
@@ -159,8 +159,8 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
         self.set_parameters(parameters);
         true
     }
-    /// What depends on parameters alone: 75 operations (16 ±, 57 ×, 2 ÷).
-    fn set_up(&self, out: &mut [T; 48]) {
+    /// What depends on parameters alone: 77 operations (16 ±, 59 ×, 2 ÷).
+    fn set_up(&self, out: &mut [T; 50]) {
         let k = T::constant;
         let t0 = k(0.08) * self.parameters.imbalance_z;
         let t1 = self.parameters.imbalance_y * self.parameters.imbalance_y;
@@ -169,19 +169,17 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
         let t4 = t3 * t0;
         let t5 = k(0.08) * self.parameters.imbalance_y;
         let t6 = t3 * t5;
-        let t7 = self.parameters.product_xy * t3;
-        let t8 = self.parameters.offset_x * self.parameters.offset_x;
-        let t9 = self.parameters.offset_y * self.parameters.offset_y;
-        let t10 = self.parameters.offset_y * self.parameters.offset_z;
-        let t11 = self.parameters.offset_z * self.parameters.offset_z;
-        let t12 = self.parameters.offset_x * self.parameters.offset_z;
-        let t13 = self.parameters.imbalance_y * t5;
-        let t14 = self.parameters.imbalance_z * t0;
-        let t15 = k(1e-5) + t14;
+        let t7 = self.parameters.offset_y * self.parameters.offset_y;
+        let t8 = self.parameters.offset_y * self.parameters.offset_z;
+        let t9 = self.parameters.offset_z * self.parameters.offset_z;
+        let t10 = self.parameters.product_xy * t3;
+        let t11 = self.parameters.offset_x * self.parameters.offset_x;
+        let t12 = k(0.08) * self.parameters.offset_z;
+        let t13 = self.parameters.offset_x * self.parameters.offset_z;
+        let t14 = self.parameters.imbalance_y * t5;
+        let t15 = self.parameters.imbalance_z * t0;
+        let t16 = k(1e-5) + t15;
         *out = [
-            k(2.0) * self.parameters.imbalance_z,
-            k(2.0) * self.parameters.imbalance_y,
-            k(2.0) * self.parameters.offset_x,
             k(4.0) * self.parameters.offset_x,
             k(4.0) * self.parameters.imbalance_y,
             k(4.0) * self.parameters.imbalance_z,
@@ -191,14 +189,18 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
             t5,
             self.parameters.product_xz * t4,
             self.parameters.product_xz * t6,
+            k(2.0) * self.parameters.offset_z,
             k(2.0) * self.parameters.offset_y,
             t0 * t4,
             t5 * t4,
             t5 * t6,
-            T::fused(-self.parameters.product_xy, t7, T::fused(k(0.08), t2, k(5e-6))),
+            t7,
+            t8,
+            t9,
+            T::fused(-self.parameters.product_xy, t10, T::fused(k(0.08), t2, k(5e-6))),
             T::fused(
                 self.parameters.product_xz,
-                t7,
+                t10,
                 k(0.08) * (self.parameters.imbalance_y * self.parameters.imbalance_z),
             ),
             T::fused(
@@ -206,33 +208,34 @@ impl<T: gyro_sim::Scalar> GyroscopeMisalignments<T> {
                 self.parameters.product_xz * t3,
                 T::fused(k(0.08), t1, k(5e-6)),
             ),
-            k(0.08) * (t9 + t8),
-            k(0.08) * t10,
-            k(2.0) * self.parameters.offset_z,
-            t11,
-            t12,
-            k(0.08) * (t11 + t8),
-            k(0.08) * t12,
+            k(0.08) * (t9 + t7),
+            k(2.0) * self.parameters.offset_x,
+            k(0.08) * (t7 + t11),
+            self.parameters.offset_x * t12,
+            self.parameters.offset_y * t12,
             k(0.08) * (self.parameters.offset_x * self.parameters.offset_y),
-            t9,
-            t10,
-            k(0.08) * (t11 + t9),
+            t13,
+            k(0.08) * (t9 + t11),
             t3,
+            k(0.08) * t13,
+            k(0.08) * t8,
             k(0.5) * self.parameters.product_xz,
             k(0.5) * self.parameters.product_xy,
+            k(2.0) * self.parameters.imbalance_z,
+            k(2.0) * self.parameters.imbalance_y,
             k(2.0) * self.parameters.product_xy,
             k(2.0) * self.parameters.product_xz,
             k(0.16) * self.parameters.imbalance_y,
-            t13,
-            t15,
-            k(1.0) / (t13 + t15),
-            k(0.08) * self.parameters.offset_z,
-            t13 - t14,
+            t14,
+            t16,
+            k(1.0) / (t14 + t16),
+            t12,
+            t14 - t15,
             self.parameters.imbalance_z * t5,
             k(0.5) * self.parameters.offset_z,
-            t14,
-            k(0.08) * (t9 - t8),
-            T::fused(k(0.08), t1 + t11, k(8e-6)),
+            t15,
+            k(0.08) * (t7 - t11),
+            T::fused(k(0.08), t1 + t9, k(8e-6)),
             k(0.5) * self.parameters.offset_x,
             k(0.16) * self.parameters.offset_x,
         ];
@@ -606,7 +609,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
             accelerations[17],
         ];
     }
-    /// Writes Φ: 142 operations (70 ±, 72 ×, 0 ÷).
+    /// Writes Φ: 147 operations (68 ±, 79 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let outer_ring_rx = y[0];
@@ -630,117 +633,148 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t1 = outer_ring_e0 * outer_ring_e3;
-        let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = inner_ring_e0 * inner_ring_e2;
-        let t5 = inner_ring_e1 * inner_ring_e3;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = outer_ring_e0 * outer_ring_e0;
-        let t8 = T::fused(outer_ring_e1, outer_ring_e1, t7);
-        let t9 = inner_ring_e0 * inner_ring_e1;
-        let t10 = inner_ring_e2 * inner_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = T::fused(-(k(2.0) * (k(0.5) - t8)), t6, k(2.0) * (t2 + t1) * t11);
-        let t13 = inner_ring_e3 * inner_ring_e3;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = k(2.0) * (k(0.5) - (t14 + t13));
-        let t16 = outer_ring_e2 * outer_ring_e2;
-        let t17 = T::fused(
-            t0,
-            t15,
-            -T::fused(-(k(2.0) * (k(0.5) - (t7 + t16))), t11, t3 * t6),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = k(2.0) * outer_ring_e2;
+        let t2 = T::fused(outer_ring_e1, t0, outer_ring_e3 * t1);
+        let t3 = outer_ring_e3 * t0;
+        let t4 = k(2.0) * outer_ring_e1;
+        let t5 = outer_ring_e2 * t4;
+        let t6 = t5 - t3;
+        let t7 = k(2.0) * inner_ring_e0;
+        let t8 = inner_ring_e2 * t7;
+        let t9 = k(2.0) * inner_ring_e1;
+        let t10 = inner_ring_e3 * t9;
+        let t11 = t10 + t8;
+        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t13 = inner_ring_e1 * t7;
+        let t14 = k(2.0) * inner_ring_e2;
+        let t15 = inner_ring_e3 * t14;
+        let t16 = t15 - t13;
+        let t17 = T::fused(-inner_ring_e0, t7, k(1.0));
+        let t18 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t17);
+        let t19 = T::fused(
+            T::fused(-outer_ring_e2, t0, outer_ring_e3 * t4),
+            t18,
+            -T::fused(-T::fused(-outer_ring_e1, t4, t12), t11, (t5 + t3) * t16),
         );
-        let t18 = rotor_e0 * rotor_e2;
-        let t19 = rotor_e1 * rotor_e3;
-        let t20 = rotor_e0 * rotor_e3;
-        let t21 = rotor_e1 * rotor_e2;
-        let t22 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t23 = inner_ring_e0 * inner_ring_e3;
-        let t24 = inner_ring_e1 * inner_ring_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = inner_ring_rx
+        let t20 = T::fused(
+            t2,
+            t18,
+            T::fused(-t6, t11, T::fused(-outer_ring_e2, t1, t12) * t16),
+        );
+        let t21 = inner_ring_e3 * t7;
+        let t22 = inner_ring_e2 * t9;
+        let t23 = t22 - t21;
+        let t24 = T::fused(
+            self.parameters.offset_z,
+            t11,
+            T::fused(
+                -self.parameters.offset_x,
+                T::fused(-inner_ring_e1, t9, t17),
+                self.parameters.offset_y * t23,
+            ),
+        );
+        let t25 = k(2.0) * rotor_e0;
+        let t26 = rotor_e3 * t25;
+        let t27 = k(2.0) * rotor_e1;
+        let t28 = rotor_e2 * t27;
+        let t29 = rotor_e2 * t25;
+        let t30 = rotor_e3 * t27;
+        let t31 = rotor_rx
             + T::fused(
-                t6,
+                self.parameters.imbalance_y,
+                t28 - t26,
+                self.parameters.imbalance_z * (t30 + t29),
+            ) - (inner_ring_rx + t24);
+        let t32 = T::fused(-inner_ring_e2, t14, t17);
+        let t33 = inner_ring_ry
+            + T::fused(
                 self.parameters.offset_z,
-                T::fused(
-                    -(k(0.5) - t22),
-                    self.derived[2],
-                    t25 * self.parameters.offset_y,
+                t16,
+                -T::fused(
+                    -self.parameters.offset_x,
+                    t22 + t21,
+                    self.parameters.offset_y * t32,
                 ),
             );
-        let t27 = t26
-            - (rotor_rx
-                + T::fused(t19 + t18, self.derived[0], (t21 - t20) * self.derived[1]));
-        let t28 = rotor_e0 * rotor_e1;
-        let t29 = rotor_e2 * rotor_e3;
-        let t30 = rotor_e2 * rotor_e2;
-        let t31 = rotor_e0 * rotor_e0;
-        let t32 = rotor_ry
-            - T::fused(
-                -(t29 - t28),
-                self.derived[0],
-                (k(0.5) - (t31 + t30)) * self.derived[1],
-            );
-        let t33 = inner_ring_e2 * inner_ring_e2;
-        let t34 = k(2.0) * (k(0.5) - (t14 + t33));
-        let t35 = inner_ring_ry
+        let t34 = k(2.0) * rotor_e2;
+        let t35 = T::fused(-rotor_e0, t25, k(1.0));
+        let t36 = rotor_e1 * t25;
+        let t37 = rotor_e3 * t34;
+        let t38 = rotor_ry
             + T::fused(
-                t11,
-                self.parameters.offset_z,
-                -T::fused(-(t24 + t23), self.derived[2], t34 * self.parameters.offset_y),
+                -self.parameters.imbalance_y,
+                T::fused(-rotor_e2, t34, t35),
+                self.parameters.imbalance_z * (t37 - t36),
             );
-        let t36 = rotor_e3 * rotor_e3;
-        let t37 = rotor_rz
-            + T::fused(
-                -(k(0.5) - (t31 + t36)),
-                self.derived[0],
-                (t29 + t28) * self.derived[1],
-            );
-        let t38 = k(2.0) * (t10 + t9);
-        let t39 = inner_ring_rz
+        let t39 = t15 + t13;
+        let t40 = inner_ring_rz
             - T::fused(
-                t15,
                 self.parameters.offset_z,
-                -T::fused(t5 - t4, self.derived[2], t38 * self.parameters.offset_y),
+                t18,
+                -T::fused(
+                    self.parameters.offset_x,
+                    t10 - t8,
+                    self.parameters.offset_y * t39,
+                ),
             );
-        let t40 = T::fused(rotor_e1, rotor_e1, t31);
-        let t41 = k(2.0) * (k(0.5) - t40);
-        let t42 = k(2.0) * (t21 + t20);
-        let t43 = k(2.0) * (t19 - t18);
+        let t41 = T::fused(
+            -self.parameters.imbalance_y,
+            t37 + t36,
+            self.parameters.imbalance_z * T::fused(-rotor_e3, k(2.0) * rotor_e3, t35),
+        );
+        let t42 = T::fused(-rotor_e1, t27, t35);
+        let t43 = t28 + t26;
+        let t44 = t30 - t29;
+        let t45 = T::fused(
+            outer_ring_e3,
+            outer_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                outer_ring_e2,
+                T::fused(outer_ring_e1, outer_ring_e1, outer_ring_e0 * outer_ring_e0),
+            ),
+        );
+        let t46 = T::fused(
+            inner_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                inner_ring_e2,
+                inner_ring_e2,
+                T::fused(inner_ring_e1, inner_ring_e1, inner_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t47 = T::fused(
+            rotor_e3,
+            rotor_e3,
+            T::fused(
+                rotor_e2,
+                rotor_e2,
+                T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0),
+            ),
+        );
         *out = [
             outer_ring_rx,
             outer_ring_ry,
             outer_ring_rz,
-            t0,
-            t3,
+            t2,
+            t6,
             inner_ring_rx - outer_ring_rx,
             inner_ring_ry - outer_ring_ry,
             inner_ring_rz - outer_ring_rz,
-            T::fused(
-                -(k(2.0)
-                    * T::fused(
-                        -outer_ring_e0,
-                        outer_ring_e2,
-                        outer_ring_e1 * outer_ring_e3,
-                    )),
-                t15,
-                t12,
-            ),
-            -t17,
-            -t27,
-            t32 - t35,
-            t37 - t39,
-            T::fused(t38, t43, -T::fused(t25, t41, t34 * t42)),
-            T::fused(-t15, t43, T::fused(-t6, t41, t11 * t42)),
-            T::fused(outer_ring_e3, outer_ring_e3, t8 + t16) - k(1.0),
-            t13 + (t22 + t33) - k(1.0),
-            t36 + (t40 + t30) - k(1.0),
+            -t19,
+            -t20,
+            t31,
+            t38 - t33,
+            rotor_rz - t41 - t40,
+            T::fused(t39, t44, -T::fused(t23, t42, t32 * t43)),
+            T::fused(-t18, t44, T::fused(-t11, t42, t16 * t43)),
+            t45 - k(1.0),
+            t46 - k(1.0),
+            t47 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 278 operations (114 ±, 164 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 257 operations (108 ±, 149 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -773,159 +807,168 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e2;
-        let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
-        let t19 = outer_ring_e0 * outer_ring_e1;
-        let t20 = outer_ring_e2 * outer_ring_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
-        let t23 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t7 = T::fused(-outer_ring_e1, t2, t5);
+        let t8 = t3 + t1;
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = outer_ring_e3 * t0;
+        let t15 = outer_ring_e2 * t2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e1 * t9;
+        let t18 = k(2.0) * inner_ring_e2;
+        let t19 = inner_ring_e3 * t18;
+        let t20 = t19 - t17;
+        let t21 = k(2.0) * outer_ring_e2;
+        let t22 = T::fused(-outer_ring_e2, t21, t5);
+        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
+        let t25 = outer_ring_e1 * t0;
+        let t26 = outer_ring_e3 * t21;
+        let t27 = t26 + t25;
+        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t29 = T::fused(
             outer_ring_wz,
-            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
-            outer_ring_wy * t22,
+            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
+            outer_ring_wy * t28,
         );
-        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
-        let t25 = inner_ring_e0 * inner_ring_e3;
-        let t26 = inner_ring_e1 * inner_ring_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t15 + t14);
-        let t29 = k(2.0) * (t12 - t11);
-        let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
-        let t32 = k(2.0) * (t8 + t7);
-        let t33 = T::fused(
+        let t30 = T::fused(-inner_ring_e1, t11, t23);
+        let t31 = inner_ring_e3 * t9;
+        let t32 = inner_ring_e2 * t11;
+        let t33 = t32 + t31;
+        let t34 = t15 + t14;
+        let t35 = t12 - t10;
+        let t36 = t32 - t31;
+        let t37 = T::fused(-inner_ring_e2, t18, t23);
+        let t38 = t19 + t17;
+        let t39 = T::fused(
             -inner_ring_wy,
-            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
-            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
+            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
         );
-        let t34 = T::fused(
+        let t40 = T::fused(
             outer_ring_wz,
-            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
-            outer_ring_wx * t22,
+            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
+            outer_ring_wx * t28,
         );
-        let t35 = T::fused(
+        let t41 = T::fused(
             -inner_ring_wy,
-            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
-            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
+            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
         );
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
-        let t38 = rotor_e0 * rotor_e3;
-        let t39 = rotor_e1 * rotor_e2;
-        let t40 = k(2.0) * (t39 - t38);
-        let t41 = rotor_e0 * rotor_e2;
-        let t42 = rotor_e1 * rotor_e3;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = T::fused(
-            -self.parameters.imbalance_z,
-            T::fused(t37, rotor_wy, t40 * rotor_wx),
-            self.parameters.imbalance_y * T::fused(t37, rotor_wz, t43 * rotor_wx),
-        );
-        let t45 = T::fused(
-            self.parameters.offset_y,
-            T::fused(t13, inner_ring_wx, t24 * inner_ring_wz),
-            self.parameters.offset_x * T::fused(-t13, inner_ring_wy, t30 * inner_ring_wz),
-        );
-        let t46 = inner_ring_sx
-            + T::fused(
-                -self.parameters.offset_z,
-                T::fused(t24, inner_ring_wy, t30 * inner_ring_wx),
-                t45,
-            ) - (rotor_sx + t44);
-        let t47 = k(2.0) * (t39 + t38);
-        let t48 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
-        let t49 = rotor_e0 * rotor_e1;
-        let t50 = rotor_e2 * rotor_e3;
-        let t51 = k(2.0) * (t50 - t49);
+        let t42 = k(2.0) * rotor_e1;
+        let t43 = k(2.0) * rotor_e0;
+        let t44 = T::fused(-rotor_e0, t43, k(1.0));
+        let t45 = T::fused(-rotor_e1, t42, t44);
+        let t46 = rotor_e3 * t43;
+        let t47 = rotor_e2 * t42;
+        let t48 = t47 - t46;
+        let t49 = rotor_e2 * t43;
+        let t50 = rotor_e3 * t42;
+        let t51 = t50 + t49;
         let t52 = T::fused(
-            self.parameters.imbalance_z,
-            T::fused(t47, rotor_wy, t48 * rotor_wx),
-            self.parameters.imbalance_y * T::fused(-t47, rotor_wz, t51 * rotor_wx),
+            -self.parameters.imbalance_z,
+            T::fused(rotor_wy, t45, rotor_wx * t48),
+            self.parameters.imbalance_y * T::fused(rotor_wz, t45, rotor_wx * t51),
         );
         let t53 = T::fused(
-            self.parameters.offset_y,
-            T::fused(-t9, inner_ring_wx, t27 * inner_ring_wz),
-            self.parameters.offset_x * T::fused(t9, inner_ring_wy, t31 * inner_ring_wz),
+            -self.parameters.offset_y,
+            T::fused(inner_ring_wz, t30, inner_ring_wx * t13),
+            self.parameters.offset_x * T::fused(-inner_ring_wz, t36, inner_ring_wy * t13),
         );
-        let t54 = inner_ring_sy
+        let t54 = inner_ring_sx
+            - T::fused(
+                self.parameters.offset_z,
+                T::fused(inner_ring_wy, t30, inner_ring_wx * t36),
+                t53,
+            ) - (rotor_sx + t52);
+        let t55 = t47 + t46;
+        let t56 = k(2.0) * rotor_e2;
+        let t57 = T::fused(-rotor_e2, t56, t44);
+        let t58 = rotor_e1 * t43;
+        let t59 = rotor_e3 * t56;
+        let t60 = t59 - t58;
+        let t61 = T::fused(
+            self.parameters.imbalance_z,
+            T::fused(rotor_wy, t55, rotor_wx * t57),
+            self.parameters.imbalance_y * T::fused(-rotor_wz, t55, rotor_wx * t60),
+        );
+        let t62 = T::fused(
+            -self.parameters.offset_y,
+            T::fused(-inner_ring_wz, t33, inner_ring_wx * t20),
+            self.parameters.offset_x * T::fused(inner_ring_wz, t37, inner_ring_wy * t20),
+        );
+        let t63 = inner_ring_sy
             - T::fused(
                 -self.parameters.offset_z,
-                T::fused(t27, inner_ring_wy, t31 * inner_ring_wx),
-                t53,
-            ) - (rotor_sy + t52);
-        let t55 = k(2.0) * (t42 - t41);
-        let t56 = k(2.0) * (t50 + t49);
-        let t57 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
-        let t58 = T::fused(
+                T::fused(inner_ring_wy, t33, inner_ring_wx * t37),
+                t62,
+            ) - (rotor_sy + t61);
+        let t64 = t50 - t49;
+        let t65 = t59 + t58;
+        let t66 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
+        let t67 = T::fused(
             self.parameters.imbalance_z,
-            T::fused(-t55, rotor_wy, t56 * rotor_wx),
-            self.parameters.imbalance_y * T::fused(t55, rotor_wz, t57 * rotor_wx),
+            T::fused(-rotor_wy, t64, rotor_wx * t65),
+            self.parameters.imbalance_y * T::fused(rotor_wz, t64, rotor_wx * t66),
         );
-        let t59 = T::fused(
+        let t68 = T::fused(
             -self.parameters.offset_y,
-            T::fused(t18, inner_ring_wx, t29 * inner_ring_wz),
-            self.parameters.offset_x * T::fused(t18, inner_ring_wy, t32 * inner_ring_wz),
+            T::fused(inner_ring_wz, t35, inner_ring_wx * t24),
+            self.parameters.offset_x * T::fused(inner_ring_wz, t38, inner_ring_wy * t24),
         );
-        let t60 = inner_ring_sz
+        let t69 = inner_ring_sz
             + T::fused(
                 -self.parameters.offset_z,
-                T::fused(-t29, inner_ring_wy, t32 * inner_ring_wx),
-                t59,
-            ) - (rotor_sz - t58);
-        let t61 = T::fused(t29, t55, T::fused(t24, t37, t27 * t47));
-        let t62 = T::fused(
-            inner_ring_wx,
-            T::fused(t18, t55, -T::fused(-t13, t37, t9 * t47)),
-            inner_ring_wz * t61,
+                T::fused(-inner_ring_wy, t35, inner_ring_wx * t38),
+                t68,
+            ) - (rotor_sz - t67);
+        let t70 = T::fused(t35, t64, T::fused(t30, t45, t33 * t55));
+        let t71 = T::fused(
+            inner_ring_wz,
+            t70,
+            inner_ring_wx * T::fused(t24, t64, -T::fused(-t13, t45, t20 * t55)),
         );
-        let t63 = T::fused(
+        let t72 = T::fused(
             rotor_wz,
-            T::fused(t32, t56, T::fused(t31, t48, t30 * t40)),
-            rotor_wy * T::fused(t32, t57, -T::fused(-t31, t51, t30 * t43)),
+            T::fused(t38, t65, T::fused(t36, t48, t37 * t57)),
+            rotor_wy * T::fused(t38, t66, T::fused(-t36, t51, t37 * t60)),
         );
-        let t64 = T::fused(
+        let t73 = T::fused(
             -inner_ring_wy,
-            t61,
-            inner_ring_wx * T::fused(t32, t55, -T::fused(t30, t37, t31 * t47)),
+            t70,
+            inner_ring_wx * T::fused(t38, t64, -T::fused(t36, t45, t37 * t55)),
         );
-        let t65 = T::fused(
+        let t74 = T::fused(
             rotor_wz,
-            T::fused(t18, t56, -T::fused(-t9, t48, t13 * t40)),
-            rotor_wy * T::fused(t18, t57, T::fused(t9, t51, t13 * t43)),
+            T::fused(t24, t65, T::fused(-t13, t48, t20 * t57)),
+            rotor_wy * T::fused(t24, t66, T::fused(t13, t51, t20 * t60)),
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
-            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
+            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
+            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t33 + t23),
-            t34 - t35,
-            -t46,
+            -(t39 + t29),
+            t40 - t41,
             -t54,
-            -t60,
-            t63 - t62,
-            -(t65 + t64),
+            -t63,
+            -t69,
+            t72 - t71,
+            -(t74 + t73),
         ];
     }
     /// Kinetic and potential energy: 59 operations (23 ±, 36 ×, 0 ÷).
@@ -1544,15 +1587,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
         );
         let t144 = T::fused(
             -T::fused(t141, t140, t143 * t142),
-            self.derived[0],
-            T::fused(-t141, t142, t143 * t140) * self.derived[1],
+            self.derived[33],
+            T::fused(-t141, t142, t143 * t140) * self.derived[34],
         );
         let t145 = T::fused(
             self.parameters.offset_z,
             t113,
             -T::fused(
                 k(0.5) - T::fused(t83, t83, t100),
-                self.derived[2],
+                self.derived[21],
                 self.parameters.offset_y * t96,
             ),
         );
@@ -1561,23 +1604,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeMisalignments<T> {
         let t148 = t143 * t143;
         let t149 = T::fused(
             t147 - t146,
-            self.derived[0],
-            (k(0.5) - T::fused(t142, t142, t148)) * self.derived[1],
+            self.derived[33],
+            (k(0.5) - T::fused(t142, t142, t148)) * self.derived[34],
         );
         let t150 = T::fused(
             self.parameters.offset_z,
             t115,
-            T::fused(-(t95 + t94), self.derived[2], self.parameters.offset_y * t101),
+            T::fused(-(t95 + t94), self.derived[21], self.parameters.offset_y * t101),
         ) - t149;
         let t151 = T::fused(
             -(k(0.5) - T::fused(t140, t140, t148)),
-            self.derived[0],
-            (t147 + t146) * self.derived[1],
+            self.derived[33],
+            (t147 + t146) * self.derived[34],
         );
         let t152 = T::fused(
             self.parameters.offset_z,
             t119,
-            -T::fused(-(t112 - t111), self.derived[2], self.parameters.offset_y * t107),
+            -T::fused(-(t112 - t111), self.derived[21], self.parameters.offset_y * t107),
         ) + t151;
         y[0] = k(0.0);
         y[1] = k(0.0);
@@ -1974,7 +2017,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 255 operations (94 ±, 161 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 238 operations (92 ±, 146 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1993,43 +2036,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t1 = k(2.0) * outer_ring_e0;
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
-        let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
-        let t6 = t5 * t3;
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(4.0) * outer_ring_e0;
-        let t11 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t12 = t5 * t2;
-        let t13 = t5 * t1;
-        let t14 = t5 * t0;
-        let t15 = k(4.0) * inner_ring_e0;
-        let t16 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
-        let t17 = k(2.0) * inner_ring_e1;
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * inner_ring_e2;
-        let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
-        let t24 = k(2.0) * inner_ring_e0;
-        let t25 = k(2.0) * inner_ring_e3;
+        let t4 = k(2.0) * inner_ring_e3;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e3, t4, t6);
+        let t8 = t3 * t7;
+        let t9 = inner_ring_e1 * t5;
+        let t10 = k(2.0) * inner_ring_e2;
+        let t11 = inner_ring_e3 * t10;
+        let t12 = t11 - t9;
+        let t13 = k(2.0) * inner_ring_e1;
+        let t14 = T::fused(inner_ring_e2, t5, inner_ring_e3 * t13);
+        let t15 = k(4.0) * outer_ring_e0;
+        let t16 = t2 * t7;
+        let t17 = t1 * t7;
+        let t18 = t0 * t7;
+        let t19 = T::fused(-outer_ring_e2, t1, outer_ring_e3 * t0);
+        let t20 = k(4.0) * inner_ring_e0;
+        let t21 = outer_ring_e3 * t1;
+        let t22 = outer_ring_e2 * t0;
+        let t23 = t22 + t21;
+        let t24 = T::fused(-outer_ring_e0, t1, k(1.0));
+        let t25 = T::fused(-outer_ring_e1, t0, t24);
         let t26 = k(4.0) * inner_ring_e3;
-        let t27 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
-        let t29 = k(2.0) * (t19 - t18);
-        let t30 = self.parameters.offset_y * t25;
-        let t31 = self.parameters.offset_z * t21;
-        let t32 = self.parameters.offset_y * t21;
-        let t33 = self.parameters.offset_z * t25;
-        let t34 = self.parameters.offset_z * t24;
-        let t35 = self.parameters.offset_y * t17;
-        let t36 = self.parameters.offset_y * t24;
-        let t37 = self.parameters.offset_z * t17;
+        let t27 = T::fused(outer_ring_e1, t1, outer_ring_e3 * t3);
+        let t28 = T::fused(-outer_ring_e2, t3, t24);
+        let t29 = t22 - t21;
+        let t30 = self.parameters.offset_y * t4;
+        let t31 = self.parameters.offset_z * t10;
+        let t32 = self.parameters.offset_y * t10;
+        let t33 = self.parameters.offset_z * t4;
+        let t34 = self.parameters.offset_z * t5;
+        let t35 = self.parameters.offset_y * t13;
+        let t36 = self.parameters.offset_y * t5;
+        let t37 = self.parameters.offset_z * t13;
         let t38 = k(2.0) * rotor_e3;
         let t39 = self.parameters.imbalance_y * t38;
         let t40 = k(2.0) * rotor_e2;
@@ -2042,23 +2082,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t47 = self.parameters.imbalance_y * t46;
         let t48 = self.parameters.imbalance_y * t44;
         let t49 = self.parameters.imbalance_z * t46;
-        let t50 = self.parameters.offset_x * t25;
-        let t51 = self.parameters.offset_x * t21;
-        let t52 = self.parameters.offset_x * t17;
+        let t50 = self.parameters.offset_x * t4;
+        let t51 = self.parameters.offset_x * t10;
+        let t52 = self.parameters.offset_x * t13;
         let t53 = k(4.0) * inner_ring_e2;
-        let t54 = self.parameters.offset_x * t24;
+        let t54 = self.parameters.offset_x * t5;
         let t55 = k(4.0) * rotor_e0;
-        let t56 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
-        let t57 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t58 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
-        let t59 = t58 * t25;
-        let t60 = t58 * t21;
-        let t61 = t58 * t17;
-        let t62 = t58 * t24;
-        let t63 = k(2.0) * (t8 + t7);
-        let t64 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
-        let t65 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
+        let t56 = T::fused(-rotor_e2, t44, rotor_e3 * t46);
+        let t57 = T::fused(rotor_e3, t44, rotor_e2 * t46);
+        let t58 = T::fused(-rotor_e1, t46, T::fused(-rotor_e0, t44, k(1.0)));
+        let t59 = t4 * t58;
+        let t60 = t10 * t58;
+        let t61 = t13 * t58;
+        let t62 = t5 * t58;
+        let t63 = t11 + t9;
+        let t64 = T::fused(-inner_ring_e2, t10, t6);
+        let t65 = T::fused(-inner_ring_e3, t5, inner_ring_e2 * t13);
         let t66 = k(4.0) * rotor_e1;
         *out = [
             k(1.0),
@@ -2078,25 +2117,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t9, t2, t11 * t10) + t6,
-            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
-            T::fused(t9, t0, t13),
-            T::fused(t9, t1, -t14),
-            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
-            -T::fused(t20, t24, t23 * t25),
-            T::fused(-t23, t24, t20 * t25),
-            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
-            -(t14 + T::fused(-t9, t10, t11 * t2)),
-            T::fused(t11, t3, -t13),
-            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
-            -T::fused(t11, t1, t6),
-            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
-            T::fused(t28, t24, t29 * t25),
-            T::fused(-t28, t25, t29 * t24),
-            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
+            T::fused(t2, t12, t15 * t14) + t8,
+            T::fused(t3, t12, k(4.0) * outer_ring_e1 * t14) - t16,
+            T::fused(t0, t12, t17),
+            T::fused(t1, t12, -t18),
+            T::fused(t20, t19, -T::fused(t13, t23, t10 * t25)),
+            -T::fused(t5, t23, t4 * t25),
+            T::fused(-t5, t25, t4 * t23),
+            T::fused(t26, t19, -T::fused(-t10, t23, t13 * t25)),
+            -(t18 + T::fused(-t15, t12, t2 * t14)),
+            T::fused(t3, t14, -t17),
+            T::fused(k(4.0) * outer_ring_e2, t12, t0 * t14) - t16,
+            -T::fused(t1, t14, t8),
+            T::fused(t20, t27, T::fused(t13, t28, t10 * t29)),
+            T::fused(t5, t28, t4 * t29),
+            T::fused(-t4, t28, t5 * t29),
+            T::fused(t26, t27, T::fused(-t10, t28, t13 * t29)),
             k(-1.0),
-            T::fused(-self.parameters.offset_x, t15, t30) - t31,
-            -(t33 + T::fused(inner_ring_e1, self.derived[3], t32)),
+            T::fused(-self.parameters.offset_x, t20, t30) - t31,
+            -(t33 + T::fused(inner_ring_e1, self.derived[0], t32)),
             -(t35 + t34),
             t36 - t37,
             k(1.0),
@@ -2105,17 +2144,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             t47 + t45,
             t49 - t48,
             k(-1.0),
-            t37 - T::fused(self.parameters.offset_y, t15, t50),
+            t37 - T::fused(self.parameters.offset_y, t20, t50),
             t34 - t51,
             -(t33 + T::fused(self.parameters.offset_y, t53, t52)),
             -(t31 + t54),
             k(1.0),
             T::fused(self.parameters.imbalance_y, t55, -t49),
             -t45,
-            T::fused(rotor_e2, self.derived[4], t43),
+            T::fused(rotor_e2, self.derived[1], t43),
             t41,
             k(-1.0),
-            -T::fused(self.parameters.offset_z, t15, t35 - t51),
+            -T::fused(self.parameters.offset_z, t20, t35 - t51),
             -(t50 + t36),
             t54 - t30,
             -T::fused(self.parameters.offset_z, t26, t32 + t52),
@@ -2123,38 +2162,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             T::fused(self.parameters.imbalance_z, t55, t47),
             t48,
             t39,
-            T::fused(rotor_e3, self.derived[5], t42),
-            T::fused(t56, t17, T::fused(t57, t15, t59)),
-            T::fused(t56, t24, -t60),
-            T::fused(t56, t25, -T::fused(-t57, t53, t61)),
-            T::fused(t56, t21, t62),
-            T::fused(-t63, t40, T::fused(-t64, t38, t65 * t55)),
-            T::fused(t63, t38, T::fused(-t64, t40, t65 * t66)),
-            -T::fused(t63, t44, t64 * t46),
-            T::fused(-t64, t44, t63 * t46),
-            T::fused(t56, t15, -T::fused(t57, t17, t60)),
-            -T::fused(t57, t24, t59),
-            T::fused(t57, t25, -t62),
-            T::fused(t56, t26, -T::fused(-t57, t21, t61)),
-            T::fused(t5, t40, T::fused(t9, t38, t11 * t55)),
-            T::fused(-t5, t38, T::fused(t9, t40, t11 * t66)),
-            T::fused(t5, t44, t9 * t46),
-            T::fused(-t5, t46, t9 * t44),
+            T::fused(rotor_e3, self.derived[2], t42),
+            T::fused(t13, t56, T::fused(t20, t57, t59)),
+            T::fused(t5, t56, -t60),
+            T::fused(t4, t56, -T::fused(-t53, t57, t61)),
+            T::fused(t10, t56, t62),
+            T::fused(-t40, t63, T::fused(-t38, t64, t55 * t65)),
+            T::fused(t38, t63, T::fused(-t40, t64, t66 * t65)),
+            -T::fused(t44, t63, t46 * t64),
+            T::fused(-t44, t64, t46 * t63),
+            T::fused(t20, t56, -T::fused(t13, t57, t60)),
+            -T::fused(t5, t57, t59),
+            T::fused(t4, t57, -t62),
+            T::fused(t26, t56, -T::fused(-t10, t57, t61)),
+            T::fused(t40, t7, T::fused(t38, t12, t55 * t14)),
+            T::fused(-t38, t7, T::fused(t40, t12, t66 * t14)),
+            T::fused(t44, t7, t46 * t12),
+            T::fused(-t46, t7, t44 * t12),
             t1,
             t0,
             t3,
             t2,
-            t24,
-            t17,
-            t21,
-            t25,
+            t5,
+            t13,
+            t10,
+            t4,
             t44,
             t46,
             t40,
             t38,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 205 operations (76 ±, 129 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 184 operations (70 ±, 114 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2169,121 +2208,130 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7));
-        let t9 = inner_ring_e0 * inner_ring_e1;
-        let t10 = inner_ring_e2 * inner_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = outer_ring_e0 * outer_ring_e1;
-        let t13 = outer_ring_e2 * outer_ring_e3;
-        let t14 = inner_ring_e0 * inner_ring_e2;
-        let t15 = inner_ring_e1 * inner_ring_e3;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = T::fused(t1, t8, T::fused(k(2.0) * (t13 - t12), t11, t5 * t16));
-        let t18 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(2.0) * (t13 + t12);
-        let t23 = inner_ring_e0 * inner_ring_e3;
-        let t24 = inner_ring_e1 * inner_ring_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7));
-        let t27 = k(2.0) * (t20 + t19);
-        let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7));
-        let t30 = k(2.0) * (t24 + t23);
-        let t31 = k(2.0) * (t15 - t14);
-        let t32 = rotor_e0 * rotor_e3;
-        let t33 = rotor_e1 * rotor_e2;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = k(2.0) * (t36 + t35);
-        let t38 = rotor_e0 * rotor_e0;
-        let t39 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t38));
-        let t40 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t38));
-        let t41 = rotor_e0 * rotor_e1;
-        let t42 = rotor_e2 * rotor_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = k(2.0) * (t33 + t32);
-        let t45 = k(2.0) * (t42 + t41);
-        let t46 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t38));
-        let t47 = k(2.0) * (t36 - t35);
-        let t48 = T::fused(t31, t47, T::fused(t29, t39, t30 * t44));
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = outer_ring_e2 * t0;
+        let t4 = k(2.0) * outer_ring_e1;
+        let t5 = outer_ring_e3 * t4;
+        let t6 = t5 - t3;
+        let t7 = t5 + t3;
+        let t8 = T::fused(-outer_ring_e1, t4, t1);
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = inner_ring_e1 * t9;
+        let t15 = k(2.0) * inner_ring_e2;
+        let t16 = inner_ring_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = outer_ring_e1 * t0;
+        let t19 = k(2.0) * outer_ring_e2;
+        let t20 = outer_ring_e3 * t19;
+        let t21 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t22 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t21);
+        let t23 = T::fused(t2, t22, T::fused(t7, t13, (t20 - t18) * t17));
+        let t24 = outer_ring_e3 * t0;
+        let t25 = outer_ring_e2 * t4;
+        let t26 = t25 - t24;
+        let t27 = T::fused(-outer_ring_e2, t19, t1);
+        let t28 = t20 + t18;
+        let t29 = inner_ring_e3 * t9;
+        let t30 = inner_ring_e2 * t11;
+        let t31 = t30 - t29;
+        let t32 = T::fused(-inner_ring_e2, t15, t21);
+        let t33 = t25 + t24;
+        let t34 = t16 + t14;
+        let t35 = T::fused(-inner_ring_e1, t11, t21);
+        let t36 = t30 + t29;
+        let t37 = t12 - t10;
+        let t38 = k(2.0) * rotor_e0;
+        let t39 = rotor_e3 * t38;
+        let t40 = k(2.0) * rotor_e1;
+        let t41 = rotor_e2 * t40;
+        let t42 = t41 - t39;
+        let t43 = rotor_e2 * t38;
+        let t44 = rotor_e3 * t40;
+        let t45 = t44 + t43;
+        let t46 = T::fused(-rotor_e0, t38, k(1.0));
+        let t47 = T::fused(-rotor_e1, t40, t46);
+        let t48 = k(2.0) * rotor_e2;
+        let t49 = T::fused(-rotor_e2, t48, t46);
+        let t50 = rotor_e1 * t38;
+        let t51 = rotor_e3 * t48;
+        let t52 = t51 - t50;
+        let t53 = t41 + t39;
+        let t54 = t51 + t50;
+        let t55 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t46);
+        let t56 = t44 - t43;
+        let t57 = T::fused(t37, t56, T::fused(t35, t47, t36 * t53));
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -t1,
-            -t4,
-            t5,
-            t6,
+            -t2,
+            -t6,
+            t7,
+            t8,
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            -t17,
-            T::fused(-t22, t8, T::fused(-t18, t11, t21 * t16)),
-            T::fused(-t4, t28, T::fused(t6, t25, t27 * t26)),
-            T::fused(t4, t31, T::fused(t6, t29, t27 * t30)),
-            t17,
-            T::fused(t4, t8, -T::fused(-t6, t16, t27 * t11)),
-            -T::fused(t22, t28, T::fused(t18, t26, t21 * t25)),
-            T::fused(t22, t31, -T::fused(t21, t29, t18 * t30)),
+            -t23,
+            -T::fused(t28, t22, T::fused(-t26, t13, t27 * t17)),
+            T::fused(-t6, t34, T::fused(t8, t31, t33 * t32)),
+            T::fused(t6, t37, T::fused(t8, t35, t33 * t36)),
+            t23,
+            T::fused(t6, t22, -T::fused(-t8, t13, t33 * t17)),
+            -T::fused(t28, t34, T::fused(t26, t31, t27 * t32)),
+            T::fused(t28, t37, -T::fused(t26, t35, t27 * t36)),
             k(-1.0),
-            T::fused(-t16, self.parameters.offset_y, t25 * self.parameters.offset_z),
-            T::fused(t29, self.parameters.offset_z, t16 * self.parameters.offset_x),
-            -T::fused(t29, self.parameters.offset_y, t25 * self.parameters.offset_x),
-            k(1.0),
-            T::fused(
-                -t34,
-                self.parameters.imbalance_z,
-                t37 * self.parameters.imbalance_y,
-            ),
-            -(t39 * self.parameters.imbalance_z),
-            t39 * self.parameters.imbalance_y,
-            k(-1.0),
-            -T::fused(t26, self.parameters.offset_z, t11 * self.parameters.offset_y),
-            T::fused(-t30, self.parameters.offset_z, t11 * self.parameters.offset_x),
-            T::fused(t30, self.parameters.offset_y, t26 * self.parameters.offset_x),
+            T::fused(-self.parameters.offset_y, t13, self.parameters.offset_z * t31),
+            T::fused(self.parameters.offset_z, t35, self.parameters.offset_x * t13),
+            -T::fused(self.parameters.offset_y, t35, self.parameters.offset_x * t31),
             k(1.0),
             T::fused(
-                t40,
-                self.parameters.imbalance_z,
-                t43 * self.parameters.imbalance_y,
+                -self.parameters.imbalance_z,
+                t42,
+                self.parameters.imbalance_y * t45,
             ),
-            t44 * self.parameters.imbalance_z,
-            -(t44 * self.parameters.imbalance_y),
+            -(self.parameters.imbalance_z * t47),
+            self.parameters.imbalance_y * t47,
             k(-1.0),
-            T::fused(t28, self.parameters.offset_z, t8 * self.parameters.offset_y),
-            -T::fused(t31, self.parameters.offset_z, t8 * self.parameters.offset_x),
-            T::fused(-t28, self.parameters.offset_x, t31 * self.parameters.offset_y),
+            -T::fused(self.parameters.offset_z, t32, self.parameters.offset_y * t17),
+            T::fused(-self.parameters.offset_z, t36, self.parameters.offset_x * t17),
+            T::fused(self.parameters.offset_y, t36, self.parameters.offset_x * t32),
+            k(1.0),
+            T::fused(
+                self.parameters.imbalance_z,
+                t49,
+                self.parameters.imbalance_y * t52,
+            ),
+            self.parameters.imbalance_z * t53,
+            -(self.parameters.imbalance_y * t53),
+            k(-1.0),
+            T::fused(self.parameters.offset_z, t34, self.parameters.offset_y * t22),
+            -T::fused(self.parameters.offset_z, t37, self.parameters.offset_x * t22),
+            T::fused(-self.parameters.offset_x, t34, self.parameters.offset_y * t37),
             k(1.0),
             -T::fused(
-                t45,
                 self.parameters.imbalance_z,
-                t46 * self.parameters.imbalance_y,
+                t54,
+                self.parameters.imbalance_y * t55,
             ),
-            t47 * self.parameters.imbalance_z,
-            -(t47 * self.parameters.imbalance_y),
-            T::fused(-t8, t47, T::fused(-t16, t39, t11 * t44)),
-            -t48,
-            T::fused(t28, t46, -T::fused(-t26, t43, t25 * t37)),
-            T::fused(t28, t45, T::fused(t26, t40, t25 * t34)),
-            T::fused(-t28, t47, T::fused(t25, t39, t26 * t44)),
-            t48,
-            -T::fused(t8, t46, T::fused(t11, t43, t16 * t37)),
-            T::fused(-t8, t45, T::fused(-t11, t40, t16 * t34)),
+            self.parameters.imbalance_z * t56,
+            -(self.parameters.imbalance_y * t56),
+            T::fused(-t22, t56, T::fused(-t13, t47, t17 * t53)),
+            -t57,
+            T::fused(t34, t55, T::fused(-t31, t45, t32 * t52)),
+            T::fused(t34, t54, T::fused(t31, t42, t32 * t49)),
+            T::fused(-t34, t56, T::fused(t31, t47, t32 * t53)),
+            t57,
+            -T::fused(t22, t55, T::fused(t13, t45, t17 * t52)),
+            -T::fused(t22, t54, T::fused(-t13, t42, t17 * t49)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2307,7 +2355,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 403 operations (160 ±, 243 ×, 0 ÷).
+    /// Writes γ: 382 operations (154 ±, 228 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2331,208 +2379,217 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
-        let t13 = outer_ring_e0 * outer_ring_e3;
-        let t14 = outer_ring_e1 * outer_ring_e2;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (t2 + t1);
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e1;
-        let t21 = inner_ring_e2 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * (t14 + t13);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
-        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
-        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
-        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
-        let t29 = k(2.0) * (t7 - t6);
-        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
-        let t31 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = outer_ring_wx * outer_ring_wy;
+        let t6 = outer_ring_e1 * t0;
+        let t7 = k(2.0) * outer_ring_e2;
+        let t8 = outer_ring_e3 * t7;
+        let t9 = t8 + t6;
+        let t10 = outer_ring_wz * outer_ring_wz;
+        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
+        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
+        let t14 = outer_ring_wy * outer_ring_wz;
+        let t15 = T::fused(-outer_ring_e1, t2, t12);
+        let t16 = outer_ring_e3 * t0;
+        let t17 = outer_ring_e2 * t2;
+        let t18 = t17 - t16;
+        let t19 = t3 + t1;
+        let t20 = k(2.0) * inner_ring_e0;
+        let t21 = inner_ring_e2 * t20;
+        let t22 = k(2.0) * inner_ring_e1;
+        let t23 = inner_ring_e3 * t22;
+        let t24 = t23 + t21;
+        let t25 = inner_ring_e1 * t20;
+        let t26 = k(2.0) * inner_ring_e2;
+        let t27 = inner_ring_e3 * t26;
+        let t28 = t27 - t25;
+        let t29 = t17 + t16;
+        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
+        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
+        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
+        let t33 = T::fused(-outer_ring_e2, t7, t12);
+        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
+        let t35 = t8 - t6;
+        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
+        let t37 = T::fused(
             outer_ring_wx * outer_ring_wz,
-            t30,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+            t36,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
         );
-        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
-        let t33 = inner_ring_e0 * inner_ring_e3;
-        let t34 = inner_ring_e1 * inner_ring_e2;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = k(2.0) * (t18 - t17);
-        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
-        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
-        let t39 = k(2.0) * (t34 - t33);
-        let t40 = k(2.0) * (t21 + t20);
-        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
-        let t42 = T::fused(
+        let t38 = T::fused(-inner_ring_e1, t22, t30);
+        let t39 = inner_ring_e3 * t20;
+        let t40 = inner_ring_e2 * t22;
+        let t41 = t40 + t39;
+        let t42 = t23 - t21;
+        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
+        let t44 = t40 - t39;
+        let t45 = T::fused(-inner_ring_e2, t26, t30);
+        let t46 = t27 + t25;
+        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
+        let t48 = T::fused(
             -inner_ring_wy,
-            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
-            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
+            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
         );
-        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
-        let t44 = inner_ring_wx * inner_ring_wz;
-        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
-        let t46 = inner_ring_wy * inner_ring_wz;
-        let t47 = inner_ring_wx * inner_ring_wx;
-        let t48 = inner_ring_wy * inner_ring_wy;
-        let t49 = t48 + t47;
-        let t50 = T::fused(
+        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
+        let t50 = inner_ring_wx * inner_ring_wz;
+        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
+        let t52 = inner_ring_wy * inner_ring_wz;
+        let t53 = inner_ring_wx * inner_ring_wx;
+        let t54 = inner_ring_wy * inner_ring_wy;
+        let t55 = t54 + t53;
+        let t56 = T::fused(
             -k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
-                outer_ring_wy * t42,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
+                outer_ring_wy * t48,
             ),
-            T::fused(t49, t26, T::fused(t44, t43, t46 * t45)),
+            T::fused(t55, t32, T::fused(t50, t49, t52 * t51)),
         );
-        let t51 = T::fused(
+        let t57 = T::fused(
             k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
-                outer_ring_wx * t42,
+                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
+                outer_ring_wx * t48,
             ),
-            T::fused(t49, t28, T::fused(t44, t37, t46 * t41)),
+            T::fused(t55, t34, T::fused(t50, t43, t52 * t47)),
         );
-        let t52 = inner_ring_wz * inner_ring_wz;
-        let t53 = t52 + t48;
-        let t54 = inner_ring_wx * inner_ring_wy;
-        let t55 = t52 + t47;
-        let t56 = T::fused(
+        let t58 = inner_ring_wz * inner_ring_wz;
+        let t59 = t58 + t54;
+        let t60 = inner_ring_wx * inner_ring_wy;
+        let t61 = t58 + t53;
+        let t62 = T::fused(
             self.parameters.offset_x,
-            T::fused(t19, t44, T::fused(t32, t53, t39 * t54)),
-            self.parameters.offset_y * T::fused(t19, t46, -T::fused(t32, t54, t39 * t55)),
+            T::fused(t50, t24, T::fused(t59, t38, t60 * t44)),
+            self.parameters.offset_y * T::fused(t52, t24, -T::fused(t60, t38, t61 * t44)),
         );
-        let t57 = T::fused(
+        let t63 = T::fused(
             self.parameters.offset_z,
-            T::fused(t19, t49, -T::fused(-t32, t44, t39 * t46)),
-            -t56,
+            T::fused(t55, t24, -T::fused(-t50, t38, t52 * t44)),
+            -t62,
         );
-        let t58 = rotor_wx * rotor_wy;
-        let t59 = rotor_e0 * rotor_e0;
-        let t60 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t59));
-        let t61 = rotor_wx * rotor_wx;
-        let t62 = rotor_wz * rotor_wz;
-        let t63 = t62 + t61;
-        let t64 = rotor_e0 * rotor_e3;
-        let t65 = rotor_e1 * rotor_e2;
-        let t66 = k(2.0) * (t65 - t64);
-        let t67 = rotor_wy * rotor_wz;
-        let t68 = rotor_e0 * rotor_e2;
-        let t69 = rotor_e1 * rotor_e3;
-        let t70 = k(2.0) * (t69 + t68);
-        let t71 = rotor_wx * rotor_wz;
-        let t72 = rotor_wy * rotor_wy;
-        let t73 = t72 + t61;
-        let t74 = T::fused(
-            -self.parameters.imbalance_y,
-            T::fused(t70, t67, -T::fused(t60, t58, t66 * t63)),
-            self.parameters.imbalance_z
-                * T::fused(t70, t73, -T::fused(-t60, t71, t66 * t67)),
-        );
-        let t75 = T::fused(
-            self.parameters.offset_x,
-            T::fused(t22, t44, -T::fused(t35, t53, t38 * t54)),
-            self.parameters.offset_y * T::fused(t22, t46, T::fused(t35, t54, t38 * t55)),
-        );
-        let t76 = T::fused(
-            self.parameters.offset_z,
-            T::fused(t22, t49, T::fused(-t35, t44, t38 * t46)),
-            -t75,
-        );
-        let t77 = k(2.0) * (t65 + t64);
-        let t78 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t59));
-        let t79 = rotor_e0 * rotor_e1;
-        let t80 = rotor_e2 * rotor_e3;
-        let t81 = k(2.0) * (t80 - t79);
+        let t64 = k(2.0) * rotor_e1;
+        let t65 = k(2.0) * rotor_e0;
+        let t66 = T::fused(-rotor_e0, t65, k(1.0));
+        let t67 = T::fused(-rotor_e1, t64, t66);
+        let t68 = rotor_wx * rotor_wy;
+        let t69 = rotor_e3 * t65;
+        let t70 = rotor_e2 * t64;
+        let t71 = t70 - t69;
+        let t72 = rotor_wx * rotor_wx;
+        let t73 = rotor_wz * rotor_wz;
+        let t74 = t73 + t72;
+        let t75 = rotor_e2 * t65;
+        let t76 = rotor_e3 * t64;
+        let t77 = t76 + t75;
+        let t78 = rotor_wy * rotor_wz;
+        let t79 = rotor_wx * rotor_wz;
+        let t80 = rotor_wy * rotor_wy;
+        let t81 = t80 + t72;
         let t82 = T::fused(
             -self.parameters.imbalance_y,
-            T::fused(t81, t67, T::fused(t77, t58, t78 * t63)),
+            T::fused(t78, t77, -T::fused(t68, t67, t74 * t71)),
             self.parameters.imbalance_z
-                * T::fused(t81, t73, T::fused(-t77, t71, t78 * t67)),
+                * T::fused(t81, t77, -T::fused(-t79, t67, t78 * t71)),
         );
         let t83 = T::fused(
             self.parameters.offset_x,
-            T::fused(t25, t44, -T::fused(-t36, t53, t40 * t54)),
-            self.parameters.offset_y * T::fused(t25, t46, T::fused(-t36, t54, t40 * t55)),
+            T::fused(t50, t28, -T::fused(t59, t41, t60 * t45)),
+            self.parameters.offset_y * T::fused(t52, t28, T::fused(t60, t41, t61 * t45)),
         );
         let t84 = T::fused(
             self.parameters.offset_z,
-            T::fused(t25, t49, T::fused(t36, t44, t40 * t46)),
+            T::fused(t55, t28, T::fused(-t50, t41, t52 * t45)),
             -t83,
         );
-        let t85 = k(2.0) * (t69 - t68);
-        let t86 = k(2.0) * (t80 + t79);
-        let t87 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t59));
-        let t88 = T::fused(
+        let t85 = t70 + t69;
+        let t86 = k(2.0) * rotor_e2;
+        let t87 = T::fused(-rotor_e2, t86, t66);
+        let t88 = rotor_e1 * t65;
+        let t89 = rotor_e3 * t86;
+        let t90 = t89 - t88;
+        let t91 = T::fused(
             -self.parameters.imbalance_y,
-            T::fused(t87, t67, T::fused(-t85, t58, t86 * t63)),
+            T::fused(t78, t90, T::fused(t68, t85, t74 * t87)),
             self.parameters.imbalance_z
-                * T::fused(t87, t73, T::fused(t85, t71, t86 * t67)),
+                * T::fused(t81, t90, T::fused(-t79, t85, t78 * t87)),
         );
-        let t89 = T::fused(t36, t85, T::fused(t32, t60, t35 * t77));
-        let t90 = T::fused(t40, t85, -T::fused(t39, t60, t38 * t77));
-        let t91 = T::fused(t25, t85, -T::fused(-t19, t60, t22 * t77));
         let t92 = T::fused(
-            rotor_wz,
-            T::fused(t36, t86, -T::fused(t32, t66, t35 * t78)),
-            rotor_wy * T::fused(t36, t87, -T::fused(-t32, t70, t35 * t81)),
+            self.parameters.offset_x,
+            T::fused(t50, t31, -T::fused(-t59, t42, t60 * t46)),
+            self.parameters.offset_y * T::fused(t52, t31, T::fused(-t60, t42, t61 * t46)),
         );
-        let t93 = T::fused(t25, t86, -T::fused(-t22, t78, t19 * t66));
-        let t94 = T::fused(t25, t87, T::fused(t22, t81, t19 * t70));
-        let t95 = t62 + t72;
-        let t96 = T::fused(t40, t86, T::fused(t38, t78, t39 * t66));
-        let t97 = T::fused(t40, t87, -T::fused(-t38, t81, t39 * t70));
-        let t98 = T::fused(
+        let t93 = T::fused(
+            self.parameters.offset_z,
+            T::fused(t55, t31, T::fused(t50, t42, t52 * t46)),
+            -t92,
+        );
+        let t94 = t76 - t75;
+        let t95 = t89 + t88;
+        let t96 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t66);
+        let t97 = T::fused(
+            -self.parameters.imbalance_y,
+            T::fused(t78, t96, T::fused(-t68, t94, t74 * t95)),
+            self.parameters.imbalance_z
+                * T::fused(t81, t96, T::fused(t79, t94, t78 * t95)),
+        );
+        let t98 = T::fused(t42, t94, T::fused(t38, t67, t41 * t85));
+        let t99 = T::fused(t46, t94, -T::fused(t44, t67, t45 * t85));
+        let t100 = T::fused(t31, t94, -T::fused(-t24, t67, t28 * t85));
+        let t101 = T::fused(
+            rotor_wz,
+            T::fused(t42, t95, -T::fused(t38, t71, t41 * t87)),
+            rotor_wy * T::fused(t42, t96, -T::fused(-t38, t77, t41 * t90)),
+        );
+        let t102 = T::fused(t31, t95, T::fused(-t24, t71, t28 * t87));
+        let t103 = T::fused(t31, t96, T::fused(t24, t77, t28 * t90));
+        let t104 = t73 + t80;
+        let t105 = T::fused(t46, t95, T::fused(t44, t71, t45 * t87));
+        let t106 = T::fused(t46, t96, T::fused(-t44, t77, t45 * t90));
+        let t107 = T::fused(
             k(2.0),
             T::fused(
                 inner_ring_wz,
-                t92,
-                inner_ring_wx * T::fused(rotor_wz, t93, rotor_wy * t94),
+                t101,
+                inner_ring_wx * T::fused(rotor_wz, t102, rotor_wy * t103),
             ),
-            T::fused(t71, t97, -T::fused(-t95, t90, t58 * t96)),
+            T::fused(t79, t106, -T::fused(-t104, t99, t68 * t105)),
         );
-        let t99 = T::fused(
+        let t108 = T::fused(
             -k(2.0),
             T::fused(
                 -inner_ring_wy,
-                t92,
-                inner_ring_wx * T::fused(rotor_wz, t96, rotor_wy * t97),
+                t101,
+                inner_ring_wx * T::fused(rotor_wz, t105, rotor_wy * t106),
             ),
-            T::fused(t71, t94, -T::fused(-t95, t91, t58 * t93)),
+            T::fused(t79, t103, -T::fused(-t104, t100, t68 * t102)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
-            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
+            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
+            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t50 + t31),
-            -(t51 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
-            t74 - t57,
-            t82 - t76,
-            t84 - t88,
-            t98 + T::fused(t46, t91, T::fused(-t54, t89, t55 * t90)),
-            -(t99 + T::fused(t49, t91, T::fused(t44, t89, t46 * t90))),
+            -(t56 + t37),
+            -(t57 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
+            t82 - t63,
+            t91 - t84,
+            t93 - t97,
+            t107 + T::fused(t52, t100, T::fused(-t60, t98, t61 * t99)),
+            -(t108 + T::fused(t55, t100, T::fused(t50, t98, t52 * t99))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 29 operations (7 ±, 22 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 26 operations (7 ±, 19 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2544,25 +2601,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = rotor_wz * self.parameters.product_xy;
-        let t1 = rotor_wy * self.parameters.product_xz;
-        let t2 = rotor_wx * rotor_wx;
-        let t3 = T::fused(
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = rotor_wz * self.parameters.product_xy;
+        let t3 = rotor_wy * self.parameters.product_xz;
+        let t4 = k(5e-6) * rotor_wx;
+        let t5 = rotor_wx * rotor_wx;
+        let t6 = T::fused(
             rotor_wy,
-            t0,
+            t2,
             T::fused(
-                self.parameters.product_xz,
-                T::fused(rotor_wz, rotor_wz, -t2),
-                k(5e-6) * (rotor_wx * rotor_wz),
+                rotor_wz,
+                t4,
+                self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t5),
             ),
         );
-        let t4 = T::fused(
+        let t7 = T::fused(
             rotor_wz,
-            t1,
+            t3,
             T::fused(
-                self.parameters.product_xy,
-                T::fused(rotor_wy, rotor_wy, -t2),
-                k(5e-6) * (rotor_wx * rotor_wy),
+                rotor_wy,
+                t4,
+                self.parameters.product_xy * T::fused(rotor_wy, rotor_wy, -t5),
             ),
         );
         *out = [
@@ -2570,23 +2630,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
             k(-0.1),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
             k(0.0),
             k(-0.1),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz),
+            inner_ring_wz * t1,
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
+            -(inner_ring_wx * t1),
             k(0.0),
             k(-0.8),
             k(0.0),
-            -(rotor_wx * (t1 - t0)),
-            -t3,
-            t4,
+            -(rotor_wx * (t3 - t2)),
+            -t6,
+            t7,
         ];
     }
-    /// Solves eq. (17): 785 operations (326 ±, 454 ×, 5 ÷).
+    /// Solves eq. (17): 760 operations (320 ±, 435 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2610,34 +2670,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
-            * (k(0.5)
-                / (k(0.5)
-                    - T::fused(
-                        outer_ring_e2,
-                        outer_ring_e2,
-                        outer_ring_e0 * outer_ring_e0,
-                    )));
-        let t1 = T::fused(
-            -(k(2.0)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_e1,
-                    outer_ring_e2 * outer_ring_e3,
-                )),
-            t0,
+        let t0 = k(2.0) * outer_ring_e2;
+        let t1 = k(2.0) * outer_ring_e0;
+        let t2 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
+            / T::fused(-outer_ring_e2, t0, T::fused(-outer_ring_e0, t1, k(1.0)));
+        let t3 = T::fused(
+            -T::fused(-outer_ring_e1, t1, outer_ring_e3 * t0),
+            t2,
             outer_ring_wy * outer_ring_wz,
         );
-        let t2 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t3 = T::fused(
+        let t4 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2646,10 +2688,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t4 = t3 * t3;
-        let t5 = k(0.5) - T::fused(t2, t2, t4);
-        let t6 = k(2.0) * t5;
-        let t7 = T::fused(
+        let t5 = k(2.0) * t4;
+        let t6 = T::fused(
             -inner_ring_e0,
             rotor_e3,
             T::fused(
@@ -2658,8 +2698,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t8 = t3 * t7;
-        let t9 = T::fused(
+        let t7 = t6 * t5;
+        let t8 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t9 = k(2.0) * t8;
+        let t10 = T::fused(
             -inner_ring_e1,
             rotor_e3,
             T::fused(
@@ -2668,127 +2718,116 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t10 = t2 * t9;
-        let t11 = k(2.0) * (t10 + t8);
-        let t12 = t3 * t9;
-        let t13 = t2 * t7;
-        let t14 = k(2.0) * (t13 - t12);
-        let t15 = T::fused(
-            self.derived[8],
-            t14,
-            -T::fused(-self.derived[6], t6, self.derived[7] * t11),
-        );
-        let t16 = t3 * t2;
-        let t17 = t9 * t7;
-        let t18 = k(2.0) * (t17 - t16);
+        let t11 = t10 * t9;
+        let t12 = t11 - t7;
+        let t13 = k(2.0) * t10;
+        let t14 = T::fused(-t4, t5, k(1.0));
+        let t15 = T::fused(-t10, t13, t14);
+        let t16 = t8 * t5;
+        let t17 = t6 * t13;
+        let t18 = t17 + t16;
         let t19 = T::fused(
-            self.derived[11],
-            t14,
-            -T::fused(self.derived[9], t6, self.derived[10] * t11),
-        );
-        let t20 = k(2.0) * (k(0.5) - T::fused(t7, t7, t4));
-        let t21 = T::fused(-t18, t15, t20 * t19);
-        let t22 = k(2.0) * (t10 - t8);
-        let t23 = k(2.0) * (k(0.5) - T::fused(t9, t9, t4));
-        let t24 = k(2.0) * (t17 + t16);
-        let t25 = T::fused(
-            self.derived[8],
-            t24,
-            T::fused(-self.derived[6], t22, self.derived[7] * t23),
-        );
-        let t26 = T::fused(
-            self.derived[11],
-            t24,
-            T::fused(self.derived[9], t22, self.derived[10] * t23),
-        );
-        let t27 = T::fused(-t18, t25, t20 * t26);
-        let t28 = T::fused(-self.derived[13], t11, self.derived[14] * t14);
-        let t29 = T::fused(-self.derived[14], t11, self.derived[15] * t14);
-        let t30 = T::fused(-t11, t28, t14 * t29);
-        let t31 = T::fused(t23, t28, t24 * t29);
-        let t32 = T::fused(
-            -self.parameters.offset_y,
-            t30,
-            self.parameters.offset_x * t31,
-        );
-        let t33 = T::fused(self.derived[13], t23, self.derived[14] * t24);
-        let t34 = T::fused(self.derived[14], t23, self.derived[15] * t24);
-        let t35 = T::fused(t23, t33, t24 * t34);
-        let t36 = T::fused(
-            -self.parameters.offset_y,
-            t31,
-            self.parameters.offset_x * t35,
-        );
-        let t37 = T::fused(
-            -self.parameters.offset_y,
-            t32,
-            self.parameters.offset_x * t36,
-        ) + T::fused(-t21, self.derived[12], t27 * self.derived[2]);
-        let t38 = T::fused(
+            self.derived[5],
             t18,
-            T::fused(self.derived[16], t18, self.derived[17] * t20),
-            t20 * T::fused(self.derived[17], t18, self.derived[18] * t20),
+            T::fused(-self.derived[3], t12, self.derived[4] * t15),
         );
-        let t39 = k(1.0) / (k(1e-6) + (self.derived[19] + t38 - t37));
-        let t40 = T::fused(self.derived[16], t23, self.derived[17] * t24);
-        let t41 = T::fused(self.derived[17], t23, self.derived[18] * t24);
-        let t42 = T::fused(t18, t28, t20 * t29);
-        let t43 = T::fused(t18, t33, t20 * t34);
-        let t44 = self.parameters.offset_x * t43;
-        let t45 = T::fused(-self.parameters.offset_y, t42, t44);
-        let t46 = k(2.0) * (t13 + t12);
-        let t47 = T::fused(
+        let t20 = t11 + t7;
+        let t21 = T::fused(
             self.derived[8],
-            t20,
-            T::fused(self.derived[6], t46, self.derived[7] * t18),
+            t18,
+            T::fused(self.derived[6], t12, self.derived[7] * t15),
         );
-        let t48 = T::fused(
-            self.derived[11],
-            t20,
-            T::fused(-self.derived[9], t46, self.derived[10] * t18),
+        let t22 = t10 * t5;
+        let t23 = t6 * t9;
+        let t24 = t23 - t22;
+        let t25 = T::fused(t20, t19, t24 * t21);
+        let t26 = t23 + t22;
+        let t27 = t17 - t16;
+        let t28 = T::fused(-t6, k(2.0) * t6, t14);
+        let t29 = T::fused(
+            self.derived[5],
+            t28,
+            T::fused(self.derived[3], t26, self.derived[4] * t27),
         );
-        let t49 = T::fused(-t18, t47, t20 * t48);
-        let t50 = T::fused(-t23, t15, t24 * t19);
-        let t51 = T::fused(-t23, t25, t24 * t26);
+        let t30 = T::fused(
+            self.derived[8],
+            t28,
+            T::fused(-self.derived[6], t26, self.derived[7] * t27),
+        );
+        let t31 = T::fused(t20, t29, t24 * t30);
+        let t32 = T::fused(
+            t27,
+            T::fused(self.derived[11], t27, self.derived[12] * t28),
+            t28 * T::fused(self.derived[12], t27, self.derived[13] * t28),
+        );
+        let t33 = T::fused(self.derived[11], t15, self.derived[12] * t18);
+        let t34 = T::fused(self.derived[12], t15, self.derived[13] * t18);
+        let t35 = T::fused(t27, t33, t28 * t34);
+        let t36 = self.derived[15] * t35;
+        let t37 = T::fused(t15, t33, t18 * t34);
+        let t38 = T::fused(self.derived[16], t37, t36)
+            + T::fused(self.derived[14], t32, t36)
+            + T::fused(t25, self.derived[9], t31 * self.derived[10]);
+        let t39 = T::fused(-self.derived[17], t20, self.derived[18] * t24);
+        let t40 = T::fused(-self.derived[18], t20, self.derived[19] * t24);
+        let t41 = T::fused(-t8, t9, t14);
+        let t42 = T::fused(
+            self.derived[5],
+            t24,
+            -T::fused(-self.derived[3], t41, self.derived[4] * t20),
+        );
+        let t43 = T::fused(
+            self.derived[8],
+            t24,
+            -T::fused(self.derived[6], t41, self.derived[7] * t20),
+        );
+        let t44 = T::fused(-t27, t42, t28 * t43);
+        let t45 = T::fused(-t27, t19, t28 * t21);
+        let t46 = T::fused(-self.derived[11], t20, self.derived[12] * t24);
+        let t47 = T::fused(-self.derived[12], t20, self.derived[13] * t24);
+        let t48 = T::fused(-t20, t46, t24 * t47);
+        let t49 = T::fused(t15, t46, t18 * t47);
+        let t50 = T::fused(
+            -self.parameters.offset_y,
+            t48,
+            self.parameters.offset_x * t49,
+        );
+        let t51 = T::fused(
+            -self.parameters.offset_y,
+            t49,
+            self.parameters.offset_x * t37,
+        );
         let t52 = T::fused(
             -self.parameters.offset_y,
             t50,
             self.parameters.offset_x * t51,
-        ) - T::fused(self.parameters.offset_z, t21, self.parameters.offset_x * t49);
-        let t53 = t52
-            - T::fused(self.parameters.offset_z, t32, self.parameters.offset_x * t45)
-            - (self.derived[20] + T::fused(t18, t40, t20 * t41));
-        let t54 = T::fused(-t23, t47, t24 * t48);
-        let t55 = T::fused(
-            t18,
-            T::fused(self.derived[13], t18, self.derived[14] * t20),
-            t20 * T::fused(self.derived[14], t18, self.derived[15] * t20),
+        ) + T::fused(-t44, self.derived[10], t45 * self.derived[21]);
+        let t53 = T::fused(
+            t27,
+            T::fused(self.derived[17], t27, self.derived[18] * t28),
+            t28 * T::fused(self.derived[18], t27, self.derived[19] * t28),
         );
-        let t56 = T::fused(
-            self.parameters.offset_z,
-            t42,
-            self.parameters.offset_x * t55,
-        );
-        let t57 = T::fused(
-            self.parameters.offset_x,
-            t56,
-            T::fused(self.derived[22], t30, self.derived[23] * t42),
-        ) - T::fused(t50, self.derived[21], t54 * self.derived[2]);
-        let t58 = T::fused(
-            -t53,
-            t53 * t39,
-            k(2e-6) + (self.derived[24] + T::fused(t23, t40, t24 * t41) - t57),
-        );
-        let t59 = T::fused(
-            -outer_ring_e1,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e0,
-                inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
-            ),
-        );
+        let t54 = k(1.0) / (k(1e-6) + (self.derived[22] + t53 - t52));
+        let t55 = T::fused(t27, t46, t28 * t47);
+        let t56 = self.parameters.offset_x * t35;
+        let t57 = T::fused(-self.parameters.offset_y, t55, t56);
+        let t58 = T::fused(-t27, t29, t28 * t30);
+        let t59 = T::fused(t20, t42, t24 * t43);
         let t60 = T::fused(
+            -self.parameters.offset_y,
+            t59,
+            self.parameters.offset_x * t25,
+        ) + T::fused(self.parameters.offset_z, t45, self.parameters.offset_y * t58);
+        let t61 = t60
+            + T::fused(self.parameters.offset_z, t51, self.parameters.offset_y * t57)
+            - (T::fused(t27, t39, t28 * t40) + self.derived[23]);
+        let t62 = t61 * t54;
+        let t63 = T::fused(
+            t61,
+            t62,
+            -(k(1e-6) + (self.derived[20] + T::fused(-t20, t39, t24 * t40) - t38)),
+        );
+        let t64 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2797,32 +2836,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t61 = t60 * t60;
-        let t62 = k(2.0) * (k(0.5) - T::fused(t59, t59, t61));
-        let t63 = T::fused(-self.derived[16], t11, self.derived[17] * t14);
-        let t64 = T::fused(-self.derived[17], t11, self.derived[18] * t14);
-        let t65 = T::fused(t11, t15, t14 * t19);
-        let t66 = T::fused(t11, t25, t14 * t26);
-        let t67 = T::fused(
-            -self.parameters.offset_y,
-            t65,
-            self.parameters.offset_x * t66,
-        ) + T::fused(self.parameters.offset_z, t27, self.parameters.offset_y * t49);
-        let t68 = t67
-            + T::fused(self.parameters.offset_z, t36, self.parameters.offset_y * t45)
-            - (self.derived[25] + T::fused(t18, t63, t20 * t64));
-        let t69 = t68 * t39;
-        let t70 = T::fused(t11, t47, t14 * t48);
-        let t71 = T::fused(self.parameters.offset_z, t65, self.parameters.offset_x * t70)
-            - T::fused(self.parameters.offset_z, t51, self.parameters.offset_y * t54);
-        let t72 = t71
-            + T::fused(
-                self.parameters.offset_z,
-                T::fused(self.parameters.offset_z, t31, t44),
-                self.parameters.offset_y * t56,
-            ) - (self.derived[26] - T::fused(t23, t63, t24 * t64));
-        let t73 = T::fused(-t53, t69, t72);
-        let t74 = T::fused(
+        let t65 = k(2.0) * t64;
+        let t66 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -2831,8 +2846,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t75 = t60 * t74;
-        let t76 = T::fused(
+        let t67 = t66 * t65;
+        let t68 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2841,308 +2856,344 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t77 = t76 * t59;
-        let t78 = k(2.0) * (t77 - t75);
-        let t79 = T::fused(-t62, t58, t78 * t73);
-        let t80 = t60 * t76;
-        let t81 = t59 * t74;
-        let t82 = k(2.0) * (t81 - t80);
-        let t83 = self.derived[28] * t43;
-        let t84 = T::fused(self.derived[22], t35, t83)
-            + T::fused(self.derived[27], t55, t83)
-            + T::fused(t66, self.derived[21], t70 * self.derived[12]);
-        let t85 = T::fused(
-            -t68,
-            t69,
-            k(1e-6) + (self.derived[29] + T::fused(-t11, t63, t14 * t64) - t84),
+        let t69 = k(2.0) * t68;
+        let t70 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
         );
-        let t86 = T::fused(-t62, t73, t78 * t85);
-        let t87 = t60 * t59;
-        let t88 = t76 * t74;
-        let t89 = k(2.0) * (t88 + t87);
-        let t90 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
-            t0,
-            outer_ring_wx * outer_ring_wy,
+        let t71 = t70 * t69;
+        let t72 = t71 - t67;
+        let t73 = T::fused(self.derived[17], t15, self.derived[18] * t18);
+        let t74 = T::fused(self.derived[18], t15, self.derived[19] * t18);
+        let t75 = T::fused(-t15, t42, t18 * t43);
+        let t76 = T::fused(-t15, t19, t18 * t21);
+        let t77 = T::fused(
+            -self.parameters.offset_y,
+            t75,
+            self.parameters.offset_x * t76,
+        ) - T::fused(self.parameters.offset_z, t44, self.parameters.offset_x * t58);
+        let t78 = t77
+            - T::fused(self.parameters.offset_z, t50, self.parameters.offset_x * t57)
+            - (T::fused(t27, t73, t28 * t74) + self.derived[24]);
+        let t79 = T::fused(
+            self.parameters.offset_z,
+            t55,
+            self.parameters.offset_x * t32,
         );
-        let t91 = k(2.0) * (t77 + t75);
-        let t92 = k(2.0) * (k(0.5) - T::fused(t76, t76, t61));
-        let t93 = T::fused(
-            -t62,
-            T::fused(-t91, t58, t92 * t73),
-            t78 * T::fused(-t91, t73, t92 * t85),
+        let t80 = T::fused(-t15, t29, t18 * t30);
+        let t81 = T::fused(self.parameters.offset_z, t59, self.parameters.offset_x * t31)
+            - T::fused(self.parameters.offset_z, t76, self.parameters.offset_y * t80);
+        let t82 = t81
+            + T::fused(
+                self.parameters.offset_z,
+                T::fused(self.parameters.offset_z, t49, t56),
+                self.parameters.offset_y * t79,
+            ) - (self.derived[25] - T::fused(t15, t39, t18 * t40));
+        let t83 = T::fused(-t78, t62, t82);
+        let t84 = k(2.0) * t70;
+        let t85 = T::fused(-t64, t65, k(1.0));
+        let t86 = T::fused(-t70, t84, t85);
+        let t87 = T::fused(t72, t63, t86 * t83);
+        let t88 = T::fused(
+            self.parameters.offset_x,
+            t79,
+            T::fused(self.derived[16], t48, self.derived[26] * t55),
+        ) - T::fused(t75, self.derived[9], t80 * self.derived[21]);
+        let t89 = T::fused(
+            t78,
+            t78 * t54,
+            -(k(2e-6) + (self.derived[27] + T::fused(t15, t73, t18 * t74) - t88)),
         );
+        let t90 = T::fused(t72, t83, t86 * t89);
+        let t91 = k(5e-6) * rotor_wx;
+        let t92 = rotor_wx * rotor_wx;
+        let t93 = rotor_wy * self.parameters.product_xz;
         let t94 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t88 - t87),
-            outer_ring_wy * (k(2.0) * (t81 + t80)),
+            rotor_wz,
+            t93,
+            T::fused(
+                rotor_wy,
+                t91,
+                self.parameters.product_xy * T::fused(rotor_wy, rotor_wy, -t92),
+            ),
         );
-        let t95 = k(0.5) - T::fused(t74, t74, t61);
-        let t96 = T::fused(outer_ring_wz, k(2.0) * t95, -t94);
-        let t97 = inner_ring_wz + t96;
-        let t98 = T::fused(
-            outer_ring_wz,
-            t89,
-            T::fused(-outer_ring_wx, t92, outer_ring_wy * t78),
+        let t95 = k(2.0) * rotor_e0;
+        let t96 = rotor_e3 * t95;
+        let t97 = k(2.0) * rotor_e1;
+        let t98 = rotor_e2 * t97;
+        let t99 = t98 + t96;
+        let t100 = k(0.8) * t99;
+        let t101 = k(2.0) * rotor_e2;
+        let t102 = T::fused(-rotor_e0, t95, k(1.0));
+        let t103 = T::fused(-rotor_e2, t101, t102);
+        let t104 = k(0.8) * t103;
+        let t105 = rotor_e1 * t95;
+        let t106 = rotor_e3 * t101;
+        let t107 = t106 - t105;
+        let t108 = k(0.8) * t107;
+        let t109 = rotor_wz * self.parameters.product_xy;
+        let t110 = T::fused(
+            rotor_wx,
+            t93 - t109,
+            -T::fused(
+                self.parameters.imbalance_z,
+                t104,
+                self.parameters.imbalance_y * t108,
+            ),
         );
-        let t99 = inner_ring_wx - t98;
-        let t100 = T::fused(
-            outer_ring_wz,
-            t82,
-            -T::fused(-outer_ring_wx, t91, outer_ring_wy * t62),
-        );
-        let t101 = inner_ring_wy - t100;
-        let t102 = k(0.5) / t95 * T::fused(t101, t101, t99 * t99);
-        let t103 = T::fused(inner_ring_wx, t96, inner_ring_wz * t98)
-            - T::fused(-t99, t97, t89 * t102);
-        let t104 = T::fused(inner_ring_wz, t100, inner_ring_wy * t96)
-            - T::fused(-t101, t97, t82 * t102);
-        let t105 = T::fused(
+        let t111 = self.derived[28] * t110;
+        let t112 = T::fused(
             inner_ring_wz,
-            t46,
-            T::fused(-inner_ring_wx, t6, inner_ring_wy * t22),
+            t26,
+            T::fused(-inner_ring_wx, t41, inner_ring_wy * t12),
         );
-        let t106 = rotor_wx - t105;
-        let t107 = T::fused(
-            inner_ring_wz,
-            t20,
-            -T::fused(inner_ring_wx, t14, inner_ring_wy * t24),
-        );
-        let t108 = rotor_wz + t107;
-        let t109 = T::fused(
-            inner_ring_wz,
-            t18,
-            -T::fused(-inner_ring_wx, t11, inner_ring_wy * t23),
-        );
-        let t110 = rotor_wy - t109;
-        let t111 = k(0.5) / t5 * T::fused(t108, t108, t110 * t110);
-        let t112 = T::fused(rotor_wx, t107, rotor_wz * t105)
-            + T::fused(-t108, t106, t14 * t111);
-        let t113 = T::fused(-rotor_wy, t105, rotor_wx * t109)
-            - T::fused(-t110, t106, t11 * t111);
+        let t113 = rotor_wx - t112;
         let t114 = T::fused(
+            inner_ring_wz,
+            t28,
+            -T::fused(inner_ring_wx, t24, inner_ring_wy * t18),
+        );
+        let t115 = rotor_wz + t114;
+        let t116 = T::fused(
+            inner_ring_wz,
+            t27,
+            -T::fused(-inner_ring_wx, t20, inner_ring_wy * t15),
+        );
+        let t117 = rotor_wy - t116;
+        let t118 = T::fused(t115, t115, t117 * t117) / t41;
+        let t119 = T::fused(rotor_wx, t114, rotor_wz * t112)
+            + T::fused(-t115, t113, t24 * t118);
+        let t120 = T::fused(-rotor_wy, t112, rotor_wx * t116)
+            - T::fused(-t117, t113, t20 * t118);
+        let t121 = T::fused(
             -inner_ring_wx,
             self.parameters.offset_z,
             inner_ring_wz * self.parameters.offset_x,
         );
-        let t115 = T::fused(
+        let t122 = T::fused(
             -inner_ring_wy,
             self.parameters.offset_x,
             inner_ring_wx * self.parameters.offset_y,
         );
-        let t116 = T::fused(-inner_ring_wz, t114, inner_ring_wy * t115);
-        let t117 = T::fused(
+        let t123 = T::fused(-inner_ring_wz, t121, inner_ring_wy * t122);
+        let t124 = T::fused(
             -inner_ring_wz,
             self.parameters.offset_y,
             inner_ring_wy * self.parameters.offset_z,
         );
-        let t118 = T::fused(-inner_ring_wx, t115, inner_ring_wz * t117);
-        let t119 = T::fused(-inner_ring_wy, t117, inner_ring_wx * t114);
-        let t120 = rotor_wx * self.parameters.imbalance_z;
-        let t121 = rotor_wx * self.parameters.imbalance_y;
-        let t122 = T::fused(rotor_wz, t120, rotor_wy * t121)
-            - T::fused(t119, t46, T::fused(-t116, t6, t118 * t22));
-        let t123 = T::fused(
+        let t125 = T::fused(-inner_ring_wx, t122, inner_ring_wz * t124);
+        let t126 = T::fused(-inner_ring_wy, t124, inner_ring_wx * t121);
+        let t127 = rotor_wx * self.parameters.imbalance_z;
+        let t128 = rotor_wx * self.parameters.imbalance_y;
+        let t129 = T::fused(rotor_wz, t127, rotor_wy * t128)
+            - T::fused(t126, t26, T::fused(-t123, t41, t125 * t12));
+        let t130 = T::fused(
             -rotor_wz,
             self.parameters.imbalance_y,
             rotor_wy * self.parameters.imbalance_z,
         );
-        let t124 = T::fused(-rotor_wx, t121, rotor_wz * t123)
-            - T::fused(t119, t18, -T::fused(-t116, t11, t118 * t23));
-        let t125 = T::fused(rotor_wy, t123, rotor_wx * t120)
-            - T::fused(t119, t20, -T::fused(t116, t14, t118 * t24));
-        let t126 = T::fused(
-            self.derived[8],
-            t125,
-            T::fused(self.derived[6], t122, self.derived[7] * t124),
-        ) + T::fused(-self.derived[16], t112, self.derived[17] * t113);
-        let t127 = rotor_e0 * rotor_e3;
-        let t128 = rotor_e1 * rotor_e2;
-        let t129 = t128 + t127;
-        let t130 = k(1.6) * t129;
-        let t131 = rotor_wx * rotor_wx;
-        let t132 = rotor_wz * self.parameters.product_xy;
+        let t131 = T::fused(-rotor_wx, t128, rotor_wz * t130)
+            - T::fused(t126, t27, -T::fused(-t123, t20, t125 * t15));
+        let t132 = T::fused(rotor_wy, t130, rotor_wx * t127)
+            - T::fused(t126, t28, -T::fused(t123, t24, t125 * t18));
         let t133 = T::fused(
-            rotor_wy,
+            self.derived[8],
             t132,
-            T::fused(
+            T::fused(-self.derived[6], t129, self.derived[7] * t131),
+        ) - T::fused(-self.derived[18], t119, self.derived[19] * t120);
+        let t134 = t133
+            - T::fused(
                 self.parameters.product_xz,
-                T::fused(rotor_wz, rotor_wz, -t131),
-                k(5e-6) * (rotor_wx * rotor_wz),
-            ),
-        );
-        let t134 = rotor_e0 * rotor_e0;
-        let t135 = k(0.5) - T::fused(rotor_e2, rotor_e2, t134);
-        let t136 = k(1.6) * t135;
-        let t137 = rotor_e0 * rotor_e1;
-        let t138 = rotor_e2 * rotor_e3;
-        let t139 = t138 - t137;
-        let t140 = k(1.6) * t139;
-        let t141 = rotor_wy * self.parameters.product_xz;
-        let t142 = T::fused(
-            rotor_wx,
-            t141 - t132,
-            -T::fused(
-                self.parameters.imbalance_z,
-                t136,
-                self.parameters.imbalance_y * t140,
-            ),
-        );
-        let t143 = self.derived[30] * t142;
-        let t144 = T::fused(
-            self.parameters.product_xy,
-            t143,
-            -T::fused(-self.parameters.imbalance_z, t130, t133),
-        ) - t126;
-        let t145 = T::fused(
-            self.derived[11],
-            t125,
-            T::fused(-self.derived[9], t122, self.derived[10] * t124),
-        ) - T::fused(-self.derived[17], t112, self.derived[18] * t113);
-        let t146 = T::fused(
-            rotor_wz,
-            t141,
+                t111,
+                -T::fused(self.parameters.imbalance_y, t100, -t94),
+            );
+        let t135 = T::fused(
+            rotor_wy,
+            t109,
             T::fused(
-                self.parameters.product_xy,
-                T::fused(rotor_wy, rotor_wy, -t131),
-                k(5e-6) * (rotor_wx * rotor_wy),
+                rotor_wz,
+                t91,
+                self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t92),
             ),
         );
-        let t147 = T::fused(
-            self.parameters.product_xz,
-            t143,
-            T::fused(-self.parameters.imbalance_y, t130, t146),
-        ) - t145;
-        let t148 = t130
+        let t136 = T::fused(
+            self.derived[5],
+            t132,
+            T::fused(self.derived[3], t129, self.derived[4] * t131),
+        ) + T::fused(-self.derived[17], t119, self.derived[18] * t120);
+        let t137 = t136
+            - T::fused(
+                self.parameters.product_xy,
+                t111,
+                T::fused(self.parameters.imbalance_z, t100, -t135),
+            );
+        let t138 = t100
             - T::fused(
                 k(0.08),
-                t122,
-                T::fused(-self.derived[6], t112, self.derived[9] * t113),
+                t129,
+                T::fused(-self.derived[3], t119, self.derived[6] * t120),
             );
-        let t149 = T::fused(self.derived[7], t112, self.derived[10] * t113)
+        let t139 = T::fused(self.derived[4], t119, self.derived[7] * t120)
             + T::fused(
                 -k(0.08),
-                t124,
-                T::fused(self.derived[13], t124, self.derived[14] * t125),
+                t131,
+                T::fused(self.derived[11], t131, self.derived[12] * t132),
             );
-        let t150 = T::fused(self.derived[6], t143, t136) - t149;
-        let t151 = T::fused(self.derived[8], t112, self.derived[11] * t113)
+        let t140 = T::fused(self.derived[3], t111, t104) - t139;
+        let t141 = T::fused(self.derived[5], t119, self.derived[8] * t120)
             + T::fused(
                 -k(0.08),
-                t125,
-                T::fused(self.derived[14], t124, self.derived[15] * t125),
+                t132,
+                T::fused(self.derived[12], t131, self.derived[13] * t132),
             );
-        let t152 = T::fused(self.derived[9], t143, t140) - t151;
-        let t153 = T::fused(t14, t152, -T::fused(t6, t148, t11 * t150));
-        let t154 = T::fused(t24, t152, T::fused(t22, t148, t23 * t150));
-        let t155 = T::fused(
+        let t142 = T::fused(self.derived[6], t111, t108) - t141;
+        let t143 = T::fused(t24, t142, -T::fused(t41, t138, t20 * t140));
+        let t144 = T::fused(t18, t142, T::fused(t12, t138, t15 * t140));
+        let t145 = T::fused(
             -self.parameters.offset_y,
-            t153,
-            self.parameters.offset_x * t154,
-        ) + T::fused(-t18, t144, t20 * t147);
-        let t156 = T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, t155);
-        let t157 = t156 * t39;
-        let t158 = T::fused(t20, t152, T::fused(-t46, t148, t18 * t150));
-        let t159 = T::fused(
+            t143,
+            self.parameters.offset_x * t144,
+        ) + T::fused(-t28, t134, t27 * t137);
+        let t146 = k(1e-6) * inner_ring_wy;
+        let t147 = T::fused(inner_ring_wx, t146, t145);
+        let t148 = t147 * t54;
+        let t149 = T::fused(t28, t142, T::fused(-t26, t138, t27 * t140));
+        let t150 = T::fused(
             self.parameters.offset_z,
-            t153,
-            self.parameters.offset_x * t158,
-        ) - T::fused(-t23, t144, t24 * t147);
+            t144,
+            self.parameters.offset_y * t149,
+        ) - T::fused(t24, t134, t20 * t137);
+        let t151 = t70 * t65;
+        let t152 = t66 * t69;
+        let t153 = t68 * t65;
+        let t154 = t66 * t84;
+        let t155 = T::fused(-t66, k(2.0) * t66, t85);
+        let t156 = T::fused(
+            outer_ring_wz,
+            t155,
+            -T::fused(outer_ring_wx, t152 - t151, outer_ring_wy * (t154 + t153)),
+        );
+        let t157 = inner_ring_wz + t156;
+        let t158 = t71 + t67;
+        let t159 = t154 - t153;
         let t160 = T::fused(
-            self.parameters.offset_z,
-            t154,
-            self.parameters.offset_y * t158,
-        ) + T::fused(t11, t144, t14 * t147);
-        let t161 = T::fused(
-            t68,
-            t157,
-            T::fused(k(1e-6), inner_ring_wy * inner_ring_wz, t160),
-        ) - T::fused(-t103, t73, t104 * t85);
-        let t162 = T::fused(
-            t62,
-            T::fused(-t53, t157, t159) + T::fused(-t103, t58, t104 * t73),
-            t78 * t161,
+            outer_ring_wz,
+            t159,
+            -T::fused(-outer_ring_wx, t158, outer_ring_wy * t86),
         );
-        let t163 = T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t162)
-            + T::fused(t90, T::fused(t82, t79, t89 * t86), t1 * t93);
-        let t164 = t163 / (k(1e-6) + T::fused(-t62, t79, t78 * t86));
-        let t165 = t104 + T::fused(t90, t89, T::fused(-t78, t164, t1 * t92));
-        let t166 = t103 - T::fused(t90, t82, -T::fused(-t62, t164, t1 * t91));
-        let t167 = t39 * (t156 + T::fused(-t53, t166, t68 * t165));
-        let t168 = t113 - T::fused(t20, t167, T::fused(-t24, t166, t14 * t165));
-        let t169 = t112 - T::fused(-t18, t167, T::fused(t23, t166, t11 * t165));
+        let t161 = inner_ring_wy - t160;
+        let t162 = T::fused(-t68, t69, t85);
+        let t163 = t152 + t151;
+        let t164 = T::fused(
+            outer_ring_wz,
+            t163,
+            T::fused(-outer_ring_wx, t162, outer_ring_wy * t72),
+        );
+        let t165 = inner_ring_wx - t164;
+        let t166 = T::fused(t161, t161, t165 * t165) / t155;
+        let t167 = T::fused(inner_ring_wz, t160, inner_ring_wy * t156)
+            - T::fused(-t161, t157, t159 * t166);
+        let t168 = T::fused(inner_ring_wx, t156, inner_ring_wz * t164)
+            - T::fused(-t165, t157, t163 * t166);
+        let t169 = T::fused(t167, t63, t168 * t83)
+            + T::fused(t61, t148, T::fused(inner_ring_wz, t146, t150));
         let t170 = T::fused(
-            self.parameters.offset_x,
-            t166,
-            self.parameters.offset_y * t165,
-        );
+            self.parameters.offset_z,
+            t143,
+            self.parameters.offset_x * t149,
+        ) - T::fused(-t18, t134, t15 * t137);
         let t171 = T::fused(
-            self.parameters.offset_x,
-            t167,
-            self.parameters.offset_z * t165,
+            t72,
+            t169,
+            t86 * (T::fused(t167, t83, t168 * t89) + T::fused(-t78, t148, t170)),
         );
         let t172 = T::fused(
-            -self.parameters.offset_y,
-            t167,
-            self.parameters.offset_z * t166,
+            t72,
+            T::fused(t162, t63, t158 * t83),
+            t86 * T::fused(t162, t83, t158 * t89),
         );
-        let t173 = t125 - T::fused(t20, t170, T::fused(t24, t171, t14 * t172));
-        let t174 = t124 + T::fused(-t18, t170, T::fused(-t23, t171, t11 * t172));
-        let t175 = T::fused(self.derived[9], t173, self.derived[6] * t174)
-            + T::fused(
-                self.parameters.product_xz,
-                t168,
-                self.parameters.product_xy * t169,
-            );
-        let t176 = self.derived[30] * (t142 - t175);
-        let t177 = T::fused(self.parameters.imbalance_y, t176, t173);
-        let t178 = rotor_e0 * rotor_e2;
-        let t179 = rotor_e1 * rotor_e3;
-        let t180 = T::fused(self.parameters.imbalance_z, t176, t174);
-        let t181 = t122 - T::fused(t46, t170, T::fused(-t22, t171, t6 * t172))
-            - T::fused(
-                -self.parameters.imbalance_y,
-                t168,
-                self.parameters.imbalance_z * t169,
-            );
-        let t182 = T::fused(
-            -(k(2.0) * (t128 - t127)),
-            t180,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t134)) * t181,
+        let t173 = T::fused(
+            -T::fused(outer_ring_e3, t1, outer_ring_e2 * (k(2.0) * outer_ring_e1)),
+            t2,
+            outer_ring_wx * outer_ring_wy,
         );
-        let t183 = T::fused(
-            -(k(2.0) * t139),
+        let t174 = T::fused(-t3, t172, t173 * T::fused(-t163, t87, t159 * t90))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t171);
+        let t175 = t174 / (k(1e-6) - T::fused(t72, t87, t86 * t90));
+        let t176 = t167 + T::fused(t163, t173, T::fused(-t72, t175, t162 * t3));
+        let t177 = t168 - T::fused(t159, t173, -T::fused(-t86, t175, t158 * t3));
+        let t178 = t54 * (t147 - T::fused(-t61, t176, t78 * t177));
+        let t179 = T::fused(
+            -self.parameters.offset_z,
             t177,
-            T::fused(-(k(2.0) * t135), t180, k(2.0) * t129 * t181),
+            self.parameters.offset_y * t178,
         );
-        let t184 = T::fused(k(2.0) * (t138 + t137), t180, k(2.0) * (t179 - t178) * t181);
+        let t180 = T::fused(
+            self.parameters.offset_z,
+            t176,
+            self.parameters.offset_x * t178,
+        );
+        let t181 = T::fused(
+            self.parameters.offset_y,
+            t176,
+            self.parameters.offset_x * t177,
+        );
+        let t182 = t119 + T::fused(t27, t178, -T::fused(t20, t176, t15 * t177));
+        let t183 = t120 - T::fused(t28, t178, -T::fused(-t24, t176, t18 * t177));
+        let t184 = T::fused(
+            -self.parameters.imbalance_z,
+            t182,
+            self.parameters.imbalance_y * t183,
+        ) + (t129 - T::fused(t26, t181, -T::fused(t41, t179, t12 * t180)));
+        let t185 = t131 - T::fused(t27, t181, T::fused(t20, t179, t15 * t180));
+        let t186 = t132 - T::fused(t28, t181, T::fused(-t24, t179, t18 * t180));
+        let t187 = T::fused(
+            self.parameters.product_xy,
+            t182,
+            self.parameters.product_xz * t183,
+        ) + T::fused(self.derived[3], t185, self.derived[6] * t186);
+        let t188 = self.derived[28] * (t110 - t187);
+        let t189 = T::fused(self.parameters.imbalance_z, t188, t185);
+        let t190 = T::fused(self.parameters.imbalance_y, t188, t186);
+        let t191 = rotor_e2 * t95;
+        let t192 = rotor_e3 * t97;
+        let t193 = T::fused(
+            t192 + t191,
+            t190,
+            -T::fused(-T::fused(-rotor_e1, t97, t102), t184, (t98 - t96) * t189),
+        );
+        let t194 = T::fused(
+            T::fused(-rotor_e3, k(2.0) * rotor_e3, t102),
+            t190,
+            T::fused(t192 - t191, t184, (t106 + t105) * t189),
+        );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t1,
-            -t164,
-            t90,
+            -t3,
+            -t175,
+            t173,
             k(0.0),
             k(0.0),
             k(0.0),
-            t165,
-            -t166,
-            -t167,
-            T::fused(k(2.0) * (t179 + t178), t177, t182),
+            t176,
+            -t177,
+            -t178,
+            t193,
+            T::fused(t107, t190, T::fused(-t99, t184, t103 * t189)),
+            -t194,
+            -t188,
+            -t182,
             -t183,
-            -T::fused(
-                k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t134)),
-                t177,
-                t184,
-            ),
-            -t176,
-            -t169,
-            -t168,
         ];
     }
-    /// Writes λ: 392 operations (150 ±, 239 ×, 3 ÷).
+    /// Writes λ: 370 operations (144 ±, 223 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -3194,239 +3245,251 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeMisalignments<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e3;
-        let t7 = rotor_e1 * rotor_e2;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = rotor_e0 * rotor_e2;
-        let t10 = rotor_e1 * rotor_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t12));
-        let t14 = rotor_e0 * rotor_e1;
-        let t15 = rotor_e2 * rotor_e3;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = T::fused(
+        let t6 = k(5e-6) * rotor_wx;
+        let t7 = rotor_wx * rotor_wx;
+        let t8 = rotor_wy * self.parameters.product_xz;
+        let t9 = T::fused(
+            rotor_wz,
+            t8,
+            T::fused(
+                rotor_wy,
+                t6,
+                self.parameters.product_xy * T::fused(rotor_wy, rotor_wy, -t7),
+            ),
+        );
+        let t10 = k(2.0) * rotor_e1;
+        let t11 = k(2.0) * rotor_e0;
+        let t12 = T::fused(-rotor_e0, t11, k(1.0));
+        let t13 = T::fused(-rotor_e1, t10, t12);
+        let t14 = rotor_e3 * t11;
+        let t15 = rotor_e2 * t10;
+        let t16 = t15 + t14;
+        let t17 = rotor_e2 * t11;
+        let t18 = rotor_e3 * t10;
+        let t19 = t18 - t17;
+        let t20 = T::fused(
+            t4,
+            self.parameters.imbalance_y * t19,
+            T::fused(
+                -t0,
+                self.parameters.imbalance_y * t13,
+                t2 * (self.parameters.imbalance_y * t16),
+            ),
+        );
+        let t21 = t20
+            + (T::fused(k(5e-6), rotor_dwz, self.parameters.product_xz * rotor_dwx)
+                - t9);
+        let t22 = t18 + t17;
+        let t23 = k(2.0) * inner_ring_e0;
+        let t24 = inner_ring_e2 * t23;
+        let t25 = k(2.0) * inner_ring_e1;
+        let t26 = inner_ring_e3 * t25;
+        let t27 = t26 + t24;
+        let t28 = rotor_e1 * t11;
+        let t29 = k(2.0) * rotor_e2;
+        let t30 = rotor_e3 * t29;
+        let t31 = t30 - t28;
+        let t32 = inner_ring_e1 * t23;
+        let t33 = k(2.0) * inner_ring_e2;
+        let t34 = inner_ring_e3 * t33;
+        let t35 = t34 - t32;
+        let t36 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t12);
+        let t37 = T::fused(-inner_ring_e0, t23, k(1.0));
+        let t38 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t37);
+        let t39 = T::fused(t38, t36, T::fused(t27, t22, t35 * t31));
+        let t40 = rotor_wz * self.parameters.product_xy;
+        let t41 = T::fused(
+            rotor_wy,
+            t40,
+            T::fused(
+                rotor_wz,
+                t6,
+                self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t7),
+            ),
+        );
+        let t42 = T::fused(
+            t4,
+            self.parameters.imbalance_z * t19,
+            T::fused(
+                -t0,
+                self.parameters.imbalance_z * t13,
+                t2 * (self.parameters.imbalance_z * t16),
+            ),
+        );
+        let t43 = t42
+            - (T::fused(k(5e-6), rotor_dwy, self.parameters.product_xy * rotor_dwx)
+                + t41);
+        let t44 = t15 - t14;
+        let t45 = T::fused(-rotor_e2, t29, t12);
+        let t46 = t30 + t28;
+        let t47 = T::fused(t38, t46, T::fused(-t27, t44, t35 * t45));
+        let t48 = T::fused(
             t0,
             T::fused(
-                -t8,
-                self.parameters.imbalance_z,
-                t11 * self.parameters.imbalance_y,
+                -self.parameters.imbalance_z,
+                t44,
+                self.parameters.imbalance_y * t22,
             ),
             t2
                 * T::fused(
-                    t13,
                     self.parameters.imbalance_z,
-                    t16 * self.parameters.imbalance_y,
+                    t45,
+                    self.parameters.imbalance_y * t31,
                 ),
         );
-        let t18 = k(2.0) * (t15 + t14);
-        let t19 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t12));
-        let t20 = rotor_wz * self.parameters.product_xy;
-        let t21 = rotor_wy * self.parameters.product_xz;
-        let t22 = T::fused(
+        let t49 = T::fused(
             rotor_wx,
-            t21 - t20,
+            t8 - t40,
             T::fused(
                 self.parameters.product_xz,
                 rotor_dwz,
                 T::fused(self.parameters.product_xy, rotor_dwy, k(1e-5) * rotor_dwx),
             ),
         );
-        let t23 = t22
+        let t50 = t49
             + T::fused(
                 t4,
                 T::fused(
-                    t18,
                     self.parameters.imbalance_z,
-                    t19 * self.parameters.imbalance_y,
+                    t46,
+                    self.parameters.imbalance_y * t36,
                 ),
-                -t17,
+                -t48,
             );
-        let t24 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t12));
-        let t25 = inner_ring_e0 * inner_ring_e0;
-        let t26 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25));
-        let t27 = k(2.0) * (t7 + t6);
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = k(2.0) * (t10 - t9);
-        let t32 = inner_ring_e0 * inner_ring_e2;
-        let t33 = inner_ring_e1 * inner_ring_e3;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = T::fused(
+        let t51 = T::fused(
+            -t47,
+            t43,
+            T::fused(t38, t19, -T::fused(-t27, t13, t35 * t16)) * t50,
+        );
+        let t52 = T::fused(-inner_ring_e1, t25, t37);
+        let t53 = inner_ring_e3 * t23;
+        let t54 = inner_ring_e2 * t25;
+        let t55 = t54 - t53;
+        let t56 = t54 + t53;
+        let t57 = T::fused(-inner_ring_e2, t33, t37);
+        let t58 = T::fused(
+            -t0,
+            T::fused(self.parameters.offset_y, t52, self.parameters.offset_x * t55),
+            t2 * T::fused(self.parameters.offset_y, t56, self.parameters.offset_x * t57),
+        );
+        let t59 = t26 - t24;
+        let t60 = t34 + t32;
+        let t61 = T::fused(
             t4,
-            t31 * self.parameters.imbalance_z,
-            T::fused(
-                -t0,
-                t24 * self.parameters.imbalance_z,
-                t2 * (t27 * self.parameters.imbalance_z),
-            ),
+            T::fused(-self.parameters.offset_y, t59, self.parameters.offset_x * t60),
+            -t58,
+        ) - T::fused(-t39, t21, t51);
+        let t62 = T::fused(
+            k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            t61,
         );
-        let t36 = rotor_wx * rotor_wx;
-        let t37 = T::fused(
-            rotor_wy,
-            t20,
-            T::fused(
-                self.parameters.product_xz,
-                T::fused(rotor_wz, rotor_wz, -t36),
-                k(5e-6) * (rotor_wx * rotor_wz),
-            ),
+        let t63 = k(2.0) * outer_ring_e0;
+        let t64 = outer_ring_e2 * t63;
+        let t65 = k(2.0) * outer_ring_e1;
+        let t66 = outer_ring_e3 * t65;
+        let t67 = t66 + t64;
+        let t68 = outer_ring_e1 * t63;
+        let t69 = k(2.0) * outer_ring_e2;
+        let t70 = outer_ring_e3 * t69;
+        let t71 = t70 - t68;
+        let t72 = T::fused(-outer_ring_e0, t63, k(1.0));
+        let t73 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t72);
+        let t74 = T::fused(t60, t36, T::fused(-t55, t22, t57 * t31));
+        let t75 = T::fused(t60, t46, T::fused(t55, t44, t57 * t45));
+        let t76 = T::fused(
+            -t75,
+            t43,
+            T::fused(t60, t19, -T::fused(t55, t13, t57 * t16)) * t50,
         );
-        let t38 = t37
-            + T::fused(k(5e-6), rotor_dwy, self.parameters.product_xy * rotor_dwx) - t35;
-        let t39 = T::fused(
-            T::fused(t34, t31, T::fused(t26, t24, t30 * t27)),
-            t23,
-            T::fused(t34, t18, -T::fused(t26, t8, t30 * t13)) * t38,
-        );
-        let t40 = T::fused(
-            t4,
-            t31 * self.parameters.imbalance_y,
-            T::fused(
-                -t0,
-                t24 * self.parameters.imbalance_y,
-                t2 * (t27 * self.parameters.imbalance_y),
-            ),
-        );
-        let t41 = T::fused(
-            rotor_wz,
-            t21,
-            T::fused(
-                self.parameters.product_xy,
-                T::fused(rotor_wy, rotor_wy, -t36),
-                k(5e-6) * (rotor_wx * rotor_wy),
-            ),
-        );
-        let t42 = t41
-            - T::fused(k(5e-6), rotor_dwz, self.parameters.product_xz * rotor_dwx) - t40;
-        let t43 = T::fused(
-            T::fused(t34, t19, -T::fused(-t26, t11, t30 * t16)),
-            t42,
-            t39,
-        );
-        let t44 = k(2.0) * (t29 - t28);
-        let t45 = k(2.0) * (t33 + t32);
-        let t46 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t25));
-        let t47 = inner_ring_e0 * inner_ring_e1;
-        let t48 = inner_ring_e2 * inner_ring_e3;
-        let t49 = k(2.0) * (t48 - t47);
-        let t50 = T::fused(
+        let t77 = T::fused(
             t0,
-            T::fused(-t44, self.parameters.offset_z, t45 * self.parameters.offset_y),
-            t2 * T::fused(t46, self.parameters.offset_z, t49 * self.parameters.offset_y),
+            T::fused(self.parameters.offset_z, t52, self.parameters.offset_x * t27),
+            t2 * T::fused(-self.parameters.offset_z, t56, self.parameters.offset_x * t35),
         );
-        let t51 = k(2.0) * (t48 + t47);
-        let t52 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t25));
-        let t53 = T::fused(
+        let t78 = T::fused(
+            t4,
+            T::fused(self.parameters.offset_z, t59, self.parameters.offset_x * t38),
+            -t77,
+        ) + T::fused(-t74, t21, t76);
+        let t79 = T::fused(k(2e-6), inner_ring_dwy, t78);
+        let t80 = T::fused(
+            -T::fused(t59, t46, -T::fused(t52, t44, t56 * t45)),
+            t43,
+            T::fused(t59, t19, T::fused(t52, t13, t56 * t16)) * t50,
+        );
+        let t81 = T::fused(
+            -T::fused(t59, t36, -T::fused(-t52, t22, t56 * t31)),
+            t21,
+            t80,
+        );
+        let t82 = T::fused(
+            t0,
+            T::fused(-self.parameters.offset_z, t55, self.parameters.offset_y * t27),
+            t2 * T::fused(self.parameters.offset_z, t57, self.parameters.offset_y * t35),
+        );
+        let t83 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
             T::fused(
                 t4,
-                T::fused(t51, self.parameters.offset_z, t52 * self.parameters.offset_y),
-                -t50,
-            ) - t43,
+                T::fused(self.parameters.offset_z, t60, self.parameters.offset_y * t38),
+                -t82,
+            ) - t81,
         );
-        let t54 = outer_ring_e0 * outer_ring_e0;
-        let t55 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t54));
-        let t56 = outer_ring_e0 * outer_ring_e3;
-        let t57 = outer_ring_e1 * outer_ring_e2;
-        let t58 = k(2.0) * (t57 + t56);
-        let t59 = outer_ring_e0 * outer_ring_e2;
-        let t60 = outer_ring_e1 * outer_ring_e3;
-        let t61 = k(2.0) * (t60 - t59);
-        let t62 = T::fused(t61, t34, T::fused(t55, t26, t58 * t30));
-        let t63 = T::fused(t51, t18, T::fused(t46, t13, t44 * t8));
-        let t64 = T::fused(
-            T::fused(t51, t31, -T::fused(t44, t24, t46 * t27)),
-            t23,
-            t63 * t38,
-        );
-        let t65 = T::fused(t51, t19, -T::fused(-t46, t16, t44 * t11));
-        let t66 = T::fused(
-            t0,
-            T::fused(t26, self.parameters.offset_z, t45 * self.parameters.offset_x),
-            t2 * T::fused(-t30, self.parameters.offset_z, t49 * self.parameters.offset_x),
-        );
-        let t67 = T::fused(
-            t4,
-            T::fused(t34, self.parameters.offset_z, t52 * self.parameters.offset_x),
-            -t66,
-        ) + T::fused(t65, t42, t64);
-        let t68 = T::fused(k(2e-6), inner_ring_dwy, t67);
-        let t69 = T::fused(t61, t51, -T::fused(t55, t44, t58 * t46));
-        let t70 = T::fused(t52, t18, -T::fused(-t49, t13, t45 * t8));
-        let t71 = T::fused(
-            T::fused(t52, t31, -T::fused(-t45, t24, t49 * t27)),
-            t23,
-            t70 * t38,
-        );
-        let t72 = T::fused(t52, t19, T::fused(t49, t16, t45 * t11));
-        let t73 = T::fused(
-            -t0,
-            T::fused(t26, self.parameters.offset_y, t44 * self.parameters.offset_x),
-            t2 * T::fused(t30, self.parameters.offset_y, t46 * self.parameters.offset_x),
-        );
-        let t74 = T::fused(
-            t4,
-            T::fused(-t34, self.parameters.offset_y, t51 * self.parameters.offset_x),
-            -t73,
-        ) - T::fused(t72, t42, t71);
-        let t75 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t74,
-        );
-        let t76 = T::fused(
-            T::fused(t61, t52, -T::fused(-t55, t45, t58 * t49)),
-            t75,
-            -T::fused(-t62, t53, t69 * t68),
-        );
-        let t77 = T::fused(k(2e-6), outer_ring_dwx, -t76);
-        let t78 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t54));
-        let t79 = k(2.0) * (t60 + t59);
-        let t80 = k(1.0) / T::fused(-t55, t78, t79 * t61);
-        let t81 = outer_ring_e0 * outer_ring_e1;
-        let t82 = outer_ring_e2 * outer_ring_e3;
-        let t83 = k(2.0) * (t82 - t81);
         let t84 = T::fused(
-            -T::fused(t78, t34, -T::fused(-t79, t26, t83 * t30)),
-            t53,
-            T::fused(t78, t51, -T::fused(-t83, t46, t79 * t44)) * t68,
+            -T::fused(t73, t60, T::fused(-t67, t55, t71 * t57)),
+            t79,
+            T::fused(t73, t59, -T::fused(-t67, t52, t71 * t56)) * t83,
         );
-        let t85 = T::fused(T::fused(t78, t52, T::fused(t83, t49, t79 * t45)), t75, -t84);
+        let t85 = T::fused(T::fused(t73, t38, T::fused(t67, t27, t71 * t35)), t62, t84);
         let t86 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
             -t85,
         );
-        let t87 = k(2.0) * (t57 - t56);
-        let t88 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t54));
-        let t89 = k(2.0) * (t82 + t81);
-        let t90 = T::fused(t89, t34, -T::fused(t87, t26, t88 * t30));
-        let t91 = T::fused(t89, t51, T::fused(t88, t46, t87 * t44));
-        let t92 = k(1.0) / T::fused(-t69, t90, t62 * t91);
-        let t93 = k(1.0) / T::fused(-t65, t70, t63 * t72);
+        let t87 = T::fused(-outer_ring_e1, t65, t72);
+        let t88 = t66 - t64;
+        let t89 = k(1.0) / T::fused(-t87, t73, t67 * t88);
+        let t90 = outer_ring_e3 * t63;
+        let t91 = outer_ring_e2 * t65;
+        let t92 = t91 + t90;
+        let t93 = T::fused(t88, t60, -T::fused(t87, t55, t92 * t57));
+        let t94 = T::fused(t88, t59, T::fused(t87, t52, t92 * t56));
+        let t95 = T::fused(
+            T::fused(t88, t38, -T::fused(-t87, t27, t92 * t35)),
+            t62,
+            T::fused(-t93, t79, t94 * t83),
+        );
+        let t96 = T::fused(k(2e-6), outer_ring_dwx, -t95);
+        let t97 = t91 - t90;
+        let t98 = T::fused(-outer_ring_e2, t69, t72);
+        let t99 = t70 + t68;
+        let t100 = T::fused(t99, t59, -T::fused(t97, t52, t98 * t56));
+        let t101 = T::fused(t99, t60, T::fused(t97, t55, t98 * t57));
+        let t102 = k(1.0) / T::fused(-t100, t93, t101 * t94);
+        let t103 = k(1.0) / T::fused(-t74, t47, t75 * t39);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t55 * t80, t77, t79 * t80 * t86),
-            -T::fused(t61 * t80, t77, t78 * t80 * t86),
+            -T::fused(t67 * t89, t86, t87 * t89 * t96),
+            -T::fused(t73 * t89, t86, t88 * t89 * t96),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t91 * t92), t68, t90 * t92 * t53),
-            T::fused(-(t62 * t92), t53, t69 * t92 * t68),
+            T::fused(-(t101 * t102), t79, t100 * t102 * t83),
+            T::fused(-(t94 * t102), t83, t93 * t102 * t79),
             -t0,
             -t2,
             -t4,
-            T::fused(t70 * t93, t38, t72 * t93 * t42),
-            T::fused(t63 * t93, t38, t65 * t93 * t42),
+            -T::fused(t39 * t103, t21, t47 * t103 * t43),
+            -T::fused(t74 * t103, t21, t75 * t103 * t43),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 763 operations (316 ±, 442 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 742 operations (310 ±, 427 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -3462,332 +3525,341 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeMisalignments<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
-        let t9 = rotor_e0 * rotor_e3;
-        let t10 = rotor_e1 * rotor_e2;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = rotor_e0 * rotor_e2;
-        let t13 = rotor_e1 * rotor_e3;
-        let t14 = k(2.0) * (t13 + t12);
-        let t15 = T::fused(
-            -t11,
-            self.parameters.imbalance_z,
-            t14 * self.parameters.imbalance_y,
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = k(2.0) * outer_ring_e1;
+        let t4 = T::fused(-outer_ring_e1, t3, t1);
+        let t5 = outer_ring_e2 * t0;
+        let t6 = outer_ring_e3 * t3;
+        let t7 = t6 - t5;
+        let t8 = t6 + t5;
+        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
+        let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
+        let t11 = k(2.0) * rotor_e0;
+        let t12 = rotor_e3 * t11;
+        let t13 = k(2.0) * rotor_e1;
+        let t14 = rotor_e2 * t13;
+        let t15 = t14 - t12;
+        let t16 = rotor_e2 * t11;
+        let t17 = rotor_e3 * t13;
+        let t18 = t17 + t16;
+        let t19 = T::fused(
+            -self.parameters.imbalance_z,
+            t15,
+            self.parameters.imbalance_y * t18,
         );
-        let t16 = k(0.08) * t15;
-        let t17 = self.derived[30] * t16;
-        let t18 = t16 * t17;
-        let t19 = inner_ring_e0 * inner_ring_e3;
-        let t20 = inner_ring_e1 * inner_ring_e2;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = inner_ring_e0 * inner_ring_e2;
-        let t23 = inner_ring_e1 * inner_ring_e3;
-        let t24 = k(2.0) * (t23 + t22);
-        let t25 = T::fused(
-            -t21,
-            self.parameters.offset_z,
-            t24 * self.parameters.offset_y,
-        );
-        let t26 = rotor_e0 * rotor_e0;
-        let t27 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t26));
-        let t28 = rotor_e0 * rotor_e1;
-        let t29 = rotor_e2 * rotor_e3;
-        let t30 = k(2.0) * (t29 - t28);
+        let t20 = k(0.08) * t19;
+        let t21 = self.derived[28] * t20;
+        let t22 = t20 * t21;
+        let t23 = k(2.0) * inner_ring_e0;
+        let t24 = inner_ring_e3 * t23;
+        let t25 = k(2.0) * inner_ring_e1;
+        let t26 = inner_ring_e2 * t25;
+        let t27 = t26 - t24;
+        let t28 = inner_ring_e2 * t23;
+        let t29 = inner_ring_e3 * t25;
+        let t30 = t29 + t28;
         let t31 = T::fused(
+            -self.parameters.offset_z,
             t27,
+            self.parameters.offset_y * t30,
+        );
+        let t32 = k(2.0) * rotor_e2;
+        let t33 = T::fused(-rotor_e0, t11, k(1.0));
+        let t34 = T::fused(-rotor_e2, t32, t33);
+        let t35 = rotor_e1 * t11;
+        let t36 = rotor_e3 * t32;
+        let t37 = t36 - t35;
+        let t38 = T::fused(
             self.parameters.imbalance_z,
-            t30 * self.parameters.imbalance_y,
+            t34,
+            self.parameters.imbalance_y * t37,
         );
-        let t32 = k(0.08) * t31;
-        let t33 = t32 * t17;
-        let t34 = inner_ring_e0 * inner_ring_e0;
-        let t35 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t34));
-        let t36 = inner_ring_e0 * inner_ring_e1;
-        let t37 = inner_ring_e2 * inner_ring_e3;
-        let t38 = k(2.0) * (t37 - t36);
-        let t39 = T::fused(
-            t35,
-            self.parameters.offset_z,
-            t38 * self.parameters.offset_y,
-        );
-        let t40 = k(2.0) * (t29 + t28);
-        let t41 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t26));
-        let t42 = T::fused(
-            t40,
-            self.parameters.imbalance_z,
-            t41 * self.parameters.imbalance_y,
-        );
-        let t43 = k(0.08) * t42;
-        let t44 = t43 * t17;
-        let t45 = k(2.0) * (t37 + t36);
-        let t46 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t34));
+        let t39 = k(0.08) * t38;
+        let t40 = t39 * t21;
+        let t41 = k(2.0) * inner_ring_e2;
+        let t42 = T::fused(-inner_ring_e0, t23, k(1.0));
+        let t43 = T::fused(-inner_ring_e2, t41, t42);
+        let t44 = inner_ring_e1 * t23;
+        let t45 = inner_ring_e3 * t41;
+        let t46 = t45 - t44;
         let t47 = T::fused(
-            t45,
             self.parameters.offset_z,
-            t46 * self.parameters.offset_y,
+            t43,
+            self.parameters.offset_y * t46,
         );
-        let t48 = T::fused(t47, t44, T::fused(t25, t18, t39 * t33));
-        let t49 = self.derived[30] * t32;
-        let t50 = t32 * t49;
-        let t51 = t43 * t49;
-        let t52 = T::fused(t47, t51, T::fused(t25, t33, t39 * t50));
-        let t53 = self.derived[30] * t43;
-        let t54 = t43 * t53;
-        let t55 = T::fused(t47, t54, T::fused(t25, t44, t39 * t51));
-        let t56 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t26));
-        let t57 = t56 * self.parameters.imbalance_z;
-        let t58 = T::fused(k(0.08), t57, self.parameters.product_xy * t17);
-        let t59 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t34));
-        let t60 = k(2.0) * (t20 + t19);
-        let t61 = k(2.0) * (t23 - t22);
-        let t62 = T::fused(t61, t40, -T::fused(t59, t11, t60 * t27));
-        let t63 = t56 * self.parameters.imbalance_y;
-        let t64 = T::fused(-k(0.08), t63, self.parameters.product_xz * t17);
-        let t65 = T::fused(t61, t41, -T::fused(-t59, t14, t60 * t30));
-        let t66 = T::fused(-t62, t58, t65 * t64);
-        let t67 = k(2.0) * (t10 + t9);
-        let t68 = t67 * self.parameters.imbalance_z;
-        let t69 = T::fused(-k(0.08), t68, self.parameters.product_xy * t49);
-        let t70 = t67 * self.parameters.imbalance_y;
-        let t71 = T::fused(k(0.08), t70, self.parameters.product_xz * t49);
-        let t72 = T::fused(-t62, t69, t65 * t71);
-        let t73 = k(2.0) * (t13 - t12);
-        let t74 = t73 * self.parameters.imbalance_z;
-        let t75 = T::fused(k(0.08), t74, self.parameters.product_xy * t53);
-        let t76 = t73 * self.parameters.imbalance_y;
-        let t77 = T::fused(-k(0.08), t76, self.parameters.product_xz * t53);
-        let t78 = T::fused(-t62, t75, t65 * t77);
-        let t79 = T::fused(
+        let t48 = t36 + t35;
+        let t49 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t33);
+        let t50 = T::fused(
+            self.parameters.imbalance_z,
+            t48,
+            self.parameters.imbalance_y * t49,
+        );
+        let t51 = k(0.08) * t50;
+        let t52 = t51 * t21;
+        let t53 = t45 + t44;
+        let t54 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t42);
+        let t55 = T::fused(
+            self.parameters.offset_z,
+            t53,
+            self.parameters.offset_y * t54,
+        );
+        let t56 = T::fused(t55, t52, T::fused(t31, t22, t47 * t40));
+        let t57 = self.derived[28] * t39;
+        let t58 = t39 * t57;
+        let t59 = t51 * t57;
+        let t60 = T::fused(t55, t59, T::fused(t31, t40, t47 * t58));
+        let t61 = self.derived[28] * t51;
+        let t62 = t51 * t61;
+        let t63 = T::fused(t55, t62, T::fused(t31, t52, t47 * t59));
+        let t64 = T::fused(-rotor_e1, t13, t33);
+        let t65 = self.parameters.imbalance_z * t64;
+        let t66 = T::fused(k(0.08), t65, self.parameters.product_xy * t21);
+        let t67 = T::fused(-inner_ring_e1, t25, t42);
+        let t68 = t26 + t24;
+        let t69 = t29 - t28;
+        let t70 = T::fused(t69, t48, -T::fused(t67, t15, t68 * t34));
+        let t71 = self.parameters.imbalance_y * t64;
+        let t72 = T::fused(-k(0.08), t71, self.parameters.product_xz * t21);
+        let t73 = T::fused(t69, t49, -T::fused(-t67, t18, t68 * t37));
+        let t74 = T::fused(-t70, t66, t73 * t72);
+        let t75 = t14 + t12;
+        let t76 = self.parameters.imbalance_z * t75;
+        let t77 = T::fused(-k(0.08), t76, self.parameters.product_xy * t57);
+        let t78 = self.parameters.imbalance_y * t75;
+        let t79 = T::fused(k(0.08), t78, self.parameters.product_xz * t57);
+        let t80 = T::fused(-t70, t77, t73 * t79);
+        let t81 = t17 - t16;
+        let t82 = self.parameters.imbalance_z * t81;
+        let t83 = T::fused(k(0.08), t82, self.parameters.product_xy * t61);
+        let t84 = self.parameters.imbalance_y * t81;
+        let t85 = T::fused(-k(0.08), t84, self.parameters.product_xz * t61);
+        let t86 = T::fused(-t70, t83, t73 * t85);
+        let t87 = T::fused(
             k(2.0),
-            T::fused(t47, t78, T::fused(t25, t66, t39 * t72)),
-            T::fused(t47, t55, T::fused(t25, t48, t39 * t52)),
+            T::fused(t55, t86, T::fused(t31, t74, t47 * t80)),
+            T::fused(t55, t63, T::fused(t31, t56, t47 * t60)),
         );
-        let t80 = T::fused(self.derived[16], t62, self.derived[17] * t65);
-        let t81 = T::fused(self.derived[17], t62, self.derived[18] * t65);
-        let t82 = T::fused(
-            t59,
+        let t88 = T::fused(self.derived[17], t70, self.derived[18] * t73);
+        let t89 = T::fused(self.derived[18], t70, self.derived[19] * t73);
+        let t90 = T::fused(
             self.parameters.offset_y,
-            t21 * self.parameters.offset_x,
+            t67,
+            self.parameters.offset_x * t27,
         );
-        let t83 = T::fused(
-            t60,
+        let t91 = T::fused(
             self.parameters.offset_y,
-            t35 * self.parameters.offset_x,
+            t68,
+            self.parameters.offset_x * t43,
         );
-        let t84 = T::fused(
-            -t61,
-            self.parameters.offset_y,
-            t45 * self.parameters.offset_x,
+        let t92 = T::fused(
+            -self.parameters.offset_y,
+            t69,
+            self.parameters.offset_x * t53,
         );
-        let t85 = T::fused(t84, t44, T::fused(-t82, t18, t83 * t33));
-        let t86 = T::fused(t84, t51, T::fused(-t82, t33, t83 * t50));
-        let t87 = T::fused(t84, t54, T::fused(-t82, t44, t83 * t51));
-        let t88 = T::fused(t46, t40, -T::fused(-t38, t27, t24 * t11));
-        let t89 = T::fused(t46, t41, T::fused(t38, t30, t24 * t14));
-        let t90 = T::fused(-t88, t58, t89 * t64);
-        let t91 = T::fused(-t88, t69, t89 * t71);
-        let t92 = T::fused(-t88, t75, t89 * t77);
-        let t93 = T::fused(t84, t78, T::fused(-t82, t66, t83 * t72))
-            + T::fused(t47, t92, T::fused(t25, t90, t39 * t91));
-        let t94 = self.derived[25] + T::fused(t88, t80, t89 * t81)
-            - (t93 + T::fused(t47, t87, T::fused(t25, t85, t39 * t86)));
-        let t95 = T::fused(
+        let t93 = T::fused(t92, t52, T::fused(-t90, t22, t91 * t40));
+        let t94 = T::fused(t92, t59, T::fused(-t90, t40, t91 * t58));
+        let t95 = T::fused(t92, t62, T::fused(-t90, t52, t91 * t59));
+        let t96 = T::fused(t54, t48, T::fused(-t30, t15, t46 * t34));
+        let t97 = T::fused(t54, t49, T::fused(t30, t18, t46 * t37));
+        let t98 = T::fused(-t96, t66, t97 * t72);
+        let t99 = T::fused(-t96, t77, t97 * t79);
+        let t100 = T::fused(-t96, t83, t97 * t85);
+        let t101 = T::fused(t92, t86, T::fused(-t90, t74, t91 * t80))
+            + T::fused(t55, t100, T::fused(t31, t98, t47 * t99));
+        let t102 = self.derived[29] + T::fused(t96, t88, t97 * t89)
+            - (t101 + T::fused(t55, t95, T::fused(t31, t93, t47 * t94)));
+        let t103 = T::fused(
             k(2.0),
-            T::fused(t84, t92, T::fused(-t82, t90, t83 * t91)),
-            T::fused(t84, t87, T::fused(-t82, t85, t83 * t86)),
+            T::fused(t92, t100, T::fused(-t90, t98, t91 * t99)),
+            T::fused(t92, t95, T::fused(-t90, t93, t91 * t94)),
         );
-        let t96 = T::fused(
-            t88,
-            T::fused(self.derived[16], t88, self.derived[17] * t89),
-            t89 * T::fused(self.derived[17], t88, self.derived[18] * t89),
+        let t104 = T::fused(
+            t96,
+            T::fused(self.derived[17], t96, self.derived[18] * t97),
+            t97 * T::fused(self.derived[18], t96, self.derived[19] * t97),
         );
-        let t97 = k(1.0) / (k(1e-6) + (self.derived[19] + t96 - t95));
-        let t98 = t97 * t94;
-        let t99 = T::fused(
-            t94,
-            t98,
-            -(k(1e-6) + (self.derived[29] + T::fused(t62, t80, t65 * t81) - t79)),
+        let t105 = k(1.0) / (k(1e-6) + (self.derived[22] + t104 - t103));
+        let t106 = t105 * t102;
+        let t107 = T::fused(
+            t102,
+            t106,
+            -(k(1e-6) + (self.derived[20] + T::fused(t70, t88, t73 * t89) - t87)),
         );
-        let t100 = outer_ring_e0 * outer_ring_e3;
-        let t101 = outer_ring_e1 * outer_ring_e2;
-        let t102 = k(2.0) * (t101 - t100);
-        let t103 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t104 = outer_ring_e0 * outer_ring_e1;
-        let t105 = outer_ring_e2 * outer_ring_e3;
-        let t106 = k(2.0) * (t105 + t104);
-        let t107 = T::fused(t106, t61, -T::fused(t102, t59, t103 * t60));
-        let t108 = T::fused(
-            t59,
+        let t108 = outer_ring_e3 * t0;
+        let t109 = outer_ring_e2 * t3;
+        let t110 = t109 - t108;
+        let t111 = k(2.0) * outer_ring_e2;
+        let t112 = T::fused(-outer_ring_e2, t111, t1);
+        let t113 = outer_ring_e1 * t0;
+        let t114 = outer_ring_e3 * t111;
+        let t115 = t114 + t113;
+        let t116 = T::fused(t115, t69, -T::fused(t110, t67, t112 * t68));
+        let t117 = T::fused(
             self.parameters.offset_z,
-            t24 * self.parameters.offset_x,
+            t67,
+            self.parameters.offset_x * t30,
         );
-        let t109 = T::fused(
-            -t60,
+        let t118 = T::fused(
+            -self.parameters.offset_z,
+            t68,
+            self.parameters.offset_x * t46,
+        );
+        let t119 = T::fused(
             self.parameters.offset_z,
-            t38 * self.parameters.offset_x,
+            t69,
+            self.parameters.offset_x * t54,
         );
-        let t110 = T::fused(
-            t61,
-            self.parameters.offset_z,
-            t46 * self.parameters.offset_x,
-        );
-        let t111 = T::fused(t110, t44, T::fused(t108, t18, t109 * t33));
-        let t112 = T::fused(t110, t51, T::fused(t108, t33, t109 * t50));
-        let t113 = T::fused(t110, t54, T::fused(t108, t44, t109 * t51));
-        let t114 = T::fused(t45, t40, T::fused(t35, t27, t21 * t11));
-        let t115 = T::fused(t45, t41, -T::fused(-t35, t30, t21 * t14));
-        let t116 = T::fused(-t114, t58, t115 * t64);
-        let t117 = T::fused(-t114, t69, t115 * t71);
-        let t118 = T::fused(-t114, t75, t115 * t77);
-        let t119 = T::fused(t110, t78, T::fused(t108, t66, t109 * t72))
-            - T::fused(t47, t118, T::fused(t25, t116, t39 * t117));
-        let t120 = self.derived[26] - T::fused(t114, t80, t115 * t81)
-            - (t119 + T::fused(t47, t113, T::fused(t25, t111, t39 * t112)));
-        let t121 = T::fused(t84, t118, T::fused(-t82, t116, t83 * t117))
-            - T::fused(t110, t92, T::fused(t108, t90, t109 * t91));
-        let t122 = T::fused(self.derived[16], t114, self.derived[17] * t115);
-        let t123 = T::fused(self.derived[17], t114, self.derived[18] * t115);
-        let t124 = self.derived[20] + T::fused(t88, t122, t89 * t123)
-            - (t121 - T::fused(t110, t87, T::fused(t108, t85, t109 * t86)));
-        let t125 = T::fused(t124, t98, t120);
-        let t126 = T::fused(t106, t45, T::fused(t103, t35, t102 * t21));
-        let t127 = T::fused(t107, t99, t126 * t125);
-        let t128 = T::fused(
+        let t120 = T::fused(t119, t52, T::fused(t117, t22, t118 * t40));
+        let t121 = T::fused(t119, t59, T::fused(t117, t40, t118 * t58));
+        let t122 = T::fused(t119, t62, T::fused(t117, t52, t118 * t59));
+        let t123 = T::fused(t53, t48, T::fused(t27, t15, t43 * t34));
+        let t124 = T::fused(t53, t49, T::fused(-t27, t18, t43 * t37));
+        let t125 = T::fused(-t123, t66, t124 * t72);
+        let t126 = T::fused(-t123, t77, t124 * t79);
+        let t127 = T::fused(-t123, t83, t124 * t85);
+        let t128 = T::fused(t119, t86, T::fused(t117, t74, t118 * t80))
+            - T::fused(t55, t127, T::fused(t31, t125, t47 * t126));
+        let t129 = self.derived[25] - T::fused(t123, t88, t124 * t89)
+            - (t128 + T::fused(t55, t122, T::fused(t31, t120, t47 * t121)));
+        let t130 = T::fused(t92, t127, T::fused(-t90, t125, t91 * t126))
+            - T::fused(t119, t100, T::fused(t117, t98, t118 * t99));
+        let t131 = T::fused(self.derived[17], t123, self.derived[18] * t124);
+        let t132 = T::fused(self.derived[18], t123, self.derived[19] * t124);
+        let t133 = self.derived[30] + T::fused(t96, t131, t97 * t132)
+            - (t130 - T::fused(t119, t95, T::fused(t117, t93, t118 * t94)));
+        let t134 = T::fused(t133, t106, t129);
+        let t135 = T::fused(t115, t53, T::fused(t110, t27, t112 * t43));
+        let t136 = T::fused(t116, t107, t135 * t134);
+        let t137 = T::fused(
             k(2.0),
-            T::fused(t110, t118, T::fused(t108, t116, t109 * t117)),
-            -T::fused(t110, t113, T::fused(t108, t111, t109 * t112)),
+            T::fused(t119, t127, T::fused(t117, t125, t118 * t126)),
+            -T::fused(t119, t122, T::fused(t117, t120, t118 * t121)),
         );
-        let t129 = T::fused(
-            t124,
-            t97 * t124,
-            -(k(2e-6) + (self.derived[24] + T::fused(t114, t122, t115 * t123) + t128)),
+        let t138 = T::fused(
+            t133,
+            t105 * t133,
+            -(k(2e-6) + (self.derived[27] + T::fused(t123, t131, t124 * t132) + t137)),
         );
-        let t130 = T::fused(t107, t125, t126 * t129);
-        let t131 = k(1.0) / T::fused(-t115, t88, t114 * t89);
-        let t132 = T::fused(t88 * t131, row13, t114 * t131 * row14);
-        let t133 = T::fused(t89 * t131, row13, t115 * t131 * row14);
-        let t134 = T::fused(self.derived[16], t132, self.derived[17] * t133)
-            + T::fused(row12, t75, -T::fused(row10, t58, row11 * t69));
-        let t135 = T::fused(self.derived[17], t132, self.derived[18] * t133)
-            - T::fused(row12, t77, -T::fused(row10, t64, row11 * t71));
-        let t136 = T::fused(
+        let t139 = T::fused(t116, t134, t135 * t138);
+        let t140 = k(1.0) / T::fused(-t124, t96, t123 * t97);
+        let t141 = T::fused(row13, t96 * t140, row14 * (t123 * t140));
+        let t142 = T::fused(row13, t97 * t140, row14 * (t124 * t140));
+        let t143 = T::fused(self.derived[17], t141, self.derived[18] * t142)
+            + T::fused(row12, t83, -T::fused(row10, t66, row11 * t77));
+        let t144 = T::fused(self.derived[18], t141, self.derived[19] * t142)
+            - T::fused(row12, t85, -T::fused(row10, t72, row11 * t79));
+        let t145 = T::fused(
             k(0.08),
             row10,
-            T::fused(row12, t44, -T::fused(row10, t18, row11 * t33)),
+            T::fused(row12, t52, -T::fused(row10, t22, row11 * t40)),
         );
-        let t137 = T::fused(-t58, t132, t64 * t133) + t136;
-        let t138 = T::fused(
+        let t146 = T::fused(-t66, t141, t72 * t142) + t145;
+        let t147 = T::fused(
             k(0.08),
             row11,
-            T::fused(row12, t51, -T::fused(row10, t33, row11 * t50)),
+            T::fused(row12, t59, -T::fused(row10, t40, row11 * t58)),
         );
-        let t139 = T::fused(-t69, t132, t71 * t133) + t138;
-        let t140 = T::fused(
+        let t148 = T::fused(-t77, t141, t79 * t142) + t147;
+        let t149 = T::fused(
             k(0.08),
             row12,
-            -T::fused(row12, t54, -T::fused(row10, t44, row11 * t51)),
+            -T::fused(row12, t62, -T::fused(row10, t52, row11 * t59)),
         );
-        let t141 = T::fused(-t75, t132, t77 * t133) - t140;
-        let t142 = T::fused(t47, t141, T::fused(t25, t137, t39 * t139))
-            - T::fused(t62, t134, t65 * t135);
-        let t143 = T::fused(t84, t141, T::fused(-t82, t137, t83 * t139))
-            - T::fused(t88, t134, t89 * t135);
-        let t144 = t97 * t143;
-        let t145 = t90 + T::fused(k(0.08), t82, t85);
-        let t146 = t97 * t145;
-        let t147 = T::fused(t94, t146, -(t66 + T::fused(-k(0.08), t25, t48)));
-        let t148 = t91 + T::fused(-k(0.08), t83, t86);
-        let t149 = t97 * t148;
-        let t150 = T::fused(t94, t149, -(t72 + T::fused(-k(0.08), t39, t52)));
-        let t151 = t92 + T::fused(-k(0.08), t84, t87);
-        let t152 = t97 * t151;
-        let t153 = T::fused(t94, t152, -(t78 + T::fused(-k(0.08), t47, t55)));
-        let t154 = k(2.0) * (t101 + t100);
-        let t155 = T::fused(t5, t45, -T::fused(t2, t21, t154 * t35));
-        let t156 = T::fused(t5, t61, T::fused(t2, t59, t154 * t60));
-        let t157 = k(1.0) / T::fused(-t155, t107, t156 * t126);
-        let t158 = T::fused(-(t107 * t157), row8, t156 * t157 * row9);
-        let t159 = T::fused(-(t126 * t157), row8, t155 * t157 * row9);
-        let t160 = T::fused(t99, t158, t125 * t159)
-            - T::fused(row7, t153, -T::fused(row5, t147, row6 * t150));
-        let t161 = T::fused(t110, t141, T::fused(t108, t137, t109 * t139))
-            + T::fused(t114, t134, t115 * t135);
-        let t162 = T::fused(t124, t146, -(t116 - T::fused(-k(0.08), t108, t111)));
-        let t163 = T::fused(t124, t149, -(t117 - T::fused(-k(0.08), t109, t112)));
-        let t164 = T::fused(t124, t152, -(t118 - T::fused(-k(0.08), t110, t113)));
-        let t165 = T::fused(t125, t158, t129 * t159)
-            - T::fused(row7, t164, -T::fused(row5, t162, row6 * t163));
-        let t166 = T::fused(
-            t107,
-            t160 - T::fused(t94, t144, -t142),
-            t126 * (t165 - T::fused(t124, t144, t161)),
+        let t150 = T::fused(-t83, t141, t85 * t142) - t149;
+        let t151 = T::fused(t55, t150, T::fused(t31, t146, t47 * t148))
+            - T::fused(t70, t143, t73 * t144);
+        let t152 = T::fused(t92, t150, T::fused(-t90, t146, t91 * t148))
+            - T::fused(t96, t143, t97 * t144);
+        let t153 = t105 * t152;
+        let t154 = t98 + T::fused(k(0.08), t90, t93);
+        let t155 = t105 * t154;
+        let t156 = T::fused(t102, t155, -(t74 + T::fused(-k(0.08), t31, t56)));
+        let t157 = t99 + T::fused(-k(0.08), t91, t94);
+        let t158 = t105 * t157;
+        let t159 = T::fused(t102, t158, -(t80 + T::fused(-k(0.08), t47, t60)));
+        let t160 = t100 + T::fused(-k(0.08), t92, t95);
+        let t161 = t105 * t160;
+        let t162 = T::fused(t102, t161, -(t86 + T::fused(-k(0.08), t55, t63)));
+        let t163 = t109 + t108;
+        let t164 = T::fused(t7, t53, -T::fused(t4, t27, t163 * t43));
+        let t165 = T::fused(t7, t69, T::fused(t4, t67, t163 * t68));
+        let t166 = k(1.0) / T::fused(-t116, t164, t135 * t165);
+        let t167 = T::fused(-row8, t116 * t166, row9 * (t165 * t166));
+        let t168 = T::fused(-row8, t135 * t166, row9 * (t164 * t166));
+        let t169 = T::fused(t107, t167, t134 * t168)
+            - T::fused(row7, t162, -T::fused(row5, t156, row6 * t159));
+        let t170 = T::fused(t119, t150, T::fused(t117, t146, t118 * t148))
+            + T::fused(t123, t143, t124 * t144);
+        let t171 = T::fused(t133, t155, -(t125 - T::fused(-k(0.08), t117, t120)));
+        let t172 = T::fused(t133, t158, -(t126 - T::fused(-k(0.08), t118, t121)));
+        let t173 = T::fused(t133, t161, -(t127 - T::fused(-k(0.08), t119, t122)));
+        let t174 = T::fused(t134, t167, t138 * t168)
+            - T::fused(row7, t173, -T::fused(row5, t171, row6 * t172));
+        let t175 = T::fused(
+            t116,
+            t169 - T::fused(t102, t153, -t151),
+            t135 * (t174 - T::fused(t133, t153, t170)),
         );
-        let t167 = T::fused(
+        let t176 = T::fused(
             row0,
-            T::fused(t107, t147, t126 * t162),
-            row1 * T::fused(t107, t150, t126 * t163),
+            T::fused(t116, t156, t135 * t171),
+            row1 * T::fused(t116, t159, t135 * t172),
         );
-        let t168 = T::fused(
-            t107,
-            T::fused(t156, t99, t155 * t125),
-            t126 * T::fused(t156, t125, t155 * t129),
+        let t177 = T::fused(
+            t116,
+            T::fused(t165, t107, t164 * t134),
+            t135 * T::fused(t165, t134, t164 * t138),
         );
-        let t169 = k(2.0) * (t105 - t104);
-        let t170 = T::fused(t1, t61, -T::fused(-t6, t59, t169 * t60));
-        let t171 = T::fused(t1, t45, -T::fused(-t169, t35, t6 * t21));
-        let t172 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-        let t173 = T::fused(t8, t168, t172 * T::fused(t170, t127, t171 * t130))
-            + T::fused(row2, T::fused(t107, t153, t126 * t164), -t167);
-        let t174 = (t173 - t166) / (k(1e-6) - T::fused(t107, t127, t126 * t130));
-        let t175 = row0 + row5;
-        let t176 = row1 + row6;
-        let t177 = row2 + row7;
-        let t178 = t158 - T::fused(t170, t172, T::fused(t156, t8, t107 * t174));
-        let t179 = t159 - T::fused(t171, t172, T::fused(t155, t8, t126 * t174));
-        let t180 = T::fused(t94, t178, t124 * t179)
-            - T::fused(t177, t151, -T::fused(t175, t145, t176 * t148));
-        let t181 = t97 * (t143 - t180);
-        let t182 = row10
-            + (t175 + T::fused(t82, t181, T::fused(-t25, t178, t108 * t179)));
-        let t183 = row11
-            + (t176 - T::fused(t83, t181, -T::fused(-t39, t178, t109 * t179)));
-        let t184 = row12
-            + (t177 + T::fused(t84, t181, -T::fused(-t47, t178, t110 * t179)));
-        let t185 = t132 + T::fused(t88, t181, T::fused(t62, t178, t114 * t179));
-        let t186 = t133 + T::fused(t89, t181, T::fused(t65, t178, t115 * t179));
-        let t187 = T::fused(
+        let t178 = t114 - t113;
+        let t179 = T::fused(t2, t69, -T::fused(-t8, t67, t178 * t68));
+        let t180 = T::fused(t2, t53, T::fused(-t8, t27, t178 * t43));
+        let t181 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
+        let t182 = T::fused(t10, t177, t181 * T::fused(t179, t136, t180 * t139))
+            + T::fused(row2, T::fused(t116, t162, t135 * t173), -t176);
+        let t183 = (t182 - t175) / (k(1e-6) - T::fused(t116, t136, t135 * t139));
+        let t184 = row0 + row5;
+        let t185 = row1 + row6;
+        let t186 = row2 + row7;
+        let t187 = t167 - T::fused(t179, t181, T::fused(t165, t10, t116 * t183));
+        let t188 = t168 - T::fused(t180, t181, T::fused(t164, t10, t135 * t183));
+        let t189 = T::fused(t102, t187, t133 * t188)
+            - T::fused(t186, t160, -T::fused(t184, t154, t185 * t157));
+        let t190 = t105 * (t152 - t189);
+        let t191 = row10
+            + (t184 + T::fused(t90, t190, T::fused(-t31, t187, t117 * t188)));
+        let t192 = row11
+            + (t185 - T::fused(t91, t190, -T::fused(-t47, t187, t118 * t188)));
+        let t193 = row12
+            + (t186 + T::fused(t92, t190, -T::fused(-t55, t187, t119 * t188)));
+        let t194 = t141 + T::fused(t96, t190, T::fused(t70, t187, t123 * t188));
+        let t195 = t142 + T::fused(t97, t190, T::fused(t73, t187, t124 * t188));
+        let t196 = T::fused(
             -self.parameters.product_xy,
-            t185,
-            self.parameters.product_xz * t186,
-        ) + T::fused(t43, t184, -T::fused(t16, t182, t32 * t183));
-        let t188 = self.derived[30] * t187;
+            t194,
+            self.parameters.product_xz * t195,
+        ) + T::fused(t51, t193, -T::fused(t20, t191, t39 * t192));
+        let t197 = self.derived[28] * t196;
         *out = [
             row0,
             row1,
             row2,
-            t8,
-            t174,
-            -t172,
-            t175,
-            t176,
-            t177,
-            -t178,
-            -t179,
-            t181,
-            t182 - T::fused(t63, t186, T::fused(-t15, t188, t57 * t185)),
-            t183 + T::fused(t70, t186, T::fused(t31, t188, t68 * t185)),
-            t184 + T::fused(t76, t186, T::fused(-t42, t188, t74 * t185)),
-            -t188,
-            -t185,
+            t10,
+            t183,
+            -t181,
+            t184,
+            t185,
             t186,
+            -t187,
+            -t188,
+            t190,
+            t191 - T::fused(t71, t195, T::fused(-t19, t197, t65 * t194)),
+            t192 + T::fused(t78, t195, T::fused(t38, t197, t76 * t194)),
+            t193 + T::fused(t84, t195, T::fused(-t50, t197, t82 * t194)),
+            -t197,
+            -t194,
+            t195,
         ];
     }
 }
@@ -3815,55 +3887,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let u2 = x[5];
         let t0 = x2.cos();
         let t1 = x2.sin();
-        let t2 = T::fused(-t0, self.derived[33], t1 * self.derived[34]);
+        let t2 = T::fused(-t0, self.derived[35], t1 * self.derived[36]);
         let t3 = x1.cos();
         let t4 = x1.sin();
         let t5 = self.parameters.offset_y * t4;
         let t6 = T::fused(-self.parameters.offset_x, t3, t5);
         let t7 = self.parameters.imbalance_z * t1;
-        let t8 = t0 * self.derived[35];
+        let t8 = t0 * self.derived[37];
         let t9 = T::fused(-k(0.16), t7, t8);
         let t10 = T::fused(t3, t2, t9 * t6);
-        let t11 = T::fused(self.derived[6], t0, self.derived[9] * t1);
+        let t11 = T::fused(self.derived[3], t0, self.derived[6] * t1);
         let t12 = self.parameters.offset_z * t11;
-        let t13 = self.derived[36] - t12;
-        let t14 = T::fused(-k(0.5), t10, t4 * (self.derived[37] + t13));
+        let t13 = self.derived[38] - t12;
+        let t14 = T::fused(-k(0.5), t10, t4 * (self.derived[39] + t13));
         let t15 = T::fused(
             self.parameters.product_xy,
             t1,
             self.parameters.product_xz * t0,
         );
         let t16 = T::fused(self.parameters.offset_x, t11, t15);
-        let t17 = self.derived[38] * t16;
+        let t17 = self.derived[40] * t16;
         let t18 = self.parameters.offset_y * t3;
         let t19 = T::fused(
             -t0,
-            T::fused(t1, self.derived[40], self.parameters.imbalance_z * t8),
-            self.derived[41],
+            T::fused(t1, self.derived[42], self.parameters.imbalance_z * t8),
+            self.derived[43],
         );
-        let t20 = T::fused(self.derived[42], t9, t19);
+        let t20 = T::fused(self.derived[44], t9, t19);
         let t21 = T::fused(
-            -(self.derived[39] - t11),
+            -(self.derived[41] - t11),
             T::fused(self.parameters.offset_x, t4, t18),
             T::fused(t4, t15, t3 * t20),
         );
         let t22 = T::fused(-t17, t14, t21);
-        let t23 = t0 * T::fused(-t0, self.derived[40], self.derived[35] * t7);
-        let t24 = self.derived[43] - t23;
+        let t23 = t0 * T::fused(-t0, self.derived[42], self.derived[37] * t7);
+        let t24 = self.derived[45] - t23;
         let t25 = k(1.0)
             / T::fused(
                 t16,
                 t17,
-                -(self.derived[19]
+                -(self.derived[22]
                     + (T::fused(-self.parameters.offset_y, t9, k(6e-6)) + t24)),
             );
         let t26 = t25 * t22;
-        let t27 = self.derived[38] * t14;
-        let t28 = k(4e-6) + (self.derived[44] + t24);
+        let t27 = self.derived[40] * t14;
+        let t28 = k(4e-6) + (self.derived[46] + t24);
         let t29 = T::fused(
-            self.derived[47],
-            T::fused(-t3, t5, self.derived[46]),
-            t23 + T::fused(t4, T::fused(t4, t28, -t10), self.derived[45]),
+            self.derived[49],
+            T::fused(-t3, t5, self.derived[48]),
+            t23 + T::fused(t4, T::fused(t4, t28, -t10), self.derived[47]),
         );
         let t30 = T::fused(self.parameters.offset_x, t9, -t2);
         let t31 = T::fused(t4, t30, t9 * t18);
@@ -3879,8 +3951,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t37 = T::fused(-k(2.0), u2 * T::fused(k(0.25), u2 * t30, t33), k(0.8) * t6);
         let t38 = T::fused(
             t4,
-            T::fused(t3, t28, self.derived[47] * t5),
-            -T::fused(t4, t31, self.derived[26]),
+            T::fused(t3, t28, self.derived[49] * t5),
+            -T::fused(t4, t31, self.derived[25]),
         );
         let t39 = u0 * T::fused(k(2.0), t38, t30);
         let t40 = t4 * t9;
@@ -3893,11 +3965,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t43 = T::fused(
             -k(2.0),
             T::fused(-(k(5e-6) + (t23 + t13)), u1 * t3, t35),
-            u2 * T::fused(-self.derived[42], t40, t34),
+            u2 * T::fused(-self.derived[44], t40, t34),
         );
         let t44 = T::fused(
             -u1,
-            T::fused(u1, T::fused(t4, t20, T::fused(-self.derived[39], t6, t34)), -t39),
+            T::fused(u1, T::fused(t4, t20, T::fused(-self.derived[41], t6, t34)), -t39),
             u2 * t43,
         );
         let t45 = T::fused(t42, t26, T::fused(-t36, t27, t44))
@@ -3906,7 +3978,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         *out = [
             t45,
             t46,
-            -T::fused(t17, t46, T::fused(t27, t45, self.derived[38] * t36)),
+            -T::fused(t17, t46, T::fused(t27, t45, self.derived[40] * t36)),
         ];
     }
     /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -4225,7 +4297,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             ),
         );
         let t4 = t3 * t1;
-        let t5 = T::fused(t2, self.derived[33], t4 * self.derived[34]);
+        let t5 = T::fused(t2, self.derived[35], t4 * self.derived[36]);
         let t6 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
@@ -4250,49 +4322,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t11 = self.parameters.offset_y * t10;
         let t12 = T::fused(self.parameters.offset_x, t8, t11);
         let t13 = self.parameters.imbalance_z * t4;
-        let t14 = t2 * self.derived[35];
+        let t14 = t2 * self.derived[37];
         let t15 = T::fused(k(0.16), t13, t14);
         let t16 = T::fused(t8, t5, t15 * t12);
-        let t17 = T::fused(-self.derived[6], t2, self.derived[9] * t4);
+        let t17 = T::fused(-self.derived[3], t2, self.derived[6] * t4);
         let t18 = self.parameters.offset_z * t17;
-        let t19 = self.derived[36] + t18;
-        let t20 = T::fused(-k(0.5), t16, t10 * (self.derived[37] + t19));
+        let t19 = self.derived[38] + t18;
+        let t20 = T::fused(-k(0.5), t16, t10 * (self.derived[39] + t19));
         let t21 = T::fused(
             -self.parameters.product_xy,
             t4,
             self.parameters.product_xz * t2,
         );
         let t22 = T::fused(self.parameters.offset_x, t17, -t21);
-        let t23 = self.derived[38] * t22;
+        let t23 = self.derived[40] * t22;
         let t24 = self.parameters.offset_y * t8;
         let t25 = T::fused(
             -t2,
-            T::fused(-t4, self.derived[40], self.parameters.imbalance_z * t14),
-            self.derived[41],
+            T::fused(-t4, self.derived[42], self.parameters.imbalance_z * t14),
+            self.derived[43],
         );
-        let t26 = T::fused(self.derived[42], t15, t25);
+        let t26 = T::fused(self.derived[44], t15, t25);
         let t27 = T::fused(
-            -(self.derived[39] + t17),
+            -(self.derived[41] + t17),
             T::fused(-self.parameters.offset_x, t10, t24),
             T::fused(-t10, t21, t8 * t26),
         );
         let t28 = T::fused(-t23, t20, t27);
-        let t29 = t2 * T::fused(t2, self.derived[40], self.derived[35] * t13);
-        let t30 = self.derived[43] + t29;
+        let t29 = t2 * T::fused(t2, self.derived[42], self.derived[37] * t13);
+        let t30 = self.derived[45] + t29;
         let t31 = k(1.0)
             / T::fused(
                 t22,
                 t23,
-                -(self.derived[19]
+                -(self.derived[22]
                     + (T::fused(-self.parameters.offset_y, t15, k(6e-6)) + t30)),
             );
         let t32 = t31 * t28;
-        let t33 = self.derived[38] * t20;
-        let t34 = k(4e-6) + (self.derived[44] + t30);
+        let t33 = self.derived[40] * t20;
+        let t34 = k(4e-6) + (self.derived[46] + t30);
         let t35 = T::fused(
-            self.derived[47],
-            T::fused(t8, t11, self.derived[46]),
-            -(t29 - T::fused(t10, T::fused(t10, t34, -t16), self.derived[45])),
+            self.derived[49],
+            T::fused(t8, t11, self.derived[48]),
+            -(t29 - T::fused(t10, T::fused(t10, t34, -t16), self.derived[47])),
         );
         let t36 = T::fused(self.parameters.offset_x, t15, t5);
         let t37 = T::fused(-t10, t36, t15 * t24);
@@ -4314,8 +4386,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         );
         let t46 = T::fused(
             t10,
-            T::fused(-t8, t34, self.derived[47] * t11),
-            -T::fused(-t10, t37, self.derived[26]),
+            T::fused(-t8, t34, self.derived[49] * t11),
+            -T::fused(-t10, t37, self.derived[25]),
         );
         let t47 = outer_ring_wy * T::fused(k(2.0), t46, t36);
         let t48 = t10 * t15;
@@ -4328,13 +4400,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t51 = T::fused(
             k(2.0),
             T::fused(k(5e-6) - (t29 - t19), t39 * t8, t42),
-            t44 * T::fused(self.derived[42], t48, t41),
+            t44 * T::fused(self.derived[44], t48, t41),
         );
         let t52 = T::fused(
             -t39,
             T::fused(
                 t39,
-                T::fused(-t10, t26, T::fused(self.derived[39], t12, t41)),
+                T::fused(-t10, t26, T::fused(self.derived[41], t12, t41)),
                 t47,
             ),
             t44 * t51,
@@ -4345,7 +4417,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         *out = [
             -t53,
             -t54,
-            -T::fused(t23, t54, T::fused(t33, t53, self.derived[38] * t43)),
+            -T::fused(t23, t54, T::fused(t33, t53, self.derived[40] * t43)),
         ];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 339 operations (140 ±, 197 ×, 2 ÷).
@@ -4399,7 +4471,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             ),
         );
         let t5 = t4 * t2;
-        let t6 = T::fused(t3, self.derived[33], t5 * self.derived[34]);
+        let t6 = T::fused(t3, self.derived[35], t5 * self.derived[36]);
         let t7 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
@@ -4424,49 +4496,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t12 = self.parameters.offset_y * t11;
         let t13 = T::fused(self.parameters.offset_x, t9, t12);
         let t14 = self.parameters.imbalance_z * t5;
-        let t15 = t3 * self.derived[35];
+        let t15 = t3 * self.derived[37];
         let t16 = T::fused(k(0.16), t14, t15);
         let t17 = T::fused(t9, t6, t16 * t13);
-        let t18 = T::fused(-self.derived[6], t3, self.derived[9] * t5);
+        let t18 = T::fused(-self.derived[3], t3, self.derived[6] * t5);
         let t19 = self.parameters.offset_z * t18;
-        let t20 = self.derived[36] + t19;
-        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[37] + t20));
+        let t20 = self.derived[38] + t19;
+        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[39] + t20));
         let t22 = T::fused(
             -self.parameters.product_xy,
             t5,
             self.parameters.product_xz * t3,
         );
         let t23 = T::fused(self.parameters.offset_x, t18, -t22);
-        let t24 = self.derived[38] * t23;
+        let t24 = self.derived[40] * t23;
         let t25 = self.parameters.offset_y * t9;
         let t26 = T::fused(
             -t3,
-            T::fused(-t5, self.derived[40], self.parameters.imbalance_z * t15),
-            self.derived[41],
+            T::fused(-t5, self.derived[42], self.parameters.imbalance_z * t15),
+            self.derived[43],
         );
-        let t27 = T::fused(self.derived[42], t16, t26);
+        let t27 = T::fused(self.derived[44], t16, t26);
         let t28 = T::fused(
-            -(self.derived[39] + t18),
+            -(self.derived[41] + t18),
             T::fused(-self.parameters.offset_x, t11, t25),
             T::fused(-t11, t22, t9 * t27),
         );
         let t29 = T::fused(-t24, t21, t28);
-        let t30 = t3 * T::fused(t3, self.derived[40], self.derived[35] * t14);
-        let t31 = self.derived[43] + t30;
+        let t30 = t3 * T::fused(t3, self.derived[42], self.derived[37] * t14);
+        let t31 = self.derived[45] + t30;
         let t32 = k(1.0)
             / T::fused(
                 t23,
                 t24,
-                -(self.derived[19]
+                -(self.derived[22]
                     + (T::fused(-self.parameters.offset_y, t16, k(6e-6)) + t31)),
             );
         let t33 = t32 * t29;
-        let t34 = self.derived[38] * t21;
-        let t35 = k(4e-6) + (self.derived[44] + t31);
+        let t34 = self.derived[40] * t21;
+        let t35 = k(4e-6) + (self.derived[46] + t31);
         let t36 = T::fused(
-            self.derived[47],
-            T::fused(t9, t12, self.derived[46]),
-            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[45])),
+            self.derived[49],
+            T::fused(t9, t12, self.derived[48]),
+            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[47])),
         );
         let t37 = T::fused(self.parameters.offset_x, t16, t6);
         let t38 = T::fused(-t11, t37, t16 * t25);
@@ -4488,8 +4560,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         );
         let t47 = T::fused(
             t11,
-            T::fused(-t9, t35, self.derived[47] * t12),
-            -T::fused(-t11, t38, self.derived[26]),
+            T::fused(-t9, t35, self.derived[49] * t12),
+            -T::fused(-t11, t38, self.derived[25]),
         );
         let t48 = outer_ring_wy * T::fused(k(2.0), t47, t37);
         let t49 = t11 * t16;
@@ -4502,13 +4574,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t52 = T::fused(
             k(2.0),
             T::fused(k(5e-6) - (t30 - t20), t40 * t9, t43),
-            t45 * T::fused(self.derived[42], t49, t42),
+            t45 * T::fused(self.derived[44], t49, t42),
         );
         let t53 = T::fused(
             -t40,
             T::fused(
                 t40,
-                T::fused(-t11, t27, T::fused(self.derived[39], t13, t42)),
+                T::fused(-t11, t27, T::fused(self.derived[41], t13, t42)),
                 t48,
             ),
             t45 * t52,
@@ -4520,7 +4592,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t57 = T::fused(inner_ring_wx, t40, -T::fused(t9, t54, t0 * t11));
         let t58 = T::fused(t33, t54, t32 * t51);
         let t59 = t55 - t58;
-        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[38] * t44)) + t56;
+        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[40] * t44)) + t56;
         let t61 = T::fused(
             self.parameters.offset_x,
             t57,
@@ -4618,7 +4690,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             t79,
         ];
     }
-    /// Writes λ: 261 operations (106 ±, 155 ×, 0 ÷).
+    /// Writes λ: 260 operations (106 ±, 154 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -4675,13 +4747,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t8 = rotor_e2 * rotor_e3;
         let t9 = T::fused(
             k(0.5) - T::fused(rotor_e3, rotor_e3, t6),
-            self.derived[1],
-            (t8 + t7) * self.derived[0],
+            self.derived[34],
+            (t8 + t7) * self.derived[33],
         );
         let t10 = T::fused(
             t8 - t7,
-            self.derived[1],
-            (k(0.5) - T::fused(rotor_e2, rotor_e2, t6)) * self.derived[0],
+            self.derived[34],
+            (k(0.5) - T::fused(rotor_e2, rotor_e2, t6)) * self.derived[33],
         );
         let t11 = rotor_e0 * rotor_e2;
         let t12 = rotor_e1 * rotor_e3;
@@ -4690,7 +4762,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t15 = T::fused(
             -t2,
             t10,
-            t0 * T::fused(-(t12 + t11), self.derived[1], (t14 - t13) * self.derived[0]),
+            t0 * T::fused(-(t12 + t11), self.derived[34], (t14 - t13) * self.derived[33]),
         );
         let t16 = rotor_wz * self.parameters.product_xy;
         let t17 = rotor_wy * self.parameters.product_xz;
@@ -4742,39 +4814,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         );
         let t36 = k(2.0) * t35;
         let t37 = T::fused(-t35, t36, k(1.0));
-        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25));
-        let t39 = k(2.0) * (t20 + t19);
+        let t38 = k(5e-6) * rotor_wx;
+        let t39 = rotor_wx * rotor_wx;
         let t40 = T::fused(
-            t0,
-            T::fused(t38, self.parameters.offset_z, t24 * self.parameters.offset_x),
-            t2 * T::fused(-t39, self.parameters.offset_z, t29 * self.parameters.offset_x),
+            rotor_wz,
+            t17,
+            T::fused(
+                rotor_wy,
+                t38,
+                self.parameters.product_xy * T::fused(rotor_wy, rotor_wy, -t39),
+            ),
         );
-        let t41 = k(2.0) * (t23 - t22);
-        let t42 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
-        let t43 = k(2.0) * (t14 + t13);
-        let t44 = k(2.0) * (t12 - t11);
-        let t45 = T::fused(
+        let t41 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
+        let t42 = k(2.0) * (t14 + t13);
+        let t43 = k(2.0) * (t12 - t11);
+        let t44 = T::fused(
             t4,
-            t44 * self.parameters.imbalance_z,
+            t43 * self.parameters.imbalance_y,
             T::fused(
                 -t0,
-                t42 * self.parameters.imbalance_z,
-                t2 * (t43 * self.parameters.imbalance_z),
+                t41 * self.parameters.imbalance_y,
+                t2 * (t42 * self.parameters.imbalance_y),
             ),
         );
-        let t46 = rotor_wx * rotor_wx;
-        let t47 = T::fused(
-            rotor_wy,
-            t16,
-            T::fused(
-                self.parameters.product_xz,
-                T::fused(rotor_wz, rotor_wz, -t46),
-                k(5e-6) * (rotor_wx * rotor_wz),
-            ),
-        );
-        let t48 = t47
-            + T::fused(k(5e-6), rotor_dwy, self.parameters.product_xy * rotor_dwx) - t45;
-        let t49 = T::fused(
+        let t45 = t44
+            + (T::fused(k(5e-6), rotor_dwz, self.parameters.product_xz * rotor_dwx)
+                - t40);
+        let t46 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -4783,29 +4849,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t50 = k(2.0) * t49;
-        let t51 = T::fused(-t49, t50, k(1.0));
-        let t52 = T::fused(
-            t4,
-            t44 * self.parameters.imbalance_y,
-            T::fused(
-                -t0,
-                t42 * self.parameters.imbalance_y,
-                t2 * (t43 * self.parameters.imbalance_y),
-            ),
-        );
-        let t53 = T::fused(
-            rotor_wz,
-            t17,
-            T::fused(
-                self.parameters.product_xy,
-                T::fused(rotor_wy, rotor_wy, -t46),
-                k(5e-6) * (rotor_wx * rotor_wy),
-            ),
-        );
-        let t54 = t53
-            - T::fused(k(5e-6), rotor_dwz, self.parameters.product_xz * rotor_dwx) - t52;
-        let t55 = T::fused(
+        let t47 = k(2.0) * t46;
+        let t48 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -4814,23 +4859,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t56 = t55 * t50;
-        let t57 = T::fused(-t51, t48, t56 * t54);
-        let t58 = T::fused(
+        let t49 = t48 * t47;
+        let t50 = T::fused(
+            rotor_wy,
+            t16,
+            T::fused(
+                rotor_wz,
+                t38,
+                self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t39),
+            ),
+        );
+        let t51 = T::fused(
+            t4,
+            t43 * self.parameters.imbalance_z,
+            T::fused(
+                -t0,
+                t41 * self.parameters.imbalance_z,
+                t2 * (t42 * self.parameters.imbalance_z),
+            ),
+        );
+        let t52 = t51
+            - (T::fused(k(5e-6), rotor_dwy, self.parameters.product_xy * rotor_dwx)
+                + t50);
+        let t53 = T::fused(-t46, t47, k(1.0));
+        let t54 = T::fused(-t49, t45, t53 * t52);
+        let t55 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t25));
+        let t56 = k(2.0) * (t20 + t19);
+        let t57 = T::fused(
+            t0,
+            T::fused(t55, self.parameters.offset_z, t24 * self.parameters.offset_x),
+            t2 * T::fused(-t56, self.parameters.offset_z, t29 * self.parameters.offset_x),
+        );
+        let t58 = k(2.0) * (t23 - t22);
+        let t59 = T::fused(
             k(2e-6),
             inner_ring_dwy,
-            -(t57
-                - T::fused(
-                    t4,
-                    T::fused(
-                        t41,
-                        self.parameters.offset_z,
-                        t32 * self.parameters.offset_x,
-                    ),
-                    -t40,
-                )),
+            T::fused(
+                t4,
+                T::fused(t58, self.parameters.offset_z, t32 * self.parameters.offset_x),
+                -t57,
+            ) - t54,
         );
-        let t59 = T::fused(
+        let t60 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4839,56 +4909,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t60 = t59 * t36;
-        let t61 = T::fused(-t37, t34, t60 * t58);
-        let t62 = T::fused(k(2e-6), outer_ring_dwx, t61);
-        let t63 = k(2.0) * outer_ring_e2;
-        let t64 = T::fused(-outer_ring_e2, t63, k(1.0));
-        let t65 = T::fused(
-            -t0,
-            T::fused(t38, self.parameters.offset_y, t21 * self.parameters.offset_x),
-            t2 * T::fused(t39, self.parameters.offset_y, t26 * self.parameters.offset_x),
-        );
-        let t66 = T::fused(t56, t48, t51 * t54);
+        let t61 = t60 * t36;
+        let t62 = T::fused(-t37, t34, t61 * t59);
+        let t63 = T::fused(k(2e-6), outer_ring_dwx, t62);
+        let t64 = k(2.0) * outer_ring_e2;
+        let t65 = T::fused(-outer_ring_e2, t64, k(1.0));
+        let t66 = T::fused(t53, t45, t49 * t52);
         let t67 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t66
-                - T::fused(
-                    t4,
-                    T::fused(
-                        -t41,
-                        self.parameters.offset_y,
-                        t31 * self.parameters.offset_x,
-                    ),
-                    -t65,
-                )),
+            -t0,
+            T::fused(t55, self.parameters.offset_y, t21 * self.parameters.offset_x),
+            t2 * T::fused(t56, self.parameters.offset_y, t26 * self.parameters.offset_x),
         );
         let t68 = T::fused(
             k(1e-6),
-            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t67,
+            T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
+            T::fused(
+                t4,
+                T::fused(-t58, self.parameters.offset_y, t31 * self.parameters.offset_x),
+                -t67,
+            ) + t66,
         );
-        let t69 = outer_ring_e0 * t63;
+        let t69 = T::fused(
+            k(1e-6),
+            T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
+            -t68,
+        );
+        let t70 = outer_ring_e0 * t64;
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t64, t62, t69 * t68),
-            -T::fused(t69, t62, t64 * t68),
+            T::fused(-t65, t63, t70 * t69),
+            -T::fused(t70, t63, t65 * t69),
             -t1,
             -t3,
             -t5,
-            -T::fused(t60, t34, t37 * t58),
-            t61,
+            -T::fused(t61, t34, t37 * t59),
+            t62,
             -t0,
             -t2,
             -t4,
-            t66,
-            -t57,
+            -t66,
+            -t54,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 523 operations (212 ±, 309 ×, 2 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 522 operations (212 ±, 308 ×, 2 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4934,7 +4999,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             ),
         );
         let t5 = t4 * t2;
-        let t6 = T::fused(t3, self.derived[33], t5 * self.derived[34]);
+        let t6 = T::fused(t3, self.derived[35], t5 * self.derived[36]);
         let t7 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
@@ -4959,49 +5024,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t12 = self.parameters.offset_y * t11;
         let t13 = T::fused(self.parameters.offset_x, t9, t12);
         let t14 = self.parameters.imbalance_z * t5;
-        let t15 = t3 * self.derived[35];
+        let t15 = t3 * self.derived[37];
         let t16 = T::fused(k(0.16), t14, t15);
         let t17 = T::fused(t9, t6, t16 * t13);
-        let t18 = T::fused(-self.derived[6], t3, self.derived[9] * t5);
+        let t18 = T::fused(-self.derived[3], t3, self.derived[6] * t5);
         let t19 = self.parameters.offset_z * t18;
-        let t20 = self.derived[36] + t19;
-        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[37] + t20));
+        let t20 = self.derived[38] + t19;
+        let t21 = T::fused(-k(0.5), t17, t11 * (self.derived[39] + t20));
         let t22 = T::fused(
             -self.parameters.product_xy,
             t5,
             self.parameters.product_xz * t3,
         );
         let t23 = T::fused(self.parameters.offset_x, t18, -t22);
-        let t24 = self.derived[38] * t23;
+        let t24 = self.derived[40] * t23;
         let t25 = self.parameters.offset_y * t9;
         let t26 = T::fused(
             -t3,
-            T::fused(-t5, self.derived[40], self.parameters.imbalance_z * t15),
-            self.derived[41],
+            T::fused(-t5, self.derived[42], self.parameters.imbalance_z * t15),
+            self.derived[43],
         );
-        let t27 = T::fused(self.derived[42], t16, t26);
+        let t27 = T::fused(self.derived[44], t16, t26);
         let t28 = T::fused(
-            -(self.derived[39] + t18),
+            -(self.derived[41] + t18),
             T::fused(-self.parameters.offset_x, t11, t25),
             T::fused(-t11, t22, t9 * t27),
         );
         let t29 = T::fused(-t24, t21, t28);
-        let t30 = t3 * T::fused(t3, self.derived[40], self.derived[35] * t14);
-        let t31 = self.derived[43] + t30;
+        let t30 = t3 * T::fused(t3, self.derived[42], self.derived[37] * t14);
+        let t31 = self.derived[45] + t30;
         let t32 = k(1.0)
             / T::fused(
                 t23,
                 t24,
-                -(self.derived[19]
+                -(self.derived[22]
                     + (T::fused(-self.parameters.offset_y, t16, k(6e-6)) + t31)),
             );
         let t33 = t32 * t29;
-        let t34 = self.derived[38] * t21;
-        let t35 = k(4e-6) + (self.derived[44] + t31);
+        let t34 = self.derived[40] * t21;
+        let t35 = k(4e-6) + (self.derived[46] + t31);
         let t36 = T::fused(
-            self.derived[47],
-            T::fused(t9, t12, self.derived[46]),
-            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[45])),
+            self.derived[49],
+            T::fused(t9, t12, self.derived[48]),
+            -(t30 - T::fused(t11, T::fused(t11, t35, -t17), self.derived[47])),
         );
         let t37 = T::fused(self.parameters.offset_x, t16, t6);
         let t38 = T::fused(-t11, t37, t16 * t25);
@@ -5023,8 +5088,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         );
         let t47 = T::fused(
             t11,
-            T::fused(-t9, t35, self.derived[47] * t12),
-            -T::fused(-t11, t38, self.derived[26]),
+            T::fused(-t9, t35, self.derived[49] * t12),
+            -T::fused(-t11, t38, self.derived[25]),
         );
         let t48 = outer_ring_wy * T::fused(k(2.0), t47, t37);
         let t49 = t11 * t16;
@@ -5037,13 +5102,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t52 = T::fused(
             k(2.0),
             T::fused(k(5e-6) - (t30 - t20), t40 * t9, t43),
-            t45 * T::fused(self.derived[42], t49, t42),
+            t45 * T::fused(self.derived[44], t49, t42),
         );
         let t53 = T::fused(
             -t40,
             T::fused(
                 t40,
-                T::fused(-t11, t27, T::fused(self.derived[39], t13, t42)),
+                T::fused(-t11, t27, T::fused(self.derived[41], t13, t42)),
                 t48,
             ),
             t45 * t52,
@@ -5055,7 +5120,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t57 = T::fused(inner_ring_wx, t40, -T::fused(t9, t54, t0 * t11));
         let t58 = T::fused(t33, t54, t32 * t51);
         let t59 = t55 - t58;
-        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[38] * t44)) + t56;
+        let t60 = T::fused(t24, t58, T::fused(t34, t54, self.derived[40] * t44)) + t56;
         let t61 = T::fused(
             self.parameters.offset_x,
             t57,
@@ -5137,7 +5202,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
         let t99 = T::fused(k(0.08), t93, k(0.8));
         let t100 = k(0.1) + t99;
         let t101 = k(0.08) * t97;
-        let t102 = T::fused(
+        let t102 = inner_ring_e0 * inner_ring_e0;
+        let t103 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t102));
+        let t104 = inner_ring_e0 * inner_ring_e3;
+        let t105 = inner_ring_e1 * inner_ring_e2;
+        let t106 = k(2.0) * (t105 - t104);
+        let t107 = k(2.0) * (t105 + t104);
+        let t108 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t102));
+        let t109 = T::fused(
+            T::fused(t103, self.parameters.offset_y, t106 * self.parameters.offset_x),
+            t98,
+            T::fused(t107, self.parameters.offset_y, t108 * self.parameters.offset_x)
+                * t99,
+        );
+        let t110 = inner_ring_e0 * inner_ring_e2;
+        let t111 = inner_ring_e1 * inner_ring_e3;
+        let t112 = k(2.0) * (t111 - t110);
+        let t113 = inner_ring_e0 * inner_ring_e1;
+        let t114 = inner_ring_e2 * inner_ring_e3;
+        let t115 = k(2.0) * (t114 + t113);
+        let t116 = T::fused(
+            t96 * self.parameters.imbalance_y,
+            t101,
+            T::fused(
+                t86 * self.parameters.imbalance_y,
+                t98,
+                t92 * self.parameters.imbalance_y * t99,
+            ),
+        );
+        let t117 = k(5e-6) * rotor_wx;
+        let t118 = rotor_wx * rotor_wx;
+        let t119 = rotor_wy * self.parameters.product_xz;
+        let t120 = T::fused(
+            rotor_wz,
+            t119,
+            T::fused(
+                rotor_wy,
+                t117,
+                self.parameters.product_xy * T::fused(rotor_wy, rotor_wy, -t118),
+            ),
+        );
+        let t121 = t120 + T::fused(-k(5e-6), t81, self.parameters.product_xz * t60)
+            - t116;
+        let t122 = T::fused(
+            t96 * self.parameters.imbalance_z,
+            t101,
+            T::fused(
+                t86 * self.parameters.imbalance_z,
+                t98,
+                t92 * self.parameters.imbalance_z * t99,
+            ),
+        );
+        let t123 = rotor_wz * self.parameters.product_xy;
+        let t124 = T::fused(
+            rotor_wy,
+            t123,
+            T::fused(
+                rotor_wz,
+                t117,
+                self.parameters.product_xz * T::fused(rotor_wz, rotor_wz, -t118),
+            ),
+        );
+        let t125 = t124 - T::fused(k(5e-6), t82, self.parameters.product_xy * t60)
+            - t122;
+        let t126 = T::fused(t3, t121, t5 * t125);
+        let t127 = T::fused(
+            -k(1e-6),
+            T::fused(inner_ring_wx, inner_ring_wy, t59),
+            t126
+                - T::fused(
+                    T::fused(
+                        -t112,
+                        self.parameters.offset_y,
+                        t115 * self.parameters.offset_x,
+                    ),
+                    t101,
+                    -t109,
+                ),
+        );
+        let t128 = k(2.0) * outer_ring_e2;
+        let t129 = outer_ring_e0 * t128;
+        let t130 = T::fused(
             -T::fused(
                 -t80,
                 self.parameters.imbalance_z,
@@ -5147,42 +5292,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             T::fused(t91, self.parameters.imbalance_z, t90 * self.parameters.imbalance_y)
                 * t99,
         );
-        let t103 = rotor_wz * self.parameters.product_xy;
-        let t104 = rotor_wy * self.parameters.product_xz;
-        let t105 = T::fused(
+        let t131 = T::fused(
             rotor_wx,
-            t104 - t103,
+            t119 - t123,
             -T::fused(
                 -self.parameters.product_xz,
                 t81,
                 T::fused(self.parameters.product_xy, t82, k(1e-5) * t60),
             ),
         );
-        let t106 = inner_ring_e0 * inner_ring_e3;
-        let t107 = inner_ring_e1 * inner_ring_e2;
-        let t108 = k(2.0) * (t107 - t106);
-        let t109 = inner_ring_e0 * inner_ring_e2;
-        let t110 = inner_ring_e1 * inner_ring_e3;
-        let t111 = k(2.0) * (t110 + t109);
-        let t112 = inner_ring_e0 * inner_ring_e0;
-        let t113 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t112));
-        let t114 = inner_ring_e0 * inner_ring_e1;
-        let t115 = inner_ring_e2 * inner_ring_e3;
-        let t116 = k(2.0) * (t115 - t114);
-        let t117 = T::fused(
-            -T::fused(-t108, self.parameters.offset_z, t111 * self.parameters.offset_y),
+        let t132 = k(2.0) * (t111 + t110);
+        let t133 = k(2.0) * (t114 - t113);
+        let t134 = T::fused(
+            -T::fused(-t106, self.parameters.offset_z, t132 * self.parameters.offset_y),
             t98,
-            T::fused(t113, self.parameters.offset_z, t116 * self.parameters.offset_y)
+            T::fused(t108, self.parameters.offset_z, t133 * self.parameters.offset_y)
                 * t99,
         );
-        let t118 = k(2.0) * (t115 + t114);
-        let t119 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t112));
-        let t120 = T::fused(
-            T::fused(t118, self.parameters.offset_z, t119 * self.parameters.offset_y),
+        let t135 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t102));
+        let t136 = T::fused(
+            T::fused(t115, self.parameters.offset_z, t135 * self.parameters.offset_y),
             t101,
-            -t117,
+            -t134,
         )
-            - (t105
+            - (t131
                 + T::fused(
                     T::fused(
                         t95,
@@ -5190,100 +5323,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
                         t94 * self.parameters.imbalance_y,
                     ),
                     t101,
-                    -t102,
+                    -t130,
                 ));
-        let t121 = T::fused(k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t56), t120);
-        let t122 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t112));
-        let t123 = k(2.0) * (t107 + t106);
-        let t124 = T::fused(
-            -T::fused(t122, self.parameters.offset_z, t111 * self.parameters.offset_x),
+        let t137 = T::fused(k(1e-6), T::fused(inner_ring_wy, inner_ring_wz, t56), t136);
+        let t138 = T::fused(
+            -T::fused(t103, self.parameters.offset_z, t132 * self.parameters.offset_x),
             t98,
-            T::fused(-t123, self.parameters.offset_z, t116 * self.parameters.offset_x)
+            T::fused(-t107, self.parameters.offset_z, t133 * self.parameters.offset_x)
                 * t99,
         );
-        let t125 = k(2.0) * (t110 - t109);
-        let t126 = T::fused(
-            t96 * self.parameters.imbalance_z,
-            t101,
-            T::fused(
-                t86 * self.parameters.imbalance_z,
-                t98,
-                t92 * self.parameters.imbalance_z * t99,
-            ),
-        );
-        let t127 = rotor_wx * rotor_wx;
-        let t128 = T::fused(
-            rotor_wy,
-            t103,
-            T::fused(
-                self.parameters.product_xz,
-                T::fused(rotor_wz, rotor_wz, -t127),
-                k(5e-6) * (rotor_wx * rotor_wz),
-            ),
-        );
-        let t129 = t128 - T::fused(k(5e-6), t82, self.parameters.product_xy * t60)
-            - t126;
-        let t130 = T::fused(
-            t96 * self.parameters.imbalance_y,
-            t101,
-            T::fused(
-                t86 * self.parameters.imbalance_y,
-                t98,
-                t92 * self.parameters.imbalance_y * t99,
-            ),
-        );
-        let t131 = T::fused(
-            rotor_wz,
-            t104,
-            T::fused(
-                self.parameters.product_xy,
-                T::fused(rotor_wy, rotor_wy, -t127),
-                k(5e-6) * (rotor_wx * rotor_wy),
-            ),
-        );
-        let t132 = t131 + T::fused(-k(5e-6), t81, self.parameters.product_xz * t60)
-            - t130;
-        let t133 = T::fused(-t3, t129, t5 * t132);
-        let t134 = T::fused(
+        let t139 = T::fused(-t5, t121, t3 * t125);
+        let t140 = T::fused(
             k(2e-6),
             t57,
-            -(t133
-                - T::fused(
+            t139
+                + T::fused(
                     T::fused(
-                        t125,
+                        t112,
                         self.parameters.offset_z,
-                        t119 * self.parameters.offset_x,
+                        t135 * self.parameters.offset_x,
                     ),
                     t101,
-                    -t124,
-                )),
+                    -t138,
+                ),
         );
-        let t135 = T::fused(-t9, t121, t11 * t134);
-        let t136 = T::fused(k(2e-6), t0, -t135);
-        let t137 = k(2.0) * outer_ring_e2;
-        let t138 = T::fused(-outer_ring_e2, t137, k(1.0));
-        let t139 = T::fused(
-            T::fused(t122, self.parameters.offset_y, t108 * self.parameters.offset_x),
-            t98,
-            T::fused(t123, self.parameters.offset_y, t113 * self.parameters.offset_x)
-                * t99,
-        );
-        let t140 = T::fused(t5, t129, t3 * t132);
-        let t141 = T::fused(
-            k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t59),
-            -(t140
-                - T::fused(
-                    T::fused(
-                        -t125,
-                        self.parameters.offset_y,
-                        t118 * self.parameters.offset_x,
-                    ),
-                    t101,
-                    -t139,
-                )),
-        );
-        let t142 = outer_ring_e0 * t137;
+        let t141 = T::fused(-t9, t137, t11 * t140);
+        let t142 = T::fused(k(2e-6), t0, -t141);
+        let t143 = T::fused(-outer_ring_e2, t128, k(1.0));
         *out = [
             k(0.0),
             k(0.0),
@@ -5306,18 +5372,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeMisalignments<T> {
             t98,
             -(k(0.1) + t100),
             -t101,
-            T::fused(-t142, t141, t138 * t136),
-            T::fused(t142, t136, t138 * t141),
+            T::fused(t129, t127, t143 * t142),
+            T::fused(-t143, t127, t129 * t142),
             t98,
             -t100,
             -t101,
-            -T::fused(t11, t121, t9 * t134),
-            t135,
+            -T::fused(t11, t137, t9 * t140),
+            t141,
             t98,
             -t99,
             -t101,
-            t140,
-            -t133,
+            t126,
+            t139,
         ];
     }
 }
@@ -5330,7 +5396,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 496 operations (198 ±, 296 ×, 2 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 492 operations (198 ±, 292 ×, 2 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -5345,229 +5411,236 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
         let u1 = x[4];
         let u2 = x[5];
         let t0 = x2.cos();
-        let t1 = t0 * self.derived[40];
-        let t2 = x2.sin();
-        let t3 = self.parameters.imbalance_z * t2;
-        let t4 = T::fused(self.derived[35], t3, -t1);
-        let t5 = t0 * t4;
-        let t6 = self.derived[43] - t5;
-        let t7 = T::fused(k(2.0), t6, k(1e-5));
-        let t8 = x1.sin();
-        let t9 = self.parameters.offset_y * t8;
-        let t10 = t0 * self.derived[35];
-        let t11 = T::fused(-k(0.16), t3, t10);
-        let t12 = T::fused(
+        let t1 = x2.sin();
+        let t2 = T::fused(self.derived[3], t0, self.derived[6] * t1);
+        let t3 = k(10.0) * t2;
+        let t4 = x1.cos();
+        let t5 = t1 * self.derived[42];
+        let t6 = t0 * self.derived[37];
+        let t7 = T::fused(self.parameters.imbalance_z, t6, t5);
+        let t8 = T::fused(-t0, t7, self.derived[43]);
+        let t9 = T::fused(self.parameters.offset_y, t2, t8);
+        let t10 = u1 * t9;
+        let t11 = self.parameters.imbalance_z * t1;
+        let t12 = T::fused(-k(0.16), t11, t6);
+        let t13 = T::fused(
             -self.parameters.product_xy,
             t0,
-            self.parameters.product_xz * t2,
+            self.parameters.product_xz * t1,
         );
-        let t13 = k(2.0) * t12;
-        let t14 = T::fused(-self.parameters.offset_x, t11, t13);
-        let t15 = x1.cos();
-        let t16 = T::fused(t11, t9, t15 * t14);
-        let t17 = T::fused(-t8, t7, t16);
-        let t18 = T::fused(self.derived[6], t0, self.derived[9] * t2);
-        let t19 = self.parameters.offset_y * t15;
-        let t20 = T::fused(self.parameters.offset_x, t8, t19);
-        let t21 = T::fused(
+        let t14 = k(2.0) * t13;
+        let t15 = T::fused(-self.parameters.offset_x, t12, t14);
+        let t16 = x1.sin();
+        let t17 = self.parameters.offset_y * t4;
+        let t18 = T::fused(-t16, t15, t12 * t17);
+        let t19 = t0 * self.derived[42];
+        let t20 = T::fused(self.derived[37], t11, -t19);
+        let t21 = t0 * t20;
+        let t22 = self.derived[45] - t21;
+        let t23 = T::fused(k(2.0), t22, k(1e-5));
+        let t24 = T::fused(t4, t23, -t18);
+        let t25 = u0 * t24;
+        let t26 = t25 - t10;
+        let t27 = T::fused(
             self.parameters.product_xy,
-            t2,
+            t1,
             self.parameters.product_xz * t0,
         );
-        let t22 = t8 * t21;
-        let t23 = T::fused(t18, t20, t22);
-        let t24 = t2 * self.derived[40];
-        let t25 = T::fused(self.parameters.imbalance_z, t10, t24);
-        let t26 = T::fused(-t0, t25, self.derived[41]);
-        let t27 = t15 * t21;
-        let t28 = T::fused(-self.parameters.offset_x, t15, t9);
-        let t29 = T::fused(t18, t28, -t27);
-        let t30 = T::fused(t8, t26, t29);
-        let t31 = u0 * T::fused(t8, T::fused(t15, t26, t23), t15 * t30);
-        let t32 = T::fused(u0, t31, T::fused(-u1, u0 * t17, k(10.0) * (t8 * t18)));
-        let t33 = T::fused(self.parameters.offset_x, t18, t21);
-        let t34 = self.derived[38] * t33;
-        let t35 = T::fused(-t8, t14, t11 * t19);
-        let t36 = k(4e-6) + (self.derived[44] + t6);
-        let t37 = t8 * t36;
-        let t38 = t15 * t36;
-        let t39 = T::fused(self.derived[47], t9, t38);
-        let t40 = T::fused(-t8, T::fused(-self.derived[47], t19, t37), t15 * t39)
-            - T::fused(-t8, t16, t15 * t35);
-        let t41 = u0 * (k(2.0) * t40);
-        let t42 = t15 * t11;
-        let t43 = T::fused(
-            k(5.0),
-            t42,
-            -T::fused(k(0.8), t20, u0 * T::fused(k(0.5), t41, u2 * t17)),
-        );
-        let t44 = T::fused(t34, t32, t43);
-        let t45 = self.derived[39] - t18;
-        let t46 = T::fused(self.derived[42], t11, t26);
-        let t47 = t15 * t46;
-        let t48 = T::fused(t11, t28, t15 * t13);
-        let t49 = self.parameters.offset_z * t18;
-        let t50 = self.derived[36] - t49;
-        let t51 = self.derived[37] + t50;
-        let t52 = T::fused(-k(0.5), t48, t8 * t51);
-        let t53 = T::fused(t34, t52, -T::fused(-t45, t20, t47 + t22));
-        let t54 = k(1.0)
-            / T::fused(
-                t33,
-                t34,
-                -(self.derived[19]
-                    + (T::fused(-self.parameters.offset_y, t11, k(6e-6)) + t6)),
-            );
-        let t55 = t54 * t53;
-        let t56 = T::fused(-t8, t13, t11 * t20);
-        let t57 = T::fused(-t15, t51, k(0.5) * t56);
-        let t58 = t8 * t46;
-        let t59 = T::fused(t34, t57, T::fused(t45, t28, t27 - t58));
-        let t60 = t54 * t59;
-        let t61 = t8 * t11;
-        let t62 = T::fused(t15, t7, -t35);
-        let t63 = T::fused(
+        let t28 = t4 * t27;
+        let t29 = self.parameters.offset_y * t16;
+        let t30 = T::fused(-self.parameters.offset_x, t4, t29);
+        let t31 = T::fused(t2, t30, -t28);
+        let t32 = T::fused(t16, t8, t31);
+        let t33 = T::fused(self.derived[44], t12, t8);
+        let t34 = T::fused(-t16, t32, t33);
+        let t35 = u0 * t34;
+        let t36 = T::fused(u0, t35, T::fused(t4, t3, u1 * t26));
+        let t37 = T::fused(self.parameters.offset_x, t2, t27);
+        let t38 = self.derived[40] * t37;
+        let t39 = k(2.0) * u2;
+        let t40 = k(0.25) * u2;
+        let t41 = T::fused(-t15, t40, t10);
+        let t42 = k(4e-6) + (self.derived[46] + t22);
+        let t43 = t4 * t42;
+        let t44 = T::fused(self.derived[49], t29, t43);
+        let t45 = T::fused(
             k(2.0),
-            T::fused(-t8, t39, T::fused(t8, t35, self.derived[26])),
-            t14,
+            T::fused(-t16, t44, T::fused(t16, t18, self.derived[25])),
+            t15,
         );
-        let t64 = u0 * t63;
-        let t65 = T::fused(-u2, t62, k(0.5) * t64);
-        let t66 = T::fused(self.parameters.offset_y, t18, t26);
-        let t67 = u1 * t66;
-        let t68 = T::fused(-k(0.25), u2 * t14, t67);
-        let t69 = T::fused(
+        let t46 = u0 * t45;
+        let t47 = T::fused(-u2, t24, k(0.5) * t46);
+        let t48 = t16 * t12;
+        let t49 = T::fused(
             k(5.0),
-            t61,
-            T::fused(u0, t65, T::fused(-k(0.8), t28, k(2.0) * (u2 * t68))),
+            t48,
+            T::fused(u0, t47, -T::fused(-t41, t39, k(0.8) * t30)),
         );
-        let t70 = T::fused(-t8, t30, t46);
-        let t71 = u0 * t70;
-        let t72 = u0 * t62;
-        let t73 = t72 - t67;
-        let t74 = T::fused(u0, t71, T::fused(k(10.0), t15 * t18, u1 * t73));
-        let t75 = T::fused(t34, t74, -t69);
-        let t76 = self.derived[38] * t52;
-        let t77 = self.derived[38] * t57;
-        let t78 = k(5e-6) + (t5 + t50);
+        let t50 = T::fused(-t38, t36, t49);
+        let t51 = T::fused(self.parameters.offset_x, t16, t17);
+        let t52 = self.derived[41] - t2;
+        let t53 = t16 * t27;
+        let t54 = t4 * t33;
+        let t55 = T::fused(t12, t30, t4 * t14);
+        let t56 = self.parameters.offset_z * t2;
+        let t57 = self.derived[38] - t56;
+        let t58 = self.derived[39] + t57;
+        let t59 = T::fused(-k(0.5), t55, t16 * t58);
+        let t60 = T::fused(t38, t59, -T::fused(-t52, t51, t54 + t53));
+        let t61 = k(1.0)
+            / T::fused(
+                t37,
+                t38,
+                -(self.derived[22]
+                    + (T::fused(-self.parameters.offset_y, t12, k(6e-6)) + t22)),
+            );
+        let t62 = t61 * t60;
+        let t63 = self.derived[40] * t59;
+        let t64 = u1 * t4;
+        let t65 = k(5e-6) + (t21 + t57);
+        let t66 = u2 * T::fused(-self.derived[44], t48, t31);
+        let t67 = T::fused(-k(2.0), T::fused(-t65, t64, t35), t66);
+        let t68 = t16 * t33;
+        let t69 = u1 * (T::fused(-self.derived[41], t30, t31) + t68);
+        let t70 = t46 + t69;
+        let t71 = T::fused(t62, t50, T::fused(t63, t36, T::fused(-u2, t67, u1 * t70)));
+        let t72 = T::fused(-t16, t14, t12 * t51);
+        let t73 = T::fused(-t4, t58, k(0.5) * t72);
+        let t74 = T::fused(t38, t73, T::fused(t52, t30, t28 - t68));
+        let t75 = t61 * t74;
+        let t76 = self.derived[40] * t73;
+        let t77 = t16 * t42;
+        let t78 = t55 - t77;
         let t79 = T::fused(
-            -u2,
-            T::fused(-self.derived[42], t42, t23),
-            k(2.0) * T::fused(t78, u1 * t8, -t31),
+            self.derived[49],
+            T::fused(-t4, t17, t16 * t29),
+            -T::fused(-t16, t43 - t72, t4 * t78),
         );
-        let t80 = T::fused(
+        let t80 = t79 + T::fused(t59, t76, t63 * t73) - T::fused(t60, t75, t62 * t74);
+        let t81 = T::fused(
+            self.derived[49],
+            T::fused(-t4, t29, self.derived[48]),
+            t21 + T::fused(-t16, t78, self.derived[47]),
+        );
+        let t82 = k(1.0)
+            / T::fused(t60, t62, -T::fused(t59, t63, -T::fused(-k(2.0), t56, t81)));
+        let t83 = t82 * t82;
+        let t84 = T::fused(t12, t29, t4 * t15);
+        let t85 = T::fused(-t16, t23, t84);
+        let t86 = T::fused(t2, t51, t53);
+        let t87 = u0 * T::fused(t16, T::fused(t4, t8, t86), t4 * t32);
+        let t88 = T::fused(u0, t87, -T::fused(-t16, t3, u1 * (u0 * t85)));
+        let t89 = T::fused(-t16, T::fused(-self.derived[49], t17, t77), t4 * t44)
+            - T::fused(-t16, t84, t4 * t18);
+        let t90 = u0 * (k(2.0) * t89);
+        let t91 = t4 * t12;
+        let t92 = T::fused(
+            -u2,
+            T::fused(-self.derived[44], t91, t86),
+            k(2.0) * T::fused(t65, u1 * t16, -t87),
+        );
+        let t93 = T::fused(
             u1,
-            T::fused(u1, t47 + T::fused(-self.derived[39], t20, t23), -t41),
-            u2 * t79,
+            T::fused(u1, t54 + T::fused(-self.derived[41], t51, t86), -t90),
+            u2 * t92,
         );
-        let t81 = t80 - T::fused(t76, t32, t74 * t77) + T::fused(t55, t44, t75 * t60);
-        let t82 = t48 - t37;
-        let t83 = T::fused(
-            self.derived[47],
-            T::fused(-t15, t9, self.derived[46]),
-            t5 + T::fused(-t8, t82, self.derived[45]),
+        let t94 = T::fused(
+            k(5.0),
+            t91,
+            -T::fused(k(0.8), t51, u0 * T::fused(k(0.5), t90, u2 * t85)),
         );
-        let t84 = k(1.0)
-            / T::fused(t53, t55, -T::fused(t52, t76, -T::fused(-k(2.0), t49, t83)));
-        let t85 = T::fused(
-            self.derived[47],
-            T::fused(-t15, t19, t8 * t9),
-            -T::fused(-t8, t38 - t56, t15 * t82),
-        );
-        let t86 = t85 + T::fused(t52, t77, t76 * t57) - T::fused(t53, t60, t55 * t59);
-        let t87 = t84 * t84;
-        let t88 = u1 * t15;
-        let t89 = u2 * T::fused(-self.derived[42], t61, t29);
-        let t90 = T::fused(-k(2.0), T::fused(-t78, t88, t71), t89);
-        let t91 = u1 * (T::fused(-self.derived[39], t28, t29) + t58);
-        let t92 = t64 + t91;
-        let t93 = T::fused(t55, t75, -T::fused(t76, t74, T::fused(-u2, t90, u1 * t92)));
-        let t94 = T::fused(t84, t81, t93 * (t87 * t86));
-        let t95 = self.parameters.imbalance_z * t0;
-        let t96 = T::fused(-t0, T::fused(self.derived[35], t95, t24), t2 * t4);
-        let t97 = t2 * self.derived[35];
-        let t98 = T::fused(k(0.16), t95, t97);
-        let t99 = k(2.0) * t21;
-        let t100 = T::fused(self.parameters.offset_x, t98, t99);
-        let t101 = T::fused(t19, t98, t8 * t100);
-        let t102 = T::fused(t15, k(2.0) * t96, t101);
-        let t103 = T::fused(
+        let t95 = T::fused(t38, t88, t94);
+        let t96 = T::fused(-t75, t50, t62 * t95) + (t93 - T::fused(t76, t36, t63 * t88));
+        let t97 = T::fused(-(t83 * t80), t71, t82 * t96);
+        let t98 = T::fused(-self.derived[3], t1, self.derived[6] * t0);
+        let t99 = self.parameters.offset_z * t98;
+        let t100 = k(2.0) * t27;
+        let t101 = self.parameters.imbalance_z * t0;
+        let t102 = t1 * self.derived[37];
+        let t103 = T::fused(k(0.16), t101, t102);
+        let t104 = T::fused(-t4, t100, t30 * t103);
+        let t105 = T::fused(-t16, t99, k(0.5) * t104);
+        let t106 = T::fused(-self.parameters.offset_x, t98, t13);
+        let t107 = self.derived[40] * t106;
+        let t108 = T::fused(
             -t0,
-            T::fused(-self.parameters.imbalance_z, t97, t1),
-            t2 * t25,
+            T::fused(-self.parameters.imbalance_z, t102, t19),
+            t1 * t7,
         );
-        let t104 = T::fused(-self.derived[6], t2, self.derived[9] * t0);
-        let t105 = u1 * T::fused(self.parameters.offset_y, t104, t103);
-        let t106 = T::fused(-self.derived[42], t98, t103);
-        let t107 = T::fused(t104, t28, t15 * t12);
-        let t108 = u0 * T::fused(t8, T::fused(t8, t103, t107), -t106);
-        let t109 = T::fused(
+        let t109 = T::fused(-self.derived[44], t103, t108);
+        let t110 = T::fused(t98, t51, -T::fused(-t4, t109, t16 * t13))
+            + T::fused(-t38, t105, t59 * t107);
+        let t111 = T::fused(-t0, T::fused(self.derived[37], t101, t5), t1 * t20);
+        let t112 = t61 * t61
+            * (T::fused(self.parameters.offset_y, t103, t111)
+                + T::fused(t37, t107, t38 * t106));
+        let t113 = T::fused(-t61, t110, t60 * t112);
+        let t114 = self.derived[40] * t105;
+        let t115 = T::fused(k(2.0), t99, T::fused(-t16, T::fused(t16, t111, t104), t111))
+            + T::fused(t59, t114, t63 * t105);
+        let t116 = T::fused(self.parameters.offset_x, t103, t100);
+        let t117 = T::fused(t17, t103, t16 * t116);
+        let t118 = T::fused(t4, k(2.0) * t111, t117);
+        let t119 = u1 * T::fused(self.parameters.offset_y, t98, t108);
+        let t120 = T::fused(t98, t30, t4 * t13);
+        let t121 = u0 * T::fused(t16, T::fused(t16, t108, t120), -t109);
+        let t122 = T::fused(
             u0,
-            t108,
-            -T::fused(-u1, T::fused(-u0, t102, t105), k(10.0) * (t15 * t104)),
+            t121,
+            -T::fused(-u1, T::fused(-u0, t118, t119), k(10.0) * (t4 * t98)),
         );
-        let t110 = T::fused(-self.parameters.offset_x, t104, t12);
-        let t111 = self.derived[38] * t110;
-        let t112 = u0 * T::fused(-k(2.0), T::fused(t8, t101, t8 * (t15 * t96)), t100);
-        let t113 = T::fused(
-            -k(2.0),
-            u2 * T::fused(-k(0.25), u2 * t100, t105),
-            u0 * T::fused(-k(0.5), t112, u2 * t102),
-        );
-        let t114 = t8 * t98;
-        let t115 = T::fused(k(5.0), t114, t113) - T::fused(t34, t109, t74 * t111);
-        let t116 = self.parameters.offset_z * t104;
-        let t117 = T::fused(-t15, t99, t28 * t98);
-        let t118 = T::fused(-t8, t116, k(0.5) * t117);
-        let t119 = T::fused(t104, t20, -T::fused(-t15, t106, t8 * t12))
-            + T::fused(-t34, t118, t52 * t111);
-        let t120 = t54 * t54
-            * (T::fused(self.parameters.offset_y, t98, t96)
-                + T::fused(t33, t111, t34 * t110));
-        let t121 = T::fused(-t54, t119, t53 * t120);
-        let t122 = self.derived[38] * t118;
-        let t123 = T::fused(
+        let t123 = u0 * T::fused(-k(2.0), T::fused(t16, t117, t16 * (t4 * t111)), t116);
+        let t124 = t16 * t103;
+        let t125 = T::fused(
             -u2,
-            T::fused(self.derived[42], t114, t107),
-            k(2.0) * T::fused(t88, t116 + t96, -t108),
+            T::fused(self.derived[44], t124, t120),
+            k(2.0) * T::fused(t64, t99 + t111, -t121),
         );
-        let t124 = T::fused(u1, T::fused(u1, T::fused(t8, t106, t107), t112), u2 * t123);
-        let t125 = t124 + T::fused(-t76, t109, t74 * t122)
-            - T::fused(t55, t115, t75 * t121);
-        let t126 = T::fused(k(2.0), t116, T::fused(-t8, T::fused(t8, t96, t117), t96))
-            + T::fused(t52, t122, t76 * t118);
+        let t126 = T::fused(
+            u1,
+            T::fused(u1, T::fused(t16, t109, t120), t123),
+            u2 * t125,
+        );
         let t127 = T::fused(
-            -t84,
-            t125,
-            t93 * (t87 * (t126 + T::fused(-t53, t121, t55 * t119))),
+            -t39,
+            T::fused(-t116, t40, t119),
+            u0 * T::fused(-k(0.5), t123, u2 * t118),
         );
-        let t128 = T::fused(u1, t62, k(2.0) * t71);
-        let t129 = T::fused(-t34, t128, T::fused(u0, k(0.5) * t63, t65));
+        let t128 = T::fused(t107, t36, t38 * t122) - T::fused(k(5.0), t124, t127);
+        let t129 = T::fused(t113, t50, t62 * t128)
+            + (t126 - T::fused(-t114, t36, t63 * t122));
         let t130 = T::fused(
-            t55,
-            t129,
-            T::fused(t76, t128, T::fused(u1, t63, u2 * (k(2.0) * t70))),
+            t83 * (t115 + T::fused(-t60, t113, t62 * t110)),
+            t71,
+            t82 * t129,
         );
-        let t131 = t84 * t130;
-        let t132 = t67 - t73;
-        let t133 = T::fused(t34, t132, k(2.0) * (u2 * t66));
-        let t134 = T::fused(t76, t132, T::fused(u2, k(2.0) * (t15 * t78), -(t91 + t92)));
-        let t135 = t84 * T::fused(-t55, t133, t134);
-        let t136 = T::fused(-k(2.0), T::fused(-u2, k(0.25) * t14, t68), t72);
-        let t137 = t84 * T::fused(t55, t136, t89 + t90);
-        let t138 = t84 * t93;
-        let t139 = T::fused(t54, t44, -T::fused(t55, t94, t138 * t60));
-        let t140 = T::fused(t54, t115, t75 * t120) - T::fused(t55, t127, t138 * t121);
-        let t141 = T::fused(-t55, t131, t54 * t129);
-        let t142 = T::fused(t55, t135, t54 * t133);
-        let t143 = T::fused(-t55, t137, t54 * t136);
-        let t144 = T::fused(
-            -t34,
-            t139,
-            T::fused(self.derived[38], t32, -T::fused(t76, t94, t138 * t77)),
+        let t131 = T::fused(u1, t24, k(2.0) * t35);
+        let t132 = T::fused(-t38, t131, T::fused(u0, k(0.5) * t45, t47));
+        let t133 = T::fused(
+            t62,
+            t132,
+            T::fused(t63, t131, T::fused(u1, t45, u2 * (k(2.0) * t34))),
         );
-        let t145 = T::fused(self.derived[38], t109, T::fused(t76, t127, t138 * t122))
-            + T::fused(t34, t140, T::fused(-t54, t75, t55 * t138) * t111);
+        let t134 = t82 * t133;
+        let t135 = t10 - t26;
+        let t136 = T::fused(t9, t39, t38 * t135);
+        let t137 = T::fused(t63, t135, T::fused(u2, k(2.0) * (t4 * t65), -(t69 + t70)));
+        let t138 = t82 * T::fused(-t62, t136, t137);
+        let t139 = T::fused(k(2.0), T::fused(u2, k(0.25) * t15, -t41), t25);
+        let t140 = t82 * T::fused(t62, t139, t66 + t67);
+        let t141 = t82 * t71;
+        let t142 = T::fused(-t61, t95, T::fused(-t75, t141, t62 * t97));
+        let t143 = T::fused(t113, t141, t62 * t130) - T::fused(t112, t50, t61 * t128);
+        let t144 = T::fused(-t62, t134, t61 * t132);
+        let t145 = T::fused(t61, t136, t62 * t138);
+        let t146 = T::fused(-t61, t139, t62 * t140);
+        let t147 = T::fused(
+            t38,
+            t142,
+            -T::fused(-self.derived[40], t88, T::fused(-t76, t141, t63 * t97)),
+        );
+        let t148 = T::fused(t107, T::fused(-t62, t141, t61 * t50), t38 * t143)
+            + T::fused(self.derived[40], t122, -T::fused(t114, t141, t63 * t130));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -5588,23 +5661,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeMisalignments<T> 
             k(0.0),
             k(1.0),
             k(0.0),
-            t94,
-            -t127,
-            t131,
-            -t135,
-            -t137,
-            k(0.0),
-            t139,
+            t97,
+            t130,
+            t134,
+            -t138,
             -t140,
-            t141,
-            t142,
-            -t143,
             k(0.0),
+            -t142,
+            -t143,
             t144,
             t145,
-            -T::fused(t34, t141, T::fused(t76, t131, self.derived[38] * t128)),
-            T::fused(-t34, t142, T::fused(t76, t135, self.derived[38] * t132)),
-            T::fused(t34, t143, t76 * t137),
+            t146,
+            k(0.0),
+            t147,
+            t148,
+            -T::fused(t38, t144, T::fused(t63, t134, self.derived[40] * t131)),
+            T::fused(-t38, t145, T::fused(t63, t138, self.derived[40] * t135)),
+            T::fused(-t38, t146, t63 * t140),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

@@ -11,8 +11,8 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 413 operations by relative Euler parameters; 433 operations by rotations of the bodies
-//! * project: 394 operations by relative Euler parameters; 410 operations by rotations of the bodies
+//! * accelerations: 390 operations by relative Euler parameters, doubled; 411 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 388 operations by relative Euler parameters, doubled; 392 operations by rotations of the bodies, doubled; 2 more compared
 //! * joint_accelerations: 61 operations by normal form; 91 operations by recursion
 //! * joint_accelerations_at: 99 operations by normal form; 129 operations by recursion; 1 more compared
 //! * corrected_accelerations: 179 operations by normal form in the bodies' frames; 193 operations by normal form in the global frame; 5 more compared
@@ -23,15 +23,15 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 51 | 60 | 0 | 111 | 0 of 18 | 178 | 111 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 68 | 137 | 0 | 205 | 0 of 77 | 590 | 205 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 105 | 0 | 169 | 0 of 41 | 540 | 169 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 66 | 122 | 0 | 188 | 0 of 77 | 670 | 188 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 58 | 90 | 0 | 148 | 0 of 41 | 652 | 148 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 15 of 15 | 0 | 0 |
-//! | gamma | γ | 122 | 195 | 0 | 317 | 6 of 15 | 1486 | 317 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 90 | 128 | 0 | 218 | 0 of 15 | 595 | 218 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 162 | 246 | 5 | 413 | 6 of 18 | 568074 | 417 |
-//! | multipliers | λ, the accelerations being known | 114 | 187 | 3 | 304 | 0 of 15 | 4371 | 304 |
-//! | project | (δr, δπ') that changes the rows as given | 147 | 242 | 5 | 394 | 0 of 18 | 491250 | 395 |
+//! | gamma | γ | 116 | 180 | 0 | 296 | 6 of 15 | 1741 | 296 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 113 | 0 | 197 | 0 of 15 | 701 | 197 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 156 | 228 | 5 | 389 | 6 of 18 | 588476 | 393 |
+//! | multipliers | λ, the accelerations being known | 108 | 172 | 3 | 283 | 0 of 15 | 5195 | 283 |
+//! | project | (δr, δπ') that changes the rows as given | 143 | 240 | 5 | 388 | 0 of 18 | 513043 | 389 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 54 | 60 | 0 | 114 | 0 of 9 | 216 | 114 |
@@ -46,7 +46,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 65 | 112 | 2 | 179 | 6 of 18 | 18438 | 180 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 853 | 134 |
 //! | corrected_solution | both | 89 | 153 | 2 | 244 | 6 of 33 | 214232 | 245 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 70 | 170 | 2 | 242 | 24 of 42 | 2805 | 242 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 70 | 164 | 2 | 236 | 24 of 42 | 2805 | 236 |
 //!
 //! # Proof
 //!
@@ -553,7 +553,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
             T::fused(rotor_e3, rotor_e3, t20 + t18) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 218 operations (90 ±, 128 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 197 operations (84 ±, 113 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -586,114 +586,123 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e2;
-        let t1 = outer_ring_e1 * outer_ring_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = outer_ring_e0 * outer_ring_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t3));
-        let t11 = inner_ring_e0 * inner_ring_e2;
-        let t12 = inner_ring_e1 * inner_ring_e3;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = outer_ring_e0 * outer_ring_e3;
-        let t15 = outer_ring_e1 * outer_ring_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = inner_ring_e0 * inner_ring_e0;
-        let t18 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t17));
-        let t19 = outer_ring_e0 * outer_ring_e1;
-        let t20 = outer_ring_e2 * outer_ring_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = T::fused(t4, t18, T::fused(k(2.0) * (t20 - t19), t9, t6 * t13));
-        let t23 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t7 = T::fused(-outer_ring_e1, t2, t5);
+        let t8 = t3 + t1;
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = outer_ring_e3 * t0;
+        let t15 = outer_ring_e2 * t2;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e1 * t9;
+        let t18 = k(2.0) * inner_ring_e2;
+        let t19 = inner_ring_e3 * t18;
+        let t20 = t19 - t17;
+        let t21 = k(2.0) * outer_ring_e2;
+        let t22 = T::fused(-outer_ring_e2, t21, t5);
+        let t23 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t24 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t23);
+        let t25 = outer_ring_e1 * t0;
+        let t26 = outer_ring_e3 * t21;
+        let t27 = t26 + t25;
+        let t28 = T::fused(t6, t24, T::fused(t8, t13, (t26 - t25) * t20));
+        let t29 = T::fused(
             outer_ring_wz,
-            T::fused(t21, t18, -T::fused(-t10, t9, t16 * t13)),
-            outer_ring_wy * t22,
+            T::fused(t27, t24, T::fused(-t16, t13, t22 * t20)),
+            outer_ring_wy * t28,
         );
-        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t17));
-        let t25 = inner_ring_e0 * inner_ring_e3;
-        let t26 = inner_ring_e1 * inner_ring_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(2.0) * (t15 + t14);
-        let t29 = k(2.0) * (t12 - t11);
-        let t30 = k(2.0) * (t26 - t25);
-        let t31 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t17));
-        let t32 = k(2.0) * (t8 + t7);
-        let t33 = T::fused(
+        let t30 = T::fused(-inner_ring_e1, t11, t23);
+        let t31 = inner_ring_e3 * t9;
+        let t32 = inner_ring_e2 * t11;
+        let t33 = t32 + t31;
+        let t34 = t15 + t14;
+        let t35 = t12 - t10;
+        let t36 = t32 - t31;
+        let t37 = T::fused(-inner_ring_e2, t18, t23);
+        let t38 = t19 + t17;
+        let t39 = T::fused(
             -inner_ring_wy,
-            T::fused(t2, t29, T::fused(t5, t24, t28 * t27)),
-            inner_ring_wx * T::fused(t2, t32, -T::fused(t5, t30, t28 * t31)),
+            T::fused(t4, t35, T::fused(t7, t30, t34 * t33)),
+            inner_ring_wx * T::fused(t4, t38, -T::fused(t7, t36, t34 * t37)),
         );
-        let t34 = T::fused(
+        let t40 = T::fused(
             outer_ring_wz,
-            T::fused(t2, t18, -T::fused(-t5, t13, t28 * t9)),
-            outer_ring_wx * t22,
+            T::fused(t4, t24, -T::fused(-t7, t13, t34 * t20)),
+            outer_ring_wx * t28,
         );
-        let t35 = T::fused(
+        let t41 = T::fused(
             -inner_ring_wy,
-            T::fused(t21, t29, -T::fused(t16, t24, t10 * t27)),
-            inner_ring_wx * T::fused(t21, t32, T::fused(t10, t31, t16 * t30)),
+            T::fused(t27, t35, -T::fused(t16, t30, t22 * t33)),
+            inner_ring_wx * T::fused(t27, t38, T::fused(t16, t36, t22 * t37)),
         );
-        let t36 = rotor_e0 * rotor_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t36));
-        let t38 = rotor_e0 * rotor_e2;
-        let t39 = rotor_e1 * rotor_e3;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = rotor_e0 * rotor_e3;
-        let t42 = rotor_e1 * rotor_e2;
-        let t43 = k(2.0) * (t42 + t41);
-        let t44 = rotor_e0 * rotor_e1;
-        let t45 = rotor_e2 * rotor_e3;
-        let t46 = k(2.0) * (t45 - t44);
-        let t47 = k(2.0) * (t39 - t38);
-        let t48 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t36));
-        let t49 = T::fused(t29, t47, T::fused(t24, t37, t27 * t43));
-        let t50 = T::fused(
-            inner_ring_wx,
-            T::fused(t18, t47, -T::fused(-t13, t37, t9 * t43)),
-            inner_ring_wz * t49,
+        let t42 = k(2.0) * rotor_e1;
+        let t43 = k(2.0) * rotor_e0;
+        let t44 = T::fused(-rotor_e0, t43, k(1.0));
+        let t45 = T::fused(-rotor_e1, t42, t44);
+        let t46 = rotor_e2 * t43;
+        let t47 = rotor_e3 * t42;
+        let t48 = t47 + t46;
+        let t49 = rotor_e3 * t43;
+        let t50 = rotor_e2 * t42;
+        let t51 = t50 + t49;
+        let t52 = rotor_e1 * t43;
+        let t53 = k(2.0) * rotor_e2;
+        let t54 = rotor_e3 * t53;
+        let t55 = t54 - t52;
+        let t56 = t47 - t46;
+        let t57 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t44);
+        let t58 = T::fused(t35, t56, T::fused(t30, t45, t33 * t51));
+        let t59 = T::fused(
+            inner_ring_wz,
+            t58,
+            inner_ring_wx * T::fused(t24, t56, -T::fused(-t13, t45, t20 * t51)),
         );
-        let t51 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t36));
-        let t52 = k(2.0) * (t42 - t41);
-        let t53 = k(2.0) * (t45 + t44);
-        let t54 = T::fused(
+        let t60 = t50 - t49;
+        let t61 = T::fused(-rotor_e2, t53, t44);
+        let t62 = t54 + t52;
+        let t63 = T::fused(
             rotor_wz,
-            T::fused(t32, t53, T::fused(t31, t51, t30 * t52)),
-            rotor_wy * T::fused(t32, t48, -T::fused(-t31, t46, t30 * t40)),
+            T::fused(t38, t62, T::fused(t36, t60, t37 * t61)),
+            rotor_wy * T::fused(t38, t57, T::fused(-t36, t48, t37 * t55)),
         );
-        let t55 = T::fused(
+        let t64 = T::fused(
             -inner_ring_wy,
-            t49,
-            inner_ring_wx * T::fused(t32, t47, -T::fused(t30, t37, t31 * t43)),
+            t58,
+            inner_ring_wx * T::fused(t38, t56, -T::fused(t36, t45, t37 * t51)),
         );
-        let t56 = T::fused(
+        let t65 = T::fused(
             rotor_wz,
-            T::fused(t18, t53, -T::fused(-t9, t51, t13 * t52)),
-            rotor_wy * T::fused(t18, t48, T::fused(t9, t46, t13 * t40)),
+            T::fused(t24, t62, T::fused(-t13, t60, t20 * t61)),
+            rotor_wy * T::fused(t24, t57, T::fused(t13, t48, t20 * t55)),
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -T::fused(t2, outer_ring_wz, t4 * outer_ring_wx),
-            T::fused(t5, outer_ring_wz, t6 * outer_ring_wx),
+            -T::fused(outer_ring_wz, t4, outer_ring_wx * t6),
+            T::fused(outer_ring_wz, t7, outer_ring_wx * t8),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t33 + t23),
-            t34 - t35,
-            T::fused(k(0.0002), T::fused(t37, rotor_wz, t40 * rotor_wx), rotor_sx)
+            -(t39 + t29),
+            t40 - t41,
+            T::fused(k(0.0002), T::fused(rotor_wz, t45, rotor_wx * t48), rotor_sx)
                 - inner_ring_sx,
-            T::fused(k(0.0002), T::fused(-t43, rotor_wz, t46 * rotor_wx), rotor_sy)
+            T::fused(k(0.0002), T::fused(-rotor_wz, t51, rotor_wx * t55), rotor_sy)
                 - inner_ring_sy,
-            T::fused(-k(0.0002), T::fused(t47, rotor_wz, t48 * rotor_wx), rotor_sz)
+            T::fused(-k(0.0002), T::fused(rotor_wz, t56, rotor_wx * t57), rotor_sz)
                 - inner_ring_sz,
-            t54 - t50,
-            -(t56 + t55),
+            t63 - t59,
+            -(t65 + t64),
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -1632,7 +1641,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 205 operations (68 ±, 137 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 188 operations (66 ±, 122 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1651,56 +1660,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t1 = k(2.0) * outer_ring_e0;
         let t2 = k(2.0) * outer_ring_e3;
         let t3 = k(2.0) * outer_ring_e2;
-        let t4 = inner_ring_e0 * inner_ring_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t4));
-        let t6 = t5 * t3;
-        let t7 = inner_ring_e0 * inner_ring_e1;
-        let t8 = inner_ring_e2 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = k(4.0) * outer_ring_e0;
-        let t11 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t12 = t5 * t2;
-        let t13 = t5 * t1;
-        let t14 = t5 * t0;
-        let t15 = k(4.0) * inner_ring_e0;
-        let t16 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
-        let t17 = k(2.0) * inner_ring_e1;
-        let t18 = outer_ring_e0 * outer_ring_e3;
-        let t19 = outer_ring_e1 * outer_ring_e2;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = k(2.0) * inner_ring_e2;
-        let t22 = outer_ring_e0 * outer_ring_e0;
-        let t23 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t22));
-        let t24 = k(2.0) * inner_ring_e0;
-        let t25 = k(2.0) * inner_ring_e3;
+        let t4 = k(2.0) * inner_ring_e3;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e3, t4, t6);
+        let t8 = t3 * t7;
+        let t9 = inner_ring_e1 * t5;
+        let t10 = k(2.0) * inner_ring_e2;
+        let t11 = inner_ring_e3 * t10;
+        let t12 = t11 - t9;
+        let t13 = k(2.0) * inner_ring_e1;
+        let t14 = T::fused(inner_ring_e2, t5, inner_ring_e3 * t13);
+        let t15 = k(4.0) * outer_ring_e0;
+        let t16 = t2 * t7;
+        let t17 = t1 * t7;
+        let t18 = t0 * t7;
+        let t19 = T::fused(-outer_ring_e2, t1, outer_ring_e3 * t0);
+        let t20 = k(4.0) * inner_ring_e0;
+        let t21 = outer_ring_e3 * t1;
+        let t22 = outer_ring_e2 * t0;
+        let t23 = t22 + t21;
+        let t24 = T::fused(-outer_ring_e0, t1, k(1.0));
+        let t25 = T::fused(-outer_ring_e1, t0, t24);
         let t26 = k(4.0) * inner_ring_e3;
-        let t27 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t28 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t22));
-        let t29 = k(2.0) * (t19 - t18);
+        let t27 = T::fused(outer_ring_e1, t1, outer_ring_e3 * t3);
+        let t28 = T::fused(-outer_ring_e2, t3, t24);
+        let t29 = t22 - t21;
         let t30 = k(0.0004) * rotor_e3;
         let t31 = k(0.0004) * rotor_e2;
         let t32 = k(0.0004) * rotor_e1;
         let t33 = k(0.0004) * rotor_e0;
-        let t34 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
-        let t35 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t36 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
-        let t37 = t36 * t25;
-        let t38 = t36 * t21;
-        let t39 = t36 * t17;
-        let t40 = t36 * t24;
-        let t41 = k(2.0) * rotor_e2;
-        let t42 = k(2.0) * (t8 + t7);
-        let t43 = k(2.0) * rotor_e3;
-        let t44 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t4));
-        let t45 = k(4.0) * rotor_e0;
-        let t46 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t47 = k(4.0) * rotor_e1;
-        let t48 = k(2.0) * rotor_e0;
-        let t49 = k(2.0) * rotor_e1;
+        let t34 = k(2.0) * rotor_e0;
+        let t35 = k(2.0) * rotor_e1;
+        let t36 = T::fused(-rotor_e2, t34, rotor_e3 * t35);
+        let t37 = T::fused(rotor_e3, t34, rotor_e2 * t35);
+        let t38 = T::fused(-rotor_e1, t35, T::fused(-rotor_e0, t34, k(1.0)));
+        let t39 = t4 * t38;
+        let t40 = t10 * t38;
+        let t41 = t13 * t38;
+        let t42 = t5 * t38;
+        let t43 = t11 + t9;
+        let t44 = k(2.0) * rotor_e2;
+        let t45 = T::fused(-inner_ring_e2, t10, t6);
+        let t46 = k(2.0) * rotor_e3;
+        let t47 = T::fused(-inner_ring_e3, t5, inner_ring_e2 * t13);
+        let t48 = k(4.0) * rotor_e0;
+        let t49 = k(4.0) * rotor_e1;
         *out = [
             k(1.0),
             k(1.0),
@@ -1719,22 +1724,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t9, t2, t11 * t10) + t6,
-            T::fused(t9, t3, t11 * (k(4.0) * outer_ring_e1)) - t12,
-            T::fused(t9, t0, t13),
-            T::fused(t9, t1, -t14),
-            T::fused(t16, t15, -T::fused(t20, t17, t23 * t21)),
-            -T::fused(t20, t24, t23 * t25),
-            T::fused(-t23, t24, t20 * t25),
-            T::fused(t16, t26, -T::fused(-t20, t21, t23 * t17)),
-            -(t14 + T::fused(-t9, t10, t11 * t2)),
-            T::fused(t11, t3, -t13),
-            T::fused(t9, k(4.0) * outer_ring_e2, t11 * t0) - t12,
-            -T::fused(t11, t1, t6),
-            T::fused(t27, t15, T::fused(t28, t17, t29 * t21)),
-            T::fused(t28, t24, t29 * t25),
-            T::fused(-t28, t25, t29 * t24),
-            T::fused(t27, t26, T::fused(-t28, t21, t29 * t17)),
+            T::fused(t2, t12, t15 * t14) + t8,
+            T::fused(t3, t12, k(4.0) * outer_ring_e1 * t14) - t16,
+            T::fused(t0, t12, t17),
+            T::fused(t1, t12, -t18),
+            T::fused(t20, t19, -T::fused(t13, t23, t10 * t25)),
+            -T::fused(t5, t23, t4 * t25),
+            T::fused(-t5, t25, t4 * t23),
+            T::fused(t26, t19, -T::fused(-t10, t23, t13 * t25)),
+            -(t18 + T::fused(-t15, t12, t2 * t14)),
+            T::fused(t3, t14, -t17),
+            T::fused(k(4.0) * outer_ring_e2, t12, t0 * t14) - t16,
+            -T::fused(t1, t14, t8),
+            T::fused(t20, t27, T::fused(t13, t28, t10 * t29)),
+            T::fused(t5, t28, t4 * t29),
+            T::fused(-t4, t28, t5 * t29),
+            T::fused(t26, t27, T::fused(-t10, t28, t13 * t29)),
             k(-1.0),
             k(1.0),
             -t30,
@@ -1751,37 +1756,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             t33,
             t30,
             t31,
-            T::fused(t34, t17, T::fused(t35, t15, t37)),
-            T::fused(t34, t24, -t38),
-            T::fused(t34, t25, -T::fused(-t35, k(4.0) * inner_ring_e2, t39)),
-            T::fused(t34, t21, t40),
-            T::fused(-t42, t41, T::fused(-t44, t43, t46 * t45)),
-            T::fused(t42, t43, T::fused(-t44, t41, t46 * t47)),
-            -T::fused(t42, t48, t44 * t49),
-            T::fused(-t44, t48, t42 * t49),
-            T::fused(t34, t15, -T::fused(t35, t17, t38)),
-            -T::fused(t35, t24, t37),
-            T::fused(t35, t25, -t40),
-            T::fused(t34, t26, -T::fused(-t35, t21, t39)),
-            T::fused(t5, t41, T::fused(t9, t43, t11 * t45)),
-            T::fused(-t5, t43, T::fused(t9, t41, t11 * t47)),
-            T::fused(t5, t48, t9 * t49),
-            T::fused(-t5, t49, t9 * t48),
+            T::fused(t13, t36, T::fused(t20, t37, t39)),
+            T::fused(t5, t36, -t40),
+            T::fused(t4, t36, -T::fused(-(k(4.0) * inner_ring_e2), t37, t41)),
+            T::fused(t10, t36, t42),
+            T::fused(-t44, t43, T::fused(-t46, t45, t48 * t47)),
+            T::fused(t46, t43, T::fused(-t44, t45, t49 * t47)),
+            -T::fused(t34, t43, t35 * t45),
+            T::fused(-t34, t45, t35 * t43),
+            T::fused(t20, t36, -T::fused(t13, t37, t40)),
+            -T::fused(t5, t37, t39),
+            T::fused(t4, t37, -t42),
+            T::fused(t26, t36, -T::fused(-t10, t37, t41)),
+            T::fused(t44, t7, T::fused(t46, t12, t48 * t14)),
+            T::fused(-t46, t7, T::fused(t44, t12, t49 * t14)),
+            T::fused(t34, t7, t35 * t12),
+            T::fused(-t35, t7, t34 * t12),
             t1,
             t0,
             t3,
             t2,
-            t24,
-            t17,
-            t21,
-            t25,
-            t48,
-            t49,
-            t41,
-            t43,
+            t5,
+            t13,
+            t10,
+            t4,
+            t34,
+            t35,
+            t44,
+            t46,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 169 operations (64 ±, 105 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 148 operations (58 ±, 90 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1796,103 +1801,106 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = outer_ring_e0 * outer_ring_e2;
-        let t3 = outer_ring_e1 * outer_ring_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t7 = inner_ring_e0 * inner_ring_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t7));
-        let t9 = inner_ring_e0 * inner_ring_e1;
-        let t10 = inner_ring_e2 * inner_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = outer_ring_e0 * outer_ring_e1;
-        let t13 = outer_ring_e2 * outer_ring_e3;
-        let t14 = inner_ring_e0 * inner_ring_e2;
-        let t15 = inner_ring_e1 * inner_ring_e3;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = T::fused(t1, t8, T::fused(k(2.0) * (t13 - t12), t11, t5 * t16));
-        let t18 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(2.0) * (t13 + t12);
-        let t23 = inner_ring_e0 * inner_ring_e3;
-        let t24 = inner_ring_e1 * inner_ring_e2;
-        let t25 = k(2.0) * (t24 - t23);
-        let t26 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t7));
-        let t27 = k(2.0) * (t20 + t19);
-        let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t7));
-        let t30 = k(2.0) * (t24 + t23);
-        let t31 = k(2.0) * (t15 - t14);
-        let t32 = rotor_e0 * rotor_e2;
-        let t33 = rotor_e1 * rotor_e3;
-        let t34 = t33 + t32;
-        let t35 = rotor_e0 * rotor_e0;
-        let t36 = k(0.5) - T::fused(rotor_e1, rotor_e1, t35);
-        let t37 = rotor_e0 * rotor_e1;
-        let t38 = rotor_e2 * rotor_e3;
-        let t39 = t38 - t37;
-        let t40 = rotor_e0 * rotor_e3;
-        let t41 = rotor_e1 * rotor_e2;
-        let t42 = t41 + t40;
-        let t43 = k(0.5) - T::fused(rotor_e3, rotor_e3, t35);
-        let t44 = t33 - t32;
-        let t45 = k(2.0) * t36;
-        let t46 = k(2.0) * t42;
-        let t47 = k(2.0) * t44;
-        let t48 = T::fused(t31, t47, T::fused(t29, t45, t30 * t46));
-        let t49 = k(2.0) * t39;
-        let t50 = k(2.0) * t34;
-        let t51 = k(2.0) * t43;
-        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t35));
-        let t53 = k(2.0) * (t41 - t40);
-        let t54 = k(2.0) * (t38 + t37);
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = outer_ring_e2 * t0;
+        let t4 = k(2.0) * outer_ring_e1;
+        let t5 = outer_ring_e3 * t4;
+        let t6 = t5 - t3;
+        let t7 = t5 + t3;
+        let t8 = T::fused(-outer_ring_e1, t4, t1);
+        let t9 = k(2.0) * inner_ring_e0;
+        let t10 = inner_ring_e2 * t9;
+        let t11 = k(2.0) * inner_ring_e1;
+        let t12 = inner_ring_e3 * t11;
+        let t13 = t12 + t10;
+        let t14 = inner_ring_e1 * t9;
+        let t15 = k(2.0) * inner_ring_e2;
+        let t16 = inner_ring_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = outer_ring_e1 * t0;
+        let t19 = k(2.0) * outer_ring_e2;
+        let t20 = outer_ring_e3 * t19;
+        let t21 = T::fused(-inner_ring_e0, t9, k(1.0));
+        let t22 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t21);
+        let t23 = T::fused(t2, t22, T::fused(t7, t13, (t20 - t18) * t17));
+        let t24 = outer_ring_e3 * t0;
+        let t25 = outer_ring_e2 * t4;
+        let t26 = t25 - t24;
+        let t27 = T::fused(-outer_ring_e2, t19, t1);
+        let t28 = t20 + t18;
+        let t29 = inner_ring_e3 * t9;
+        let t30 = inner_ring_e2 * t11;
+        let t31 = t30 - t29;
+        let t32 = T::fused(-inner_ring_e2, t15, t21);
+        let t33 = t25 + t24;
+        let t34 = t16 + t14;
+        let t35 = T::fused(-inner_ring_e1, t11, t21);
+        let t36 = t30 + t29;
+        let t37 = t12 - t10;
+        let t38 = k(2.0) * rotor_e0;
+        let t39 = rotor_e2 * t38;
+        let t40 = k(2.0) * rotor_e1;
+        let t41 = rotor_e3 * t40;
+        let t42 = t41 + t39;
+        let t43 = T::fused(-rotor_e0, t38, k(1.0));
+        let t44 = T::fused(-rotor_e1, t40, t43);
+        let t45 = rotor_e1 * t38;
+        let t46 = k(2.0) * rotor_e2;
+        let t47 = rotor_e3 * t46;
+        let t48 = t47 - t45;
+        let t49 = rotor_e3 * t38;
+        let t50 = rotor_e2 * t40;
+        let t51 = t50 + t49;
+        let t52 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t43);
+        let t53 = t41 - t39;
+        let t54 = T::fused(t37, t53, T::fused(t35, t44, t36 * t51));
+        let t55 = t50 - t49;
+        let t56 = T::fused(-rotor_e2, t46, t43);
+        let t57 = t47 + t45;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -t1,
-            -t4,
-            t5,
-            t6,
+            -t2,
+            -t6,
+            t7,
+            t8,
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            -t17,
-            T::fused(-t22, t8, T::fused(-t18, t11, t21 * t16)),
-            T::fused(-t4, t28, T::fused(t6, t25, t27 * t26)),
-            T::fused(t4, t31, T::fused(t6, t29, t27 * t30)),
-            t17,
-            T::fused(t4, t8, -T::fused(-t6, t16, t27 * t11)),
-            -T::fused(t22, t28, T::fused(t18, t26, t21 * t25)),
-            T::fused(t22, t31, -T::fused(t21, t29, t18 * t30)),
+            -t23,
+            -T::fused(t28, t22, T::fused(-t26, t13, t27 * t17)),
+            T::fused(-t6, t34, T::fused(t8, t31, t33 * t32)),
+            T::fused(t6, t37, T::fused(t8, t35, t33 * t36)),
+            t23,
+            T::fused(t6, t22, -T::fused(-t8, t13, t33 * t17)),
+            -T::fused(t28, t34, T::fused(t26, t31, t27 * t32)),
+            T::fused(t28, t37, -T::fused(t26, t35, t27 * t36)),
             k(-1.0),
             k(1.0),
-            k(0.0004) * t34,
-            k(0.0004) * t36,
+            k(0.0002) * t42,
+            k(0.0002) * t44,
             k(-1.0),
             k(1.0),
-            k(0.0004) * t39,
-            -(k(0.0004) * t42),
+            k(0.0002) * t48,
+            -(k(0.0002) * t51),
             k(-1.0),
             k(1.0),
-            -(k(0.0004) * t43),
-            -(k(0.0004) * t44),
-            T::fused(-t8, t47, T::fused(-t16, t45, t11 * t46)),
-            -t48,
-            T::fused(t28, t51, -T::fused(-t26, t49, t25 * t50)),
-            T::fused(t28, t54, T::fused(t26, t52, t25 * t53)),
-            T::fused(-t28, t47, T::fused(t25, t45, t26 * t46)),
-            t48,
-            -T::fused(t8, t51, T::fused(t11, t49, t16 * t50)),
-            T::fused(-t8, t54, T::fused(-t11, t52, t16 * t53)),
+            -(k(0.0002) * t52),
+            -(k(0.0002) * t53),
+            T::fused(-t22, t53, T::fused(-t13, t44, t17 * t51)),
+            -t54,
+            T::fused(t34, t52, T::fused(-t31, t42, t32 * t48)),
+            T::fused(t34, t57, T::fused(t31, t55, t32 * t56)),
+            T::fused(-t34, t53, T::fused(t31, t44, t32 * t51)),
+            t54,
+            -T::fused(t22, t52, T::fused(t13, t42, t17 * t48)),
+            -T::fused(t22, t57, T::fused(-t13, t55, t17 * t56)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1916,7 +1924,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 317 operations (122 ±, 195 ×, 0 ÷).
+    /// Writes γ: 296 operations (116 ±, 180 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -1940,161 +1948,170 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e2;
-        let t2 = outer_ring_e1 * outer_ring_e3;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
-        let t6 = outer_ring_e0 * outer_ring_e1;
-        let t7 = outer_ring_e2 * outer_ring_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = outer_ring_wy * outer_ring_wz;
-        let t10 = outer_ring_e0 * outer_ring_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t10));
-        let t13 = outer_ring_e0 * outer_ring_e3;
-        let t14 = outer_ring_e1 * outer_ring_e2;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (t2 + t1);
-        let t17 = inner_ring_e0 * inner_ring_e2;
-        let t18 = inner_ring_e1 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = inner_ring_e0 * inner_ring_e1;
-        let t21 = inner_ring_e2 * inner_ring_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * (t14 + t13);
-        let t24 = inner_ring_e0 * inner_ring_e0;
-        let t25 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t24));
-        let t26 = T::fused(t3, t25, -T::fused(-t12, t19, t23 * t22));
-        let t27 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t10));
-        let t28 = T::fused(t8, t25, -T::fused(-t27, t22, t15 * t19));
-        let t29 = k(2.0) * (t7 - t6);
-        let t30 = T::fused(t11, t25, T::fused(t29, t22, t16 * t19));
-        let t31 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = outer_ring_wx * outer_ring_wy;
+        let t6 = outer_ring_e1 * t0;
+        let t7 = k(2.0) * outer_ring_e2;
+        let t8 = outer_ring_e3 * t7;
+        let t9 = t8 + t6;
+        let t10 = outer_ring_wz * outer_ring_wz;
+        let t11 = T::fused(outer_ring_wx, outer_ring_wx, t10);
+        let t12 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t13 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t12);
+        let t14 = outer_ring_wy * outer_ring_wz;
+        let t15 = T::fused(-outer_ring_e1, t2, t12);
+        let t16 = outer_ring_e3 * t0;
+        let t17 = outer_ring_e2 * t2;
+        let t18 = t17 - t16;
+        let t19 = t3 + t1;
+        let t20 = k(2.0) * inner_ring_e0;
+        let t21 = inner_ring_e2 * t20;
+        let t22 = k(2.0) * inner_ring_e1;
+        let t23 = inner_ring_e3 * t22;
+        let t24 = t23 + t21;
+        let t25 = inner_ring_e1 * t20;
+        let t26 = k(2.0) * inner_ring_e2;
+        let t27 = inner_ring_e3 * t26;
+        let t28 = t27 - t25;
+        let t29 = t17 + t16;
+        let t30 = T::fused(-inner_ring_e0, t20, k(1.0));
+        let t31 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t30);
+        let t32 = T::fused(t4, t31, -T::fused(-t15, t24, t29 * t28));
+        let t33 = T::fused(-outer_ring_e2, t7, t12);
+        let t34 = T::fused(t9, t31, T::fused(-t18, t24, t33 * t28));
+        let t35 = t8 - t6;
+        let t36 = T::fused(t13, t31, T::fused(t19, t24, t35 * t28));
+        let t37 = T::fused(
             outer_ring_wx * outer_ring_wz,
-            t30,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t26, t0 * t28),
+            t36,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t10), t32, t5 * t34),
         );
-        let t32 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t24));
-        let t33 = inner_ring_e0 * inner_ring_e3;
-        let t34 = inner_ring_e1 * inner_ring_e2;
-        let t35 = k(2.0) * (t34 + t33);
-        let t36 = k(2.0) * (t18 - t17);
-        let t37 = T::fused(t8, t36, -T::fused(t15, t32, t27 * t35));
-        let t38 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t24));
-        let t39 = k(2.0) * (t34 - t33);
-        let t40 = k(2.0) * (t21 + t20);
-        let t41 = T::fused(t8, t40, T::fused(t27, t38, t15 * t39));
-        let t42 = T::fused(
+        let t38 = T::fused(-inner_ring_e1, t22, t30);
+        let t39 = inner_ring_e3 * t20;
+        let t40 = inner_ring_e2 * t22;
+        let t41 = t40 + t39;
+        let t42 = t23 - t21;
+        let t43 = T::fused(t9, t42, -T::fused(t18, t38, t33 * t41));
+        let t44 = t40 - t39;
+        let t45 = T::fused(-inner_ring_e2, t26, t30);
+        let t46 = t27 + t25;
+        let t47 = T::fused(t9, t46, T::fused(t18, t44, t33 * t45));
+        let t48 = T::fused(
             -inner_ring_wy,
-            T::fused(t11, t36, -T::fused(-t16, t32, t29 * t35)),
-            inner_ring_wx * T::fused(t11, t40, -T::fused(-t29, t38, t16 * t39)),
+            T::fused(t13, t42, -T::fused(-t19, t38, t35 * t41)),
+            inner_ring_wx * T::fused(t13, t46, T::fused(-t19, t44, t35 * t45)),
         );
-        let t43 = T::fused(t3, t36, T::fused(t12, t32, t23 * t35));
-        let t44 = inner_ring_wx * inner_ring_wz;
-        let t45 = T::fused(t3, t40, -T::fused(t12, t39, t23 * t38));
-        let t46 = inner_ring_wy * inner_ring_wz;
-        let t47 = inner_ring_wx * inner_ring_wx;
-        let t48 = T::fused(inner_ring_wy, inner_ring_wy, t47);
-        let t49 = T::fused(
+        let t49 = T::fused(t4, t42, T::fused(t15, t38, t29 * t41));
+        let t50 = inner_ring_wx * inner_ring_wz;
+        let t51 = T::fused(t4, t46, -T::fused(t15, t44, t29 * t45));
+        let t52 = inner_ring_wy * inner_ring_wz;
+        let t53 = inner_ring_wx * inner_ring_wx;
+        let t54 = T::fused(inner_ring_wy, inner_ring_wy, t53);
+        let t55 = T::fused(
             -k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t37, inner_ring_wx * t41),
-                outer_ring_wy * t42,
+                T::fused(-inner_ring_wy, t43, inner_ring_wx * t47),
+                outer_ring_wy * t48,
             ),
-            T::fused(t48, t26, T::fused(t44, t43, t46 * t45)),
+            T::fused(t54, t32, T::fused(t50, t49, t52 * t51)),
         );
-        let t50 = T::fused(
+        let t56 = T::fused(
             k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t43, inner_ring_wx * t45),
-                outer_ring_wx * t42,
+                T::fused(-inner_ring_wy, t49, inner_ring_wx * t51),
+                outer_ring_wx * t48,
             ),
-            T::fused(t48, t28, T::fused(t44, t37, t46 * t41)),
+            T::fused(t54, t34, T::fused(t50, t43, t52 * t47)),
         );
-        let t51 = rotor_wx * rotor_wy;
-        let t52 = rotor_e0 * rotor_e0;
-        let t53 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t52));
-        let t54 = rotor_wz * rotor_wz;
-        let t55 = T::fused(rotor_wx, rotor_wx, t54);
-        let t56 = rotor_e0 * rotor_e3;
-        let t57 = rotor_e1 * rotor_e2;
-        let t58 = k(2.0) * (t57 - t56);
-        let t59 = rotor_wy * rotor_wz;
-        let t60 = rotor_e0 * rotor_e2;
-        let t61 = rotor_e1 * rotor_e3;
-        let t62 = k(2.0) * (t61 + t60);
-        let t63 = k(2.0) * (t57 + t56);
-        let t64 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t52));
-        let t65 = rotor_e0 * rotor_e1;
-        let t66 = rotor_e2 * rotor_e3;
-        let t67 = k(2.0) * (t66 - t65);
-        let t68 = k(2.0) * (t61 - t60);
-        let t69 = k(2.0) * (t66 + t65);
-        let t70 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t52));
-        let t71 = T::fused(t36, t68, T::fused(t32, t53, t35 * t63));
-        let t72 = T::fused(t40, t68, -T::fused(t39, t53, t38 * t63));
-        let t73 = T::fused(t25, t68, -T::fused(-t19, t53, t22 * t63));
-        let t74 = T::fused(
-            t46,
-            t73,
+        let t57 = k(2.0) * rotor_e1;
+        let t58 = k(2.0) * rotor_e0;
+        let t59 = T::fused(-rotor_e0, t58, k(1.0));
+        let t60 = T::fused(-rotor_e1, t57, t59);
+        let t61 = rotor_wx * rotor_wy;
+        let t62 = rotor_e3 * t58;
+        let t63 = rotor_e2 * t57;
+        let t64 = t63 - t62;
+        let t65 = rotor_wz * rotor_wz;
+        let t66 = T::fused(rotor_wx, rotor_wx, t65);
+        let t67 = rotor_e2 * t58;
+        let t68 = rotor_e3 * t57;
+        let t69 = t68 + t67;
+        let t70 = rotor_wy * rotor_wz;
+        let t71 = t63 + t62;
+        let t72 = k(2.0) * rotor_e2;
+        let t73 = T::fused(-rotor_e2, t72, t59);
+        let t74 = rotor_e1 * t58;
+        let t75 = rotor_e3 * t72;
+        let t76 = t75 - t74;
+        let t77 = t68 - t67;
+        let t78 = t75 + t74;
+        let t79 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t59);
+        let t80 = T::fused(t42, t77, T::fused(t38, t60, t41 * t71));
+        let t81 = T::fused(t46, t77, -T::fused(t44, t60, t45 * t71));
+        let t82 = T::fused(t31, t77, -T::fused(-t24, t60, t28 * t71));
+        let t83 = T::fused(
+            t52,
+            t82,
             T::fused(
                 -(inner_ring_wx * inner_ring_wy),
-                t71,
-                T::fused(inner_ring_wz, inner_ring_wz, t47) * t72,
+                t80,
+                T::fused(inner_ring_wz, inner_ring_wz, t53) * t81,
             ),
         );
-        let t75 = T::fused(
+        let t84 = T::fused(
             rotor_wz,
-            T::fused(t36, t69, -T::fused(t32, t58, t35 * t64)),
-            rotor_wy * T::fused(t36, t70, -T::fused(-t32, t62, t35 * t67)),
+            T::fused(t42, t78, -T::fused(t38, t64, t41 * t73)),
+            rotor_wy * T::fused(t42, t79, -T::fused(-t38, t69, t41 * t76)),
         );
-        let t76 = T::fused(t25, t69, -T::fused(-t22, t64, t19 * t58));
-        let t77 = T::fused(t25, t70, T::fused(t22, t67, t19 * t62));
-        let t78 = T::fused(rotor_wy, rotor_wy, t54);
-        let t79 = T::fused(t40, t69, T::fused(t38, t64, t39 * t58));
-        let t80 = T::fused(t40, t70, -T::fused(-t38, t67, t39 * t62));
-        let t81 = rotor_wx * rotor_wz;
-        let t82 = T::fused(
+        let t85 = T::fused(t31, t78, T::fused(-t24, t64, t28 * t73));
+        let t86 = T::fused(t31, t79, T::fused(t24, t69, t28 * t76));
+        let t87 = T::fused(rotor_wy, rotor_wy, t65);
+        let t88 = T::fused(t46, t78, T::fused(t44, t64, t45 * t73));
+        let t89 = T::fused(t46, t79, T::fused(-t44, t69, t45 * t76));
+        let t90 = rotor_wx * rotor_wz;
+        let t91 = T::fused(
             k(2.0),
             T::fused(
                 inner_ring_wz,
-                t75,
-                inner_ring_wx * T::fused(rotor_wz, t76, rotor_wy * t77),
+                t84,
+                inner_ring_wx * T::fused(rotor_wz, t85, rotor_wy * t86),
             ),
-            T::fused(t81, t80, -T::fused(-t78, t72, t51 * t79)),
+            T::fused(t90, t89, -T::fused(-t87, t81, t61 * t88)),
         );
-        let t83 = T::fused(
+        let t92 = T::fused(
             -k(2.0),
             T::fused(
                 -inner_ring_wy,
-                t75,
-                inner_ring_wx * T::fused(rotor_wz, t79, rotor_wy * t80),
+                t84,
+                inner_ring_wx * T::fused(rotor_wz, t88, rotor_wy * t89),
             ),
-            T::fused(t81, t77, -T::fused(-t78, t73, t51 * t76)),
+            T::fused(t90, t86, -T::fused(-t87, t82, t61 * t85)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t11, t9, T::fused(-t3, t0, t8 * t5)),
-            T::fused(-t16, t9, T::fused(t12, t0, t15 * t5)),
+            T::fused(t14, t13, T::fused(-t5, t4, t11 * t9)),
+            T::fused(-t14, t19, T::fused(t5, t15, t11 * t18)),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t49 + t31),
-            -(t50 + T::fused(t9, t30, T::fused(-t0, t26, t5 * t28))),
-            -(k(0.0002) * T::fused(t62, t59, -T::fused(t53, t51, t58 * t55))),
-            -(k(0.0002) * T::fused(t67, t59, T::fused(t63, t51, t64 * t55))),
-            k(0.0002) * T::fused(t70, t59, T::fused(-t68, t51, t69 * t55)),
-            t82 + t74,
-            -(t83 + T::fused(t48, t73, T::fused(t44, t71, t46 * t72))),
+            -(t55 + t37),
+            -(t56 + T::fused(t14, t36, T::fused(-t5, t32, t11 * t34))),
+            -(k(0.0002) * T::fused(t70, t69, -T::fused(t61, t60, t66 * t64))),
+            -(k(0.0002) * T::fused(t70, t76, T::fused(t61, t71, t66 * t73))),
+            k(0.0002) * T::fused(t70, t79, T::fused(-t61, t77, t66 * t78)),
+            t91 + t83,
+            -(t92 + T::fused(t54, t82, T::fused(t50, t80, t52 * t81))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2106,28 +2123,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
         *out = [
             k(0.0),
             k(-0.1),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
             k(0.0),
             k(-0.1),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz),
+            inner_ring_wz * t1,
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
+            -(inner_ring_wx * t1),
             k(0.0),
             k(-0.8),
             k(0.0),
             k(0.0),
-            -(k(5e-6) * (rotor_wx * rotor_wz)),
-            k(5e-6) * (rotor_wx * rotor_wy),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 413 operations (162 ±, 246 ×, 5 ÷).
+    /// Solves eq. (17): 389 operations (156 ±, 228 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2151,53 +2171,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
-            * (k(0.5)
-                / (k(0.5)
-                    - T::fused(
-                        outer_ring_e2,
-                        outer_ring_e2,
-                        outer_ring_e0 * outer_ring_e0,
-                    )));
-        let t1 = T::fused(
-            -(k(2.0)
-                * T::fused(
-                    -outer_ring_e0,
-                    outer_ring_e1,
-                    outer_ring_e2 * outer_ring_e3,
-                )),
-            t0,
+        let t0 = k(2.0) * outer_ring_e2;
+        let t1 = k(2.0) * outer_ring_e0;
+        let t2 = T::fused(outer_ring_wx, outer_ring_wx, outer_ring_wz * outer_ring_wz)
+            / T::fused(-outer_ring_e2, t0, T::fused(-outer_ring_e0, t1, k(1.0)));
+        let t3 = T::fused(
+            -T::fused(-outer_ring_e1, t1, outer_ring_e3 * t0),
+            t2,
             outer_ring_wy * outer_ring_wz,
         );
-        let t2 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t3 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t4 = t3 * t2;
+        let t4 = k(1e-6) * inner_ring_wy;
         let t5 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t6 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2206,37 +2190,91 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t7 = t6 * t5;
-        let t8 = t7 + t4;
-        let t9 = k(1e-5) * t8;
-        let t10 = k(2.0) * t8;
-        let t11 = t3 * t5;
-        let t12 = t6 * t2;
-        let t13 = t12 - t11;
-        let t14 = k(1.00064e-5) * t13;
-        let t15 = k(2.0) * t13;
-        let t16 = t3 * t6;
-        let t17 = t5 * t2;
-        let t18 = t17 - t16;
-        let t19 = k(2.0) * t18;
-        let t20 = t3 * t3;
-        let t21 = k(0.5) - T::fused(t2, t2, t20);
-        let t22 = k(2.0) * t21;
-        let t23 = T::fused(-t19, t9, t22 * t14);
-        let t24 = k(1.0)
-            / (k(1e-6) + T::fused(t19, k(1e-5) * t18, t22 * (k(1.00064e-5) * t21)));
-        let t25 = t24 * t23;
-        let t26 = T::fused(t23, t25, -(k(1e-6) + T::fused(t10, t9, t15 * t14)));
-        let t27 = T::fused(
-            -outer_ring_e0,
+        let t6 = k(2.0) * t5;
+        let t7 = T::fused(
             inner_ring_e3,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t28 = T::fused(
+        let t8 = k(2.0) * t7;
+        let t9 = T::fused(-t7, t8, k(1.0));
+        let t10 = T::fused(-t5, t6, t9);
+        let t11 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t12 = t11 * t8;
+        let t13 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t14 = t13 * t6;
+        let t15 = t13 * t8;
+        let t16 = t11 * t6;
+        let t17 = T::fused(
+            inner_ring_wz,
+            t16 + t15,
+            T::fused(-inner_ring_wx, t10, inner_ring_wy * (t14 - t12)),
+        );
+        let t18 = rotor_wx - t17;
+        let t19 = t16 - t15;
+        let t20 = t5 * t8;
+        let t21 = k(2.0) * t13;
+        let t22 = t11 * t21;
+        let t23 = t22 + t20;
+        let t24 = T::fused(-t11, k(2.0) * t11, t9);
+        let t25 = T::fused(
+            inner_ring_wz,
+            t24,
+            -T::fused(inner_ring_wx, t19, inner_ring_wy * t23),
+        );
+        let t26 = rotor_wz + t25;
+        let t27 = t14 + t12;
+        let t28 = T::fused(-t13, t21, t9);
+        let t29 = t22 - t20;
+        let t30 = T::fused(
+            inner_ring_wz,
+            t29,
+            -T::fused(-inner_ring_wx, t27, inner_ring_wy * t28),
+        );
+        let t31 = rotor_wy - t30;
+        let t32 = T::fused(t26, t26, t31 * t31) / t10;
+        let t33 = T::fused(rotor_wx, t25, rotor_wz * t17)
+            + T::fused(-t26, t18, t19 * t32);
+        let t34 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t33);
+        let t35 = T::fused(-rotor_wy, t17, rotor_wx * t30)
+            - T::fused(-t31, t18, t27 * t32);
+        let t36 = k(0.0002) * rotor_wx;
+        let t37 = rotor_wy * t36;
+        let t38 = k(2.0) * rotor_e0;
+        let t39 = rotor_e3 * t38;
+        let t40 = k(2.0) * rotor_e1;
+        let t41 = rotor_e2 * t40;
+        let t42 = t41 + t39;
+        let t43 = T::fused(-k(0.00016), t42, k(5e-6) * (rotor_wx * rotor_wy))
+            + T::fused(k(5.0032e-6), t35, k(1.6e-5) * t37);
+        let t44 = T::fused(inner_ring_wx, t4, T::fused(t29, t34, t24 * t43));
+        let t45 = k(1.0)
+            / (k(1e-6) + T::fused(t29, k(5e-6) * t29, t24 * (k(5.0032e-6) * t24)));
+        let t46 = t45 * t44;
+        let t47 = k(5e-6) * t28;
+        let t48 = k(5.0032e-6) * t23;
+        let t49 = T::fused(t29, t47, t24 * t48);
+        let t50 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2245,8 +2283,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t29 = t28 * t27;
-        let t30 = T::fused(
+        let t51 = k(2.0) * t50;
+        let t52 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2255,7 +2293,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t31 = T::fused(
+        let t53 = t52 * t51;
+        let t54 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2264,171 +2303,137 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t32 = t31 * t30;
-        let t33 = k(2.0) * (t32 - t29);
-        let t34 = k(0.5) - T::fused(t5, t5, t20);
-        let t35 = k(2.0) * t34;
-        let t36 = t17 + t16;
-        let t37 = k(2.0) * t36;
-        let t38 = k(1e-5) * t34;
-        let t39 = k(1.00064e-5) * t36;
-        let t40 = T::fused(t19, t38, t22 * t39);
-        let t41 = T::fused(t40, t25, -T::fused(-t35, t9, t37 * t14));
-        let t42 = t28 * t28;
-        let t43 = k(2.0) * (k(0.5) - T::fused(t30, t30, t42));
-        let t44 = T::fused(-t33, t26, t43 * t41);
-        let t45 = T::fused(t40, t24 * t40, -(k(2e-6) + T::fused(t35, t38, t37 * t39)));
-        let t46 = T::fused(-t33, t41, t43 * t45);
-        let t47 = k(2.0) * (k(0.5) - T::fused(t31, t31, t42));
-        let t48 = k(2.0) * (t32 + t29);
-        let t49 = T::fused(
-            -t33,
-            T::fused(-t47, t26, t48 * t41),
-            t43 * T::fused(-t47, t41, t48 * t45),
-        );
-        let t50 = t28 * t30;
-        let t51 = t31 * t27;
-        let t52 = k(2.0) * (t51 + t50);
-        let t53 = t28 * t31;
-        let t54 = t30 * t27;
-        let t55 = k(2.0) * (t54 - t53);
+        let t55 = k(2.0) * t54;
         let t56 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2)),
-            t0,
-            outer_ring_wx * outer_ring_wy,
-        );
-        let t57 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t51 - t50),
-            outer_ring_wy * (k(2.0) * (t54 + t53)),
-        );
-        let t58 = k(0.5) - T::fused(t27, t27, t42);
-        let t59 = T::fused(outer_ring_wz, k(2.0) * t58, -t57);
-        let t60 = inner_ring_wz + t59;
-        let t61 = T::fused(
-            outer_ring_wz,
-            t55,
-            -T::fused(-outer_ring_wx, t48, outer_ring_wy * t43),
-        );
-        let t62 = inner_ring_wy - t61;
-        let t63 = T::fused(
-            outer_ring_wz,
-            t52,
-            T::fused(-outer_ring_wx, t47, outer_ring_wy * t33),
-        );
-        let t64 = inner_ring_wx - t63;
-        let t65 = k(0.5) / t58 * T::fused(t62, t62, t64 * t64);
-        let t66 = T::fused(inner_ring_wz, t61, inner_ring_wy * t59)
-            - T::fused(-t62, t60, t55 * t65);
-        let t67 = T::fused(inner_ring_wx, t59, inner_ring_wz * t63)
-            - T::fused(-t64, t60, t52 * t65);
-        let t68 = k(0.5) - T::fused(t6, t6, t20);
-        let t69 = T::fused(
-            inner_ring_wz,
-            k(2.0) * (t12 + t11),
-            T::fused(-inner_ring_wx, k(2.0) * t68, inner_ring_wy * (k(2.0) * (t7 - t4))),
-        );
-        let t70 = rotor_wx - t69;
-        let t71 = T::fused(
-            inner_ring_wz,
-            t22,
-            -T::fused(inner_ring_wx, t15, inner_ring_wy * t37),
-        );
-        let t72 = rotor_wz + t71;
-        let t73 = T::fused(
-            inner_ring_wz,
-            t19,
-            -T::fused(-inner_ring_wx, t10, inner_ring_wy * t35),
-        );
-        let t74 = rotor_wy - t73;
-        let t75 = k(0.5) / t68 * T::fused(t72, t72, t74 * t74);
-        let t76 = T::fused(rotor_wx, t71, rotor_wz * t69)
-            + T::fused(-t72, t70, t15 * t75);
-        let t77 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t76);
-        let t78 = T::fused(-rotor_wy, t69, rotor_wx * t73)
-            - T::fused(-t74, t70, t10 * t75);
-        let t79 = k(0.0002) * rotor_wx;
-        let t80 = rotor_wy * t79;
-        let t81 = rotor_e0 * rotor_e3;
-        let t82 = rotor_e1 * rotor_e2;
-        let t83 = t82 + t81;
-        let t84 = T::fused(-k(0.00032), t83, k(5e-6) * (rotor_wx * rotor_wy))
-            + T::fused(k(5.0032e-6), t78, k(1.6e-5) * t80);
-        let t85 = T::fused(
-            k(1e-6),
-            inner_ring_wx * inner_ring_wy,
-            T::fused(t19, t77, t22 * t84),
-        );
-        let t86 = t85 * t24;
-        let t87 = T::fused(
-            t86,
-            t23,
-            -T::fused(
-                k(1e-6),
-                inner_ring_wy * inner_ring_wz,
-                T::fused(-t10, t77, t15 * t84),
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t88 = T::fused(t86, t40, -T::fused(t35, t77, t37 * t84))
-            + T::fused(-t41, t66, t45 * t67);
-        let t89 = T::fused(-t33, t87 + T::fused(-t66, t26, t67 * t41), t43 * t88);
-        let t90 = T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t89)
-            + T::fused(-t1, t49, t56 * T::fused(t52, t44, t55 * t46));
-        let t91 = t90 / (k(1e-6) - T::fused(-t33, t44, t43 * t46));
-        let t92 = t66 - T::fused(-t56, t52, T::fused(-t1, t47, t33 * t91));
-        let t93 = t67 - T::fused(t56, t55, T::fused(-t1, t48, t43 * t91));
-        let t94 = t24 * (t85 + T::fused(-t23, t92, t40 * t93));
-        let t95 = t78 - T::fused(t22, t94, -T::fused(-t15, t92, t37 * t93));
-        let t96 = T::fused(k(0.0002), t95, t80);
-        let t97 = rotor_e0 * rotor_e0;
-        let t98 = k(0.0002) * rotor_wz;
-        let t99 = T::fused(rotor_wx, t79, rotor_wz * t98);
-        let t100 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t97)),
-            t96,
-            k(2.0) * (t82 - t81) * t99,
+        let t57 = t56 * t55;
+        let t58 = t54 * t51;
+        let t59 = k(2.0) * t52;
+        let t60 = t56 * t59;
+        let t61 = T::fused(-t50, t51, k(1.0));
+        let t62 = T::fused(-t56, k(2.0) * t56, t61);
+        let t63 = T::fused(
+            outer_ring_wz,
+            t62,
+            -T::fused(outer_ring_wx, t57 - t53, outer_ring_wy * (t60 + t58)),
         );
-        let t101 = rotor_e0 * rotor_e1;
-        let t102 = rotor_e2 * rotor_e3;
-        let t103 = t102 - t101;
-        let t104 = rotor_wy * t98;
-        let t105 = T::fused(-k(0.00032), t103, k(1.6e-5) * t104);
-        let t106 = T::fused(-k(19.99360204734485), t105, t104);
-        let t107 = rotor_e0 * rotor_e2;
-        let t108 = rotor_e1 * rotor_e3;
-        let t109 = T::fused(
-            k(2.0) * t83,
-            t96,
-            k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t97)) * t99,
+        let t64 = inner_ring_wz + t63;
+        let t65 = t56 * t51;
+        let t66 = t52 * t55;
+        let t67 = t66 + t65;
+        let t68 = T::fused(-t52, t59, t61);
+        let t69 = t60 - t58;
+        let t70 = T::fused(
+            outer_ring_wz,
+            t69,
+            -T::fused(-outer_ring_wx, t67, outer_ring_wy * t68),
         );
-        let t110 = T::fused(
-            -(k(2.0) * (t108 - t107)),
-            t96,
-            k(2.0) * (t102 + t101) * t99,
+        let t71 = inner_ring_wy - t70;
+        let t72 = T::fused(-t54, t55, t61);
+        let t73 = t66 - t65;
+        let t74 = t57 + t53;
+        let t75 = T::fused(
+            outer_ring_wz,
+            t74,
+            T::fused(-outer_ring_wx, t72, outer_ring_wy * t73),
+        );
+        let t76 = inner_ring_wx - t75;
+        let t77 = T::fused(t71, t71, t76 * t76) / t62;
+        let t78 = T::fused(inner_ring_wz, t70, inner_ring_wy * t63)
+            - T::fused(-t71, t64, t69 * t77);
+        let t79 = k(5e-6) * t27;
+        let t80 = k(5.0032e-6) * t19;
+        let t81 = T::fused(-t29, t79, t24 * t80);
+        let t82 = t45 * t81;
+        let t83 = T::fused(t49, t82, -T::fused(-t28, t79, t23 * t80));
+        let t84 = T::fused(inner_ring_wx, t63, inner_ring_wz * t75)
+            - T::fused(-t76, t64, t74 * t77);
+        let t85 = T::fused(t49, t45 * t49, -(k(2e-6) + T::fused(t28, t47, t23 * t48)));
+        let t86 = T::fused(-t83, t78, t85 * t84)
+            - T::fused(-t49, t46, T::fused(t28, t34, t23 * t43));
+        let t87 = T::fused(
+            -t81,
+            t46,
+            T::fused(inner_ring_wz, t4, T::fused(-t27, t34, t19 * t43)),
+        );
+        let t88 = T::fused(t81, t82, -(k(1e-6) + T::fused(t27, t79, t19 * t80)));
+        let t89 = T::fused(-t68, t86, t73 * (T::fused(-t78, t88, t84 * t83) - t87));
+        let t90 = T::fused(
+            -t73,
+            T::fused(-t72, t88, t67 * t83),
+            t68 * T::fused(-t72, t83, t67 * t85),
+        );
+        let t91 = T::fused(-t73, t88, t68 * t83);
+        let t92 = T::fused(-t73, t83, t68 * t85);
+        let t93 = T::fused(
+            -T::fused(outer_ring_e3, t1, outer_ring_e2 * (k(2.0) * outer_ring_e1)),
+            t2,
+            outer_ring_wx * outer_ring_wy,
+        );
+        let t94 = T::fused(-t3, t90, t93 * T::fused(t74, t91, t69 * t92))
+            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t89);
+        let t95 = t94 / (k(1e-6) - T::fused(-t73, t91, t68 * t92));
+        let t96 = t78 + T::fused(t74, t93, T::fused(-t73, t95, t72 * t3));
+        let t97 = t84 - T::fused(t69, t93, -T::fused(-t68, t95, t67 * t3));
+        let t98 = t45 * (t44 - T::fused(-t49, t97, t81 * t96));
+        let t99 = t35 - T::fused(t24, t98, T::fused(-t23, t97, t19 * t96));
+        let t100 = T::fused(k(0.0002), t99, t37);
+        let t101 = T::fused(-rotor_e0, t38, k(1.0));
+        let t102 = k(0.0002) * rotor_wz;
+        let t103 = T::fused(rotor_wx, t36, rotor_wz * t102);
+        let t104 = rotor_e1 * t38;
+        let t105 = k(2.0) * rotor_e2;
+        let t106 = rotor_e3 * t105;
+        let t107 = t106 - t104;
+        let t108 = rotor_wy * t102;
+        let t109 = T::fused(-k(0.00016), t107, k(1.6e-5) * t108);
+        let t110 = T::fused(-k(19.99360204734485), t109, t108);
+        let t111 = rotor_e2 * t38;
+        let t112 = rotor_e3 * t40;
+        let t113 = T::fused(
+            t112 + t111,
+            t110,
+            -T::fused(T::fused(-rotor_e1, t40, t101), t100, t103 * (t41 - t39)),
+        );
+        let t114 = T::fused(
+            t107,
+            t110,
+            T::fused(t42, t100, t103 * T::fused(-rotor_e2, t105, t101)),
+        );
+        let t115 = T::fused(
+            T::fused(-rotor_e3, k(2.0) * rotor_e3, t101),
+            t110,
+            T::fused(-(t112 - t111), t100, t103 * (t106 + t104)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t1,
-            -t91,
-            t56,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t92,
-            -t93,
-            -t94,
-            T::fused(-(k(2.0) * (t108 + t107)), t106, t100),
-            -T::fused(k(2.0) * t103, t106, t109),
-            T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t97)), t106, t110),
-            -(k(99968.01023672425) * t105),
-            -(t76 + T::fused(t19, t94, -T::fused(t10, t92, t35 * t93))),
+            -t3,
             -t95,
+            t93,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t96,
+            -t97,
+            -t98,
+            -t113,
+            -t114,
+            t115,
+            -(k(99968.01023672425) * t109),
+            T::fused(-t29, t98, T::fused(t28, t97, t27 * t96)) - t33,
+            -t99,
         ];
     }
-    /// Writes λ: 304 operations (114 ±, 187 ×, 3 ÷).
+    /// Writes λ: 283 operations (108 ±, 172 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2480,153 +2485,156 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeRadialImbalance<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e2;
-        let t7 = rotor_e1 * rotor_e3;
-        let t8 = t7 + t6;
-        let t9 = rotor_e0 * rotor_e1;
-        let t10 = rotor_e2 * rotor_e3;
-        let t11 = t10 - t9;
-        let t12 = rotor_e0 * rotor_e0;
-        let t13 = k(0.5) - T::fused(rotor_e3, rotor_e3, t12);
-        let t14 = T::fused(
+        let t6 = k(2.0) * rotor_e0;
+        let t7 = rotor_e2 * t6;
+        let t8 = k(2.0) * rotor_e1;
+        let t9 = rotor_e3 * t8;
+        let t10 = t9 + t7;
+        let t11 = rotor_e1 * t6;
+        let t12 = k(2.0) * rotor_e2;
+        let t13 = rotor_e3 * t12;
+        let t14 = t13 - t11;
+        let t15 = T::fused(-rotor_e0, t6, k(1.0));
+        let t16 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t15);
+        let t17 = T::fused(
             t4,
-            k(0.0004) * t13,
-            -T::fused(t0, k(0.0004) * t8, t2 * (k(0.0004) * t11)),
+            k(0.0002) * t16,
+            -T::fused(t0, k(0.0002) * t10, t2 * (k(0.0002) * t14)),
         );
-        let t15 = T::fused(k(1e-5), rotor_dwx, t14);
-        let t16 = k(0.5) - T::fused(rotor_e1, rotor_e1, t12);
-        let t17 = k(2.0) * t16;
-        let t18 = inner_ring_e0 * inner_ring_e0;
-        let t19 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t18));
-        let t20 = rotor_e0 * rotor_e3;
-        let t21 = rotor_e1 * rotor_e2;
-        let t22 = t21 + t20;
-        let t23 = k(2.0) * t22;
-        let t24 = inner_ring_e0 * inner_ring_e3;
-        let t25 = inner_ring_e1 * inner_ring_e2;
-        let t26 = k(2.0) * (t25 + t24);
-        let t27 = t7 - t6;
-        let t28 = k(2.0) * t27;
-        let t29 = inner_ring_e0 * inner_ring_e2;
-        let t30 = inner_ring_e1 * inner_ring_e3;
-        let t31 = k(2.0) * (t30 - t29);
-        let t32 = k(2.0) * (t21 - t20);
-        let t33 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t12));
-        let t34 = k(2.0) * (t10 + t9);
-        let t35 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t36 = T::fused(
-            T::fused(t31, t28, T::fused(t19, t17, t26 * t23)),
-            t15,
-            t35 * T::fused(t31, t34, -T::fused(t19, t32, t26 * t33)),
+        let t18 = T::fused(k(1e-5), rotor_dwx, t17);
+        let t19 = T::fused(-rotor_e1, t8, t15);
+        let t20 = k(2.0) * inner_ring_e1;
+        let t21 = k(2.0) * inner_ring_e0;
+        let t22 = T::fused(-inner_ring_e0, t21, k(1.0));
+        let t23 = T::fused(-inner_ring_e1, t20, t22);
+        let t24 = rotor_e3 * t6;
+        let t25 = rotor_e2 * t8;
+        let t26 = t25 + t24;
+        let t27 = inner_ring_e3 * t21;
+        let t28 = inner_ring_e2 * t20;
+        let t29 = t28 + t27;
+        let t30 = t9 - t7;
+        let t31 = inner_ring_e2 * t21;
+        let t32 = inner_ring_e3 * t20;
+        let t33 = t32 - t31;
+        let t34 = t25 - t24;
+        let t35 = T::fused(-rotor_e2, t12, t15);
+        let t36 = t13 + t11;
+        let t37 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t38 = T::fused(
+            T::fused(t33, t30, T::fused(t23, t19, t29 * t26)),
+            t18,
+            t37 * T::fused(t33, t36, -T::fused(t23, t34, t29 * t35)),
         );
-        let t37 = T::fused(
+        let t39 = T::fused(
             t4,
-            k(0.0004) * t27,
-            T::fused(-t0, k(0.0004) * t16, t2 * (k(0.0004) * t22)),
+            k(0.0002) * t30,
+            T::fused(-t0, k(0.0002) * t19, t2 * (k(0.0002) * t26)),
         );
-        let t38 = T::fused(k(5e-6), T::fused(rotor_wx, rotor_wy, -rotor_dwz), -t37);
-        let t39 = k(2.0) * t8;
-        let t40 = k(2.0) * t11;
-        let t41 = k(2.0) * t13;
-        let t42 = T::fused(
-            T::fused(t31, t41, -T::fused(-t19, t39, t26 * t40)),
+        let t40 = T::fused(k(5e-6), T::fused(rotor_wx, rotor_wy, -rotor_dwz), -t39);
+        let t41 = T::fused(
+            T::fused(t33, t16, -T::fused(-t23, t10, t29 * t14)),
+            t40,
             t38,
-            t36,
         );
-        let t43 = T::fused(
+        let t42 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t42,
+            -t41,
         );
-        let t44 = outer_ring_e0 * outer_ring_e0;
-        let t45 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t44));
-        let t46 = outer_ring_e0 * outer_ring_e3;
-        let t47 = outer_ring_e1 * outer_ring_e2;
-        let t48 = k(2.0) * (t47 + t46);
-        let t49 = outer_ring_e0 * outer_ring_e2;
-        let t50 = outer_ring_e1 * outer_ring_e3;
-        let t51 = k(2.0) * (t50 - t49);
-        let t52 = T::fused(t51, t31, T::fused(t45, t19, t48 * t26));
-        let t53 = k(2.0) * (t25 - t24);
-        let t54 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t18));
-        let t55 = inner_ring_e0 * inner_ring_e1;
-        let t56 = inner_ring_e2 * inner_ring_e3;
-        let t57 = k(2.0) * (t56 + t55);
-        let t58 = T::fused(t57, t34, T::fused(t54, t33, t53 * t32));
-        let t59 = T::fused(
-            T::fused(t57, t28, -T::fused(t53, t17, t54 * t23)),
-            t15,
-            t35 * t58,
+        let t43 = k(2.0) * outer_ring_e1;
+        let t44 = k(2.0) * outer_ring_e0;
+        let t45 = T::fused(-outer_ring_e0, t44, k(1.0));
+        let t46 = T::fused(-outer_ring_e1, t43, t45);
+        let t47 = outer_ring_e3 * t44;
+        let t48 = outer_ring_e2 * t43;
+        let t49 = t48 + t47;
+        let t50 = outer_ring_e2 * t44;
+        let t51 = outer_ring_e3 * t43;
+        let t52 = t51 - t50;
+        let t53 = T::fused(t52, t33, T::fused(t46, t23, t49 * t29));
+        let t54 = t28 - t27;
+        let t55 = k(2.0) * inner_ring_e2;
+        let t56 = T::fused(-inner_ring_e2, t55, t22);
+        let t57 = inner_ring_e1 * t21;
+        let t58 = inner_ring_e3 * t55;
+        let t59 = t58 + t57;
+        let t60 = T::fused(t59, t36, T::fused(t54, t34, t56 * t35));
+        let t61 = T::fused(
+            T::fused(t59, t30, -T::fused(t54, t19, t56 * t26)),
+            t18,
+            t37 * t60,
         );
-        let t60 = T::fused(t57, t41, -T::fused(-t54, t40, t53 * t39));
-        let t61 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t60, t38, t59));
-        let t62 = T::fused(t51, t57, -T::fused(t45, t53, t48 * t54));
-        let t63 = k(2.0) * (t30 + t29);
-        let t64 = k(2.0) * (t56 - t55);
-        let t65 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t18));
-        let t66 = T::fused(t65, t34, -T::fused(-t64, t33, t63 * t32));
-        let t67 = T::fused(
-            T::fused(t65, t28, -T::fused(-t63, t17, t64 * t23)),
-            t15,
-            t35 * t66,
-        );
-        let t68 = T::fused(t65, t41, T::fused(t64, t40, t63 * t39));
+        let t62 = T::fused(t59, t16, T::fused(-t54, t10, t56 * t14));
+        let t63 = T::fused(k(2e-6), inner_ring_dwy, T::fused(t62, t40, t61));
+        let t64 = T::fused(t52, t59, -T::fused(t46, t54, t49 * t56));
+        let t65 = t32 + t31;
+        let t66 = t58 - t57;
+        let t67 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t22);
+        let t68 = T::fused(t67, t36, T::fused(-t65, t34, t66 * t35));
         let t69 = T::fused(
+            T::fused(t67, t30, -T::fused(-t65, t19, t66 * t26)),
+            t18,
+            t37 * t68,
+        );
+        let t70 = T::fused(t67, t16, T::fused(t65, t10, t66 * t14));
+        let t71 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -T::fused(t68, t38, t67),
+            -T::fused(t70, t40, t69),
         );
-        let t70 = T::fused(
-            T::fused(t51, t65, -T::fused(-t45, t63, t48 * t64)),
-            t69,
-            -T::fused(-t52, t43, t62 * t61),
+        let t72 = T::fused(
+            T::fused(t52, t67, -T::fused(-t46, t65, t49 * t66)),
+            t71,
+            -T::fused(-t53, t42, t64 * t63),
         );
-        let t71 = T::fused(k(2e-6), outer_ring_dwx, -t70);
-        let t72 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t44));
-        let t73 = k(2.0) * (t50 + t49);
-        let t74 = k(1.0) / T::fused(-t45, t72, t73 * t51);
-        let t75 = outer_ring_e0 * outer_ring_e1;
-        let t76 = outer_ring_e2 * outer_ring_e3;
-        let t77 = k(2.0) * (t76 - t75);
-        let t78 = T::fused(
-            -T::fused(t72, t31, -T::fused(-t73, t19, t77 * t26)),
-            t43,
-            T::fused(t72, t57, -T::fused(-t77, t54, t73 * t53)) * t61,
+        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
+        let t74 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t45);
+        let t75 = t51 + t50;
+        let t76 = k(1.0) / T::fused(-t46, t74, t75 * t52);
+        let t77 = outer_ring_e1 * t44;
+        let t78 = k(2.0) * outer_ring_e2;
+        let t79 = outer_ring_e3 * t78;
+        let t80 = t79 - t77;
+        let t81 = T::fused(
+            -T::fused(t74, t33, -T::fused(-t75, t23, t80 * t29)),
+            t42,
+            T::fused(t74, t59, T::fused(-t75, t54, t80 * t56)) * t63,
         );
-        let t79 = T::fused(T::fused(t72, t65, T::fused(t77, t64, t73 * t63)), t69, -t78);
-        let t80 = T::fused(
+        let t82 = T::fused(T::fused(t74, t67, T::fused(t75, t65, t80 * t66)), t71, -t81);
+        let t83 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t79,
+            -t82,
         );
-        let t81 = k(2.0) * (t47 - t46);
-        let t82 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t44));
-        let t83 = k(2.0) * (t76 + t75);
-        let t84 = T::fused(t83, t31, -T::fused(t81, t19, t82 * t26));
-        let t85 = T::fused(t83, t57, T::fused(t82, t54, t81 * t53));
-        let t86 = k(1.0) / T::fused(-t62, t84, t52 * t85);
-        let t87 = k(1.0) / T::fused(-t60, t66, t58 * t68);
+        let t84 = t48 - t47;
+        let t85 = T::fused(-outer_ring_e2, t78, t45);
+        let t86 = t79 + t77;
+        let t87 = T::fused(t86, t33, -T::fused(t84, t23, t85 * t29));
+        let t88 = T::fused(t86, t59, T::fused(t84, t54, t85 * t56));
+        let t89 = k(1.0) / T::fused(-t87, t64, t53 * t88);
+        let t90 = k(1.0) / T::fused(-t68, t62, t60 * t70);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            -T::fused(t45 * t74, t71, t73 * t74 * t80),
-            -T::fused(t51 * t74, t71, t72 * t74 * t80),
+            -T::fused(t46 * t76, t73, t75 * t76 * t83),
+            -T::fused(t52 * t76, t73, t74 * t76 * t83),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t85 * t86), t61, t84 * t86 * t43),
-            T::fused(-(t52 * t86), t43, t62 * t86 * t61),
+            T::fused(-(t88 * t89), t63, t87 * t89 * t42),
+            T::fused(-(t53 * t89), t42, t64 * t89 * t63),
             -t0,
             -t2,
             -t4,
-            T::fused(t35, t66 * t87, t68 * t87 * t38),
-            T::fused(t35, t58 * t87, t60 * t87 * t38),
+            T::fused(t37, t68 * t90, t70 * t90 * t40),
+            T::fused(t37, t60 * t90, t62 * t90 * t40),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 394 operations (147 ±, 242 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 388 operations (143 ±, 240 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -2662,25 +2670,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t3 = outer_ring_e0 * outer_ring_e2;
-        let t4 = outer_ring_e1 * outer_ring_e3;
-        let t5 = k(2.0) * (t4 - t3);
-        let t6 = k(2.0) * (t4 + t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = T::fused(t2 * t7, row3, t5 * t7 * row4);
-        let t9 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t10 = T::fused(
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t2 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t1);
+        let t3 = k(2.0) * outer_ring_e1;
+        let t4 = T::fused(-outer_ring_e1, t3, t1);
+        let t5 = outer_ring_e2 * t0;
+        let t6 = outer_ring_e3 * t3;
+        let t7 = t6 - t5;
+        let t8 = t6 + t5;
+        let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
+        let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
+        let t11 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2689,17 +2690,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t11 = t10 * t9;
-        let t12 = T::fused(
-            -inner_ring_e0,
+        let t12 = k(2.0) * t11;
+        let t13 = T::fused(
+            inner_ring_e2,
             rotor_e3,
             T::fused(
-                inner_ring_e1,
+                -inner_ring_e3,
                 rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t13 = T::fused(
+        let t14 = t13 * t12;
+        let t15 = T::fused(
             -inner_ring_e1,
             rotor_e3,
             T::fused(
@@ -2708,63 +2710,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
                 T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t14 = t13 * t12;
-        let t15 = t14 - t11;
         let t16 = k(2.0) * t15;
-        let t17 = t14 + t11;
-        let t18 = k(2.0) * t17;
-        let t19 = t10 * t10;
-        let t20 = k(0.5) - T::fused(t12, t12, t19);
-        let t21 = k(2.0) * t20;
-        let t22 = k(0.5) - T::fused(t13, t13, t19);
-        let t23 = k(2.0) * t22;
-        let t24 = k(1.0) / T::fused(-t18, t16, t23 * t21);
-        let t25 = T::fused(row13, t16 * t24, row14 * (t23 * t24));
-        let t26 = k(5e-6) * t25;
-        let t27 = T::fused(t10, t12, t9 * t13);
-        let t28 = k(2.0) * t27;
-        let t29 = T::fused(row13, t21 * t24, row14 * (t18 * t24));
-        let t30 = rotor_e0 * rotor_e0;
-        let t31 = k(0.5) - T::fused(rotor_e1, rotor_e1, t30);
-        let t32 = k(3.2e-5) * t31;
-        let t33 = T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t34 = k(3.2e-5) * t33;
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = t36 - t35;
-        let t38 = k(3.2e-5) * t37;
-        let t39 = T::fused(
-            -k(5.0032e-6),
-            t29,
-            T::fused(row12, t38, T::fused(-row10, t32, row11 * t34)),
-        );
-        let t40 = T::fused(-t10, t13, t9 * t12);
-        let t41 = k(2.0) * t40;
-        let t42 = T::fused(-t16, t26, t21 * t39);
-        let t43 = k(1.0)
-            / (k(1e-6) + T::fused(t16, k(1e-5) * t15, t21 * (k(1.00064e-5) * t20)));
-        let t44 = t43 * t42;
-        let t45 = k(1e-5) * t27;
-        let t46 = k(1.00064e-5) * t40;
-        let t47 = T::fused(-t16, t45, t21 * t46);
-        let t48 = t21 * t32;
-        let t49 = t43 * t48;
-        let t50 = T::fused(-t41, t32, t47 * t49);
-        let t51 = t21 * t34;
-        let t52 = t43 * t51;
-        let t53 = T::fused(-t41, t34, t47 * t52);
-        let t54 = t21 * t38;
-        let t55 = t43 * t54;
-        let t56 = T::fused(-t41, t38, t47 * t55);
-        let t57 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+        let t17 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
+        let t18 = t17 * t16;
+        let t19 = t18 - t14;
+        let t20 = t18 + t14;
+        let t21 = T::fused(-t11, t12, k(1.0));
+        let t22 = T::fused(-t17, k(2.0) * t17, t21);
+        let t23 = T::fused(-t15, t16, t21);
+        let t24 = k(1.0) / T::fused(-t20, t19, t23 * t22);
+        let t25 = T::fused(row13, t19 * t24, row14 * (t23 * t24));
+        let t26 = k(5e-6) * t25;
+        let t27 = k(2.0) * t13;
+        let t28 = T::fused(t17, t12, t15 * t27);
+        let t29 = T::fused(row13, t22 * t24, row14 * (t20 * t24));
+        let t30 = k(2.0) * rotor_e1;
+        let t31 = k(2.0) * rotor_e0;
+        let t32 = T::fused(-rotor_e0, t31, k(1.0));
+        let t33 = T::fused(-rotor_e1, t30, t32);
+        let t34 = k(1.6e-5) * t33;
+        let t35 = T::fused(rotor_e3, t31, rotor_e2 * t30);
+        let t36 = k(1.6e-5) * t35;
+        let t37 = rotor_e2 * t31;
+        let t38 = rotor_e3 * t30;
+        let t39 = t38 - t37;
+        let t40 = k(1.6e-5) * t39;
+        let t41 = T::fused(
+            -k(5.0032e-6),
+            t29,
+            T::fused(row12, t40, T::fused(-row10, t34, row11 * t36)),
+        );
+        let t42 = T::fused(-t15, t12, t17 * t27);
+        let t43 = T::fused(-t19, t26, t22 * t41);
+        let t44 = k(1.0)
+            / (k(1e-6) + T::fused(t19, k(5e-6) * t19, t22 * (k(5.0032e-6) * t22)));
+        let t45 = t44 * t43;
+        let t46 = k(5e-6) * t28;
+        let t47 = k(5.0032e-6) * t42;
+        let t48 = T::fused(-t19, t46, t22 * t47);
+        let t49 = t22 * t34;
+        let t50 = t44 * t49;
+        let t51 = T::fused(-t42, t34, t48 * t50);
+        let t52 = t22 * t36;
+        let t53 = t44 * t52;
+        let t54 = T::fused(-t42, t36, t48 * t53);
+        let t55 = t22 * t40;
+        let t56 = t44 * t55;
+        let t57 = T::fused(-t42, t40, t48 * t56);
         let t58 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
@@ -2774,17 +2774,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t59 = t58 * t57;
+        let t59 = k(2.0) * t58;
         let t60 = T::fused(
-            -outer_ring_e1,
+            -outer_ring_e0,
             inner_ring_e3,
             T::fused(
-                -outer_ring_e0,
+                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t61 = T::fused(
+        let t61 = t60 * t59;
+        let t62 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2793,92 +2794,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeRadialImbalance<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t62 = t61 * t60;
-        let t63 = k(2.0) * (t62 - t59);
-        let t64 = k(2.0) * (t62 + t59);
-        let t65 = t58 * t58;
-        let t66 = k(2.0) * (k(0.5) - T::fused(t60, t60, t65));
-        let t67 = k(2.0) * (k(0.5) - T::fused(t61, t61, t65));
-        let t68 = k(1.0) / T::fused(-t64, t63, t67 * t66);
-        let t69 = T::fused(row8, t63 * t68, row9 * (t67 * t68));
-        let t70 = t43 * t47;
-        let t71 = T::fused(t47, t70, -(k(1e-6) + T::fused(t28, t45, t41 * t46)));
-        let t72 = T::fused(row8, t66 * t68, row9 * (t64 * t68));
-        let t73 = k(1e-5) * t22;
-        let t74 = k(1.00064e-5) * t17;
-        let t75 = T::fused(t16, t73, t21 * t74);
-        let t76 = T::fused(t75, t70, -T::fused(-t23, t45, t18 * t46));
-        let t77 = T::fused(-t71, t69, t76 * t72)
-            - T::fused(row7, t56, T::fused(-row5, t50, row6 * t53));
-        let t78 = T::fused(-t18, t32, t75 * t49);
-        let t79 = T::fused(-t18, t34, t75 * t52);
-        let t80 = T::fused(-t18, t38, t75 * t55);
-        let t81 = T::fused(t75, t43 * t75, -(k(2e-6) + T::fused(t23, t73, t18 * t74)));
-        let t82 = T::fused(-t76, t69, t81 * t72)
-            - T::fused(row7, t80, T::fused(-row5, t78, row6 * t79));
-        let t83 = T::fused(
-            -t63,
-            t77 - T::fused(t47, t44, -T::fused(t28, t26, t41 * t39)),
-            t66 * (t82 - T::fused(t75, t44, -T::fused(-t23, t26, t18 * t39))),
+        let t63 = k(2.0) * t62;
+        let t64 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
         );
-        let t84 = T::fused(
+        let t65 = t64 * t63;
+        let t66 = t65 - t61;
+        let t67 = t65 + t61;
+        let t68 = k(2.0) * t64;
+        let t69 = T::fused(-t58, t59, k(1.0));
+        let t70 = T::fused(-t64, t68, t69);
+        let t71 = T::fused(-t62, t63, t69);
+        let t72 = k(1.0) / T::fused(-t67, t66, t71 * t70);
+        let t73 = T::fused(row8, t66 * t72, row9 * (t71 * t72));
+        let t74 = t44 * t48;
+        let t75 = T::fused(t48, t74, -(k(1e-6) + T::fused(t28, t46, t42 * t47)));
+        let t76 = T::fused(row8, t70 * t72, row9 * (t67 * t72));
+        let t77 = k(5e-6) * t23;
+        let t78 = k(5.0032e-6) * t20;
+        let t79 = T::fused(t19, t77, t22 * t78);
+        let t80 = T::fused(t79, t74, -T::fused(-t23, t46, t20 * t47));
+        let t81 = T::fused(-t75, t73, t80 * t76)
+            - T::fused(row7, t57, T::fused(-row5, t51, row6 * t54));
+        let t82 = T::fused(-t20, t34, t79 * t50);
+        let t83 = T::fused(-t20, t36, t79 * t53);
+        let t84 = T::fused(-t20, t40, t79 * t56);
+        let t85 = T::fused(t79, t44 * t79, -(k(2e-6) + T::fused(t23, t77, t20 * t78)));
+        let t86 = T::fused(-t80, t73, t85 * t76)
+            - T::fused(row7, t84, T::fused(-row5, t82, row6 * t83));
+        let t87 = T::fused(
+            -t66,
+            t81 - T::fused(t48, t45, -T::fused(t28, t26, t42 * t41)),
+            t70 * (t86 - T::fused(t79, t45, -T::fused(-t23, t26, t20 * t41))),
+        );
+        let t88 = T::fused(
             -row0,
-            T::fused(-t63, t50, t66 * t78),
-            row1 * T::fused(-t63, t53, t66 * t79),
+            T::fused(-t66, t51, t70 * t82),
+            row1 * T::fused(-t66, t54, t70 * t83),
         );
-        let t85 = T::fused(
-            -t63,
-            T::fused(-t67, t71, t64 * t76),
-            t66 * T::fused(-t67, t76, t64 * t81),
+        let t89 = T::fused(
+            -t66,
+            T::fused(-t71, t75, t67 * t80),
+            t70 * T::fused(-t71, t80, t67 * t85),
         );
-        let t86 = T::fused(t6 * t7, row3, t1 * t7 * row4);
-        let t87 = T::fused(-t63, t71, t66 * t76);
-        let t88 = k(2.0) * T::fused(t58, t60, t61 * t57);
-        let t89 = T::fused(-t63, t76, t66 * t81);
-        let t90 = k(2.0) * T::fused(-t58, t61, t60 * t57);
-        let t91 = T::fused(-t85, t8, T::fused(t88, t87, t90 * t89) * t86)
-            - T::fused(row2, T::fused(-t63, t56, t66 * t80), t84);
-        let t92 = (t91 + t83) / (k(1e-6) - T::fused(-t63, t87, t66 * t89));
-        let t93 = row0 + row5;
-        let t94 = row1 + row6;
-        let t95 = row2 + row7;
-        let t96 = t69 - T::fused(t88, t86, -T::fused(-t67, t8, t63 * t92));
-        let t97 = t72 + T::fused(t90, t86, T::fused(-t64, t8, t66 * t92));
-        let t98 = T::fused(-t47, t96, t75 * t97)
-            - T::fused(t95, t54, T::fused(-t93, t48, t94 * t51));
-        let t99 = t43 * (t42 - t98);
-        let t100 = t29 + T::fused(t21, t99, T::fused(-t41, t96, t18 * t97));
-        let t101 = t36 + t35;
-        let t102 = row10 + t93;
-        let t103 = T::fused(-rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
-        let t104 = row11 + t94;
-        let t105 = k(0.5) - T::fused(rotor_e3, rotor_e3, t30);
-        let t106 = row12 + t95;
-        let t107 = T::fused(
-            t106,
-            k(3.2e-5) * t105,
-            -T::fused(t102, k(3.2e-5) * t101, t104 * (k(3.2e-5) * t103)),
+        let t90 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
+        let t91 = T::fused(-t66, t75, t70 * t80);
+        let t92 = T::fused(t64, t59, t60 * t63);
+        let t93 = T::fused(-t66, t80, t70 * t85);
+        let t94 = T::fused(-t62, t59, t60 * t68);
+        let t95 = T::fused(-t89, t10, T::fused(t92, t91, t94 * t93) * t90)
+            - T::fused(row2, T::fused(-t66, t57, t70 * t84), t88);
+        let t96 = (t95 + t87) / (k(1e-6) - T::fused(-t66, t91, t70 * t93));
+        let t97 = row0 + row5;
+        let t98 = row1 + row6;
+        let t99 = row2 + row7;
+        let t100 = t73 - T::fused(t92, t90, -T::fused(-t71, t10, t66 * t96));
+        let t101 = t76 + T::fused(t94, t90, T::fused(-t67, t10, t70 * t96));
+        let t102 = T::fused(-t48, t100, t79 * t101)
+            - T::fused(t99, t55, T::fused(-t97, t49, t98 * t52));
+        let t103 = t44 * (t43 - t102);
+        let t104 = t29 + T::fused(t22, t103, T::fused(-t42, t100, t20 * t101));
+        let t105 = t38 + t37;
+        let t106 = row10 + t97;
+        let t107 = T::fused(-rotor_e1, t31, rotor_e3 * (k(2.0) * rotor_e2));
+        let t108 = row11 + t98;
+        let t109 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t32);
+        let t110 = row12 + t99;
+        let t111 = T::fused(
+            t110,
+            k(1.6e-5) * t109,
+            -T::fused(t106, k(1.6e-5) * t105, t108 * (k(1.6e-5) * t107)),
         );
-        let t108 = k(99968.01023672425) * t107;
+        let t112 = k(99968.01023672425) * t111;
         *out = [
             row0,
             row1,
             row2,
-            t8,
-            t92,
-            -t86,
-            t93,
-            t94,
-            t95,
+            t10,
             t96,
-            -t97,
+            -t90,
+            t97,
+            t98,
             t99,
-            t102 + T::fused(k(0.0004) * t31, t100, k(0.0004) * t101 * t108),
-            t104 + T::fused(-(k(0.0004) * t33), t100, k(0.0004) * t103 * t108),
-            t106 - T::fused(k(0.0004) * t37, t100, k(0.0004) * t105 * t108),
-            -t108,
-            t25 + T::fused(t16, t99, T::fused(t28, t96, t23 * t97)),
-            -t100,
+            t100,
+            -t101,
+            t103,
+            t106 + T::fused(k(0.0002) * t33, t104, k(0.0002) * t105 * t112),
+            t108 + T::fused(-(k(0.0002) * t35), t104, k(0.0002) * t107 * t112),
+            t110 - T::fused(k(0.0002) * t39, t104, k(0.0002) * t109 * t112),
+            -t112,
+            t25 + T::fused(t19, t103, T::fused(t28, t100, t23 * t101)),
+            -t104,
         ];
     }
 }
@@ -3774,7 +3786,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRadialImbalance<T
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 242 operations (70 ±, 170 ×, 2 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 236 operations (70 ±, 164 ×, 2 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -3788,93 +3800,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRadialImbalance<T
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.cos();
-        let t1 = u0 * t0;
-        let t2 = x1.sin();
+        let t0 = x2.cos();
+        let t1 = k(6.4e-9) * (u2 * t0);
+        let t2 = x1.cos();
         let t3 = u0 * t2;
-        let t4 = T::fused(k(0.4), t3, u2);
-        let t5 = x2.cos();
-        let t6 = u2 * t5;
-        let t7 = k(3.2e-9) * t5;
-        let t8 = u0 * t7;
-        let t9 = t3 * t8;
-        let t10 = T::fused(-t1, t8, k(0.00016));
-        let t11 = T::fused(k(6.4e-9), t3 * t6, T::fused(t2, t9, t0 * t10));
-        let t12 = T::fused(k(1e-5), T::fused(-t1, k(0.4) * t1, t3 * t4), t5 * t11);
-        let t13 = x2.sin();
-        let t14 = t13 * t7;
-        let t15 = t0 * t14;
-        let t16 = t5 * t7;
-        let t17 = k(1.0) / (k(6e-6) + t16);
-        let t18 = t17 * t15;
-        let t19 = t2 * t14;
-        let t20 = t17 * t19;
-        let t21 = T::fused(-t2, t10, k(6.4e-9) * (t1 * t6));
-        let t22 = k(6.4e-9) * u1;
-        let t23 = u2 * t22;
-        let t24 = T::fused(t13, t23, t21);
-        let t25 = T::fused(t5, t24, k(1e-5) * (t1 * t4));
-        let t26 = t5 * t5;
-        let t27 = k(1563.5) - t26;
-        let t28 = T::fused(t23, t27, T::fused(-k(2e-6), u1 * t3, t13 * t21));
-        let t29 = T::fused(t0, T::fused(t13, t11, k(2e-6) * (u1 * t1)), t2 * t28);
-        let t30 = t0 * t0;
-        let t31 = k(1876.0) - t26;
-        let t32 = k(1.0) / T::fused(t15, t18, -T::fused(k(3.2e-9), t31 * t30, k(2e-6)));
-        let t33 = T::fused(
+        let t4 = k(3.2e-9) * t0;
+        let t5 = u0 * t4;
+        let t6 = T::fused(-t3, t5, k(0.00016));
+        let t7 = x1.sin();
+        let t8 = T::fused(-t3, t1, t7 * t6);
+        let t9 = k(6.4e-9) * u1;
+        let t10 = u2 * t9;
+        let t11 = x2.sin();
+        let t12 = T::fused(t11, t10, -t8);
+        let t13 = u0 * t7;
+        let t14 = T::fused(k(0.4), t13, u2);
+        let t15 = T::fused(t0, t12, k(1e-5) * (t3 * t14));
+        let t16 = t11 * t4;
+        let t17 = t2 * t16;
+        let t18 = t0 * t4;
+        let t19 = k(1.0) / (k(6e-6) + t18);
+        let t20 = t19 * t17;
+        let t21 = k(2e-6) * u1;
+        let t22 = t0 * t0;
+        let t23 = k(1563.5) - t22;
+        let t24 = T::fused(t10, t23, -T::fused(t11, t8, t13 * t21));
+        let t25 = T::fused(-t20, t15, t2 * t24);
+        let t26 = k(3.2e-9) * (t2 * t2);
+        let t27 = k(1876.0) - t22;
+        let t28 = k(1.0) / T::fused(t17, t20, -T::fused(t27, t26, k(2e-6)));
+        let t29 = t28 * t28;
+        let t30 = t7 * t16;
+        let t31 = t19 * t30;
+        let t32 = T::fused(
             k(3.2e-9),
-            t31 * (k(2.0) * (t2 * t0)),
-            -T::fused(t15, t20, t18 * t19),
+            t27 * (k(2.0) * (t7 * t2)),
+            -T::fused(t17, t31, t20 * t30),
         );
-        let t34 = t32 * t32;
-        let t35 = T::fused(-t0, t28, t18 * t25);
-        let t36 = T::fused(-t32, t29 - T::fused(t18, t12, t25 * t20), t35 * (t34 * t33));
-        let t37 = k(3.2e-9) * t13;
-        let t38 = t1 * (u0 * t37);
-        let t39 = T::fused(k(6.4e-9), t1 * (u2 * t13), t2 * t38);
-        let t40 = T::fused(t5, T::fused(-t5, t23, t39), t13 * t24);
-        let t41 = T::fused(-t13, t37, t16);
-        let t42 = t0 * t41;
-        let t43 = t17 * t17 * T::fused(t5, t37, t14);
-        let t44 = T::fused(t17, t42, t15 * t43);
-        let t45 = k(2.0) * (t13 * t5);
-        let t46 = T::fused(
-            t0,
-            T::fused(t23, t45, T::fused(-t13, t39, t5 * t21)),
-            -T::fused(-t18, t40, t25 * t44),
+        let t33 = t13 * t5;
+        let t34 = T::fused(t13, t1, T::fused(t7, t33, t2 * t6));
+        let t35 = T::fused(t0, t34, k(1e-5) * T::fused(-t3, k(0.4) * t3, t13 * t14));
+        let t36 = T::fused(t31, t15, t20 * t35)
+            - T::fused(t7, t24, t2 * T::fused(t3, t21, t11 * t34));
+        let t37 = T::fused(-(t32 * t29), t25, t36 * t28);
+        let t38 = k(2.0) * (t11 * t0);
+        let t39 = k(3.2e-9) * t11;
+        let t40 = T::fused(-t11, t39, t18);
+        let t41 = t2 * t40;
+        let t42 = t19 * t19 * T::fused(t0, t39, t16);
+        let t43 = T::fused(t19, t41, t17 * t42);
+        let t44 = k(6.4e-9) * t3;
+        let t45 = t3 * (u0 * t39);
+        let t46 = T::fused(u2 * t11, t44, t7 * t45);
+        let t47 = T::fused(-t11, t12, t0 * T::fused(t0, t10, -t46));
+        let t48 = T::fused(
+            -t2,
+            T::fused(t10, t38, -T::fused(t0, t8, t11 * t46)),
+            T::fused(t43, t15, t20 * t47),
         );
-        let t47 = t34 * T::fused(k(3.2e-9), t30 * t45, -T::fused(t15, t44, t18 * t42));
-        let t48 = T::fused(-t32, t46, t35 * t47);
-        let t49 = T::fused(t1, t7, t0 * t8);
-        let t50 = T::fused(k(6.4e-9), t0 * t6, t2 * t49);
-        let t51 = T::fused(k(1e-5), T::fused(t1, k(0.4) * t2, t0 * t4), t5 * t50);
-        let t52 = T::fused(t18, t51, t0 * T::fused(-t13, t50, k(2e-6) * (u1 * t2)));
-        let t53 = t32 * t52;
+        let t49 = T::fused(
+            t25,
+            t29 * T::fused(-t38, t26, T::fused(t17, t43, t20 * t41)),
+            t28 * t48,
+        );
+        let t50 = T::fused(t3, t4, t2 * t5);
+        let t51 = T::fused(t2, t1, t7 * t50);
+        let t52 = T::fused(t0, t51, k(1e-5) * T::fused(t3, k(0.4) * t7, t2 * t14));
+        let t53 = t28 * T::fused(-t2, T::fused(-t7, t21, t11 * t51), t20 * t52);
         let t54 = k(6.4e-9) * u2;
-        let t55 = t5 * (t13 * t54);
-        let t56 = t32 * T::fused(t18, t55, t0 * T::fused(-t27, t54, k(2e-6) * t3));
-        let t57 = k(6.4e-9) * (t5 * t1);
-        let t58 = T::fused(k(1e-5), t1, t5 * T::fused(t13, t22, t57));
-        let t59 = t32 * T::fused(-t18, t58, t0 * T::fused(t22, t27, t13 * t57));
-        let t60 = t32 * t35;
-        let t61 = T::fused(-t17, t40, t25 * t43) - T::fused(t18, t48, t60 * t44);
-        let t62 = k(1562.5) + t26;
+        let t55 = t0 * (t11 * t54);
+        let t56 = T::fused(t20, t55, t2 * T::fused(-t23, t54, k(2e-6) * t13)) * t28;
+        let t57 = t0 * t44;
+        let t58 = T::fused(t0, T::fused(t11, t9, t57), k(1e-5) * t3);
+        let t59 = t28 * T::fused(-t2, T::fused(t11, t57, t9 * t23), t20 * t58);
+        let t60 = t28 * t25;
+        let t61 = T::fused(-t43, t60, t20 * t49) - T::fused(t42, t15, t19 * t47);
+        let t62 = k(1562.5) + t22;
         let t63 = u0 * t62;
-        let t64 = T::fused(-t0, t13 * t9, t2 * T::fused(t13, t10, t22 * t63));
+        let t64 = T::fused(-t2, t11 * t33, t7 * T::fused(t11, t6, t9 * t63));
         let t65 = T::fused(
             u1 * u1,
-            t41,
-            t0 * T::fused(-t22, u0 * t45, T::fused(t13, t38, t5 * t10)),
+            t40,
+            t2 * T::fused(-t9, u0 * t38, T::fused(t11, t45, t0 * t6)),
         );
         let t66 = T::fused(
-            t2,
+            t7,
             t53,
-            k(99968.01023672425) * (t0 * T::fused(-t22, t62, t13 * t49)),
+            k(99968.01023672425) * (t2 * T::fused(-t9, t62, t11 * t50)),
         );
         let t67 = T::fused(
-            -t2,
+            -t7,
             t56,
-            k(99968.01023672425) * T::fused(t14, k(2.0) * u1, t0 * (k(6.4e-9) * t63)),
+            k(99968.01023672425) * T::fused(t16, k(2.0) * u1, t2 * (k(6.4e-9) * t63)),
         );
         *dfdx = [
             k(0.0),
@@ -3896,23 +3913,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for GyroscopeRadialImbalance<T
             k(0.0),
             k(1.0),
             k(0.0),
-            t36,
-            -t48,
+            t37,
+            -t49,
             -t53,
             -t56,
-            t59,
+            -t59,
             k(0.0),
-            T::fused(-t17, t12, T::fused(t18, t36, t60 * t20)),
-            t61,
-            T::fused(-t18, t53, t17 * t51),
-            T::fused(-t18, t56, t17 * t55),
-            T::fused(t18, t59, t17 * t58),
+            T::fused(-t19, t35, T::fused(-t31, t60, t20 * t37)),
+            -t61,
+            T::fused(-t20, t53, t19 * t52),
+            T::fused(-t20, t56, t19 * t55),
+            T::fused(-t20, t59, t19 * t58),
             k(0.0),
-            T::fused(k(99968.01023672425), t64, T::fused(-t2, t36, t0 * t60)),
-            T::fused(-k(99968.01023672425), t65, t2 * t48),
+            T::fused(k(99968.01023672425), t64, -T::fused(t2, t60, t7 * t37)),
+            T::fused(-k(99968.01023672425), t65, t7 * t49),
             t66,
             -t67,
-            -(t2 * t59),
+            t7 * t59,
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }

@@ -11,8 +11,8 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 98 operations by rotations of the bodies; 98 operations by relative Euler parameters
-//! * project: 65 operations by rotations of the bodies; 65 operations by relative Euler parameters
+//! * accelerations: 91 operations by rotations of the bodies, doubled; 91 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 58 operations by rotations of the bodies, doubled; 58 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 13 operations by normal form; 24 operations by recursion
 //! * joint_accelerations_at: 13 operations by normal form; 24 operations by recursion; 1 more compared
 //! * corrected_accelerations: 64 operations by normal form in the bodies' frames; 71 operations by recursion in the bodies' frames; 5 more compared
@@ -26,12 +26,12 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 10 | 0 | 10 | 0 of 17 | 14 | 10 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 8 | 15 | 0 | 23 | 0 of 9 | 26 | 23 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 19 | 35 | 0 | 54 | 0 of 3 | 72 | 54 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 14 | 24 | 0 | 38 | 0 of 3 | 41 | 38 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 | 4 | 4 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 33 | 65 | 0 | 98 | 1 of 6 | 902 | 98 |
+//! | gamma | γ | 17 | 30 | 0 | 47 | 0 of 3 | 81 | 47 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 13 | 21 | 0 | 34 | 0 of 3 | 47 | 34 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 60 | 0 | 91 | 1 of 6 | 1059 | 91 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 24 | 41 | 0 | 65 | 1 of 6 | 260 | 65 |
+//! | project | (δr, δπ') that changes the rows as given | 22 | 36 | 0 | 58 | 1 of 6 | 302 | 58 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
@@ -215,7 +215,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
             t0 + T::fused(top_e2, top_e2, T::fused(top_e1, top_e1, t1)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 38 operations (14 ±, 24 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 34 operations (13 ±, 21 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -227,29 +227,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for HeavyTop<T> {
         let top_sz = y[9];
         let top_wx = y[10];
         let top_wy = y[11];
-        let t0 = top_e0 * top_e0;
-        let t1 = top_e0 * top_e3;
-        let t2 = top_e1 * top_e2;
-        let t3 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
-            top_wy,
-            k(2.0) * (t2 - t1) * top_wx,
-        );
-        let t4 = T::fused(
-            k(2.0) * (t2 + t1),
-            top_wy,
-            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0)) * top_wx,
-        );
+        let t0 = k(2.0) * top_e1;
+        let t1 = k(2.0) * top_e0;
+        let t2 = T::fused(-top_e0, t1, k(1.0));
+        let t3 = top_e3 * t1;
+        let t4 = top_e2 * t0;
         let t5 = T::fused(
-            -(k(2.0) * T::fused(-top_e0, top_e2, top_e1 * top_e3)),
-            top_wy,
-            k(2.0) * T::fused(top_e0, top_e1, top_e2 * top_e3) * top_wx,
+            k(0.04),
+            T::fused(top_wy, T::fused(-top_e1, t0, t2), top_wx * (t4 - t3)),
+            top_sx,
         );
-        *out = [
-            T::fused(k(0.04), t3, top_sx),
-            T::fused(-k(0.04), t4, top_sy),
-            T::fused(k(0.04), t5, top_sz),
-        ];
+        let t6 = k(2.0) * top_e2;
+        let t7 = T::fused(
+            -k(0.04),
+            T::fused(top_wy, t4 + t3, top_wx * T::fused(-top_e2, t6, t2)),
+            top_sy,
+        );
+        let t8 = T::fused(
+            -top_wy,
+            T::fused(-top_e2, t1, top_e3 * t0),
+            top_wx * T::fused(top_e1, t1, top_e3 * t6),
+        );
+        *out = [t5, t7, T::fused(k(0.04), t8, top_sz)];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
@@ -562,7 +561,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 54 operations (19 ±, 35 ×, 0 ÷).
+    /// Writes γ: 47 operations (17 ±, 30 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -572,51 +571,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wx * top_wz;
-        let t1 = top_e0 * top_e0;
-        let t2 = top_wy * top_wz;
-        let t3 = top_e0 * top_e3;
-        let t4 = top_e1 * top_e2;
-        let t5 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t1))),
-            t0,
-            k(2.0) * (t4 - t3) * t2,
+        let t0 = k(2.0) * top_e1;
+        let t1 = k(2.0) * top_e0;
+        let t2 = T::fused(-top_e0, t1, k(1.0));
+        let t3 = top_wx * top_wz;
+        let t4 = top_e3 * t1;
+        let t5 = top_e2 * t0;
+        let t6 = top_wy * top_wz;
+        let t7 = top_e2 * t1;
+        let t8 = top_e3 * t0;
+        let t9 = T::fused(top_wx, top_wx, top_wy * top_wy);
+        let t10 = T::fused(
+            t9,
+            t8 + t7,
+            -T::fused(-t3, T::fused(-top_e1, t0, t2), t6 * (t5 - t4)),
         );
-        let t6 = T::fused(top_wx, top_wx, top_wy * top_wy);
-        let t7 = top_e0 * top_e2;
-        let t8 = top_e1 * top_e3;
-        let t9 = T::fused(
-            -(k(2.0) * (t4 + t3)),
-            t0,
-            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t1)) * t2,
+        let t11 = k(2.0) * top_e2;
+        let t12 = top_e1 * t1;
+        let t13 = top_e3 * t11;
+        let t14 = T::fused(
+            t9,
+            t13 - t12,
+            T::fused(-t3, t5 + t4, t6 * T::fused(-top_e2, t11, t2)),
         );
-        let t10 = top_e0 * top_e1;
-        let t11 = top_e2 * top_e3;
-        let t12 = T::fused(k(2.0) * (t8 - t7), t0, k(2.0) * (t11 + t10) * t2);
-        let t13 = k(0.04)
-            * T::fused(k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t1)), t6, t12);
-        *out = [
-            -(k(0.04) * T::fused(k(2.0) * (t8 + t7), t6, -t5)),
-            -(k(0.04) * T::fused(k(2.0) * (t11 - t10), t6, t9)),
-            t13,
-        ];
+        let t15 = T::fused(
+            t9,
+            T::fused(-top_e3, k(2.0) * top_e3, t2),
+            T::fused(t3, t8 - t7, t6 * (t13 + t12)),
+        );
+        *out = [-(k(0.04) * t10), -(k(0.04) * t14), k(0.04) * t15];
     }
-    /// Writes (f, n' − w̃'J'w'): 4 operations (0 ±, 4 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(-4.905),
-            -(k(0.0002) * (top_wy * top_wz)),
-            k(0.0002) * (top_wx * top_wz),
-            k(0.0),
-        ];
+        let t0 = k(0.0002) * top_wz;
+        *out = [k(0.0), k(0.0), k(-4.905), -(top_wy * t0), top_wx * t0, k(0.0)];
     }
-    /// Solves eq. (17): 98 operations (33 ±, 65 ×, 0 ÷).
+    /// Solves eq. (17): 91 operations (31 ±, 60 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -626,60 +620,53 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e1;
-        let t1 = top_e2 * top_e3;
-        let t2 = t1 + t0;
-        let t3 = top_wy * top_wz;
-        let t4 = top_e0 * top_e3;
-        let t5 = top_e1 * top_e2;
-        let t6 = t5 - t4;
-        let t7 = top_wx * top_wz;
-        let t8 = top_e0 * top_e0;
-        let t9 = k(0.5) - T::fused(top_e1, top_e1, t8);
-        let t10 = T::fused(top_wx, top_wx, top_wy * top_wy);
-        let t11 = top_e0 * top_e2;
-        let t12 = top_e1 * top_e3;
-        let t13 = T::fused(
-            k(2.0) * (t12 + t11),
-            t10,
-            -T::fused(-(k(2.0) * t9), t7, k(2.0) * t6 * t3),
+        let t0 = k(2.0) * top_e0;
+        let t1 = top_e3 * t0;
+        let t2 = k(2.0) * top_e1;
+        let t3 = top_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = top_e1 * t0;
+        let t6 = k(2.0) * top_e2;
+        let t7 = top_e3 * t6;
+        let t8 = t7 + t5;
+        let t9 = top_wy * top_wz;
+        let t10 = T::fused(-top_e0, t0, k(1.0));
+        let t11 = T::fused(-top_e1, t2, t10);
+        let t12 = top_wx * top_wz;
+        let t13 = top_e2 * t0;
+        let t14 = top_e3 * t2;
+        let t15 = T::fused(top_wx, top_wx, top_wy * top_wy);
+        let t16 = k(0.04) * T::fused(t15, t14 + t13, -T::fused(-t12, t11, t9 * t4));
+        let t17 = T::fused(-top_e2, t6, t10);
+        let t18 = t3 + t1;
+        let t19 = k(0.04) * T::fused(t15, t7 - t5, T::fused(-t12, t18, t9 * t17));
+        let t20 = t14 - t13;
+        let t21 = T::fused(
+            t15,
+            T::fused(-top_e3, k(2.0) * top_e3, t10),
+            T::fused(t12, t20, t9 * t8),
         );
-        let t14 = k(0.04) * t13;
-        let t15 = k(0.5) - T::fused(top_e2, top_e2, t8);
-        let t16 = t5 + t4;
-        let t17 = T::fused(
-            k(2.0) * (t1 - t0),
-            t10,
-            T::fused(-(k(2.0) * t16), t7, k(2.0) * t15 * t3),
+        let t22 = k(0.04) * t21;
+        let t23 = T::fused(
+            t22,
+            k(0.02) * t8,
+            T::fused(-t16, k(0.02) * t4, t19 * (k(0.02) * t17)),
         );
-        let t18 = k(0.04) * t17;
-        let t19 = t12 - t11;
-        let t20 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t8)),
-            t10,
-            T::fused(k(2.0) * t19, t7, k(2.0) * t2 * t3),
+        let t24 = k(909.0909090909091)
+            * (t23 - T::fused(-k(0.1962), t8, k(0.0002) * t9));
+        let t25 = T::fused(
+            k(0.02) * t20,
+            t22,
+            -T::fused(-(k(0.02) * t11), t16, k(0.02) * t18 * t19),
         );
-        let t21 = k(0.04) * t20;
-        let t22 = T::fused(
-            t21,
-            k(0.04) * t2,
-            T::fused(-t14, k(0.04) * t6, t18 * (k(0.04) * t15)),
-        );
-        let t23 = k(909.0909090909091)
-            * (t22 - T::fused(-k(0.3924), t2, k(0.0002) * t3));
-        let t24 = T::fused(
-            k(0.04) * t19,
-            t21,
-            -T::fused(-(k(0.04) * t9), t14, k(0.04) * t16 * t18),
-        );
-        let t25 = k(909.0909090909091)
-            * (t24 - T::fused(-k(0.3924), t19, k(0.0002) * t7));
+        let t26 = k(909.0909090909091)
+            * (t25 - T::fused(-k(0.1962), t20, k(0.0002) * t12));
         *out = [
-            T::fused(-(k(0.08) * t6), t23, k(0.08) * t9 * t25) - t14,
-            -(t18 + T::fused(-(k(0.08) * t15), t23, k(0.08) * t16 * t25)),
-            t21 - T::fused(k(0.08) * t2, t23, k(0.08) * t19 * t25),
-            t23,
-            -t25,
+            T::fused(-t24, k(0.04) * t4, t26 * (k(0.04) * t11)) - t16,
+            -(t19 + T::fused(-t24, k(0.04) * t17, t26 * (k(0.04) * t18))),
+            t22 - T::fused(t24, k(0.04) * t8, t26 * (k(0.04) * t20)),
+            t24,
+            -t26,
             k(0.0),
         ];
     }
@@ -703,7 +690,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for HeavyTop<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for HeavyTop<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 65 operations (24 ±, 41 ×, 0 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 58 operations (22 ±, 36 ×, 0 ÷).
     fn project(
         &self,
         _t: T,
@@ -719,33 +706,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for HeavyTop<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = top_e0 * top_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t3));
-        let t5 = top_e0 * top_e3;
-        let t6 = top_e1 * top_e2;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = T::fused(t2, row2, T::fused(-t4, row0, t7 * row1));
-        let t9 = k(0.2727272727272727) * t8;
-        let t10 = top_e0 * top_e1;
-        let t11 = top_e2 * top_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = k(2.0) * (t6 - t5);
-        let t14 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t3));
-        let t15 = T::fused(-t12, row2, T::fused(-t13, row0, t14 * row1));
-        let t16 = k(0.2727272727272727) * t15;
-        let t17 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t3));
-        let t18 = k(2.0) * (t1 + t0);
-        let t19 = k(2.0) * (t11 - t10);
-        let t20 = T::fused(-t17, row2, T::fused(t18, row0, t19 * row1));
+        let t0 = k(2.0) * top_e0;
+        let t1 = top_e2 * t0;
+        let t2 = k(2.0) * top_e1;
+        let t3 = top_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-top_e0, t0, k(1.0));
+        let t6 = T::fused(-top_e1, t2, t5);
+        let t7 = top_e3 * t0;
+        let t8 = top_e2 * t2;
+        let t9 = t8 + t7;
+        let t10 = T::fused(t4, row2, T::fused(-t6, row0, t9 * row1));
+        let t11 = k(0.2727272727272727) * t10;
+        let t12 = top_e1 * t0;
+        let t13 = k(2.0) * top_e2;
+        let t14 = top_e3 * t13;
+        let t15 = t14 + t12;
+        let t16 = t8 - t7;
+        let t17 = T::fused(-top_e2, t13, t5);
+        let t18 = T::fused(-t15, row2, T::fused(-t16, row0, t17 * row1));
+        let t19 = k(0.2727272727272727) * t18;
+        let t20 = T::fused(-top_e3, k(2.0) * top_e3, t5);
+        let t21 = t3 + t1;
+        let t22 = t14 - t12;
+        let t23 = T::fused(-t20, row2, T::fused(t21, row0, t22 * row1));
         *out = [
-            T::fused(t18, t20, -T::fused(t4, t9, t13 * t16)),
-            T::fused(t19, t20, T::fused(t7, t9, t14 * t16)),
-            -T::fused(t17, t20, T::fused(-t2, t9, t12 * t16)),
-            -(k(18.181818181818183) * t15),
-            -(k(18.181818181818183) * t8),
+            T::fused(t21, t23, -T::fused(t6, t11, t16 * t19)),
+            T::fused(t22, t23, T::fused(t9, t11, t17 * t19)),
+            -T::fused(t20, t23, T::fused(-t4, t11, t15 * t19)),
+            -(k(18.181818181818183) * t18),
+            -(k(18.181818181818183) * t10),
             k(0.0),
         ];
     }

@@ -11,8 +11,8 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 89 operations by rotations of the bodies; 89 operations by relative Euler parameters
-//! * project: 53 operations by rotations of the bodies; 53 operations by relative Euler parameters
+//! * accelerations: 82 operations by rotations of the bodies, doubled; 82 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 50 operations by rotations of the bodies, doubled; 50 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 14 operations by normal form; 21 operations by recursion
 //! * joint_accelerations_at: 14 operations by normal form; 21 operations by recursion; 1 more compared
 //! * corrected_accelerations: 62 operations by normal form in the bodies' frames; 65 operations by recursion in the bodies' frames; 5 more compared
@@ -24,14 +24,14 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 11 | 11 | 0 | 22 | 0 of 4 | 24 | 22 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 6 | 0 | 6 | 0 of 17 | 14 | 6 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 8 | 15 | 0 | 23 | 0 of 9 | 26 | 23 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 7 | 13 | 0 | 20 | 0 of 9 | 32 | 20 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 19 | 32 | 0 | 51 | 0 of 3 | 69 | 51 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 14 | 21 | 0 | 35 | 0 of 3 | 38 | 35 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 | 4 | 4 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 33 | 56 | 0 | 89 | 1 of 6 | 879 | 89 |
+//! | gamma | γ | 17 | 27 | 0 | 44 | 0 of 3 | 78 | 44 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 13 | 19 | 0 | 32 | 0 of 3 | 44 | 32 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 31 | 51 | 0 | 82 | 1 of 6 | 1030 | 82 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 18 | 35 | 0 | 53 | 1 of 6 | 190 | 53 |
+//! | project | (δr, δπ') that changes the rows as given | 17 | 33 | 0 | 50 | 1 of 6 | 244 | 50 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
@@ -215,7 +215,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
             T::fused(top_e3, top_e3, T::fused(top_e1, top_e1, t1) + t0) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 35 operations (14 ±, 21 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 32 operations (13 ±, 19 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -227,25 +227,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for SpinningTop<T> {
         let top_sz = y[9];
         let top_wx = y[10];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e0;
-        let t1 = top_e0 * top_e2;
-        let t2 = top_e1 * top_e3;
-        let t3 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0)),
-            top_wz,
-            k(2.0) * (t2 + t1) * top_wx,
+        let t0 = k(2.0) * top_e1;
+        let t1 = k(2.0) * top_e0;
+        let t2 = T::fused(-top_e0, t1, k(1.0));
+        let t3 = top_e2 * t1;
+        let t4 = top_e3 * t0;
+        let t5 = top_sx
+            - T::fused(top_wz, T::fused(-top_e1, t0, t2), top_wx * (t4 + t3));
+        let t6 = T::fused(
+            -top_wz,
+            T::fused(top_e3, t1, top_e2 * t0),
+            top_wx * T::fused(-top_e1, t1, top_e3 * (k(2.0) * top_e2)),
         );
-        let t4 = T::fused(
-            -(k(2.0) * T::fused(top_e0, top_e3, top_e1 * top_e2)),
+        let t7 = T::fused(
             top_wz,
-            k(2.0) * T::fused(-top_e0, top_e1, top_e2 * top_e3) * top_wx,
+            t4 - t3,
+            top_wx * T::fused(-top_e3, k(2.0) * top_e3, t2),
         );
-        let t5 = T::fused(
-            k(2.0) * (t2 - t1),
-            top_wz,
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0)) * top_wx,
-        );
-        *out = [top_sx - t3, top_sy - t4, top_sz + t5];
+        *out = [t5, top_sy - t6, top_sz + t7];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
@@ -531,26 +530,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
             t0,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 23 operations (8 ±, 15 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 20 operations (7 ±, 13 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let top_e0 = y[3];
         let top_e1 = y[4];
         let top_e2 = y[5];
         let top_e3 = y[6];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = top_e0 * top_e0;
+        let t0 = k(2.0) * top_e0;
+        let t1 = top_e2 * t0;
+        let t2 = k(2.0) * top_e1;
+        let t3 = top_e3 * t2;
+        let t4 = T::fused(-top_e0, t0, k(1.0));
         *out = [
             k(1.0),
-            -(k(2.0) * (t1 + t0)),
-            -(k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t2))),
+            -(t3 + t1),
+            T::fused(top_e1, t2, -t4),
             k(1.0),
-            -(k(2.0) * T::fused(-top_e0, top_e1, top_e2 * top_e3)),
-            k(2.0) * T::fused(top_e0, top_e3, top_e1 * top_e2),
+            T::fused(-top_e3, k(2.0) * top_e2, top_e1 * t0),
+            T::fused(top_e3, t0, top_e2 * t2),
             k(1.0),
-            k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t2)),
-            k(2.0) * (t1 - t0),
+            T::fused(-top_e3, k(2.0) * top_e3, t4),
+            t3 - t1,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -558,7 +559,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 51 operations (19 ±, 32 ×, 0 ÷).
+    /// Writes γ: 44 operations (17 ±, 27 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -568,49 +569,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wx * top_wy;
-        let t1 = top_e0 * top_e0;
-        let t2 = T::fused(top_wx, top_wx, top_wz * top_wz);
-        let t3 = top_e0 * top_e3;
-        let t4 = top_e1 * top_e2;
-        let t5 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t1)),
-            t0,
-            k(2.0) * (t4 - t3) * t2,
+        let t0 = k(2.0) * top_e1;
+        let t1 = k(2.0) * top_e0;
+        let t2 = T::fused(-top_e0, t1, k(1.0));
+        let t3 = top_wx * top_wy;
+        let t4 = top_e3 * t1;
+        let t5 = top_e2 * t0;
+        let t6 = T::fused(top_wx, top_wx, top_wz * top_wz);
+        let t7 = top_e2 * t1;
+        let t8 = top_e3 * t0;
+        let t9 = top_wy * top_wz;
+        let t10 = T::fused(
+            t9,
+            t8 + t7,
+            -T::fused(t3, T::fused(-top_e1, t0, t2), t6 * (t5 - t4)),
         );
-        let t6 = top_wy * top_wz;
-        let t7 = top_e0 * top_e2;
-        let t8 = top_e1 * top_e3;
-        let t9 = T::fused(
-            k(2.0) * (t4 + t3),
-            t0,
-            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t1)) * t2,
+        let t11 = k(2.0) * top_e2;
+        let t12 = top_e1 * t1;
+        let t13 = top_e3 * t11;
+        let t14 = T::fused(
+            t9,
+            t13 - t12,
+            T::fused(t3, t5 + t4, t6 * T::fused(-top_e2, t11, t2)),
         );
-        let t10 = top_e0 * top_e1;
-        let t11 = top_e2 * top_e3;
-        let t12 = T::fused(-(k(2.0) * (t8 - t7)), t0, k(2.0) * (t11 + t10) * t2);
-        *out = [
-            T::fused(k(2.0) * (t8 + t7), t6, -t5),
-            T::fused(k(2.0) * (t11 - t10), t6, t9),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t1)), t6, t12),
-        ];
+        let t15 = T::fused(
+            t9,
+            T::fused(-top_e3, k(2.0) * top_e3, t2),
+            T::fused(-t3, t8 - t7, t6 * (t13 + t12)),
+        );
+        *out = [t10, t14, -t15];
     }
-    /// Writes (f, n' − w̃'J'w'): 4 operations (0 ±, 4 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(-147.15),
-            k(0.234375) * (top_wy * top_wz),
-            k(0.0),
-            -(k(0.234375) * (top_wx * top_wy)),
-        ];
+        let t0 = k(0.234375) * top_wy;
+        *out = [k(0.0), k(0.0), k(-147.15), top_wz * t0, k(0.0), -(top_wx * t0)];
     }
-    /// Solves eq. (17): 89 operations (33 ±, 56 ×, 0 ÷).
+    /// Solves eq. (17): 82 operations (31 ±, 51 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -620,57 +618,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e0;
-        let t1 = k(0.5) - T::fused(top_e3, top_e3, t0);
-        let t2 = top_wy * top_wz;
-        let t3 = top_e0 * top_e2;
-        let t4 = top_e1 * top_e3;
-        let t5 = t4 + t3;
-        let t6 = top_wx * top_wy;
-        let t7 = k(0.5) - T::fused(top_e1, top_e1, t0);
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(top_wx, top_wx, top_wz * top_wz);
-        let t10 = top_e0 * top_e3;
-        let t11 = top_e1 * top_e2;
-        let t12 = k(2.0) * t5;
-        let t13 = T::fused(t12, t2, -T::fused(t8, t6, k(2.0) * (t11 - t10) * t9));
-        let t14 = top_e0 * top_e1;
-        let t15 = top_e2 * top_e3;
-        let t16 = t15 - t14;
-        let t17 = t11 + t10;
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(
-            t18,
-            t6,
-            k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0)) * t9,
+        let t0 = k(2.0) * top_e0;
+        let t1 = T::fused(-top_e0, t0, k(1.0));
+        let t2 = T::fused(-top_e3, k(2.0) * top_e3, t1);
+        let t3 = top_wy * top_wz;
+        let t4 = top_e2 * t0;
+        let t5 = k(2.0) * top_e1;
+        let t6 = top_e3 * t5;
+        let t7 = t6 + t4;
+        let t8 = T::fused(-top_e1, t5, t1);
+        let t9 = top_wx * top_wy;
+        let t10 = top_e3 * t0;
+        let t11 = top_e2 * t5;
+        let t12 = T::fused(top_wx, top_wx, top_wz * top_wz);
+        let t13 = T::fused(t3, t7, -T::fused(t9, t8, t12 * (t11 - t10)));
+        let t14 = top_e1 * t0;
+        let t15 = k(2.0) * top_e2;
+        let t16 = top_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = t11 + t10;
+        let t19 = T::fused(t3, t17, T::fused(t9, t18, t12 * T::fused(-top_e2, t15, t1)));
+        let t20 = t6 - t4;
+        let t21 = T::fused(t3, t2, T::fused(-t9, t20, t12 * (t16 + t14)));
+        let t22 = T::fused(
+            t21,
+            k(15.0) * t2,
+            T::fused(t13, k(15.0) * t7, t19 * (k(15.0) * t17)),
         );
-        let t20 = k(2.0) * t16;
-        let t21 = T::fused(t20, t2, t19);
-        let t22 = t4 - t3;
-        let t23 = k(2.0) * t22;
-        let t24 = k(2.0) * t1;
-        let t25 = T::fused(t24, t2, T::fused(-t23, t6, k(2.0) * (t15 + t14) * t9));
-        let t26 = T::fused(
-            t25,
-            k(30.0) * t1,
-            T::fused(t13, k(30.0) * t5, t21 * (k(30.0) * t16)),
+        let t23 = k(0.06564102564102564)
+            * (t22 - T::fused(k(147.15), t2, k(0.234375) * t3));
+        let t24 = T::fused(
+            k(15.0) * t20,
+            t21,
+            -T::fused(-(k(15.0) * t8), t13, k(15.0) * t18 * t19),
         );
-        let t27 = k(0.06564102564102564)
-            * (t26 - T::fused(k(294.3), t1, k(0.234375) * t2));
-        let t28 = T::fused(
-            t25,
-            k(30.0) * t22,
-            -T::fused(-t13, k(30.0) * t7, t21 * (k(30.0) * t17)),
-        );
-        let t29 = k(0.06564102564102564)
-            * (t28 + T::fused(-k(294.3), t22, k(0.234375) * t6));
+        let t25 = k(0.06564102564102564)
+            * (t24 + T::fused(-k(147.15), t20, k(0.234375) * t9));
         *out = [
-            t13 - T::fused(t12, t27, t8 * t29),
-            t21 + T::fused(-t20, t27, t18 * t29),
-            T::fused(t24, t27, t23 * t29) - t25,
-            -t27,
+            t13 - T::fused(t7, t23, t8 * t25),
+            t19 + T::fused(-t17, t23, t18 * t25),
+            T::fused(t2, t23, t20 * t25) - t21,
+            -t23,
             k(0.0),
-            -t29,
+            -t25,
         ];
     }
     /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
@@ -693,7 +683,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for SpinningTop<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for SpinningTop<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 53 operations (18 ±, 35 ×, 0 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 50 operations (17 ±, 33 ×, 0 ÷).
     fn project(
         &self,
         _t: T,
@@ -709,34 +699,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for SpinningTop<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = t1 + t0;
-        let t3 = T::fused(-top_e0, top_e1, top_e2 * top_e3);
-        let t4 = top_e0 * top_e0;
-        let t5 = k(0.5) - T::fused(top_e3, top_e3, t4);
-        let t6 = T::fused(
-            k(30.0) * t5,
+        let t0 = k(2.0) * top_e0;
+        let t1 = top_e2 * t0;
+        let t2 = k(2.0) * top_e1;
+        let t3 = top_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = T::fused(-top_e1, t0, top_e3 * (k(2.0) * top_e2));
+        let t6 = T::fused(-top_e0, t0, k(1.0));
+        let t7 = T::fused(-top_e3, k(2.0) * top_e3, t6);
+        let t8 = T::fused(
+            k(15.0) * t7,
             row2,
-            -T::fused(k(30.0) * t2, row0, k(30.0) * t3 * row1),
+            -T::fused(k(15.0) * t4, row0, k(15.0) * t5 * row1),
         );
-        let t7 = k(0.06564102564102564) * t6;
-        let t8 = k(0.5) - T::fused(top_e1, top_e1, t4);
-        let t9 = T::fused(top_e0, top_e3, top_e1 * top_e2);
-        let t10 = t1 - t0;
-        let t11 = T::fused(
-            k(30.0) * t10,
+        let t9 = k(0.06564102564102564) * t8;
+        let t10 = T::fused(-top_e1, t2, t6);
+        let t11 = T::fused(top_e3, t0, top_e2 * t2);
+        let t12 = t3 - t1;
+        let t13 = T::fused(
+            k(15.0) * t12,
             row2,
-            T::fused(-(k(30.0) * t8), row0, k(30.0) * t9 * row1),
+            T::fused(-(k(15.0) * t10), row0, k(15.0) * t11 * row1),
         );
-        let t12 = k(0.06564102564102564) * t11;
+        let t14 = k(0.06564102564102564) * t13;
         *out = [
-            row0 + T::fused(k(2.0) * t2, t7, k(2.0) * t8 * t12),
-            row1 - T::fused(-(k(2.0) * t3), t7, k(2.0) * t9 * t12),
-            row2 - T::fused(k(2.0) * t5, t7, k(2.0) * t10 * t12),
-            t7,
+            row0 + T::fused(t4, t9, t10 * t14),
+            row1 - T::fused(-t5, t9, t11 * t14),
+            row2 - T::fused(t7, t9, t12 * t14),
+            t9,
             k(0.0),
-            t12,
+            t14,
         ];
     }
 }

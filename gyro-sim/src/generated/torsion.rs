@@ -12,8 +12,8 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 42 operations by rotations of the bodies; 42 operations by relative Euler parameters
-//! * project: 29 operations by rotations of the bodies; 29 operations by relative Euler parameters
+//! * accelerations: 40 operations by rotations of the bodies, doubled; 40 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 27 operations by rotations of the bodies, doubled; 27 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 3 operations by normal form; 4 operations by recursion
 //! * joint_accelerations_at: 19 operations by normal form; 20 operations by recursion; 1 more compared
 //! * corrected_accelerations: 21 operations by normal form in the bodies' frames; 21 operations by normal form in the global frame; 5 more compared
@@ -25,14 +25,14 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 6 | 10 | 0 | 16 | 0 of 6 | 16 | 16 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 15 | 12 | 4 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 6 | 9 | 0 | 15 | 0 of 7 | 18 | 15 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 5 | 8 | 0 | 13 | 0 of 7 | 22 | 13 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 13 | 25 | 0 | 38 | 3 of 5 | 46 | 38 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 8 | 13 | 0 | 21 | 0 of 5 | 24 | 21 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 16 | 0 | 23 | 3 of 6 | 32 | 23 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 14 | 27 | 1 | 42 | 3 of 6 | 63 | 43 |
-//! | multipliers | λ, the accelerations being known | 11 | 26 | 1 | 38 | 0 of 5 | 131 | 38 |
-//! | project | (δr, δπ') that changes the rows as given | 9 | 19 | 1 | 29 | 1 of 6 | 116 | 29 |
+//! | gamma | γ | 12 | 22 | 0 | 34 | 3 of 5 | 52 | 34 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 7 | 12 | 0 | 19 | 0 of 5 | 28 | 19 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 14 | 0 | 21 | 3 of 6 | 32 | 21 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 13 | 26 | 1 | 40 | 3 of 6 | 71 | 41 |
+//! | multipliers | λ, the accelerations being known | 10 | 25 | 1 | 36 | 0 of 5 | 151 | 36 |
+//! | project | (δr, δπ') that changes the rows as given | 8 | 18 | 1 | 27 | 1 of 6 | 136 | 27 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 18 | 0 | 26 | 0 of 9 | 26 | 26 |
 //! | energy | T and V | 11 | 24 | 0 | 35 | 0 of 2 | 69 | 35 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
@@ -259,7 +259,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
             t0 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 21 operations (8 ±, 13 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 19 operations (7 ±, 12 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -271,20 +271,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Torsion<T> {
         let disc_sz = y[9];
         let disc_wx = y[10];
         let disc_wy = y[11];
-        let t0 = disc_e0 * disc_e0;
-        let t1 = disc_e0 * disc_e3;
-        let t2 = disc_e1 * disc_e2;
-        let t3 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t0)),
+        let t0 = k(2.0) * disc_e1;
+        let t1 = k(2.0) * disc_e0;
+        let t2 = T::fused(-disc_e0, t1, k(1.0));
+        let t3 = disc_e3 * t1;
+        let t4 = disc_e2 * t0;
+        let t5 = T::fused(
             disc_wy,
-            k(2.0) * (t2 - t1) * disc_wx,
+            t4 + t3,
+            disc_wx * T::fused(-disc_e2, k(2.0) * disc_e2, t2),
         );
-        let t4 = T::fused(
-            k(2.0) * (t2 + t1),
-            disc_wy,
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t0)) * disc_wx,
-        );
-        *out = [disc_sx, disc_sy, disc_sz, -t3, t4];
+        *out = [
+            disc_sx,
+            disc_sy,
+            disc_sz,
+            -T::fused(disc_wy, T::fused(-disc_e1, t0, t2), disc_wx * (t4 - t3)),
+            t5,
+        ];
     }
     /// Kinetic and potential energy: 35 operations (11 ±, 24 ×, 0 ÷) and 3 functions.
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
@@ -628,24 +631,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
             t1,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 15 operations (6 ±, 9 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 13 operations (5 ±, 8 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let disc_e0 = y[3];
         let disc_e1 = y[4];
         let disc_e2 = y[5];
         let disc_e3 = y[6];
-        let t0 = disc_e0 * disc_e3;
-        let t1 = disc_e1 * disc_e2;
-        let t2 = disc_e0 * disc_e0;
+        let t0 = k(2.0) * disc_e0;
+        let t1 = disc_e3 * t0;
+        let t2 = k(2.0) * disc_e1;
+        let t3 = disc_e2 * t2;
+        let t4 = T::fused(-disc_e0, t0, k(1.0));
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -(k(2.0) * (t1 - t0)),
-            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t2))),
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t2)),
-            k(2.0) * (t1 + t0),
+            t1 - t3,
+            T::fused(disc_e1, t2, -t4),
+            T::fused(-disc_e2, k(2.0) * disc_e2, t4),
+            t3 + t1,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -653,7 +658,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 38 operations (13 ±, 25 ×, 0 ÷).
+    /// Writes γ: 34 operations (12 ±, 22 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -663,31 +668,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let disc_wx = y[10];
         let disc_wy = y[11];
         let disc_wz = y[12];
-        let t0 = disc_wx * disc_wz;
-        let t1 = disc_e0 * disc_e0;
-        let t2 = disc_wy * disc_wz;
-        let t3 = disc_e0 * disc_e3;
-        let t4 = disc_e1 * disc_e2;
-        let t5 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t1))),
-            t0,
-            k(2.0) * (t4 - t3) * t2,
+        let t0 = k(2.0) * disc_e1;
+        let t1 = k(2.0) * disc_e0;
+        let t2 = T::fused(-disc_e0, t1, k(1.0));
+        let t3 = disc_wx * disc_wz;
+        let t4 = disc_e3 * t1;
+        let t5 = disc_e2 * t0;
+        let t6 = disc_wy * disc_wz;
+        let t7 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t8 = T::fused(
+            t7,
+            T::fused(disc_e2, t1, disc_e3 * t0),
+            -T::fused(-t3, T::fused(-disc_e1, t0, t2), t6 * (t5 - t4)),
         );
-        let t6 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
-        let t7 = T::fused(
-            -(k(2.0) * (t4 + t3)),
-            t0,
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t1)) * t2,
+        let t9 = k(2.0) * disc_e2;
+        let t10 = T::fused(
+            t7,
+            T::fused(-disc_e1, t1, disc_e3 * t9),
+            T::fused(-t3, t5 + t4, t6 * T::fused(-disc_e2, t9, t2)),
         );
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            T::fused(k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3), t6, -t5),
-            T::fused(k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3), t6, t7),
-        ];
+        *out = [k(0.0), k(0.0), k(0.0), t8, t10];
     }
-    /// Writes (f, n' − w̃'J'w'): 23 operations (7 ±, 16 ×, 0 ÷) and 3 functions.
+    /// Writes (f, n' − w̃'J'w'): 21 operations (7 ±, 14 ×, 0 ÷) and 3 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -698,21 +700,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let disc_wy = y[11];
         let disc_wz = y[12];
         let turn0 = y[14];
-        let t0 = turn0.cos();
-        let t1 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t2 = turn0.sin();
-        let t3 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
+        let t0 = k(0.01) * disc_wz;
+        let t1 = turn0.cos();
+        let t2 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
+        let t3 = turn0.sin();
+        let t4 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t5 = T::fused(t2, t3, t4 * t1).atan2(T::fused(-t2, t1, t4 * t3));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -(k(0.01) * (disc_wy * disc_wz)),
-            k(0.01) * (disc_wx * disc_wz),
-            -T::fused(k(0.5), turn0 + t4, k(0.01) * disc_wz),
+            -(disc_wy * t0),
+            disc_wx * t0,
+            -T::fused(k(0.5), turn0 + t5, t0),
         ];
     }
-    /// Solves eq. (17): 42 operations (14 ±, 27 ×, 1 ÷) and 3 functions.
+    /// Solves eq. (17): 40 operations (13 ±, 26 ×, 1 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -723,34 +726,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let disc_wy = y[11];
         let disc_wz = y[12];
         let turn0 = y[14];
-        let t0 = disc_e0 * disc_e0;
-        let t1 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
-            * (k(0.5) / (k(0.5) - T::fused(disc_e3, disc_e3, t0)));
-        let t2 = T::fused(
-            -(k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3)),
-            t1,
+        let t0 = k(2.0) * disc_e0;
+        let t1 = T::fused(-disc_e0, t0, k(1.0));
+        let t2 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
+            / T::fused(-disc_e3, k(2.0) * disc_e3, t1);
+        let t3 = T::fused(
+            -T::fused(disc_e1, t0, disc_e3 * (k(2.0) * disc_e2)),
+            t2,
             disc_wy * disc_wz,
         );
-        let t3 = T::fused(
-            -(k(2.0) * T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3)),
-            t1,
-            disc_wx * disc_wz,
-        );
-        let t4 = turn0.cos();
-        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t0));
-        let t6 = turn0.sin();
-        let t7 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t8 = T::fused(t5, t6, t7 * t4).atan2(T::fused(-t5, t4, t7 * t6));
+        let t4 = k(2.0) * disc_e1;
+        let t5 = T::fused(-disc_e1, t4, t1);
+        let t6 = turn0.cos();
+        let t7 = T::fused(disc_e3, t0, disc_e2 * t4);
+        let t8 = turn0.sin();
+        let t9 = T::fused(t8, t5, t6 * t7).atan2(T::fused(-t6, t5, t8 * t7));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t2,
-            -t3,
-            -(k(50.0) * T::fused(k(0.5), turn0 + t8, k(0.01) * disc_wz)),
+            t3,
+            T::fused(-disc_wx, disc_wz, T::fused(-disc_e2, t0, disc_e3 * t4) * t2),
+            -(k(50.0) * T::fused(k(0.5), turn0 + t9, k(0.01) * disc_wz)),
         ];
     }
-    /// Writes λ: 38 operations (11 ±, 26 ×, 1 ÷).
+    /// Writes λ: 36 operations (10 ±, 25 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -771,27 +771,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Torsion<T> {
         let disc_dsz = accelerations[2];
         let disc_dwx = accelerations[3];
         let disc_dwy = accelerations[4];
-        let t0 = disc_e0 * disc_e3;
-        let t1 = disc_e1 * disc_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = k(2.0) * (t1 - t0);
-        let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
-        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
-        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
-        let t8 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t9 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t0 = k(2.0) * disc_e0;
+        let t1 = disc_e3 * t0;
+        let t2 = k(2.0) * disc_e1;
+        let t3 = disc_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = t3 - t1;
+        let t6 = T::fused(-disc_e0, t0, k(1.0));
+        let t7 = T::fused(-disc_e2, k(2.0) * disc_e2, t6);
+        let t8 = T::fused(-disc_e1, t2, t6);
+        let t9 = k(1.0) / T::fused(-t5, t4, t8 * t7);
+        let t10 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t11 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -(k(4.0) * disc_dsz),
-            -T::fused(t8, t2 * t7, t9 * (t5 * t7)),
-            -T::fused(t8, t6 * t7, t9 * (t3 * t7)),
+            -T::fused(t10, t4 * t9, t11 * (t7 * t9)),
+            -T::fused(t10, t8 * t9, t11 * (t5 * t9)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Torsion<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 29 operations (9 ±, 19 ×, 1 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 27 operations (8 ±, 18 ×, 1 ÷).
     fn project(
         &self,
         _t: T,
@@ -809,20 +811,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Torsion<T> {
         let row2 = rows[2];
         let row3 = rows[3];
         let row4 = rows[4];
-        let t0 = disc_e0 * disc_e3;
-        let t1 = disc_e1 * disc_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = k(2.0) * (t1 - t0);
-        let t4 = disc_e0 * disc_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
-        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
-        let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
+        let t0 = k(2.0) * disc_e0;
+        let t1 = disc_e3 * t0;
+        let t2 = k(2.0) * disc_e1;
+        let t3 = disc_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = t3 - t1;
+        let t6 = T::fused(-disc_e0, t0, k(1.0));
+        let t7 = T::fused(-disc_e2, k(2.0) * disc_e2, t6);
+        let t8 = T::fused(-disc_e1, t2, t6);
+        let t9 = k(1.0) / T::fused(-t5, t4, t8 * t7);
         *out = [
             row0,
             row1,
             row2,
-            T::fused(t2 * t7, row3, t6 * t7 * row4),
-            -T::fused(t5 * t7, row3, t3 * t7 * row4),
+            T::fused(row3, t4 * t9, row4 * (t8 * t9)),
+            -T::fused(row3, t7 * t9, row4 * (t5 * t9)),
             k(0.0),
         ];
     }

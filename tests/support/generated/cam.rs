@@ -11,8 +11,8 @@
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 168 operations by rotations of the bodies; 168 operations by relative Euler parameters
-//! * project: 94 operations by rotations of the bodies; 94 operations by relative Euler parameters
+//! * accelerations: 160 operations by rotations of the bodies, doubled; 160 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 88 operations by rotations of the bodies, doubled; 88 operations by relative Euler parameters, doubled; 2 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -20,14 +20,14 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 20 | 30 | 0 | 50 | 0 of 14 | 50 | 50 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 38 | 32 | 8 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 14 | 24 | 0 | 38 | 0 of 18 | 54 | 38 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 12 | 20 | 0 | 32 | 0 of 18 | 66 | 32 |
 //! | nu | ν | 3 | 7 | 0 | 10 | 10 of 12 | 12 | 10 |
-//! | gamma | γ | 37 | 69 | 0 | 106 | 4 of 12 | 161 | 106 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 25 | 43 | 0 | 68 | 0 of 12 | 86 | 68 |
+//! | gamma | γ | 35 | 63 | 0 | 98 | 4 of 12 | 179 | 98 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 23 | 39 | 0 | 62 | 0 of 12 | 98 | 62 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 0 | 0 | 0 | 10 of 12 | 0 | 0 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 51 | 115 | 2 | 168 | 4 of 14 | 968 | 168 |
-//! | multipliers | λ, the accelerations being known | 24 | 78 | 2 | 104 | 0 of 12 | 610 | 104 |
-//! | project | (δr, δπ') that changes the rows as given | 24 | 68 | 2 | 94 | 0 of 12 | 592 | 94 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 49 | 109 | 2 | 160 | 4 of 14 | 1112 | 160 |
+//! | multipliers | λ, the accelerations being known | 22 | 74 | 2 | 98 | 0 of 12 | 712 | 98 |
+//! | project | (δr, δπ') that changes the rows as given | 22 | 64 | 2 | 88 | 0 of 12 | 694 | 88 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 20 | 41 | 0 | 61 | 0 of 15 | 63 | 61 |
 //! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 | 35 | 35 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
@@ -286,7 +286,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cam<T> {
             t2 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 68 operations (25 ±, 43 ×, 0 ÷) and 2 functions.
+    /// Writes Φ_r s + Φ_π' w' − ν: 62 operations (23 ±, 39 ×, 0 ÷) and 2 functions.
     fn velocity_residual(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let table0 = t.spline(&KNOTS_0, &PIECES_0);
         let k = T::constant;
@@ -310,55 +310,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cam<T> {
         let plunger_wx = y[23];
         let plunger_wy = y[24];
         let plunger_wz = y[25];
-        let t0 = follower_e0 * follower_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t0));
-        let t2 = follower_e0 * follower_e3;
-        let t3 = follower_e1 * follower_e2;
-        let t4 = T::fused(
-            k(2.0) * (t3 + t2),
+        let t0 = k(2.0) * follower_e1;
+        let t1 = k(2.0) * follower_e0;
+        let t2 = T::fused(-follower_e0, t1, k(1.0));
+        let t3 = T::fused(-follower_e1, t0, t2);
+        let t4 = follower_e3 * t1;
+        let t5 = follower_e2 * t0;
+        let t6 = T::fused(
             follower_wy,
-            k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t0)) * follower_wx,
+            t5 + t4,
+            follower_wx * T::fused(-follower_e2, k(2.0) * follower_e2, t2),
         );
-        let t5 = T::fused(
-            t1,
-            follower_wz,
-            k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3)
-                * follower_wx,
-        );
-        let t6 = plunger_e0 * plunger_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t6));
-        let t8 = plunger_e0 * plunger_e3;
-        let t9 = plunger_e1 * plunger_e2;
-        let t10 = T::fused(
-            k(2.0) * (t9 + t8),
-            plunger_wy,
-            k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t6)) * plunger_wx,
-        );
-        let t11 = T::fused(
-            t7,
-            plunger_wz,
-            k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3)
-                * plunger_wx,
-        );
-        let t12 = T::fused(k(3.0), t, k(0.5));
+        let t7 = k(2.0) * plunger_e1;
+        let t8 = k(2.0) * plunger_e0;
+        let t9 = T::fused(-plunger_e0, t8, k(1.0));
+        let t10 = T::fused(-plunger_e1, t7, t9);
+        let t11 = plunger_e3 * t8;
+        let t12 = plunger_e2 * t7;
         let t13 = T::fused(
+            plunger_wy,
+            t12 + t11,
+            plunger_wx * T::fused(-plunger_e2, k(2.0) * plunger_e2, t9),
+        );
+        let t14 = T::fused(k(3.0), t, k(0.5));
+        let t15 = T::fused(
             t * (k(0.1) * t),
-            k(3.0) * t12.cos(),
-            (k(1.0) + t12.sin()) * (k(0.2) * t),
+            k(3.0) * t14.cos(),
+            (k(1.0) + t14.sin()) * (k(0.2) * t),
         );
         *out = [
             follower_sx,
             follower_sy,
-            -T::fused(t1, follower_wy, k(2.0) * (t3 - t2) * follower_wx),
-            t4,
-            t5,
+            -T::fused(follower_wy, t3, follower_wx * (t5 - t4)),
+            t6,
+            T::fused(
+                follower_wz,
+                t3,
+                follower_wx * T::fused(follower_e2, t1, follower_e3 * t0),
+            ),
             plunger_sx,
             plunger_sy,
-            -T::fused(t7, plunger_wy, k(2.0) * (t9 - t8) * plunger_wx),
-            t10,
-            t11,
+            -T::fused(plunger_wy, t10, plunger_wx * (t12 - t11)),
+            t13,
+            T::fused(
+                plunger_wz,
+                t10,
+                plunger_wx * T::fused(plunger_e2, t8, plunger_e3 * t7),
+            ),
             follower_sz - table0[1],
-            plunger_sz - t13,
+            plunger_sz - t15,
         ];
     }
     /// Kinetic and potential energy: 35 operations (12 ±, 23 ×, 0 ÷).
@@ -696,7 +696,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
             t5,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 38 operations (14 ±, 24 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 32 operations (12 ±, 20 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let follower_e0 = y[3];
@@ -707,31 +707,35 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let plunger_e1 = y[11];
         let plunger_e2 = y[12];
         let plunger_e3 = y[13];
-        let t0 = follower_e0 * follower_e3;
-        let t1 = follower_e1 * follower_e2;
-        let t2 = follower_e0 * follower_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t2));
-        let t4 = plunger_e0 * plunger_e3;
-        let t5 = plunger_e1 * plunger_e2;
-        let t6 = plunger_e0 * plunger_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t6));
+        let t0 = k(2.0) * follower_e0;
+        let t1 = follower_e3 * t0;
+        let t2 = k(2.0) * follower_e1;
+        let t3 = follower_e2 * t2;
+        let t4 = T::fused(-follower_e0, t0, k(1.0));
+        let t5 = T::fused(-follower_e1, t2, t4);
+        let t6 = k(2.0) * plunger_e0;
+        let t7 = plunger_e3 * t6;
+        let t8 = k(2.0) * plunger_e1;
+        let t9 = plunger_e2 * t8;
+        let t10 = T::fused(-plunger_e0, t6, k(1.0));
+        let t11 = T::fused(-plunger_e1, t8, t10);
         *out = [
             k(1.0),
             k(1.0),
-            -(k(2.0) * (t1 - t0)),
-            -t3,
-            k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t2)),
-            k(2.0) * (t1 + t0),
-            k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3),
-            t3,
+            t1 - t3,
+            -t5,
+            T::fused(-follower_e2, k(2.0) * follower_e2, t4),
+            t3 + t1,
+            T::fused(follower_e2, t0, follower_e3 * t2),
+            t5,
             k(1.0),
             k(1.0),
-            -(k(2.0) * (t5 - t4)),
-            -t7,
-            k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t6)),
-            k(2.0) * (t5 + t4),
-            k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3),
-            t7,
+            t7 - t9,
+            -t11,
+            T::fused(-plunger_e2, k(2.0) * plunger_e2, t10),
+            t9 + t7,
+            T::fused(plunger_e2, t6, plunger_e3 * t8),
+            t11,
             k(1.0),
             k(1.0),
         ];
@@ -761,7 +765,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
             t1,
         ];
     }
-    /// Writes γ: 106 operations (37 ±, 69 ×, 0 ÷) and 2 functions.
+    /// Writes γ: 98 operations (35 ±, 63 ×, 0 ÷) and 2 functions.
     fn gamma(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let table0 = t.spline(&KNOTS_0, &PIECES_0);
         let k = T::constant;
@@ -779,80 +783,78 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let plunger_wx = y[23];
         let plunger_wy = y[24];
         let plunger_wz = y[25];
-        let t0 = follower_wx * follower_wz;
-        let t1 = follower_e0 * follower_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t1));
-        let t3 = follower_wy * follower_wz;
-        let t4 = follower_e0 * follower_e3;
-        let t5 = follower_e1 * follower_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = follower_wx * follower_wx;
-        let t8 = T::fused(follower_wy, follower_wy, t7);
-        let t9 = k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3);
-        let t10 = T::fused(
-            -(k(2.0) * (t5 + t4)),
-            t0,
-            k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t1)) * t3,
+        let t0 = k(2.0) * follower_e1;
+        let t1 = k(2.0) * follower_e0;
+        let t2 = T::fused(-follower_e0, t1, k(1.0));
+        let t3 = T::fused(-follower_e1, t0, t2);
+        let t4 = follower_wx * follower_wz;
+        let t5 = follower_e3 * t1;
+        let t6 = follower_e2 * t0;
+        let t7 = t6 - t5;
+        let t8 = follower_wy * follower_wz;
+        let t9 = T::fused(follower_e2, t1, follower_e3 * t0);
+        let t10 = follower_wx * follower_wx;
+        let t11 = T::fused(follower_wy, follower_wy, t10);
+        let t12 = k(2.0) * follower_e2;
+        let t13 = T::fused(
+            t11,
+            T::fused(-follower_e1, t1, follower_e3 * t12),
+            T::fused(-t4, t6 + t5, t8 * T::fused(-follower_e2, t12, t2)),
         );
-        let t11 = T::fused(
+        let t14 = T::fused(
+            t8,
             t9,
-            t3,
             -T::fused(
-                t2,
                 follower_wx * follower_wy,
-                t6 * T::fused(follower_wz, follower_wz, t7),
+                t3,
+                T::fused(follower_wz, follower_wz, t10) * t7,
             ),
         );
-        let t12 = plunger_wx * plunger_wz;
-        let t13 = plunger_e0 * plunger_e0;
-        let t14 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t13));
-        let t15 = plunger_wy * plunger_wz;
-        let t16 = plunger_e0 * plunger_e3;
-        let t17 = plunger_e1 * plunger_e2;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = plunger_wx * plunger_wx;
-        let t20 = T::fused(plunger_wy, plunger_wy, t19);
-        let t21 = k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3);
-        let t22 = T::fused(
-            -(k(2.0) * (t17 + t16)),
-            t12,
-            k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t13)) * t15,
+        let t15 = k(2.0) * plunger_e1;
+        let t16 = k(2.0) * plunger_e0;
+        let t17 = T::fused(-plunger_e0, t16, k(1.0));
+        let t18 = T::fused(-plunger_e1, t15, t17);
+        let t19 = plunger_wx * plunger_wz;
+        let t20 = plunger_e3 * t16;
+        let t21 = plunger_e2 * t15;
+        let t22 = t21 - t20;
+        let t23 = plunger_wy * plunger_wz;
+        let t24 = T::fused(plunger_e2, t16, plunger_e3 * t15);
+        let t25 = plunger_wx * plunger_wx;
+        let t26 = T::fused(plunger_wy, plunger_wy, t25);
+        let t27 = k(2.0) * plunger_e2;
+        let t28 = T::fused(
+            t26,
+            T::fused(-plunger_e1, t16, plunger_e3 * t27),
+            T::fused(-t19, t21 + t20, t23 * T::fused(-plunger_e2, t27, t17)),
         );
-        let t23 = T::fused(
-            t21,
-            t15,
+        let t29 = T::fused(
+            t23,
+            t24,
             -T::fused(
-                t14,
                 plunger_wx * plunger_wy,
-                t18 * T::fused(plunger_wz, plunger_wz, t19),
+                t18,
+                T::fused(plunger_wz, plunger_wz, t25) * t22,
             ),
         );
-        let t24 = T::fused(k(3.0), t, k(0.5));
-        let t25 = t24.sin();
-        let t26 = k(3.0) * t24.cos() * (k(0.2) * t);
-        let t27 = T::fused(-(t * (k(0.1) * t)), k(9.0) * t25, t26)
-            + T::fused(k(0.2), k(1.0) + t25, t26);
+        let t30 = T::fused(k(3.0), t, k(0.5));
+        let t31 = t30.sin();
+        let t32 = k(3.0) * t30.cos() * (k(0.2) * t);
+        let t33 = T::fused(-(t * (k(0.1) * t)), k(9.0) * t31, t32)
+            + T::fused(k(0.2), k(1.0) + t31, t32);
         *out = [
             k(0.0),
             k(0.0),
-            T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3)),
-            T::fused(
-                k(2.0) * T::fused(-follower_e0, follower_e1, follower_e2 * follower_e3),
-                t8,
-                t10,
-            ),
-            -t11,
+            T::fused(t11, t9, -T::fused(-t4, t3, t8 * t7)),
+            t13,
+            -t14,
             k(0.0),
             k(0.0),
-            T::fused(t21, t20, -T::fused(-t14, t12, t18 * t15)),
-            T::fused(
-                k(2.0) * T::fused(-plunger_e0, plunger_e1, plunger_e2 * plunger_e3),
-                t20,
-                t22,
-            ),
-            -t23,
+            T::fused(t26, t24, -T::fused(-t19, t18, t23 * t22)),
+            t28,
+            -t29,
             table0[2],
-            t27,
+            t33,
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 0 operations (0 ±, 0 ×, 0 ÷).
@@ -873,7 +875,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
             k(0.0),
         ];
     }
-    /// Solves eq. (17): 168 operations (51 ±, 115 ×, 2 ÷) and 2 functions.
+    /// Solves eq. (17): 160 operations (49 ±, 109 ×, 2 ÷) and 2 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let table0 = t.spline(&KNOTS_0, &PIECES_0);
         let k = T::constant;
@@ -892,94 +894,100 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let plunger_wy = y[24];
         let plunger_wz = y[25];
         let t0 = table0[2] + k(9.81);
-        let t1 = follower_wx * follower_wz;
-        let t2 = follower_e0 * follower_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t2));
-        let t4 = follower_wy * follower_wz;
-        let t5 = follower_e0 * follower_e3;
-        let t6 = follower_e1 * follower_e2;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = follower_wx * follower_wx;
-        let t9 = T::fused(follower_wy, follower_wy, t8);
-        let t10 = k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3);
-        let t11 = T::fused(t10, t9, -T::fused(-t3, t1, t7 * t4));
-        let t12 = k(2.0) * (t6 + t5);
-        let t13 = k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t2));
-        let t14 = t3 * t13;
-        let t15 = T::fused(t7, t12, -t14);
-        let t16 = k(1.0) / (t3 * t15);
-        let t17 = T::fused(
-            k(2.0) * T::fused(-follower_e0, follower_e1, follower_e2 * follower_e3),
+        let t1 = k(2.0) * follower_e1;
+        let t2 = k(2.0) * follower_e0;
+        let t3 = T::fused(-follower_e0, t2, k(1.0));
+        let t4 = T::fused(-follower_e1, t1, t3);
+        let t5 = follower_wx * follower_wz;
+        let t6 = follower_e3 * t2;
+        let t7 = follower_e2 * t1;
+        let t8 = t7 - t6;
+        let t9 = follower_wy * follower_wz;
+        let t10 = T::fused(follower_e2, t2, follower_e3 * t1);
+        let t11 = follower_wx * follower_wx;
+        let t12 = T::fused(follower_wy, follower_wy, t11);
+        let t13 = T::fused(t12, t10, -T::fused(-t5, t4, t9 * t8));
+        let t14 = t7 + t6;
+        let t15 = k(2.0) * follower_e2;
+        let t16 = T::fused(-follower_e2, t15, t3);
+        let t17 = t4 * t16;
+        let t18 = T::fused(t8, t14, -t17);
+        let t19 = k(1.0) / (t4 * t18);
+        let t20 = T::fused(
+            t12,
+            T::fused(-follower_e1, t2, follower_e3 * t15),
+            T::fused(-t5, t14, t9 * t16),
+        );
+        let t21 = T::fused(t19 * (t4 * t14), t13, t19 * (t4 * t4) * t20);
+        let t22 = T::fused(
             t9,
-            T::fused(-t12, t1, t13 * t4),
-        );
-        let t18 = T::fused(t16 * (t3 * t12), t11, t16 * (t3 * t3) * t17);
-        let t19 = T::fused(
             t10,
-            t4,
             -T::fused(
-                t3,
                 follower_wx * follower_wy,
-                t7 * T::fused(follower_wz, follower_wz, t8),
+                t4,
+                T::fused(follower_wz, follower_wz, t11) * t8,
             ),
         );
-        let t20 = T::fused(t11, t16 * (t10 * t12), t17 * (t16 * (t3 * t10)));
-        let t21 = T::fused(k(3.0), t, k(0.5));
-        let t22 = t21.sin();
-        let t23 = k(3.0) * t21.cos() * (k(0.2) * t);
-        let t24 = T::fused(-(t * (k(0.1) * t)), k(9.0) * t22, t23)
-            + T::fused(k(0.2), k(1.0) + t22, t23);
-        let t25 = t24 + k(9.81);
-        let t26 = plunger_wx * plunger_wz;
-        let t27 = plunger_e0 * plunger_e0;
-        let t28 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t27));
-        let t29 = plunger_wy * plunger_wz;
-        let t30 = plunger_e0 * plunger_e3;
-        let t31 = plunger_e1 * plunger_e2;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = plunger_wx * plunger_wx;
-        let t34 = T::fused(plunger_wy, plunger_wy, t33);
-        let t35 = k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3);
-        let t36 = T::fused(t35, t34, -T::fused(-t28, t26, t32 * t29));
-        let t37 = k(2.0) * (t31 + t30);
-        let t38 = k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t27));
-        let t39 = t28 * t38;
-        let t40 = T::fused(t32, t37, -t39);
-        let t41 = k(1.0) / (t28 * t40);
-        let t42 = T::fused(
-            k(2.0) * T::fused(-plunger_e0, plunger_e1, plunger_e2 * plunger_e3),
-            t34,
-            T::fused(-t37, t26, t38 * t29),
+        let t23 = T::fused(t13, t19 * (t10 * t14), t20 * (t19 * (t4 * t10)));
+        let t24 = T::fused(k(3.0), t, k(0.5));
+        let t25 = t24.sin();
+        let t26 = k(3.0) * t24.cos() * (k(0.2) * t);
+        let t27 = T::fused(-(t * (k(0.1) * t)), k(9.0) * t25, t26)
+            + T::fused(k(0.2), k(1.0) + t25, t26);
+        let t28 = t27 + k(9.81);
+        let t29 = k(2.0) * plunger_e1;
+        let t30 = k(2.0) * plunger_e0;
+        let t31 = T::fused(-plunger_e0, t30, k(1.0));
+        let t32 = T::fused(-plunger_e1, t29, t31);
+        let t33 = plunger_wx * plunger_wz;
+        let t34 = plunger_e3 * t30;
+        let t35 = plunger_e2 * t29;
+        let t36 = t35 - t34;
+        let t37 = plunger_wy * plunger_wz;
+        let t38 = T::fused(plunger_e2, t30, plunger_e3 * t29);
+        let t39 = plunger_wx * plunger_wx;
+        let t40 = T::fused(plunger_wy, plunger_wy, t39);
+        let t41 = T::fused(t40, t38, -T::fused(-t33, t32, t37 * t36));
+        let t42 = t35 + t34;
+        let t43 = k(2.0) * plunger_e2;
+        let t44 = T::fused(-plunger_e2, t43, t31);
+        let t45 = t32 * t44;
+        let t46 = T::fused(t36, t42, -t45);
+        let t47 = k(1.0) / (t32 * t46);
+        let t48 = T::fused(
+            t40,
+            T::fused(-plunger_e1, t30, plunger_e3 * t43),
+            T::fused(-t33, t42, t37 * t44),
         );
-        let t43 = T::fused(t41 * (t28 * t37), t36, t41 * (t28 * t28) * t42);
-        let t44 = T::fused(
-            t35,
-            t29,
+        let t49 = T::fused(t47 * (t32 * t42), t41, t47 * (t32 * t32) * t48);
+        let t50 = T::fused(
+            t37,
+            t38,
             -T::fused(
-                t28,
                 plunger_wx * plunger_wy,
-                t32 * T::fused(plunger_wz, plunger_wz, t33),
+                t32,
+                T::fused(plunger_wz, plunger_wz, t39) * t36,
             ),
         );
-        let t45 = T::fused(t36, t41 * (t35 * t37), t42 * (t41 * (t28 * t35)));
+        let t51 = T::fused(t41, t47 * (t38 * t42), t48 * (t47 * (t32 * t38)));
         *out = [
             k(0.0),
             k(0.0),
             t0 - k(9.81),
-            -t18,
-            T::fused(t11, t14 * t16, t17 * (t16 * (t3 * t7))),
-            T::fused(-(t15 * t16), t19, t20),
+            -t21,
+            T::fused(t13, t17 * t19, t20 * (t19 * (t4 * t8))),
+            T::fused(-(t18 * t19), t22, t23),
             k(0.0),
             k(0.0),
-            t25 - k(9.81),
-            -t43,
-            T::fused(t36, t39 * t41, t42 * (t41 * (t28 * t32))),
-            T::fused(-(t40 * t41), t44, t45),
+            t28 - k(9.81),
+            -t49,
+            T::fused(t41, t45 * t47, t48 * (t47 * (t32 * t36))),
+            T::fused(-(t46 * t47), t50, t51),
             -(k(0.5) * t0),
-            -(k(0.25) * t25),
+            -(k(0.25) * t28),
         ];
     }
-    /// Writes λ: 104 operations (24 ±, 78 ×, 2 ÷).
+    /// Writes λ: 98 operations (22 ±, 74 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1008,62 +1016,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cam<T> {
         let plunger_dwz = accelerations[11];
         let closing0 = accelerations[12];
         let closing1 = accelerations[13];
-        let t0 = follower_e0 * follower_e3;
-        let t1 = follower_e1 * follower_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = follower_e0 * follower_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t3));
-        let t5 = t4 * (k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t3)));
-        let t6 = k(2.0) * (t1 - t0);
-        let t7 = T::fused(t6, t2, -t5);
-        let t8 = k(1.0) / (t4 * t7);
-        let t9 = k(0.001) * follower_dwx;
-        let t10 = k(0.001) * follower_dwy;
-        let t11 = k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3);
-        let t12 = k(0.001) * follower_dwz;
-        let t13 = T::fused(
-            t12,
-            t8 * (t11 * t2),
-            T::fused(-t9, t8 * (t4 * t2), t10 * (t5 * t8)),
+        let t0 = k(2.0) * follower_e0;
+        let t1 = follower_e3 * t0;
+        let t2 = k(2.0) * follower_e1;
+        let t3 = follower_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = T::fused(-follower_e0, t0, k(1.0));
+        let t6 = T::fused(-follower_e1, t2, t5);
+        let t7 = t6 * T::fused(-follower_e2, k(2.0) * follower_e2, t5);
+        let t8 = t3 - t1;
+        let t9 = T::fused(t8, t4, -t7);
+        let t10 = k(1.0) / (t6 * t9);
+        let t11 = k(0.001) * follower_dwx;
+        let t12 = k(0.001) * follower_dwy;
+        let t13 = T::fused(follower_e2, t0, follower_e3 * t2);
+        let t14 = k(0.001) * follower_dwz;
+        let t15 = T::fused(
+            t14,
+            t10 * (t13 * t4),
+            T::fused(-t11, t10 * (t6 * t4), t12 * (t7 * t10)),
         );
-        let t14 = T::fused(-t9, t8 * (t4 * t4), t10 * (t8 * (t4 * t6)));
-        let t15 = plunger_e0 * plunger_e3;
-        let t16 = plunger_e1 * plunger_e2;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = plunger_e0 * plunger_e0;
-        let t19 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t18));
-        let t20 = t19 * (k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t18)));
-        let t21 = k(2.0) * (t16 - t15);
-        let t22 = T::fused(t21, t17, -t20);
-        let t23 = k(1.0) / (t19 * t22);
-        let t24 = k(0.001) * plunger_dwx;
-        let t25 = k(0.001) * plunger_dwy;
-        let t26 = k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3);
-        let t27 = k(0.001) * plunger_dwz;
-        let t28 = T::fused(
-            t27,
-            t23 * (t26 * t17),
-            T::fused(-t24, t23 * (t19 * t17), t25 * (t20 * t23)),
+        let t16 = T::fused(-t11, t10 * (t6 * t6), t12 * (t10 * (t6 * t8)));
+        let t17 = k(2.0) * plunger_e0;
+        let t18 = plunger_e3 * t17;
+        let t19 = k(2.0) * plunger_e1;
+        let t20 = plunger_e2 * t19;
+        let t21 = t20 + t18;
+        let t22 = T::fused(-plunger_e0, t17, k(1.0));
+        let t23 = T::fused(-plunger_e1, t19, t22);
+        let t24 = t23 * T::fused(-plunger_e2, k(2.0) * plunger_e2, t22);
+        let t25 = t20 - t18;
+        let t26 = T::fused(t25, t21, -t24);
+        let t27 = k(1.0) / (t23 * t26);
+        let t28 = k(0.001) * plunger_dwx;
+        let t29 = k(0.001) * plunger_dwy;
+        let t30 = T::fused(plunger_e2, t17, plunger_e3 * t19);
+        let t31 = k(0.001) * plunger_dwz;
+        let t32 = T::fused(
+            t31,
+            t27 * (t30 * t21),
+            T::fused(-t28, t27 * (t23 * t21), t29 * (t24 * t27)),
         );
-        let t29 = T::fused(-t24, t23 * (t19 * t19), t25 * (t23 * (t19 * t21)));
+        let t33 = T::fused(-t28, t27 * (t23 * t23), t29 * (t27 * (t23 * t25)));
         *lambda = [
             -(k(0.5) * follower_dsx),
             -(k(0.5) * follower_dsy),
-            -t13,
-            -T::fused(t12, t8 * (t4 * t11), t14),
-            -(t12 * (t7 * t8)),
+            -t15,
+            -T::fused(t14, t10 * (t6 * t13), t16),
+            -(t14 * (t9 * t10)),
             -(k(0.25) * plunger_dsx),
             -(k(0.25) * plunger_dsy),
-            -t28,
-            -T::fused(t27, t23 * (t19 * t26), t29),
-            -(t27 * (t22 * t23)),
+            -t32,
+            -T::fused(t31, t27 * (t23 * t30), t33),
+            -(t31 * (t26 * t27)),
             closing0,
             closing1,
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Cam<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 94 operations (24 ±, 68 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 88 operations (22 ±, 64 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -1092,43 +1104,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Cam<T> {
         let row9 = rows[9];
         let row10 = rows[10];
         let row11 = rows[11];
-        let t0 = follower_e0 * follower_e3;
-        let t1 = follower_e1 * follower_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = follower_e0 * follower_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(follower_e1, follower_e1, t3));
-        let t5 = t4 * (k(2.0) * (k(0.5) - T::fused(follower_e2, follower_e2, t3)));
-        let t6 = k(2.0) * (t1 - t0);
-        let t7 = T::fused(t6, t2, -t5);
-        let t8 = k(1.0) / (t4 * t7);
-        let t9 = T::fused(t8 * (t4 * t2), row2, t8 * (t4 * t4) * row3);
-        let t10 = k(2.0) * T::fused(follower_e0, follower_e2, follower_e1 * follower_e3);
-        let t11 = T::fused(t8 * (t10 * t2), row2, t8 * (t4 * t10) * row3);
-        let t12 = plunger_e0 * plunger_e3;
-        let t13 = plunger_e1 * plunger_e2;
-        let t14 = k(2.0) * (t13 + t12);
-        let t15 = plunger_e0 * plunger_e0;
-        let t16 = k(2.0) * (k(0.5) - T::fused(plunger_e1, plunger_e1, t15));
-        let t17 = t16 * (k(2.0) * (k(0.5) - T::fused(plunger_e2, plunger_e2, t15)));
-        let t18 = k(2.0) * (t13 - t12);
-        let t19 = T::fused(t18, t14, -t17);
-        let t20 = k(1.0) / (t16 * t19);
-        let t21 = T::fused(t20 * (t16 * t14), row7, t20 * (t16 * t16) * row8);
-        let t22 = k(2.0) * T::fused(plunger_e0, plunger_e2, plunger_e1 * plunger_e3);
-        let t23 = T::fused(t20 * (t22 * t14), row7, t20 * (t16 * t22) * row8);
+        let t0 = k(2.0) * follower_e0;
+        let t1 = follower_e3 * t0;
+        let t2 = k(2.0) * follower_e1;
+        let t3 = follower_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = T::fused(-follower_e0, t0, k(1.0));
+        let t6 = T::fused(-follower_e1, t2, t5);
+        let t7 = t6 * T::fused(-follower_e2, k(2.0) * follower_e2, t5);
+        let t8 = t3 - t1;
+        let t9 = T::fused(t8, t4, -t7);
+        let t10 = k(1.0) / (t6 * t9);
+        let t11 = T::fused(t10 * (t6 * t4), row2, t10 * (t6 * t6) * row3);
+        let t12 = T::fused(follower_e2, t0, follower_e3 * t2);
+        let t13 = T::fused(t10 * (t12 * t4), row2, t10 * (t6 * t12) * row3);
+        let t14 = k(2.0) * plunger_e0;
+        let t15 = plunger_e3 * t14;
+        let t16 = k(2.0) * plunger_e1;
+        let t17 = plunger_e2 * t16;
+        let t18 = t17 + t15;
+        let t19 = T::fused(-plunger_e0, t14, k(1.0));
+        let t20 = T::fused(-plunger_e1, t16, t19);
+        let t21 = t20 * T::fused(-plunger_e2, k(2.0) * plunger_e2, t19);
+        let t22 = t17 - t15;
+        let t23 = T::fused(t22, t18, -t21);
+        let t24 = k(1.0) / (t20 * t23);
+        let t25 = T::fused(t24 * (t20 * t18), row7, t24 * (t20 * t20) * row8);
+        let t26 = T::fused(plunger_e2, t14, plunger_e3 * t16);
+        let t27 = T::fused(t24 * (t26 * t18), row7, t24 * (t20 * t26) * row8);
         *out = [
             row0,
             row1,
             row10,
-            -t9,
-            T::fused(t5 * t8, row2, t8 * (t4 * t6) * row3),
-            T::fused(t7 * t8, row4, t11),
+            -t11,
+            T::fused(t7 * t10, row2, t10 * (t6 * t8) * row3),
+            T::fused(t9 * t10, row4, t13),
             row5,
             row6,
             row11,
-            -t21,
-            T::fused(t17 * t20, row7, t20 * (t16 * t18) * row8),
-            T::fused(t19 * t20, row9, t23),
+            -t25,
+            T::fused(t21 * t24, row7, t24 * (t20 * t22) * row8),
+            T::fused(t23 * t24, row9, t27),
         ];
     }
 }

@@ -10,8 +10,8 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 1779 operations by rotations of the bodies; 1784 operations by relative Euler parameters
-//! * project: 1016 operations by rotations of the bodies; 1021 operations by relative Euler parameters
+//! * accelerations: 1765 operations by rotations of the bodies, doubled; 1772 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 1002 operations by rotations of the bodies, doubled; 1009 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 217 operations by normal form; 1232 operations by recursion
 //! * joint_accelerations_at: 634 operations by normal form; 1649 operations by recursion; 1 more compared
 //! * corrected_accelerations: 914 operations by normal form in the bodies' frames; 1017 operations by normal form in the global frame; 5 more compared
@@ -21,29 +21,29 @@
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
-//! | phi | Φ | 104 | 120 | 0 | 224 | 0 of 10 | 879 | 224 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 348 | 405 | 0 | 753 | 0 of 61 | 3978 | 753 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 165 | 216 | 0 | 381 | 0 of 42 | 3551 | 381 |
+//! | phi | Φ | 102 | 118 | 0 | 220 | 0 of 10 | 1083 | 220 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 344 | 387 | 0 | 731 | 0 of 61 | 4662 | 731 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 161 | 206 | 0 | 367 | 0 of 42 | 4427 | 367 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 8 of 8 | 0 | 0 |
-//! | gamma | γ | 282 | 381 | 0 | 663 | 0 of 8 | 8294 | 663 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 171 | 222 | 0 | 393 | 0 of 8 | 3211 | 393 |
-//! | applied_force | (f, n' − w̃'J'w') | 247 | 313 | 0 | 560 | 0 of 12 | 19989 | 560 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 796 | 977 | 6 | 1779 | 0 of 12 | 1.2e10 | 1782 |
-//! | multipliers | λ, the accelerations being known | 399 | 506 | 2 | 907 | 0 of 8 | 211178 | 907 |
-//! | project | (δr, δπ') that changes the rows as given | 429 | 581 | 6 | 1016 | 0 of 12 | 6.8e8 | 1017 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 123 | 176 | 0 | 299 | 0 of 16 | 1134 | 299 |
-//! | energy | T and V | 124 | 168 | 0 | 292 | 0 of 2 | 3071 | 292 |
+//! | gamma | γ | 278 | 371 | 0 | 649 | 0 of 8 | 9680 | 649 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 167 | 212 | 0 | 379 | 0 of 8 | 3793 | 379 |
+//! | applied_force | (f, n' − w̃'J'w') | 243 | 301 | 0 | 544 | 0 of 12 | 24741 | 544 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 792 | 965 | 6 | 1763 | 0 of 12 | 1.7e10 | 1766 |
+//! | multipliers | λ, the accelerations being known | 395 | 494 | 2 | 891 | 0 of 8 | 263834 | 891 |
+//! | project | (δr, δπ') that changes the rows as given | 425 | 571 | 6 | 1002 | 0 of 12 | 8.3e8 | 1003 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 119 | 166 | 0 | 285 | 0 of 16 | 1350 | 285 |
+//! | energy | T and V | 120 | 158 | 0 | 278 | 0 of 2 | 3719 | 278 |
 //! | read_joints | joint coordinates and rates | 175 | 216 | 0 | 391 | 0 of 10 | 2367 | 391 |
-//! | outputs | outputs, the accelerations being known | 475 | 597 | 2 | 1074 | 0 of 12 | 5.3e6 | 1074 |
+//! | outputs | outputs, the accelerations being known | 471 | 585 | 2 | 1058 | 0 of 12 | 6.7e6 | 1058 |
 //! | joint_accelerations | u̇ in joint coordinates | 95 | 119 | 3 | 217 | 0 of 4 | 8880 | 218 |
 //! | joint_derivative | ẋ but for u̇ | 187 | 217 | 0 | 404 | 0 of 5 | 14485 | 404 |
 //! | to_maximal | (q, v) of a joint state | 112 | 137 | 0 | 249 | 0 of 27 | 3365 | 249 |
 //! | to_joints | (x, u) of a maximal state | 181 | 224 | 0 | 405 | 0 of 8 | 3395 | 405 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 273 | 358 | 3 | 634 | 0 of 4 | 370413 | 635 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 397 | 514 | 3 | 914 | 0 of 12 | 1.2e7 | 915 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 392 | 490 | 0 | 882 | 0 of 8 | 518437 | 882 |
-//! | corrected_solution | both | 610 | 765 | 3 | 1378 | 0 of 20 | 1.0e9 | 1379 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 732 | 922 | 3 | 1657 | 46 of 90 | 1.3e7 | 1657 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 392 | 488 | 0 | 880 | 0 of 8 | 518437 | 880 |
+//! | corrected_solution | both | 610 | 763 | 3 | 1376 | 0 of 20 | 1.0e9 | 1377 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 732 | 915 | 3 | 1650 | 46 of 90 | 1.3e7 | 1650 |
 //!
 //! # Proof
 //!
@@ -122,7 +122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CarriedBlock<T> {
             k(0.4),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 299 operations (123 ±, 176 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 285 operations (119 ±, 166 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -153,139 +153,128 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = block_e0 * block_e2;
-        let t1 = block_e1 * block_e3;
-        let t2 = t1 - t0;
-        let t3 = k(2.0) * t2;
-        let t4 = block_e0 * block_e1;
-        let t5 = block_e2 * block_e3;
-        let t6 = t5 + t4;
-        let t7 = k(2.0) * t6;
-        let t8 = block_e0 * block_e0;
-        let t9 = k(0.5) - T::fused(block_e3, block_e3, t8);
-        let t10 = k(2.0) * t9;
+        let t0 = k(2.0) * block_e0;
+        let t1 = block_e2 * t0;
+        let t2 = k(2.0) * block_e1;
+        let t3 = block_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = block_e1 * t0;
+        let t6 = k(2.0) * block_e2;
+        let t7 = block_e3 * t6;
+        let t8 = t7 + t5;
+        let t9 = T::fused(-block_e0, t0, k(1.0));
+        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
         let t11 = T::fused(
             -k(0.05),
-            T::fused(t3, block_wz, t10 * block_wx),
-            k(0.03) * T::fused(t7, block_wz, t10 * block_wy),
+            T::fused(block_wz, t4, block_wx * t10),
+            k(0.03) * T::fused(block_wz, t8, block_wy * t10),
         );
-        let t12 = arm_e0 * arm_e2;
-        let t13 = arm_e1 * arm_e3;
-        let t14 = t13 - t12;
-        let t15 = k(2.0) * t14;
-        let t16 = arm_e0 * arm_e1;
-        let t17 = arm_e2 * arm_e3;
-        let t18 = t17 + t16;
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t15, arm_wy, t19 * arm_wx);
-        let t21 = arm_e0 * arm_e0;
-        let t22 = k(0.5) - T::fused(arm_e3, arm_e3, t21);
-        let t23 = k(2.0) * t22;
-        let t24 = T::fused(t15, arm_wz, t23 * arm_wx);
-        let t25 = T::fused(t19, arm_wz, t23 * arm_wy);
-        let t26 = arm_sz + T::fused(-k(0.1), t20, T::fused(-k(0.1), t24, k(0.2) * t25))
-            - (block_sz + T::fused(k(0.1), T::fused(-t3, block_wy, t7 * block_wx), t11));
-        let t27 = block_rz + T::fused(k(0.2), t9, T::fused(k(0.06), t2, k(0.1) * t6))
-            - (arm_rz - T::fused(k(0.2), t22, -T::fused(k(0.4), t14, k(0.2) * t18)));
+        let t12 = k(2.0) * arm_e0;
+        let t13 = arm_e2 * t12;
+        let t14 = k(2.0) * arm_e1;
+        let t15 = arm_e3 * t14;
+        let t16 = t15 - t13;
+        let t17 = arm_e1 * t12;
+        let t18 = k(2.0) * arm_e2;
+        let t19 = arm_e3 * t18;
+        let t20 = t19 + t17;
+        let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
+        let t22 = T::fused(-arm_e0, t12, k(1.0));
+        let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
+        let t24 = T::fused(arm_wz, t16, arm_wx * t23);
+        let t25 = T::fused(arm_wz, t20, arm_wy * t23);
+        let t26 = arm_sz + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
+            - (block_sz + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
+        let t27 = block_rz + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8))
+            - (arm_rz - T::fused(k(0.1), t23, -T::fused(k(0.2), t16, k(0.1) * t20)));
         let t28 = T::fused(
             -T::fused(
-                k(1.3333333333333333),
-                t22,
-                T::fused(k(1.3333333333333333), t14, k(0.6666666666666666) * t18),
+                k(0.6666666666666666),
+                t23,
+                T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
             ),
             t26,
             t27
                 * T::fused(
                     k(0.6666666666666666),
-                    t20,
+                    t21,
                     T::fused(-k(0.3333333333333333), t24, k(0.6666666666666666) * t25),
                 ),
         );
-        let t29 = block_e0 * block_e3;
-        let t30 = block_e1 * block_e2;
+        let t29 = block_e3 * t0;
+        let t30 = block_e2 * t2;
         let t31 = t30 + t29;
-        let t32 = k(2.0) * t31;
-        let t33 = k(0.5) - T::fused(block_e2, block_e2, t8);
-        let t34 = k(2.0) * t33;
-        let t35 = t5 - t4;
-        let t36 = k(2.0) * t35;
-        let t37 = T::fused(
+        let t32 = T::fused(-block_e2, t6, t9);
+        let t33 = t7 - t5;
+        let t34 = T::fused(
             -k(0.05),
-            T::fused(-t32, block_wz, t36 * block_wx),
-            k(0.03) * T::fused(t34, block_wz, t36 * block_wy),
+            T::fused(-block_wz, t31, block_wx * t33),
+            k(0.03) * T::fused(block_wz, t32, block_wy * t33),
         );
-        let t38 = arm_e0 * arm_e3;
-        let t39 = arm_e1 * arm_e2;
-        let t40 = t39 + t38;
-        let t41 = k(2.0) * t40;
-        let t42 = k(0.5) - T::fused(arm_e2, arm_e2, t21);
-        let t43 = k(2.0) * t42;
-        let t44 = T::fused(t41, arm_wy, t43 * arm_wx);
-        let t45 = t17 - t16;
-        let t46 = k(2.0) * t45;
-        let t47 = T::fused(-t41, arm_wz, t46 * arm_wx);
-        let t48 = T::fused(t43, arm_wz, t46 * arm_wy);
-        let t49 = arm_sy - T::fused(-k(0.1), t44, T::fused(-k(0.1), t47, k(0.2) * t48))
+        let t35 = arm_e3 * t12;
+        let t36 = arm_e2 * t14;
+        let t37 = t36 + t35;
+        let t38 = T::fused(-arm_e2, t18, t22);
+        let t39 = T::fused(arm_wy, t37, arm_wx * t38);
+        let t40 = t19 - t17;
+        let t41 = T::fused(-arm_wz, t37, arm_wx * t40);
+        let t42 = T::fused(arm_wz, t38, arm_wy * t40);
+        let t43 = arm_sy - T::fused(-k(0.1), t39, T::fused(-k(0.1), t41, k(0.2) * t42))
             - (block_sy
-                - T::fused(k(0.1), T::fused(t32, block_wy, t34 * block_wx), t37));
-        let t50 = block_ry - T::fused(k(0.2), t35, T::fused(-k(0.06), t31, k(0.1) * t33))
-            - (arm_ry + T::fused(k(0.2), t45, -T::fused(-k(0.4), t40, k(0.2) * t42)));
-        let t51 = T::fused(
+                - T::fused(k(0.1), T::fused(block_wy, t31, block_wx * t32), t34));
+        let t44 = block_ry
+            - T::fused(k(0.1), t33, T::fused(-k(0.03), t31, k(0.05) * t32))
+            - (arm_ry + T::fused(k(0.1), t40, -T::fused(-k(0.2), t37, k(0.1) * t38)));
+        let t45 = T::fused(
             -T::fused(
-                k(1.3333333333333333),
-                t45,
-                T::fused(-k(1.3333333333333333), t40, k(0.6666666666666666) * t42),
+                k(0.6666666666666666),
+                t40,
+                T::fused(-k(0.6666666666666666), t37, k(0.3333333333333333) * t38),
             ),
-            t49,
-            t50
+            t43,
+            t44
                 * T::fused(
                     k(0.6666666666666666),
-                    t44,
-                    T::fused(-k(0.3333333333333333), t47, k(0.6666666666666666) * t48),
+                    t39,
+                    T::fused(-k(0.3333333333333333), t41, k(0.6666666666666666) * t42),
                 ),
         );
-        let t52 = k(0.5) - T::fused(block_e1, block_e1, t8);
-        let t53 = k(2.0) * t52;
-        let t54 = t30 - t29;
-        let t55 = k(2.0) * t54;
-        let t56 = t1 + t0;
-        let t57 = k(2.0) * t56;
-        let t58 = T::fused(
+        let t46 = T::fused(-block_e1, t2, t9);
+        let t47 = t30 - t29;
+        let t48 = t3 + t1;
+        let t49 = T::fused(
             -k(0.05),
-            T::fused(t53, block_wz, t57 * block_wx),
-            k(0.03) * T::fused(-t55, block_wz, t57 * block_wy),
+            T::fused(block_wz, t46, block_wx * t48),
+            k(0.03) * T::fused(-block_wz, t47, block_wy * t48),
         );
-        let t59 = k(0.5) - T::fused(arm_e1, arm_e1, t21);
-        let t60 = k(2.0) * t59;
-        let t61 = t39 - t38;
-        let t62 = k(2.0) * t61;
-        let t63 = T::fused(t60, arm_wy, t62 * arm_wx);
-        let t64 = t13 + t12;
-        let t65 = k(2.0) * t64;
-        let t66 = T::fused(t60, arm_wz, t65 * arm_wx);
-        let t67 = T::fused(-t62, arm_wz, t65 * arm_wy);
-        let t68 = arm_sx - T::fused(k(0.1), t63, T::fused(-k(0.1), t66, k(0.2) * t67))
+        let t50 = T::fused(-arm_e1, t14, t22);
+        let t51 = t36 - t35;
+        let t52 = T::fused(arm_wy, t50, arm_wx * t51);
+        let t53 = t15 + t13;
+        let t54 = T::fused(arm_wz, t50, arm_wx * t53);
+        let t55 = T::fused(-arm_wz, t51, arm_wy * t53);
+        let t56 = arm_sx - T::fused(k(0.1), t52, T::fused(-k(0.1), t54, k(0.2) * t55))
             - (block_sx
-                - T::fused(-k(0.1), T::fused(t53, block_wy, t55 * block_wx), t58));
-        let t69 = block_rx
-            - T::fused(k(0.2), t56, -T::fused(-k(0.06), t52, k(0.1) * t54))
-            - (arm_rx + T::fused(k(0.2), t64, T::fused(-k(0.4), t59, k(0.2) * t61)));
-        let t70 = T::fused(
-            T::fused(
-                -k(1.3333333333333333),
-                t64,
-                T::fused(-k(1.3333333333333333), t59, k(0.6666666666666666) * t61),
+                - T::fused(-k(0.1), T::fused(block_wy, t46, block_wx * t47), t49));
+        let t57 = block_rx
+            - T::fused(k(0.1), t48, -T::fused(-k(0.03), t46, k(0.05) * t47))
+            - (arm_rx + T::fused(k(0.1), t53, T::fused(-k(0.2), t50, k(0.1) * t51)));
+        let t58 = T::fused(
+            -T::fused(
+                -k(0.6666666666666666),
+                t53,
+                T::fused(-k(0.6666666666666666), t50, k(0.3333333333333333) * t51),
             ),
-            t68,
-            t69
+            t56,
+            t57
                 * T::fused(
-                    -k(0.6666666666666666),
-                    t63,
-                    T::fused(-k(0.3333333333333333), t66, k(0.6666666666666666) * t67),
+                    k(0.6666666666666666),
+                    t52,
+                    -T::fused(-k(0.3333333333333333), t54, k(0.6666666666666666) * t55),
                 ),
         );
-        let t71 = t70 + t51 - t28;
-        let t72 = T::fused(
+        let t59 = t58 - t45 + t28;
+        let t60 = T::fused(
             k(0.6666666666666666),
             arm_wz,
             T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
@@ -350,8 +339,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for CarriedBlock<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            -T::fused(t71, k(0.8) * t71, t72 * (k(0.02) * t72)),
-            -t72,
+            -T::fused(t59, k(0.8) * t59, t60 * (k(0.02) * t60)),
+            -t60,
         ];
     }
 }
@@ -368,7 +357,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 10]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 299 operations (123 ±, 176 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 285 operations (119 ±, 166 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -399,139 +388,128 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = block_e0 * block_e2;
-        let t1 = block_e1 * block_e3;
-        let t2 = t1 - t0;
-        let t3 = k(2.0) * t2;
-        let t4 = block_e0 * block_e1;
-        let t5 = block_e2 * block_e3;
-        let t6 = t5 + t4;
-        let t7 = k(2.0) * t6;
-        let t8 = block_e0 * block_e0;
-        let t9 = k(0.5) - T::fused(block_e3, block_e3, t8);
-        let t10 = k(2.0) * t9;
+        let t0 = k(2.0) * block_e0;
+        let t1 = block_e2 * t0;
+        let t2 = k(2.0) * block_e1;
+        let t3 = block_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = block_e1 * t0;
+        let t6 = k(2.0) * block_e2;
+        let t7 = block_e3 * t6;
+        let t8 = t7 + t5;
+        let t9 = T::fused(-block_e0, t0, k(1.0));
+        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
         let t11 = T::fused(
             -k(0.05),
-            T::fused(t3, block_wz, t10 * block_wx),
-            k(0.03) * T::fused(t7, block_wz, t10 * block_wy),
+            T::fused(block_wz, t4, block_wx * t10),
+            k(0.03) * T::fused(block_wz, t8, block_wy * t10),
         );
-        let t12 = arm_e0 * arm_e2;
-        let t13 = arm_e1 * arm_e3;
-        let t14 = t13 - t12;
-        let t15 = k(2.0) * t14;
-        let t16 = arm_e0 * arm_e1;
-        let t17 = arm_e2 * arm_e3;
-        let t18 = t17 + t16;
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t15, arm_wy, t19 * arm_wx);
-        let t21 = arm_e0 * arm_e0;
-        let t22 = k(0.5) - T::fused(arm_e3, arm_e3, t21);
-        let t23 = k(2.0) * t22;
-        let t24 = T::fused(t15, arm_wz, t23 * arm_wx);
-        let t25 = T::fused(t19, arm_wz, t23 * arm_wy);
-        let t26 = arm_sz + T::fused(-k(0.1), t20, T::fused(-k(0.1), t24, k(0.2) * t25))
-            - (block_sz + T::fused(k(0.1), T::fused(-t3, block_wy, t7 * block_wx), t11));
-        let t27 = block_rz + T::fused(k(0.2), t9, T::fused(k(0.06), t2, k(0.1) * t6))
-            - (arm_rz - T::fused(k(0.2), t22, -T::fused(k(0.4), t14, k(0.2) * t18)));
+        let t12 = k(2.0) * arm_e0;
+        let t13 = arm_e2 * t12;
+        let t14 = k(2.0) * arm_e1;
+        let t15 = arm_e3 * t14;
+        let t16 = t15 - t13;
+        let t17 = arm_e1 * t12;
+        let t18 = k(2.0) * arm_e2;
+        let t19 = arm_e3 * t18;
+        let t20 = t19 + t17;
+        let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
+        let t22 = T::fused(-arm_e0, t12, k(1.0));
+        let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
+        let t24 = T::fused(arm_wz, t16, arm_wx * t23);
+        let t25 = T::fused(arm_wz, t20, arm_wy * t23);
+        let t26 = arm_sz + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
+            - (block_sz + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
+        let t27 = block_rz + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8))
+            - (arm_rz - T::fused(k(0.1), t23, -T::fused(k(0.2), t16, k(0.1) * t20)));
         let t28 = T::fused(
             -T::fused(
-                k(1.3333333333333333),
-                t22,
-                T::fused(k(1.3333333333333333), t14, k(0.6666666666666666) * t18),
+                k(0.6666666666666666),
+                t23,
+                T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
             ),
             t26,
             t27
                 * T::fused(
                     k(0.6666666666666666),
-                    t20,
+                    t21,
                     T::fused(-k(0.3333333333333333), t24, k(0.6666666666666666) * t25),
                 ),
         );
-        let t29 = block_e0 * block_e3;
-        let t30 = block_e1 * block_e2;
+        let t29 = block_e3 * t0;
+        let t30 = block_e2 * t2;
         let t31 = t30 + t29;
-        let t32 = k(2.0) * t31;
-        let t33 = k(0.5) - T::fused(block_e2, block_e2, t8);
-        let t34 = k(2.0) * t33;
-        let t35 = t5 - t4;
-        let t36 = k(2.0) * t35;
-        let t37 = T::fused(
+        let t32 = T::fused(-block_e2, t6, t9);
+        let t33 = t7 - t5;
+        let t34 = T::fused(
             -k(0.05),
-            T::fused(-t32, block_wz, t36 * block_wx),
-            k(0.03) * T::fused(t34, block_wz, t36 * block_wy),
+            T::fused(-block_wz, t31, block_wx * t33),
+            k(0.03) * T::fused(block_wz, t32, block_wy * t33),
         );
-        let t38 = arm_e0 * arm_e3;
-        let t39 = arm_e1 * arm_e2;
-        let t40 = t39 + t38;
-        let t41 = k(2.0) * t40;
-        let t42 = k(0.5) - T::fused(arm_e2, arm_e2, t21);
-        let t43 = k(2.0) * t42;
-        let t44 = T::fused(t41, arm_wy, t43 * arm_wx);
-        let t45 = t17 - t16;
-        let t46 = k(2.0) * t45;
-        let t47 = T::fused(-t41, arm_wz, t46 * arm_wx);
-        let t48 = T::fused(t43, arm_wz, t46 * arm_wy);
-        let t49 = arm_sy - T::fused(-k(0.1), t44, T::fused(-k(0.1), t47, k(0.2) * t48))
+        let t35 = arm_e3 * t12;
+        let t36 = arm_e2 * t14;
+        let t37 = t36 + t35;
+        let t38 = T::fused(-arm_e2, t18, t22);
+        let t39 = T::fused(arm_wy, t37, arm_wx * t38);
+        let t40 = t19 - t17;
+        let t41 = T::fused(-arm_wz, t37, arm_wx * t40);
+        let t42 = T::fused(arm_wz, t38, arm_wy * t40);
+        let t43 = arm_sy - T::fused(-k(0.1), t39, T::fused(-k(0.1), t41, k(0.2) * t42))
             - (block_sy
-                - T::fused(k(0.1), T::fused(t32, block_wy, t34 * block_wx), t37));
-        let t50 = block_ry - T::fused(k(0.2), t35, T::fused(-k(0.06), t31, k(0.1) * t33))
-            - (arm_ry + T::fused(k(0.2), t45, -T::fused(-k(0.4), t40, k(0.2) * t42)));
-        let t51 = T::fused(
+                - T::fused(k(0.1), T::fused(block_wy, t31, block_wx * t32), t34));
+        let t44 = block_ry
+            - T::fused(k(0.1), t33, T::fused(-k(0.03), t31, k(0.05) * t32))
+            - (arm_ry + T::fused(k(0.1), t40, -T::fused(-k(0.2), t37, k(0.1) * t38)));
+        let t45 = T::fused(
             -T::fused(
-                k(1.3333333333333333),
-                t45,
-                T::fused(-k(1.3333333333333333), t40, k(0.6666666666666666) * t42),
+                k(0.6666666666666666),
+                t40,
+                T::fused(-k(0.6666666666666666), t37, k(0.3333333333333333) * t38),
             ),
-            t49,
-            t50
+            t43,
+            t44
                 * T::fused(
                     k(0.6666666666666666),
-                    t44,
-                    T::fused(-k(0.3333333333333333), t47, k(0.6666666666666666) * t48),
+                    t39,
+                    T::fused(-k(0.3333333333333333), t41, k(0.6666666666666666) * t42),
                 ),
         );
-        let t52 = k(0.5) - T::fused(block_e1, block_e1, t8);
-        let t53 = k(2.0) * t52;
-        let t54 = t30 - t29;
-        let t55 = k(2.0) * t54;
-        let t56 = t1 + t0;
-        let t57 = k(2.0) * t56;
-        let t58 = T::fused(
+        let t46 = T::fused(-block_e1, t2, t9);
+        let t47 = t30 - t29;
+        let t48 = t3 + t1;
+        let t49 = T::fused(
             -k(0.05),
-            T::fused(t53, block_wz, t57 * block_wx),
-            k(0.03) * T::fused(-t55, block_wz, t57 * block_wy),
+            T::fused(block_wz, t46, block_wx * t48),
+            k(0.03) * T::fused(-block_wz, t47, block_wy * t48),
         );
-        let t59 = k(0.5) - T::fused(arm_e1, arm_e1, t21);
-        let t60 = k(2.0) * t59;
-        let t61 = t39 - t38;
-        let t62 = k(2.0) * t61;
-        let t63 = T::fused(t60, arm_wy, t62 * arm_wx);
-        let t64 = t13 + t12;
-        let t65 = k(2.0) * t64;
-        let t66 = T::fused(t60, arm_wz, t65 * arm_wx);
-        let t67 = T::fused(-t62, arm_wz, t65 * arm_wy);
-        let t68 = arm_sx - T::fused(k(0.1), t63, T::fused(-k(0.1), t66, k(0.2) * t67))
+        let t50 = T::fused(-arm_e1, t14, t22);
+        let t51 = t36 - t35;
+        let t52 = T::fused(arm_wy, t50, arm_wx * t51);
+        let t53 = t15 + t13;
+        let t54 = T::fused(arm_wz, t50, arm_wx * t53);
+        let t55 = T::fused(-arm_wz, t51, arm_wy * t53);
+        let t56 = arm_sx - T::fused(k(0.1), t52, T::fused(-k(0.1), t54, k(0.2) * t55))
             - (block_sx
-                - T::fused(-k(0.1), T::fused(t53, block_wy, t55 * block_wx), t58));
-        let t69 = block_rx
-            - T::fused(k(0.2), t56, -T::fused(-k(0.06), t52, k(0.1) * t54))
-            - (arm_rx + T::fused(k(0.2), t64, T::fused(-k(0.4), t59, k(0.2) * t61)));
-        let t70 = T::fused(
-            T::fused(
-                -k(1.3333333333333333),
-                t64,
-                T::fused(-k(1.3333333333333333), t59, k(0.6666666666666666) * t61),
+                - T::fused(-k(0.1), T::fused(block_wy, t46, block_wx * t47), t49));
+        let t57 = block_rx
+            - T::fused(k(0.1), t48, -T::fused(-k(0.03), t46, k(0.05) * t47))
+            - (arm_rx + T::fused(k(0.1), t53, T::fused(-k(0.2), t50, k(0.1) * t51)));
+        let t58 = T::fused(
+            -T::fused(
+                -k(0.6666666666666666),
+                t53,
+                T::fused(-k(0.6666666666666666), t50, k(0.3333333333333333) * t51),
             ),
-            t68,
-            t69
+            t56,
+            t57
                 * T::fused(
-                    -k(0.6666666666666666),
-                    t63,
-                    T::fused(-k(0.3333333333333333), t66, k(0.6666666666666666) * t67),
+                    k(0.6666666666666666),
+                    t52,
+                    -T::fused(-k(0.3333333333333333), t54, k(0.6666666666666666) * t55),
                 ),
         );
-        let t71 = t70 + t51 - t28;
-        let t72 = T::fused(
+        let t59 = t58 - t45 + t28;
+        let t60 = T::fused(
             k(0.6666666666666666),
             arm_wz,
             T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
@@ -596,11 +574,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            -T::fused(t71, k(0.8) * t71, t72 * (k(0.02) * t72)),
-            -t72,
+            -T::fused(t59, k(0.8) * t59, t60 * (k(0.02) * t60)),
+            -t60,
         ];
     }
-    /// Writes Φ: 224 operations (104 ±, 120 ×, 0 ÷).
+    /// Writes Φ: 220 operations (102 ±, 118 ×, 0 ÷).
     fn phi(&self, _t: T, y: &Self::State, out: &mut Self::Constraints) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -617,144 +595,141 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let block_e1 = y[11];
         let block_e2 = y[12];
         let block_e3 = y[13];
-        let t0 = arm_e0 * arm_e0;
-        let t1 = T::fused(arm_e1, arm_e1, t0);
-        let t2 = k(0.5) - t1;
-        let t3 = k(0.4) * t2;
-        let t4 = arm_e0 * arm_e3;
-        let t5 = arm_e1 * arm_e2;
-        let t6 = t5 - t4;
-        let t7 = k(0.2) * t6;
-        let t8 = t5 + t4;
-        let t9 = k(0.4) * t8;
-        let t10 = arm_e2 * arm_e2;
-        let t11 = k(0.5) - (t0 + t10);
-        let t12 = k(0.2) * t11;
-        let t13 = arm_e0 * arm_e2;
-        let t14 = arm_e1 * arm_e3;
-        let t15 = t14 - t13;
-        let t16 = k(0.4) * t15;
-        let t17 = arm_e0 * arm_e1;
-        let t18 = arm_e2 * arm_e3;
-        let t19 = t18 + t17;
-        let t20 = k(0.2) * t19;
-        let t21 = t14 + t13;
-        let t22 = k(1.3333333333333333) * t21;
-        let t23 = t22 - T::fused(k(1.3333333333333333), t2, k(0.6666666666666666) * t6);
-        let t24 = t18 - t17;
-        let t25 = k(1.3333333333333333) * t24;
-        let t26 = t25 + T::fused(k(1.3333333333333333), t8, k(0.6666666666666666) * t11);
-        let t27 = arm_e3 * arm_e3;
-        let t28 = k(0.5) - (t0 + t27);
-        let t29 = k(1.3333333333333333) * t28;
+        let t0 = k(2.0) * arm_e1;
+        let t1 = k(2.0) * arm_e0;
+        let t2 = T::fused(-arm_e0, t1, k(1.0));
+        let t3 = T::fused(-arm_e1, t0, t2);
+        let t4 = k(0.2) * t3;
+        let t5 = arm_e3 * t1;
+        let t6 = arm_e2 * t0;
+        let t7 = t6 - t5;
+        let t8 = k(0.1) * t7;
+        let t9 = t6 + t5;
+        let t10 = k(0.2) * t9;
+        let t11 = k(2.0) * arm_e2;
+        let t12 = T::fused(-arm_e2, t11, t2);
+        let t13 = k(0.1) * t12;
+        let t14 = arm_e2 * t1;
+        let t15 = arm_e3 * t0;
+        let t16 = t15 - t14;
+        let t17 = k(0.2) * t16;
+        let t18 = arm_e1 * t1;
+        let t19 = arm_e3 * t11;
+        let t20 = t19 + t18;
+        let t21 = k(0.1) * t20;
+        let t22 = t15 + t14;
+        let t23 = k(0.6666666666666666) * t22;
+        let t24 = t23 - T::fused(k(0.6666666666666666), t3, k(0.3333333333333333) * t7);
+        let t25 = t19 - t18;
+        let t26 = k(0.6666666666666666) * t25;
+        let t27 = t26 + T::fused(k(0.6666666666666666), t9, k(0.3333333333333333) * t12);
+        let t28 = T::fused(-arm_e3, k(2.0) * arm_e3, t2);
+        let t29 = k(0.6666666666666666) * t28;
         let t30 = T::fused(
             k(0.7453559924999299),
-            t29 + T::fused(-k(1.3333333333333333), t15, k(0.6666666666666666) * t19),
-            -T::fused(-k(0.5962847939999439), t23, k(0.29814239699997197) * t26),
+            t29 + T::fused(-k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
+            -T::fused(-k(0.5962847939999439), t24, k(0.29814239699997197) * t27),
         );
-        let t31 = block_e0 * block_e0;
-        let t32 = T::fused(block_e1, block_e1, t31);
-        let t33 = k(0.5) - t32;
-        let t34 = block_e0 * block_e3;
-        let t35 = block_e1 * block_e2;
-        let t36 = t35 - t34;
-        let t37 = block_e0 * block_e2;
-        let t38 = block_e1 * block_e3;
-        let t39 = t38 + t37;
-        let t40 = block_rx
-            - T::fused(k(0.2), t39, -T::fused(-k(0.06), t33, k(0.1) * t36))
-            - (arm_rx + T::fused(k(0.2), t21, t7 - t3));
-        let t41 = t35 + t34;
-        let t42 = block_e2 * block_e2;
-        let t43 = k(0.5) - (t31 + t42);
-        let t44 = block_e0 * block_e1;
-        let t45 = block_e2 * block_e3;
-        let t46 = t45 - t44;
-        let t47 = block_ry - T::fused(k(0.2), t46, T::fused(-k(0.06), t41, k(0.1) * t43))
-            - (arm_ry + T::fused(k(0.2), t24, -(t12 - t9)));
-        let t48 = T::fused(
-            t40,
-            t22 + T::fused(-k(0.6666666666666666), t2, k(1.3333333333333333) * t6),
-            t47
-                * (t25
-                    - T::fused(-k(0.6666666666666666), t8, k(1.3333333333333333) * t11)),
+        let t31 = k(2.0) * block_e1;
+        let t32 = k(2.0) * block_e0;
+        let t33 = T::fused(-block_e0, t32, k(1.0));
+        let t34 = T::fused(-block_e1, t31, t33);
+        let t35 = block_e3 * t32;
+        let t36 = block_e2 * t31;
+        let t37 = t36 - t35;
+        let t38 = block_e2 * t32;
+        let t39 = block_e3 * t31;
+        let t40 = t39 + t38;
+        let t41 = block_rx
+            - T::fused(k(0.1), t40, -T::fused(-k(0.03), t34, k(0.05) * t37))
+            - (arm_rx + T::fused(k(0.1), t22, t8 - t4));
+        let t42 = t36 + t35;
+        let t43 = k(2.0) * block_e2;
+        let t44 = T::fused(-block_e2, t43, t33);
+        let t45 = block_e1 * t32;
+        let t46 = block_e3 * t43;
+        let t47 = t46 - t45;
+        let t48 = block_ry
+            - T::fused(k(0.1), t47, T::fused(-k(0.03), t42, k(0.05) * t44))
+            - (arm_ry + T::fused(k(0.1), t25, -(t13 - t10)));
+        let t49 = T::fused(
+            t23 + T::fused(-k(0.3333333333333333), t3, k(0.6666666666666666) * t7),
+            t41,
+            (t26 - T::fused(-k(0.3333333333333333), t9, k(0.6666666666666666) * t12))
+                * t48,
         );
-        let t49 = t38 - t37;
-        let t50 = t45 + t44;
-        let t51 = block_e3 * block_e3;
-        let t52 = k(0.5) - (t31 + t51);
-        let t53 = block_rz + T::fused(k(0.2), t52, T::fused(k(0.06), t49, k(0.1) * t50))
-            - (arm_rz - T::fused(k(0.2), t28, -(t20 + t16)));
-        let t54 = k(2.0) * t33;
-        let t55 = k(2.0) * t2;
-        let t56 = k(2.0) * t41;
-        let t57 = k(2.0) * t8;
-        let t58 = k(2.0) * t49;
-        let t59 = k(2.0) * t15;
-        let t60 = k(2.0) * t36;
-        let t61 = k(2.0) * t43;
-        let t62 = k(2.0) * t50;
-        let t63 = T::fused(
+        let t50 = t39 - t38;
+        let t51 = t46 + t45;
+        let t52 = T::fused(-block_e3, k(2.0) * block_e3, t33);
+        let t53 = block_rz + T::fused(k(0.1), t52, T::fused(k(0.03), t50, k(0.05) * t51))
+            - (arm_rz - T::fused(k(0.1), t28, -(t21 + t17)));
+        let t54 = T::fused(
             k(0.3333333333333333),
-            T::fused(t59, t58, T::fused(t55, t54, t57 * t56)),
-            k(0.6666666666666666) * T::fused(t59, t62, -T::fused(t55, t60, t57 * t61)),
+            T::fused(t16, t50, T::fused(t3, t34, t9 * t42)),
+            k(0.6666666666666666) * T::fused(t16, t51, -T::fused(t3, t37, t9 * t44)),
         );
-        let t64 = k(2.0) * t39;
-        let t65 = k(2.0) * t46;
-        let t66 = k(2.0) * t52;
-        let t67 = T::fused(
+        let t55 = T::fused(
             k(0.6666666666666666),
-            T::fused(t59, t66, -T::fused(-t55, t64, t57 * t65)),
-            -t63,
+            T::fused(t16, t52, -T::fused(-t3, t40, t9 * t47)),
+            -t54,
         );
-        let t68 = k(2.0) * t6;
-        let t69 = k(2.0) * t11;
-        let t70 = k(2.0) * t19;
-        let t71 = T::fused(
+        let t56 = T::fused(
             k(0.3333333333333333),
-            T::fused(t70, t58, -T::fused(t68, t54, t69 * t56)),
-            k(0.6666666666666666) * T::fused(t70, t62, T::fused(t69, t61, t68 * t60)),
+            T::fused(t20, t50, -T::fused(t7, t34, t12 * t42)),
+            k(0.6666666666666666) * T::fused(t20, t51, T::fused(t7, t37, t12 * t44)),
         );
-        let t72 = T::fused(
+        let t57 = T::fused(
             k(0.6666666666666666),
-            T::fused(t70, t66, -T::fused(-t69, t65, t68 * t64)),
-            -t71,
+            T::fused(t20, t52, T::fused(-t7, t40, t12 * t47)),
+            -t56,
         );
-        let t73 = k(2.0) * t21;
-        let t74 = k(2.0) * t24;
-        let t75 = k(2.0) * t28;
-        let t76 = T::fused(
+        let t58 = T::fused(
             k(0.3333333333333333),
-            T::fused(t75, t58, -T::fused(-t73, t54, t74 * t56)),
-            k(0.6666666666666666) * T::fused(t75, t62, -T::fused(-t74, t61, t73 * t60)),
+            T::fused(t28, t50, -T::fused(-t22, t34, t25 * t42)),
+            k(0.6666666666666666) * T::fused(t28, t51, T::fused(-t22, t37, t25 * t44)),
         );
-        let t77 = T::fused(
+        let t59 = T::fused(
             k(0.6666666666666666),
-            T::fused(t75, t66, T::fused(t74, t65, t73 * t64)),
-            -t76,
+            T::fused(t28, t52, T::fused(t22, t40, t25 * t47)),
+            -t58,
+        );
+        let t60 = T::fused(
+            arm_e3,
+            arm_e3,
+            T::fused(arm_e2, arm_e2, T::fused(arm_e1, arm_e1, arm_e0 * arm_e0)),
+        );
+        let t61 = T::fused(
+            block_e3,
+            block_e3,
+            T::fused(
+                block_e2,
+                block_e2,
+                T::fused(block_e1, block_e1, block_e0 * block_e0),
+            ),
         );
         *out = [
-            arm_rx + (t7 + t3) - k(0.1),
-            arm_ry - (t12 + t9),
-            arm_rz + (t20 - t16) - k(0.2),
-            T::fused(k(0.4472135954999579), t23, k(0.8944271909999159) * t26),
+            arm_rx + (t8 + t4) - k(0.1),
+            arm_ry - (t13 + t10),
+            arm_rz + (t21 - t17) - k(0.2),
+            T::fused(k(0.4472135954999579), t24, k(0.8944271909999159) * t27),
             -t30,
             T::fused(
-                -t53,
-                t29 - T::fused(k(0.6666666666666666), t15, k(1.3333333333333333) * t19),
-                t48,
+                -(t29
+                    - T::fused(k(0.3333333333333333), t16, k(0.6666666666666666) * t20)),
+                t53,
+                t49,
             ),
             -T::fused(
                 k(0.6666666666666666),
-                t77,
-                T::fused(k(0.6666666666666666), t67, k(0.3333333333333333) * t72),
+                t59,
+                T::fused(k(0.6666666666666666), t55, k(0.3333333333333333) * t57),
             ),
-            -T::fused(k(0.6666666666666666), t72 - t67, k(0.3333333333333333) * t77),
-            t27 + (t1 + t10) - k(1.0),
-            t51 + (t32 + t42) - k(1.0),
+            -T::fused(k(0.6666666666666666), t57 - t55, k(0.3333333333333333) * t59),
+            t60 - k(1.0),
+            t61 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 393 operations (171 ±, 222 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 379 operations (167 ±, 212 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -783,204 +758,190 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = arm_e0 * arm_e0;
-        let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
-        let t2 = k(2.0) * t1;
-        let t3 = arm_e0 * arm_e2;
-        let t4 = arm_e1 * arm_e3;
-        let t5 = t4 + t3;
-        let t6 = k(2.0) * t5;
-        let t7 = T::fused(t2, arm_wz, t6 * arm_wx);
+        let t0 = k(2.0) * arm_e1;
+        let t1 = k(2.0) * arm_e0;
+        let t2 = T::fused(-arm_e0, t1, k(1.0));
+        let t3 = T::fused(-arm_e1, t0, t2);
+        let t4 = arm_e2 * t1;
+        let t5 = arm_e3 * t0;
+        let t6 = t5 + t4;
+        let t7 = T::fused(arm_wz, t3, arm_wx * t6);
         let t8 = k(0.1) * t7;
-        let t9 = arm_e0 * arm_e3;
-        let t10 = arm_e1 * arm_e2;
+        let t9 = arm_e3 * t1;
+        let t10 = arm_e2 * t0;
         let t11 = t10 - t9;
-        let t12 = k(2.0) * t11;
-        let t13 = T::fused(-t12, arm_wz, t6 * arm_wy);
-        let t14 = k(0.2) * t13;
-        let t15 = t10 + t9;
-        let t16 = k(2.0) * t15;
-        let t17 = arm_e0 * arm_e1;
-        let t18 = arm_e2 * arm_e3;
-        let t19 = t18 - t17;
-        let t20 = k(2.0) * t19;
-        let t21 = T::fused(-t16, arm_wz, t20 * arm_wx);
-        let t22 = k(0.1) * t21;
-        let t23 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
-        let t24 = k(2.0) * t23;
-        let t25 = T::fused(t24, arm_wz, t20 * arm_wy);
-        let t26 = k(0.2) * t25;
-        let t27 = t4 - t3;
-        let t28 = k(2.0) * t27;
-        let t29 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
-        let t30 = k(2.0) * t29;
-        let t31 = T::fused(t28, arm_wz, t30 * arm_wx);
-        let t32 = k(0.1) * t31;
-        let t33 = t18 + t17;
-        let t34 = k(2.0) * t33;
-        let t35 = T::fused(t34, arm_wz, t30 * arm_wy);
-        let t36 = k(0.2) * t35;
-        let t37 = T::fused(t16, arm_wy, t24 * arm_wx);
+        let t12 = T::fused(-arm_wz, t11, arm_wy * t6);
+        let t13 = k(0.2) * t12;
+        let t14 = t10 + t9;
+        let t15 = arm_e1 * t1;
+        let t16 = k(2.0) * arm_e2;
+        let t17 = arm_e3 * t16;
+        let t18 = t17 - t15;
+        let t19 = T::fused(-arm_wz, t14, arm_wx * t18);
+        let t20 = k(0.1) * t19;
+        let t21 = T::fused(-arm_e2, t16, t2);
+        let t22 = T::fused(arm_wz, t21, arm_wy * t18);
+        let t23 = k(0.2) * t22;
+        let t24 = t5 - t4;
+        let t25 = T::fused(-arm_e3, k(2.0) * arm_e3, t2);
+        let t26 = T::fused(arm_wz, t24, arm_wx * t25);
+        let t27 = k(0.1) * t26;
+        let t28 = t17 + t15;
+        let t29 = T::fused(arm_wz, t28, arm_wy * t25);
+        let t30 = k(0.2) * t29;
+        let t31 = T::fused(arm_wy, t14, arm_wx * t21);
+        let t32 = k(0.6666666666666666) * t31;
+        let t33 = t32
+            - T::fused(k(0.3333333333333333), t19, k(0.6666666666666666) * t22);
+        let t34 = T::fused(arm_wy, t3, arm_wx * t11);
+        let t35 = k(0.6666666666666666) * t34;
+        let t36 = t35 + T::fused(k(0.3333333333333333), t7, k(0.6666666666666666) * t12);
+        let t37 = T::fused(-arm_wy, t24, arm_wx * t28);
         let t38 = k(0.6666666666666666) * t37;
-        let t39 = t38
-            - T::fused(k(0.3333333333333333), t21, k(0.6666666666666666) * t25);
-        let t40 = T::fused(t2, arm_wy, t12 * arm_wx);
-        let t41 = k(0.6666666666666666) * t40;
-        let t42 = t41 + T::fused(k(0.3333333333333333), t7, k(0.6666666666666666) * t13);
-        let t43 = T::fused(-t28, arm_wy, t34 * arm_wx);
-        let t44 = k(0.6666666666666666) * t43;
-        let t45 = T::fused(
+        let t39 = T::fused(
             -k(0.7453559924999299),
-            t44 - T::fused(k(0.3333333333333333), t31, k(0.6666666666666666) * t35),
-            T::fused(k(0.29814239699997197), t39, k(0.5962847939999439) * t42),
+            t38 - T::fused(k(0.3333333333333333), t26, k(0.6666666666666666) * t29),
+            T::fused(k(0.29814239699997197), t33, k(0.5962847939999439) * t36),
         );
-        let t46 = block_e0 * block_e2;
-        let t47 = block_e1 * block_e3;
-        let t48 = t47 - t46;
-        let t49 = k(2.0) * t48;
-        let t50 = block_e0 * block_e1;
-        let t51 = block_e2 * block_e3;
-        let t52 = t51 + t50;
-        let t53 = k(2.0) * t52;
-        let t54 = block_e0 * block_e0;
-        let t55 = k(0.5) - T::fused(block_e3, block_e3, t54);
-        let t56 = k(2.0) * t55;
-        let t57 = T::fused(
+        let t40 = k(2.0) * block_e0;
+        let t41 = block_e2 * t40;
+        let t42 = k(2.0) * block_e1;
+        let t43 = block_e3 * t42;
+        let t44 = t43 - t41;
+        let t45 = block_e1 * t40;
+        let t46 = k(2.0) * block_e2;
+        let t47 = block_e3 * t46;
+        let t48 = t47 + t45;
+        let t49 = T::fused(-block_e0, t40, k(1.0));
+        let t50 = T::fused(-block_e3, k(2.0) * block_e3, t49);
+        let t51 = T::fused(
             -k(0.05),
-            T::fused(t49, block_wz, t56 * block_wx),
-            k(0.03) * T::fused(t53, block_wz, t56 * block_wy),
+            T::fused(block_wz, t44, block_wx * t50),
+            k(0.03) * T::fused(block_wz, t48, block_wy * t50),
         );
-        let t58 = arm_sz + T::fused(-k(0.1), t43, t36 - t32)
+        let t52 = arm_sz + T::fused(-k(0.1), t37, t30 - t27)
             - (block_sz
-                + T::fused(k(0.1), T::fused(-t49, block_wy, t53 * block_wx), t57));
-        let t59 = block_rz + T::fused(k(0.2), t55, T::fused(k(0.06), t48, k(0.1) * t52))
-            - (arm_rz - T::fused(k(0.2), t29, -T::fused(k(0.4), t27, k(0.2) * t33)));
+                + T::fused(k(0.1), T::fused(-block_wy, t44, block_wx * t48), t51));
+        let t53 = block_rz + T::fused(k(0.1), t50, T::fused(k(0.03), t44, k(0.05) * t48))
+            - (arm_rz - T::fused(k(0.1), t25, -T::fused(k(0.2), t24, k(0.1) * t28)));
+        let t54 = T::fused(
+            T::fused(
+                k(0.6666666666666666),
+                t25,
+                -T::fused(k(0.3333333333333333), t24, k(0.6666666666666666) * t28),
+            ),
+            t52,
+            (T::fused(-k(0.6666666666666666), t26, k(0.3333333333333333) * t29) - t38)
+                * t53,
+        );
+        let t55 = block_e3 * t40;
+        let t56 = block_e2 * t42;
+        let t57 = t56 + t55;
+        let t58 = T::fused(-block_e2, t46, t49);
+        let t59 = t47 - t45;
         let t60 = T::fused(
-            -t58,
-            T::fused(
-                k(1.3333333333333333),
-                t29,
-                -T::fused(k(0.6666666666666666), t27, k(1.3333333333333333) * t33),
-            ),
-            t59
-                * (t44
-                    - T::fused(-k(0.6666666666666666), t31, k(0.3333333333333333) * t35)),
-        );
-        let t61 = block_e0 * block_e3;
-        let t62 = block_e1 * block_e2;
-        let t63 = t62 + t61;
-        let t64 = k(2.0) * t63;
-        let t65 = k(0.5) - T::fused(block_e2, block_e2, t54);
-        let t66 = k(2.0) * t65;
-        let t67 = t51 - t50;
-        let t68 = k(2.0) * t67;
-        let t69 = T::fused(
             -k(0.05),
-            T::fused(-t64, block_wz, t68 * block_wx),
-            k(0.03) * T::fused(t66, block_wz, t68 * block_wy),
+            T::fused(-block_wz, t57, block_wx * t59),
+            k(0.03) * T::fused(block_wz, t58, block_wy * t59),
         );
-        let t70 = arm_sy - T::fused(-k(0.1), t37, t26 - t22)
+        let t61 = arm_sy - T::fused(-k(0.1), t31, t23 - t20)
             - (block_sy
-                - T::fused(k(0.1), T::fused(t64, block_wy, t66 * block_wx), t69));
-        let t71 = block_ry - T::fused(k(0.2), t67, T::fused(-k(0.06), t63, k(0.1) * t65))
-            - (arm_ry + T::fused(k(0.2), t19, -T::fused(-k(0.4), t15, k(0.2) * t23)));
-        let t72 = T::fused(
-            -t70,
+                - T::fused(k(0.1), T::fused(block_wy, t57, block_wx * t58), t60));
+        let t62 = block_ry
+            - T::fused(k(0.1), t59, T::fused(-k(0.03), t57, k(0.05) * t58))
+            - (arm_ry + T::fused(k(0.1), t18, -T::fused(-k(0.2), t14, k(0.1) * t21)));
+        let t63 = T::fused(
             T::fused(
-                k(1.3333333333333333),
-                t19,
-                -T::fused(-k(0.6666666666666666), t15, k(1.3333333333333333) * t23),
+                k(0.6666666666666666),
+                t18,
+                -T::fused(-k(0.3333333333333333), t14, k(0.6666666666666666) * t21),
             ),
-            t71
-                * (t38
-                    - T::fused(-k(0.6666666666666666), t21, k(0.3333333333333333) * t25)),
+            t61,
+            (T::fused(-k(0.6666666666666666), t19, k(0.3333333333333333) * t22) - t32)
+                * t62,
         );
-        let t73 = k(0.5) - T::fused(block_e1, block_e1, t54);
-        let t74 = k(2.0) * t73;
-        let t75 = t62 - t61;
-        let t76 = k(2.0) * t75;
-        let t77 = t47 + t46;
-        let t78 = k(2.0) * t77;
-        let t79 = T::fused(
+        let t64 = T::fused(-block_e1, t42, t49);
+        let t65 = t56 - t55;
+        let t66 = t43 + t41;
+        let t67 = T::fused(
             -k(0.05),
-            T::fused(t74, block_wz, t78 * block_wx),
-            k(0.03) * T::fused(-t76, block_wz, t78 * block_wy),
+            T::fused(block_wz, t64, block_wx * t66),
+            k(0.03) * T::fused(-block_wz, t65, block_wy * t66),
         );
-        let t80 = arm_sx - T::fused(k(0.1), t40, t14 - t8)
+        let t68 = arm_sx - T::fused(k(0.1), t34, t13 - t8)
             - (block_sx
-                - T::fused(-k(0.1), T::fused(t74, block_wy, t76 * block_wx), t79));
-        let t81 = block_rx
-            - T::fused(k(0.2), t77, -T::fused(-k(0.06), t73, k(0.1) * t75))
-            - (arm_rx + T::fused(k(0.2), t5, T::fused(-k(0.4), t1, k(0.2) * t11)));
-        let t82 = T::fused(
-            t80,
+                - T::fused(-k(0.1), T::fused(block_wy, t64, block_wx * t65), t67));
+        let t69 = block_rx
+            - T::fused(k(0.1), t66, -T::fused(-k(0.03), t64, k(0.05) * t65))
+            - (arm_rx + T::fused(k(0.1), t6, T::fused(-k(0.2), t3, k(0.1) * t11)));
+        let t70 = T::fused(
             T::fused(
-                k(1.3333333333333333),
-                t5,
-                T::fused(-k(0.6666666666666666), t1, k(1.3333333333333333) * t11),
+                k(0.6666666666666666),
+                t6,
+                T::fused(-k(0.3333333333333333), t3, k(0.6666666666666666) * t11),
             ),
-            t81
-                * (t41
-                    + T::fused(-k(0.6666666666666666), t7, k(0.3333333333333333) * t13)),
+            t68,
+            (T::fused(-k(0.6666666666666666), t7, k(0.3333333333333333) * t12) + t35)
+                * t69,
         );
-        let t83 = T::fused(t28, t53, -T::fused(t2, t76, t16 * t66));
-        let t84 = T::fused(t34, t53, T::fused(t24, t66, t12 * t76));
-        let t85 = T::fused(t30, t49, -T::fused(-t6, t74, t20 * t64));
-        let t86 = T::fused(t30, t56, T::fused(t20, t68, t6 * t78));
-        let t87 = T::fused(block_wz, t85, block_wx * t86)
-            - T::fused(-arm_wy, t83, arm_wx * t84);
-        let t88 = T::fused(t28, t49, T::fused(t2, t74, t16 * t64));
-        let t89 = T::fused(t34, t49, -T::fused(t12, t74, t24 * t64));
-        let t90 = T::fused(t30, t53, -T::fused(-t20, t66, t6 * t76));
-        let t91 = T::fused(block_wz, t90, block_wy * t86)
-            + T::fused(-arm_wy, t88, arm_wx * t89);
-        let t92 = T::fused(t28, t56, -T::fused(-t2, t78, t16 * t68));
-        let t93 = T::fused(t34, t56, -T::fused(-t24, t68, t12 * t78));
-        let t94 = T::fused(-block_wy, t85, block_wx * t90)
-            + T::fused(-arm_wy, t92, arm_wx * t93);
-        let t95 = T::fused(
+        let t71 = T::fused(t24, t48, -T::fused(t3, t65, t14 * t58));
+        let t72 = T::fused(t28, t48, T::fused(t11, t65, t21 * t58));
+        let t73 = T::fused(t25, t44, -T::fused(-t6, t64, t18 * t57));
+        let t74 = T::fused(t25, t50, T::fused(t6, t66, t18 * t59));
+        let t75 = T::fused(block_wz, t73, block_wx * t74)
+            - T::fused(-arm_wy, t71, arm_wx * t72);
+        let t76 = T::fused(t24, t44, T::fused(t3, t64, t14 * t57));
+        let t77 = T::fused(t28, t44, -T::fused(t11, t64, t21 * t57));
+        let t78 = T::fused(t25, t48, T::fused(-t6, t65, t18 * t58));
+        let t79 = T::fused(block_wz, t78, block_wy * t74)
+            + T::fused(-arm_wy, t76, arm_wx * t77);
+        let t80 = T::fused(t24, t50, -T::fused(-t3, t66, t14 * t59));
+        let t81 = T::fused(t28, t50, T::fused(-t11, t66, t21 * t59));
+        let t82 = T::fused(-block_wy, t73, block_wx * t78)
+            + T::fused(-arm_wy, t80, arm_wx * t81);
+        let t83 = T::fused(
             k(0.6666666666666666),
-            t94,
-            -T::fused(-k(0.6666666666666666), t87, k(0.3333333333333333) * t91),
+            t82,
+            -T::fused(-k(0.6666666666666666), t75, k(0.3333333333333333) * t79),
         );
-        let t96 = T::fused(block_wz, t89, block_wx * t93)
-            + T::fused(arm_wz, t83, arm_wx * t90);
-        let t97 = T::fused(block_wz, t84, block_wy * t93)
-            - T::fused(arm_wz, t88, arm_wx * t85);
-        let t98 = T::fused(-block_wy, t89, block_wx * t84)
-            - T::fused(arm_wz, t92, arm_wx * t86);
-        let t99 = T::fused(
+        let t84 = T::fused(block_wz, t77, block_wx * t81)
+            + T::fused(arm_wz, t71, arm_wx * t78);
+        let t85 = T::fused(block_wz, t72, block_wy * t81)
+            - T::fused(arm_wz, t76, arm_wx * t73);
+        let t86 = T::fused(-block_wy, t77, block_wx * t72)
+            - T::fused(arm_wz, t80, arm_wx * t74);
+        let t87 = T::fused(
             k(0.6666666666666666),
-            t98,
-            -T::fused(-k(0.6666666666666666), t96, k(0.3333333333333333) * t97),
+            t86,
+            -T::fused(-k(0.6666666666666666), t84, k(0.3333333333333333) * t85),
         );
-        let t100 = T::fused(block_wz, t88, block_wx * t92)
-            - T::fused(arm_wz, t84, arm_wy * t90);
-        let t101 = T::fused(block_wz, t83, block_wy * t92)
-            + T::fused(arm_wz, t89, arm_wy * t85);
-        let t102 = T::fused(-block_wy, t88, block_wx * t83)
-            + T::fused(arm_wz, t93, arm_wy * t86);
-        let t103 = T::fused(
+        let t88 = T::fused(block_wz, t76, block_wx * t80)
+            - T::fused(arm_wz, t72, arm_wy * t78);
+        let t89 = T::fused(block_wz, t71, block_wy * t80)
+            + T::fused(arm_wz, t77, arm_wy * t73);
+        let t90 = T::fused(-block_wy, t76, block_wx * t71)
+            + T::fused(arm_wz, t81, arm_wy * t74);
+        let t91 = T::fused(
             k(0.6666666666666666),
-            t102,
-            -T::fused(-k(0.6666666666666666), t100, k(0.3333333333333333) * t101),
+            t90,
+            -T::fused(-k(0.6666666666666666), t88, k(0.3333333333333333) * t89),
         );
         *out = [
-            arm_sx + (t14 + t8),
-            arm_sy + (t26 + t22),
-            arm_sz - (t36 + t32),
-            T::fused(-k(0.4472135954999579), t42, k(0.8944271909999159) * t39),
-            t45,
-            -(t82 - t72 + t60),
+            arm_sx + (t13 + t8),
+            arm_sy + (t23 + t20),
+            arm_sz - (t30 + t27),
+            T::fused(-k(0.4472135954999579), t36, k(0.8944271909999159) * t33),
+            t39,
+            t54 - (t70 + t63),
             -T::fused(
                 k(0.6666666666666666),
-                t95,
-                T::fused(k(0.3333333333333333), t99, k(0.6666666666666666) * t103),
+                t83,
+                T::fused(k(0.3333333333333333), t87, k(0.6666666666666666) * t91),
             ),
-            T::fused(-k(0.3333333333333333), t95, k(0.6666666666666666) * (t103 - t99)),
+            T::fused(-k(0.3333333333333333), t83, k(0.6666666666666666) * (t91 - t87)),
         ];
     }
-    /// Kinetic and potential energy: 292 operations (124 ±, 168 ×, 0 ÷) and 3 functions.
+    /// Kinetic and potential energy: 278 operations (120 ±, 158 ×, 0 ÷) and 3 functions.
     fn energy(&self, _t: T, y: &Self::State) -> gyro_sim::Energy<T> {
         let k = T::constant;
         let arm_rx = y[0];
@@ -1058,156 +1019,142 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
             T::fused(arm_sz, arm_sz, T::fused(arm_sy, arm_sy, arm_sx * arm_sx)),
             t4,
         );
-        let t6 = block_e0 * block_e0;
-        let t7 = k(0.5) - T::fused(block_e1, block_e1, t6);
-        let t8 = k(2.0) * t7;
-        let t9 = arm_e0 * arm_e0;
-        let t10 = k(0.5) - T::fused(arm_e1, arm_e1, t9);
-        let t11 = k(2.0) * t10;
-        let t12 = block_e0 * block_e3;
-        let t13 = block_e1 * block_e2;
-        let t14 = t13 + t12;
-        let t15 = k(2.0) * t14;
-        let t16 = arm_e0 * arm_e3;
-        let t17 = arm_e1 * arm_e2;
-        let t18 = t17 + t16;
-        let t19 = k(2.0) * t18;
-        let t20 = block_e0 * block_e2;
-        let t21 = block_e1 * block_e3;
+        let t6 = k(2.0) * block_e1;
+        let t7 = k(2.0) * block_e0;
+        let t8 = T::fused(-block_e0, t7, k(1.0));
+        let t9 = T::fused(-block_e1, t6, t8);
+        let t10 = k(2.0) * arm_e1;
+        let t11 = k(2.0) * arm_e0;
+        let t12 = T::fused(-arm_e0, t11, k(1.0));
+        let t13 = T::fused(-arm_e1, t10, t12);
+        let t14 = block_e3 * t7;
+        let t15 = block_e2 * t6;
+        let t16 = t15 + t14;
+        let t17 = arm_e3 * t11;
+        let t18 = arm_e2 * t10;
+        let t19 = t18 + t17;
+        let t20 = block_e2 * t7;
+        let t21 = block_e3 * t6;
         let t22 = t21 - t20;
-        let t23 = k(2.0) * t22;
-        let t24 = arm_e0 * arm_e2;
-        let t25 = arm_e1 * arm_e3;
-        let t26 = t25 - t24;
-        let t27 = k(2.0) * t26;
-        let t28 = t13 - t12;
-        let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - T::fused(block_e2, block_e2, t6);
-        let t31 = k(2.0) * t30;
-        let t32 = block_e0 * block_e1;
-        let t33 = block_e2 * block_e3;
-        let t34 = t33 + t32;
-        let t35 = k(2.0) * t34;
+        let t23 = arm_e2 * t11;
+        let t24 = arm_e3 * t10;
+        let t25 = t24 - t23;
+        let t26 = t15 - t14;
+        let t27 = k(2.0) * block_e2;
+        let t28 = T::fused(-block_e2, t27, t8);
+        let t29 = block_e1 * t7;
+        let t30 = block_e3 * t27;
+        let t31 = t30 + t29;
+        let t32 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
+            k(0.3333333333333333) * T::fused(t25, t31, -T::fused(t13, t26, t19 * t28)),
+        );
+        let t33 = t21 + t20;
+        let t34 = t30 - t29;
+        let t35 = T::fused(-block_e3, k(2.0) * block_e3, t8);
         let t36 = T::fused(
             k(0.6666666666666666),
-            T::fused(t27, t23, T::fused(t11, t8, t19 * t15)),
-            k(0.3333333333333333) * T::fused(t27, t35, -T::fused(t11, t29, t19 * t31)),
+            T::fused(t25, t35, -T::fused(-t13, t33, t19 * t34)),
+            t32,
         );
-        let t37 = t21 + t20;
-        let t38 = k(2.0) * t37;
-        let t39 = t33 - t32;
-        let t40 = k(2.0) * t39;
-        let t41 = k(0.5) - T::fused(block_e3, block_e3, t6);
-        let t42 = k(2.0) * t41;
+        let t37 = t18 - t17;
+        let t38 = k(2.0) * arm_e2;
+        let t39 = T::fused(-arm_e2, t38, t12);
+        let t40 = arm_e1 * t11;
+        let t41 = arm_e3 * t38;
+        let t42 = t41 + t40;
         let t43 = T::fused(
             k(0.6666666666666666),
-            T::fused(t27, t42, -T::fused(-t11, t38, t19 * t40)),
-            t36,
+            T::fused(t42, t22, -T::fused(t37, t9, t39 * t16)),
+            k(0.3333333333333333) * T::fused(t42, t31, T::fused(t37, t26, t39 * t28)),
         );
-        let t44 = t17 - t16;
-        let t45 = k(2.0) * t44;
-        let t46 = k(0.5) - T::fused(arm_e2, arm_e2, t9);
-        let t47 = k(2.0) * t46;
-        let t48 = arm_e0 * arm_e1;
-        let t49 = arm_e2 * arm_e3;
-        let t50 = t49 + t48;
-        let t51 = k(2.0) * t50;
+        let t44 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t42, t35, T::fused(-t37, t33, t39 * t34)),
+            t43,
+        );
+        let t45 = t24 + t23;
+        let t46 = t41 - t40;
+        let t47 = T::fused(-arm_e3, k(2.0) * arm_e3, t12);
+        let t48 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t47, t22, -T::fused(-t45, t9, t46 * t16)),
+            k(0.3333333333333333) * T::fused(t47, t31, T::fused(-t45, t26, t46 * t28)),
+        );
+        let t49 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t47, t35, T::fused(t45, t33, t46 * t34)),
+            t48,
+        );
+        let t50 = T::fused(
+            k(0.6666666666666666),
+            t49,
+            T::fused(k(0.6666666666666666), t36, k(0.3333333333333333) * t44),
+        );
+        let t51 = turn0.cos();
         let t52 = T::fused(
             k(0.6666666666666666),
-            T::fused(t51, t23, -T::fused(t45, t8, t47 * t15)),
-            k(0.3333333333333333) * T::fused(t51, t35, T::fused(t47, t31, t45 * t29)),
+            t44 - t36,
+            k(0.3333333333333333) * t49,
         );
-        let t53 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t51, t42, -T::fused(-t47, t40, t45 * t38)),
-            t52,
+        let t53 = turn0.sin();
+        let t54 = T::fused(-t53, t50, t51 * t52).atan2(T::fused(t51, t50, t53 * t52));
+        let t55 = turn0 + t54;
+        let t56 = block_rx
+            - T::fused(k(0.1), t33, -T::fused(-k(0.03), t9, k(0.05) * t26))
+            - (arm_rx + T::fused(k(0.1), t45, T::fused(-k(0.2), t13, k(0.1) * t37)));
+        let t57 = block_ry
+            - T::fused(k(0.1), t34, T::fused(-k(0.03), t16, k(0.05) * t28))
+            - (arm_ry + T::fused(k(0.1), t46, -T::fused(-k(0.2), t19, k(0.1) * t39)));
+        let t58 = T::fused(
+            -T::fused(-k(0.3333333333333333), t45, k(0.6666666666666666) * (t13 + t37)),
+            t56,
+            T::fused(k(0.3333333333333333), t46, k(0.6666666666666666) * (t19 + t39))
+                * t57,
         );
-        let t54 = t25 + t24;
-        let t55 = k(2.0) * t54;
-        let t56 = t49 - t48;
-        let t57 = k(2.0) * t56;
-        let t58 = k(0.5) - T::fused(arm_e3, arm_e3, t9);
-        let t59 = k(2.0) * t58;
-        let t60 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t59, t23, -T::fused(-t55, t8, t57 * t15)),
-            k(0.3333333333333333) * T::fused(t59, t35, -T::fused(-t57, t31, t55 * t29)),
-        );
+        let t59 = block_rz + T::fused(k(0.1), t35, T::fused(k(0.03), t22, k(0.05) * t31))
+            - (arm_rz - T::fused(k(0.1), t47, -T::fused(k(0.2), t25, k(0.1) * t42)));
+        let t60 = k(0.05)
+            + T::fused(
+                T::fused(
+                    -k(0.3333333333333333),
+                    t47,
+                    k(0.6666666666666666) * (t25 - t42),
+                ),
+                t59,
+                t58,
+            );
         let t61 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t59, t42, T::fused(t57, t40, t55 * t38)),
-            t60,
+            -T::fused(
+                -k(0.6666666666666666),
+                t45,
+                T::fused(-k(0.6666666666666666), t13, k(0.3333333333333333) * t37),
+            ),
+            t56,
+            T::fused(
+                k(0.6666666666666666),
+                t46,
+                T::fused(-k(0.6666666666666666), t19, k(0.3333333333333333) * t39),
+            ) * t57,
         );
         let t62 = T::fused(
-            k(0.6666666666666666),
-            t61,
-            T::fused(k(0.6666666666666666), t43, k(0.3333333333333333) * t53),
+            T::fused(
+                k(0.6666666666666666),
+                t47,
+                T::fused(k(0.6666666666666666), t25, k(0.3333333333333333) * t42),
+            ),
+            t59,
+            -t61,
         );
-        let t63 = turn0.cos();
+        let t63 = T::fused(
+            t55,
+            k(0.6) * t55,
+            T::fused(t60, k(40.0) * t60, t62 * (k(25.0) * t62)),
+        );
         let t64 = T::fused(
-            k(0.6666666666666666),
-            t53 - t43,
-            k(0.3333333333333333) * t61,
-        );
-        let t65 = turn0.sin();
-        let t66 = T::fused(-t65, t62, t63 * t64).atan2(T::fused(t63, t62, t65 * t64));
-        let t67 = turn0 + t66;
-        let t68 = block_rx - T::fused(k(0.2), t37, -T::fused(-k(0.06), t7, k(0.1) * t28))
-            - (arm_rx + T::fused(k(0.2), t54, T::fused(-k(0.4), t10, k(0.2) * t44)));
-        let t69 = block_ry - T::fused(k(0.2), t39, T::fused(-k(0.06), t14, k(0.1) * t30))
-            - (arm_ry + T::fused(k(0.2), t56, -T::fused(-k(0.4), t18, k(0.2) * t46)));
-        let t70 = T::fused(
-            -t68,
-            T::fused(-k(0.6666666666666666), t54, k(1.3333333333333333) * (t10 + t44)),
-            t69
-                * T::fused(
-                    k(0.6666666666666666),
-                    t56,
-                    k(1.3333333333333333) * (t18 + t46),
-                ),
-        );
-        let t71 = block_rz + T::fused(k(0.2), t41, T::fused(k(0.06), t22, k(0.1) * t34))
-            - (arm_rz - T::fused(k(0.2), t58, -T::fused(k(0.4), t26, k(0.2) * t50)));
-        let t72 = k(0.05)
-            + T::fused(
-                t71,
-                T::fused(
-                    -k(0.6666666666666666),
-                    t58,
-                    k(1.3333333333333333) * (t26 - t50),
-                ),
-                t70,
-            );
-        let t73 = T::fused(
-            -T::fused(
-                -k(1.3333333333333333),
-                t54,
-                T::fused(-k(1.3333333333333333), t10, k(0.6666666666666666) * t44),
-            ),
-            t68,
-            T::fused(
-                k(1.3333333333333333),
-                t56,
-                T::fused(-k(1.3333333333333333), t18, k(0.6666666666666666) * t46),
-            ) * t69,
-        );
-        let t74 = T::fused(
-            T::fused(
-                k(1.3333333333333333),
-                t58,
-                T::fused(k(1.3333333333333333), t26, k(0.6666666666666666) * t50),
-            ),
-            t71,
-            -t73,
-        );
-        let t75 = T::fused(
-            t67,
-            k(0.6) * t67,
-            T::fused(t72, k(40.0) * t72, t74 * (k(25.0) * t74)),
-        );
-        let t76 = T::fused(
             -k(0.5),
-            t75,
+            t63,
             T::fused(k(4.5), arm_rz, T::fused(-k(13.5), arm_ry, k(1.5) * arm_rx)),
         );
         gyro_sim::Energy {
@@ -1216,7 +1163,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
                 k(1.8),
                 block_rz,
                 T::fused(-k(5.4), block_ry, k(0.6) * block_rx),
-            ) + t76),
+            ) + t64),
         }
     }
     /// Writes the joint readings: 391 operations (175 ±, 216 ×, 0 ÷).
@@ -1391,13 +1338,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
             - (block_sx
                 - T::fused(-k(0.1), T::fused(t76, block_wy, t77 * block_wx), t79));
         let t86 = T::fused(
-            t36,
+            -t36,
             t85,
             t35
                 * T::fused(
-                    -k(0.6666666666666666),
+                    k(0.6666666666666666),
                     t81,
-                    T::fused(-k(0.3333333333333333), t83, k(0.6666666666666666) * t84),
+                    -T::fused(-k(0.3333333333333333), t83, k(0.6666666666666666) * t84),
                 ),
         );
         let t87 = T::fused(
@@ -1499,8 +1446,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for CarriedBlock<T> {
                     k(0.6666666666666666) * arm_wx,
                 ),
             T::fused(t52, t51, -T::fused(-t36, t35, t45 * t44)),
-            t64 - (t86 + t75),
-            -T::fused(t51, t89, T::fused(-t35, t87, t44 * t88)),
+            t86 - t75 + t64,
+            -T::fused(t89, t51, T::fused(-t87, t35, t88 * t44)),
             t92 - t91 + t90,
             T::fused(-k(0.6666666666666666), t103 + t101, k(0.3333333333333333) * t99),
             T::fused(
@@ -1755,7 +1702,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             (7, 11),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 753 operations (348 ±, 405 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 731 operations (344 ±, 387 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -1799,62 +1746,73 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t32,
             t33,
             t34,
+            t35,
             t36,
-            t43,
+            t38,
+            t41,
             t44,
-            t49,
+            t45,
+            t46,
+            t47,
+            t48,
+            t51,
+            t52,
             t53,
-            t75,
-            t78,
-            t81,
-            t84,
-            t85,
+            t54,
+            t55,
+            t56,
+            t57,
+            t58,
+            t60,
+            t64,
+            t67,
+            t83,
             t86,
-            t87,
+            t89,
             t92,
             t93,
-            t96,
-            t99,
+            t94,
+            t95,
             t100,
-            t103,
-            t106,
-            t120,
-            t122,
-            t129,
+            t101,
+            t104,
+            t107,
+            t108,
+            t117,
+            t125,
+            t133,
             t137,
-            t138,
-            t142,
-            t146,
-            t155,
-            t159,
+            t141,
+            t150,
+            t154,
+            t160,
+            t161,
+            t164,
             t165,
             t166,
-            t169,
+            t167,
             t170,
             t171,
-            t172,
             t173,
-            t174,
             t175,
             t176,
             t177,
             t178,
             t179,
-            t180,
             t181,
             t182,
+            t183,
             t184,
             t185,
             t186,
             t187,
-            t188,
             t189,
             t190,
             t191,
             t192,
             t193,
+            t194,
             t195,
-            t196,
             t197,
             t198,
             t199,
@@ -1894,337 +1852,349 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             let t32 = t23 + t13;
             let t33 = k(2.6666666666666665) * arm_e3;
             let t34 = t27 - t18;
-            let t35 = arm_e0 * arm_e0;
-            let t36 = k(0.5) - T::fused(arm_e1, arm_e1, t35);
-            let t37 = arm_e0 * arm_e3;
-            let t38 = arm_e1 * arm_e2;
-            let t39 = t38 - t37;
-            let t40 = arm_e0 * arm_e2;
-            let t41 = arm_e1 * arm_e3;
-            let t42 = t41 + t40;
-            let t43 = T::fused(
-                k(1.3333333333333333),
-                t42,
-                T::fused(-k(0.6666666666666666), t36, k(1.3333333333333333) * t39),
+            let t35 = k(2.0) * arm_e1;
+            let t36 = k(2.0) * arm_e0;
+            let t37 = T::fused(-arm_e0, t36, k(1.0));
+            let t38 = T::fused(-arm_e1, t35, t37);
+            let t39 = arm_e3 * t36;
+            let t40 = arm_e2 * t35;
+            let t41 = t40 - t39;
+            let t42 = arm_e2 * t36;
+            let t43 = arm_e3 * t35;
+            let t44 = t43 + t42;
+            let t45 = T::fused(
+                k(0.6666666666666666),
+                t44,
+                T::fused(-k(0.3333333333333333), t38, k(0.6666666666666666) * t41),
             );
-            let t44 = t38 + t37;
-            let t45 = k(0.5) - T::fused(arm_e2, arm_e2, t35);
-            let t46 = arm_e0 * arm_e1;
-            let t47 = arm_e2 * arm_e3;
-            let t48 = t47 - t46;
-            let t49 = T::fused(
-                k(1.3333333333333333),
-                t48,
-                -T::fused(-k(0.6666666666666666), t44, k(1.3333333333333333) * t45),
+            let t46 = t40 + t39;
+            let t47 = k(2.0) * arm_e2;
+            let t48 = T::fused(-arm_e2, t47, t37);
+            let t49 = arm_e1 * t36;
+            let t50 = arm_e3 * t47;
+            let t51 = t50 - t49;
+            let t52 = T::fused(
+                k(0.6666666666666666),
+                t51,
+                -T::fused(-k(0.3333333333333333), t46, k(0.6666666666666666) * t48),
             );
-            let t50 = t41 - t40;
-            let t51 = t47 + t46;
-            let t52 = k(0.5) - T::fused(arm_e3, arm_e3, t35);
-            let t53 = T::fused(
-                k(1.3333333333333333),
-                t52,
-                -T::fused(k(0.6666666666666666), t50, k(1.3333333333333333) * t51),
+            let t53 = t43 - t42;
+            let t54 = t50 + t49;
+            let t55 = k(2.0) * arm_e3;
+            let t56 = T::fused(-arm_e3, t55, t37);
+            let t57 = T::fused(
+                k(0.6666666666666666),
+                t56,
+                -T::fused(k(0.3333333333333333), t53, k(0.6666666666666666) * t54),
             );
-            let t54 = block_e0 * block_e2;
-            let t55 = block_e1 * block_e3;
-            let t56 = t55 - t54;
-            let t57 = block_e0 * block_e1;
-            let t58 = block_e2 * block_e3;
-            let t59 = t58 + t57;
-            let t60 = block_e0 * block_e0;
-            let t61 = k(0.5) - T::fused(block_e3, block_e3, t60);
-            let t62 = block_rz
-                + T::fused(k(0.2), t61, T::fused(k(0.06), t56, k(0.1) * t59))
-                - (arm_rz - T::fused(k(0.2), t52, -T::fused(k(0.4), t50, k(0.2) * t51)));
-            let t63 = block_e0 * block_e3;
-            let t64 = block_e1 * block_e2;
-            let t65 = t64 + t63;
-            let t66 = k(0.5) - T::fused(block_e2, block_e2, t60);
-            let t67 = t58 - t57;
-            let t68 = block_ry
-                - T::fused(k(0.2), t67, T::fused(-k(0.06), t65, k(0.1) * t66))
+            let t58 = k(2.0) * block_e0;
+            let t59 = block_e2 * t58;
+            let t60 = k(2.0) * block_e1;
+            let t61 = block_e3 * t60;
+            let t62 = t61 - t59;
+            let t63 = block_e1 * t58;
+            let t64 = k(2.0) * block_e2;
+            let t65 = block_e3 * t64;
+            let t66 = t65 + t63;
+            let t67 = k(2.0) * block_e3;
+            let t68 = T::fused(-block_e0, t58, k(1.0));
+            let t69 = T::fused(-block_e3, t67, t68);
+            let t70 = block_rz
+                + T::fused(k(0.1), t69, T::fused(k(0.03), t62, k(0.05) * t66))
+                - (arm_rz - T::fused(k(0.1), t56, -T::fused(k(0.2), t53, k(0.1) * t54)));
+            let t71 = block_e3 * t58;
+            let t72 = block_e2 * t60;
+            let t73 = t72 + t71;
+            let t74 = T::fused(-block_e2, t64, t68);
+            let t75 = t65 - t63;
+            let t76 = block_ry
+                - T::fused(k(0.1), t75, T::fused(-k(0.03), t73, k(0.05) * t74))
                 - (arm_ry
-                    + T::fused(k(0.2), t48, -T::fused(-k(0.4), t44, k(0.2) * t45)));
-            let t69 = T::fused(
-                -T::fused(-k(0.4), arm_e0 + arm_e3, t4),
-                t49,
-                (t27 - t14) * t68,
-            );
-            let t70 = k(0.5) - T::fused(block_e1, block_e1, t60);
-            let t71 = t64 - t63;
-            let t72 = t55 + t54;
-            let t73 = block_rx
-                - T::fused(k(0.2), t72, -T::fused(-k(0.06), t70, k(0.1) * t71))
-                - (arm_rx + T::fused(k(0.2), t42, T::fused(-k(0.4), t36, k(0.2) * t39)));
-            let t74 = T::fused(
-                -(t3 - (t1 - t0)),
-                t43,
-                k(1.3333333333333333) * (arm_e2 + t6) * t73,
-            );
-            let t75 = t74 - t69 + T::fused(t9 + (t4 - t7), t53, (t12 + t34) * t62);
-            let t76 = arm_e1 + arm_e2;
+                    + T::fused(k(0.1), t51, -T::fused(-k(0.2), t46, k(0.1) * t48)));
             let t77 = T::fused(
+                -T::fused(-k(0.4), arm_e0 + arm_e3, t4),
+                t52,
+                (t27 - t14) * t76,
+            );
+            let t78 = T::fused(-block_e1, t60, t68);
+            let t79 = t72 - t71;
+            let t80 = t61 + t59;
+            let t81 = block_rx
+                - T::fused(k(0.1), t80, -T::fused(-k(0.03), t78, k(0.05) * t79))
+                - (arm_rx + T::fused(k(0.1), t44, T::fused(-k(0.2), t38, k(0.1) * t41)));
+            let t82 = T::fused(
+                -(t3 - (t1 - t0)),
+                t45,
+                k(1.3333333333333333) * (arm_e2 + t6) * t81,
+            );
+            let t83 = t82 - t77 + T::fused(t9 + (t4 - t7), t57, (t12 + t34) * t70);
+            let t84 = arm_e1 + arm_e2;
+            let t85 = T::fused(
                 -(t1 + (t3 + t2)),
-                t43,
-                k(1.3333333333333333) * (arm_e3 + t76) * t73,
+                t45,
+                k(1.3333333333333333) * (arm_e3 + t84) * t81,
             );
-            let t78 = t77 - T::fused(t7 - t5, t49, (t23 - t18) * t68)
-                + T::fused(t10 + t5, t53, t32 * t62);
-            let t79 = T::fused(
-                -T::fused(k(0.4), t76, t1),
-                t49,
-                (t19 + T::fused(k(2.6666666666666665), arm_e2, t22)) * t68,
+            let t86 = t85 - T::fused(t7 - t5, t52, (t23 - t18) * t76)
+                + T::fused(t10 + t5, t57, t32 * t70);
+            let t87 = T::fused(
+                -T::fused(k(0.4), t84, t1),
+                t52,
+                (t19 + T::fused(k(2.6666666666666665), arm_e2, t22)) * t76,
             );
-            let t80 = arm_e0 + arm_e1;
-            let t81 = T::fused(-(k(0.2) * t80), t43, k(1.3333333333333333) * t80 * t73)
-                + t79 + T::fused(t1 - t9, t53, t31 * t62);
-            let t82 = arm_e0 - arm_e1;
-            let t83 = T::fused(-(k(0.2) * t82), t43, k(1.3333333333333333) * t82 * t73)
-                - T::fused(-(t9 + t3), t49, (t15 + t26) * t68);
-            let t84 = t83 - T::fused(t10 + (t3 + t11), t53, (t30 + t33) * t62);
-            let t85 = k(0.06) * block_e2;
-            let t86 = k(0.1) * block_e1;
-            let t87 = k(0.06) * block_e3;
-            let t88 = k(0.2) * block_e0;
-            let t89 = k(0.2) * block_e1;
-            let t90 = k(0.1) * block_e3;
-            let t91 = k(0.2) * block_e2;
-            let t92 = T::fused(
-                -(t89 + (t88 + t87)),
-                t49,
-                (t91 + T::fused(-k(0.12), block_e0, t90)) * t43,
-            );
-            let t93 = k(0.1) * block_e0;
-            let t94 = k(0.1) * block_e2;
-            let t95 = k(0.2) * block_e3;
-            let t96 = T::fused(
-                -(t85 + t88),
-                t49,
-                (t95 - T::fused(k(0.12), block_e1, t94)) * t43,
-            );
-            let t97 = k(0.06) * block_e0;
-            let t98 = k(0.06) * block_e1;
-            let t99 = T::fused(
-                -(t90 - t97),
-                t53,
-                T::fused(-(t95 - (t91 + t98)), t49, (t86 - t88) * t43),
-            );
+            let t88 = arm_e0 + arm_e1;
+            let t89 = T::fused(-(k(0.2) * t88), t45, k(1.3333333333333333) * t88 * t81)
+                + t87 + T::fused(t1 - t9, t57, t31 * t70);
+            let t90 = arm_e0 - arm_e1;
+            let t91 = T::fused(-(k(0.2) * t90), t45, k(1.3333333333333333) * t90 * t81)
+                - T::fused(-(t9 + t3), t52, (t15 + t26) * t76);
+            let t92 = t91 - T::fused(t10 + (t3 + t11), t57, (t30 + t33) * t70);
+            let t93 = k(0.06) * block_e2;
+            let t94 = k(0.1) * block_e1;
+            let t95 = k(0.06) * block_e3;
+            let t96 = k(0.2) * block_e0;
+            let t97 = k(0.2) * block_e1;
+            let t98 = k(0.1) * block_e3;
+            let t99 = k(0.2) * block_e2;
             let t100 = T::fused(
-                -T::fused(k(0.4), block_e3, -(t94 + t98)),
-                t53,
-                T::fused(t91 - t97, t49, (t89 + t93) * t43),
+                -(t97 + (t96 + t95)),
+                t52,
+                (t99 + T::fused(-k(0.12), block_e0, t98)) * t45,
             );
-            let t101 = k(4.0) * arm_e0;
-            let t102 = k(2.0) * t59;
-            let t103 = k(2.0) * arm_e1;
-            let t104 = k(2.0) * t66;
-            let t105 = t104 * t103;
-            let t106 = k(2.0) * arm_e2;
-            let t107 = k(2.0) * t71;
-            let t108 = t107 * t106;
-            let t109 = k(2.0) * t56;
-            let t110 = k(2.0) * t65;
-            let t111 = t110 * t103;
-            let t112 = k(2.0) * t70;
-            let t113 = t112 * t106;
+            let t101 = k(0.1) * block_e0;
+            let t102 = k(0.1) * block_e2;
+            let t103 = k(0.2) * block_e3;
+            let t104 = T::fused(
+                -(t93 + t96),
+                t52,
+                (t103 - T::fused(k(0.12), block_e1, t102)) * t45,
+            );
+            let t105 = k(0.06) * block_e0;
+            let t106 = k(0.06) * block_e1;
+            let t107 = T::fused(
+                -(t98 - t105),
+                t57,
+                T::fused(-(t103 - (t99 + t106)), t52, (t94 - t96) * t45),
+            );
+            let t108 = T::fused(
+                -T::fused(k(0.4), block_e3, -(t102 + t106)),
+                t57,
+                T::fused(t99 - t105, t52, (t97 + t101) * t45),
+            );
+            let t109 = k(4.0) * arm_e0;
+            let t110 = t35 * t74;
+            let t111 = t47 * t79;
+            let t112 = t35 * t73;
+            let t113 = t47 * t78;
             let t114 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(t102, t101, t108 + t105),
-                k(0.3333333333333333) * T::fused(-t109, t101, t113 + t111),
+                T::fused(t109, t66, t111 + t110),
+                k(0.3333333333333333) * T::fused(-t109, t62, t113 + t112),
             );
-            let t115 = k(2.0) * t61;
-            let t116 = k(2.0) * t67;
-            let t117 = t116 * t103;
-            let t118 = k(2.0) * t72;
-            let t119 = t118 * t106;
-            let t120 = T::fused(
+            let t115 = t35 * t75;
+            let t116 = t47 * t80;
+            let t117 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t115, t101, t119 - t117),
+                T::fused(-t109, t69, t116 - t115),
                 -t114,
             );
-            let t121 = t102 * t103;
-            let t122 = k(2.0) * arm_e3;
-            let t123 = t107 * t122;
-            let t124 = t109 * t103;
-            let t125 = t112 * t122;
-            let t126 = T::fused(
+            let t118 = t35 * t66;
+            let t119 = t55 * t79;
+            let t120 = t35 * t62;
+            let t121 = t55 * t78;
+            let t122 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(t104, t101, t123) - t121,
-                k(0.3333333333333333) * (T::fused(t110, t101, t125) + t124),
+                T::fused(t109, t74, t119) - t118,
+                k(0.3333333333333333) * (T::fused(t109, t73, t121) + t120),
             );
-            let t127 = t115 * t103;
-            let t128 = t118 * t122;
-            let t129 = T::fused(
+            let t123 = t35 * t69;
+            let t124 = t55 * t80;
+            let t125 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t116, t101, t128) + t127,
-                -t126,
+                T::fused(-t109, t75, t124) + t123,
+                -t122,
             );
-            let t130 = t102 * t106;
-            let t131 = t104 * t122;
-            let t132 = t109 * t106;
-            let t133 = t110 * t122;
-            let t134 = T::fused(
+            let t126 = t47 * t66;
+            let t127 = t55 * t74;
+            let t128 = t47 * t62;
+            let t129 = t55 * t73;
+            let t130 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(t107, t101, -t131) - t130,
-                k(0.3333333333333333) * (T::fused(t112, t101, -t133) + t132),
+                T::fused(t109, t79, -t127) - t126,
+                k(0.3333333333333333) * (T::fused(t109, t78, -t129) + t128),
             );
-            let t135 = t115 * t106;
-            let t136 = t116 * t122;
+            let t131 = t47 * t69;
+            let t132 = t55 * t75;
+            let t133 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t109, t80, t132) + t131,
+                -t130,
+            );
+            let t134 = t36 * t74;
+            let t135 = t36 * t73;
+            let t136 = t36 * t75;
             let t137 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t118, t101, t136) + t135,
-                -t134,
-            );
-            let t138 = k(2.0) * arm_e0;
-            let t139 = t104 * t138;
-            let t140 = t110 * t138;
-            let t141 = t116 * t138;
-            let t142 = T::fused(
-                k(0.6666666666666666),
-                t128 - t141,
+                t124 - t136,
                 -T::fused(
                     -k(0.6666666666666666),
-                    t123 + t139,
-                    k(0.3333333333333333) * (t125 + t140),
+                    t119 + t134,
+                    k(0.3333333333333333) * (t121 + t135),
                 ),
             );
-            let t143 = t102 * t138;
-            let t144 = t109 * t138;
-            let t145 = t115 * t138;
-            let t146 = T::fused(
+            let t138 = t36 * t66;
+            let t139 = t36 * t62;
+            let t140 = t36 * t69;
+            let t141 = T::fused(
                 k(0.6666666666666666),
-                t119 - t145,
+                t116 - t140,
                 -T::fused(
                     -k(0.6666666666666666),
-                    t108 + t143,
-                    k(0.3333333333333333) * (t113 - t144),
+                    t111 + t138,
+                    k(0.3333333333333333) * (t113 - t139),
                 ),
             );
-            let t147 = t102 * t122;
-            let t148 = t104 * t106;
-            let t149 = k(4.0) * arm_e1;
-            let t150 = t109 * t122;
-            let t151 = t110 * t106;
-            let t152 = T::fused(
+            let t142 = t55 * t66;
+            let t143 = t47 * t74;
+            let t144 = k(4.0) * arm_e1;
+            let t145 = t55 * t62;
+            let t146 = t47 * t73;
+            let t147 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(t107, t149, -t148) + t147,
-                k(0.3333333333333333) * (T::fused(t112, t149, -t151) - t150),
+                T::fused(t144, t79, -t143) + t142,
+                k(0.3333333333333333) * (T::fused(t144, t78, -t146) - t145),
             );
-            let t153 = t115 * t122;
-            let t154 = t116 * t106;
-            let t155 = T::fused(
+            let t148 = t55 * t69;
+            let t149 = t47 * t75;
+            let t150 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t118, t149, t154) - t153,
-                -t152,
+                T::fused(t144, t80, t149) - t148,
+                -t147,
             );
-            let t156 = t107 * t138;
-            let t157 = t112 * t138;
-            let t158 = t118 * t138;
-            let t159 = T::fused(
+            let t151 = t36 * t79;
+            let t152 = t36 * t78;
+            let t153 = t36 * t80;
+            let t154 = T::fused(
                 k(0.6666666666666666),
-                t136 + t158,
+                t132 + t153,
                 T::fused(
                     -k(0.6666666666666666),
-                    t131 - t156,
-                    k(0.3333333333333333) * (t133 - t157),
+                    t127 - t151,
+                    k(0.3333333333333333) * (t129 - t152),
                 ),
             );
-            let t160 = k(4.0) * arm_e2;
-            let t161 = t107 * t103;
-            let t162 = t112 * t103;
-            let t163 = T::fused(
+            let t155 = k(4.0) * arm_e2;
+            let t156 = t35 * t79;
+            let t157 = t35 * t78;
+            let t158 = T::fused(
                 k(0.6666666666666666),
-                t147 + T::fused(-t104, t160, t161),
-                k(0.3333333333333333) * (t150 - T::fused(-t110, t160, t162)),
+                t142 + T::fused(-t155, t74, t156),
+                k(0.3333333333333333) * (t145 - T::fused(-t155, t73, t157)),
             );
-            let t164 = t118 * t103;
+            let t159 = t35 * t80;
+            let t160 = T::fused(
+                k(0.6666666666666666),
+                t148 - T::fused(t155, t75, t159),
+                -t158,
+            );
+            let t161 = T::fused(
+                k(0.6666666666666666),
+                t115 + t140,
+                T::fused(
+                    -k(0.6666666666666666),
+                    t110 + t138,
+                    k(0.3333333333333333) * (t112 - t139),
+                ),
+            );
+            let t162 = k(4.0) * arm_e3;
+            let t163 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(-t162, t66, t143 - t156),
+                k(0.3333333333333333) * T::fused(t162, t62, t146 - t157),
+            );
+            let t164 = T::fused(
+                k(0.6666666666666666),
+                T::fused(-t162, t69, t149 + t159),
+                t163,
+            );
             let t165 = T::fused(
                 k(0.6666666666666666),
-                t153 - T::fused(t116, t160, t164),
-                -t163,
+                t131 + t153,
+                -T::fused(
+                    k(0.6666666666666666),
+                    t126 - t151,
+                    k(0.3333333333333333) * (t128 + t152),
+                ),
             );
             let t166 = T::fused(
                 k(0.6666666666666666),
-                t117 + t145,
-                T::fused(
-                    -k(0.6666666666666666),
-                    t105 + t143,
-                    k(0.3333333333333333) * (t111 - t144),
+                t123 - t136,
+                -T::fused(
+                    k(0.6666666666666666),
+                    t118 - t134,
+                    k(0.3333333333333333) * (t120 + t135),
                 ),
             );
-            let t167 = k(4.0) * arm_e3;
-            let t168 = T::fused(
+            let t167 = t60 * t56;
+            let t168 = k(4.0) * block_e0;
+            let t169 = t67 * t44;
+            let t170 = t64 * t56;
+            let t171 = t67 * t51;
+            let t172 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(-t102, t167, t148 - t161),
-                k(0.3333333333333333) * T::fused(t109, t167, t151 - t162),
+                T::fused(-t168, t51, t169) + t167,
+                k(0.3333333333333333) * (T::fused(t168, t44, t171) + t170),
             );
-            let t169 = T::fused(
+            let t173 = t60 * t51;
+            let t174 = t64 * t44;
+            let t175 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t115, t167, t154 + t164),
-                t168,
+                T::fused(-t168, t56, t174 - t173),
+                t172,
             );
-            let t170 = T::fused(
-                k(0.6666666666666666),
-                t135 + t158,
-                -T::fused(
-                    k(0.6666666666666666),
-                    t130 - t156,
-                    k(0.3333333333333333) * (t132 + t157),
-                ),
+            let t176 = t60 * t54;
+            let t177 = t67 * t41;
+            let t178 = t64 * t54;
+            let t179 = t67 * t48;
+            let t180 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(t168, t48, t177) - t176,
+                k(0.3333333333333333) * (T::fused(t168, t41, -t179) - t178),
             );
-            let t171 = T::fused(
-                k(0.6666666666666666),
-                t127 - t141,
-                -T::fused(
-                    k(0.6666666666666666),
-                    t121 - t139,
-                    k(0.3333333333333333) * (t124 + t140),
-                ),
-            );
-            let t172 = k(2.0) * block_e1;
-            let t173 = k(2.0) * t52;
-            let t174 = t173 * t172;
-            let t175 = k(4.0) * block_e0;
-            let t176 = k(2.0) * t48;
-            let t177 = k(2.0) * block_e3;
-            let t178 = k(2.0) * t42;
-            let t179 = t178 * t177;
-            let t180 = k(2.0) * block_e2;
-            let t181 = t173 * t180;
-            let t182 = t176 * t177;
+            let t181 = t60 * t48;
+            let t182 = t64 * t41;
             let t183 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t176, t175, t179) + t174,
-                k(0.3333333333333333) * (T::fused(t178, t175, t182) + t181),
-            );
-            let t184 = t176 * t172;
-            let t185 = t178 * t180;
-            let t186 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t173, t175, t185 - t184),
-                t183,
+                T::fused(t168, t54, t182 + t181),
+                t180,
             );
-            let t187 = k(2.0) * t51;
-            let t188 = t187 * t172;
-            let t189 = k(2.0) * t45;
-            let t190 = k(2.0) * t39;
-            let t191 = t190 * t177;
-            let t192 = t187 * t180;
-            let t193 = t189 * t177;
-            let t194 = T::fused(
+            let t184 = t60 * t53;
+            let t185 = t67 * t38;
+            let t186 = t64 * t53;
+            let t187 = t67 * t46;
+            let t188 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(t189, t175, t191) - t188,
-                k(0.3333333333333333) * (T::fused(t190, t175, -t193) - t192),
+                T::fused(t168, t46, t185) + t184,
+                k(0.3333333333333333) * (T::fused(t168, t38, -t187) + t186),
             );
-            let t195 = t189 * t172;
-            let t196 = t190 * t180;
-            let t197 = T::fused(
+            let t189 = t60 * t46;
+            let t190 = t64 * t38;
+            let t191 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t187, t175, t196 + t195),
-                t194,
+                T::fused(-t168, t53, t190 + t189),
+                t188,
             );
-            let t198 = k(2.0) * t50;
-            let t199 = t198 * t172;
+            let t192 = t58 * t56;
+            let t193 = t67 * t56;
+            let t194 = t64 * t51;
+            let t195 = k(4.0) * block_e1;
+            let t196 = T::fused(
+                k(0.6666666666666666),
+                t174 - t192,
+                k(0.3333333333333333) * (T::fused(t195, t44, t194) - t193),
+            );
+            let t197 = t58 * t51;
+            let t198 = T::fused(k(0.6666666666666666), t169 - t197, t196);
+            let t199 = t58 * t54;
             (
                 t0,
                 t1,
@@ -2252,171 +2222,152 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t32,
                 t33,
                 t34,
+                t35,
                 t36,
-                t43,
+                t38,
+                t41,
                 t44,
-                t49,
+                t45,
+                t46,
+                t47,
+                t48,
+                t51,
+                t52,
                 t53,
-                t75,
-                t78,
-                t81,
-                t84,
-                t85,
+                t54,
+                t55,
+                t56,
+                t57,
+                t58,
+                t60,
+                t64,
+                t67,
+                t83,
                 t86,
-                t87,
+                t89,
                 t92,
                 t93,
-                t96,
-                t99,
+                t94,
+                t95,
                 t100,
-                t103,
-                t106,
-                t120,
-                t122,
-                t129,
+                t101,
+                t104,
+                t107,
+                t108,
+                t117,
+                t125,
+                t133,
                 t137,
-                t138,
-                t142,
-                t146,
-                t155,
-                t159,
+                t141,
+                t150,
+                t154,
+                t160,
+                t161,
+                t164,
                 t165,
                 t166,
-                t169,
+                t167,
                 t170,
                 t171,
-                t172,
                 t173,
-                t174,
                 t175,
                 t176,
                 t177,
                 t178,
                 t179,
-                t180,
                 t181,
                 t182,
+                t183,
                 t184,
                 t185,
                 t186,
                 t187,
-                t188,
                 t189,
                 t190,
                 t191,
                 t192,
                 t193,
+                t194,
                 t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (t208, t209, t216, t222, t228, t233, t237, t241, t243, t244, t245) = {
-            let t200 = k(2.0) * t44;
-            let t201 = k(2.0) * t36;
-            let t202 = t201 * t177;
-            let t203 = t198 * t180;
-            let t204 = t200 * t177;
-            let t205 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t200, t175, t202) + t199,
-                k(0.3333333333333333) * (T::fused(t201, t175, -t204) + t203),
+        let (t204, t210, t215, t219, t223, t225, t226, t227) = {
+            let t200 = t67 * t54;
+            let t201 = t64 * t48;
+            let t202 = T::fused(
+                k(0.6666666666666666),
+                t182 + t199,
+                k(0.3333333333333333) * (T::fused(t195, t41, -t201) + t200),
             );
-            let t206 = t200 * t172;
-            let t207 = t201 * t180;
+            let t203 = t58 * t48;
+            let t204 = T::fused(k(0.6666666666666666), t177 + t203, t202);
+            let t205 = t58 * t53;
+            let t206 = t67 * t53;
+            let t207 = t64 * t46;
             let t208 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t198, t175, t207 + t206),
-                t205,
+                t190 - t205,
+                k(0.3333333333333333) * (T::fused(t195, t38, -t207) - t206),
             );
-            let t209 = k(2.0) * block_e0;
-            let t210 = t173 * t209;
-            let t211 = t173 * t177;
-            let t212 = t176 * t180;
-            let t213 = k(4.0) * block_e1;
-            let t214 = T::fused(
+            let t209 = t58 * t46;
+            let t210 = T::fused(k(0.6666666666666666), t185 + t209, t208);
+            let t211 = k(4.0) * block_e2;
+            let t212 = t60 * t44;
+            let t213 = T::fused(
+                -k(0.6666666666666666),
+                t193 - T::fused(t211, t51, t212),
+                k(0.3333333333333333) * (t173 + t192),
+            );
+            let t214 = t58 * t44;
+            let t215 = T::fused(k(0.6666666666666666), t171 + t214, t213);
+            let t216 = t60 * t41;
+            let t217 = T::fused(
+                -k(0.6666666666666666),
+                t200 + T::fused(-t211, t48, t216),
+                k(0.3333333333333333) * (t181 + t199),
+            );
+            let t218 = t58 * t41;
+            let t219 = T::fused(k(0.6666666666666666), t179 - t218, t217);
+            let t220 = t60 * t38;
+            let t221 = T::fused(
                 k(0.6666666666666666),
-                t185 - t210,
-                k(0.3333333333333333) * (T::fused(t178, t213, t212) - t211),
+                t206 - T::fused(-t211, t46, t220),
+                k(0.3333333333333333) * (t189 - t205),
             );
-            let t215 = t176 * t209;
-            let t216 = T::fused(k(0.6666666666666666), t179 - t215, t214);
-            let t217 = t187 * t209;
-            let t218 = t187 * t177;
-            let t219 = t189 * t180;
-            let t220 = T::fused(
+            let t222 = t58 * t38;
+            let t223 = T::fused(k(0.6666666666666666), t187 - t222, t221);
+            let t224 = k(4.0) * block_e3;
+            let t225 = T::fused(
                 k(0.6666666666666666),
-                t196 + t217,
-                k(0.3333333333333333) * (T::fused(t190, t213, -t219) + t218),
+                T::fused(-t224, t56, t194 + t212),
+                -T::fused(
+                    k(0.6666666666666666),
+                    t170 + t214,
+                    k(0.3333333333333333) * (t167 - t197),
+                ),
             );
-            let t221 = t189 * t209;
-            let t222 = T::fused(k(0.6666666666666666), t191 + t221, t220);
-            let t223 = t198 * t209;
-            let t224 = t198 * t177;
-            let t225 = t200 * t180;
             let t226 = T::fused(
                 k(0.6666666666666666),
-                t207 - t223,
-                k(0.3333333333333333) * (T::fused(t201, t213, -t225) - t224),
-            );
-            let t227 = t200 * t209;
-            let t228 = T::fused(k(0.6666666666666666), t202 + t227, t226);
-            let t229 = k(4.0) * block_e2;
-            let t230 = t178 * t172;
-            let t231 = T::fused(
-                -k(0.6666666666666666),
-                t211 - T::fused(t176, t229, t230),
-                k(0.3333333333333333) * (t184 + t210),
-            );
-            let t232 = t178 * t209;
-            let t233 = T::fused(k(0.6666666666666666), t182 + t232, t231);
-            let t234 = t190 * t172;
-            let t235 = T::fused(
-                -k(0.6666666666666666),
-                t218 + T::fused(-t189, t229, t234),
-                k(0.3333333333333333) * (t195 + t217),
-            );
-            let t236 = t190 * t209;
-            let t237 = T::fused(k(0.6666666666666666), t193 - t236, t235);
-            let t238 = t201 * t172;
-            let t239 = T::fused(
-                k(0.6666666666666666),
-                t224 - T::fused(-t200, t229, t238),
-                k(0.3333333333333333) * (t206 - t223),
-            );
-            let t240 = t201 * t209;
-            let t241 = T::fused(k(0.6666666666666666), t204 - t240, t239);
-            let t242 = k(4.0) * block_e3;
-            let t243 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t173, t242, t212 + t230),
+                T::fused(-t224, t54, t201 - t216),
                 -T::fused(
                     k(0.6666666666666666),
-                    t181 + t232,
-                    k(0.3333333333333333) * (t174 - t215),
+                    t178 - t218,
+                    k(0.3333333333333333) * (t176 - t203),
                 ),
             );
-            let t244 = T::fused(
+            let t227 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t187, t242, t219 - t234),
-                -T::fused(
-                    k(0.6666666666666666),
-                    t192 - t236,
-                    k(0.3333333333333333) * (t188 - t221),
-                ),
-            );
-            let t245 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t198, t242, t225 - t238),
+                T::fused(t224, t53, t207 - t220),
                 T::fused(
                     k(0.6666666666666666),
-                    t203 + t240,
-                    k(0.3333333333333333) * (t199 + t227),
+                    t186 + t222,
+                    k(0.3333333333333333) * (t184 + t209),
                 ),
             );
-            (t208, t209, t216, t222, t228, t233, t237, t241, t243, t244, t245)
+            (t204, t210, t215, t219, t223, t225, t226, t227)
         };
         *out = [
             k(1.0),
@@ -2458,111 +2409,111 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t34 + t33,
                 T::fused(-k(0.5962847939999439), t28, k(0.3975231959999626) * t29),
             ),
-            -t43,
-            -t49,
-            t53,
-            t75,
-            t78,
-            t81,
-            -t84,
-            t43,
-            t49,
-            -t53,
-            T::fused(T::fused(k(0.4), block_e0, -(t86 - t85)), t53, -t92),
-            -T::fused(t87 + t93, t53, t96),
-            t99,
-            -t100,
+            -t45,
+            -t52,
+            t57,
+            t83,
+            t86,
+            t89,
+            -t92,
+            t45,
+            t52,
+            -t57,
+            T::fused(T::fused(k(0.4), block_e0, -(t94 - t93)), t57, -t100),
+            -T::fused(t95 + t101, t57, t104),
+            t107,
+            -t108,
             T::fused(
                 -k(0.6666666666666666),
-                t120,
-                T::fused(-k(0.3333333333333333), t129, k(0.6666666666666666) * t137),
+                t117,
+                T::fused(-k(0.3333333333333333), t125, k(0.6666666666666666) * t133),
             ),
             T::fused(
                 -k(0.6666666666666666),
-                t142,
-                T::fused(k(0.3333333333333333), t146, k(0.6666666666666666) * t155),
+                t137,
+                T::fused(k(0.3333333333333333), t141, k(0.6666666666666666) * t150),
             ),
             T::fused(
                 -k(0.6666666666666666),
-                t159,
-                T::fused(-k(0.3333333333333333), t165, k(0.6666666666666666) * t166),
+                t154,
+                T::fused(-k(0.3333333333333333), t160, k(0.6666666666666666) * t161),
             ),
             -T::fused(
                 k(0.6666666666666666),
-                t169,
-                T::fused(k(0.3333333333333333), t170, k(0.6666666666666666) * t171),
+                t164,
+                T::fused(k(0.3333333333333333), t165, k(0.6666666666666666) * t166),
             ),
             -T::fused(
                 k(0.6666666666666666),
-                t186,
-                T::fused(-k(0.3333333333333333), t197, k(0.6666666666666666) * t208),
+                t175,
+                T::fused(-k(0.3333333333333333), t183, k(0.6666666666666666) * t191),
             ),
             -T::fused(
                 k(0.6666666666666666),
-                t216,
-                T::fused(-k(0.3333333333333333), t222, k(0.6666666666666666) * t228),
+                t198,
+                T::fused(-k(0.3333333333333333), t204, k(0.6666666666666666) * t210),
             ),
             T::fused(
                 -k(0.6666666666666666),
-                t233,
-                T::fused(-k(0.3333333333333333), t237, k(0.6666666666666666) * t241),
+                t215,
+                T::fused(-k(0.3333333333333333), t219, k(0.6666666666666666) * t223),
             ),
             T::fused(
                 -k(0.6666666666666666),
-                t243,
-                T::fused(-k(0.3333333333333333), t244, k(0.6666666666666666) * t245),
+                t225,
+                T::fused(-k(0.3333333333333333), t226, k(0.6666666666666666) * t227),
             ),
             -T::fused(
                 k(0.3333333333333333),
-                t120,
-                k(0.6666666666666666) * (t137 + t129),
+                t117,
+                k(0.6666666666666666) * (t133 + t125),
             ),
             -T::fused(
                 k(0.3333333333333333),
-                t142,
-                k(0.6666666666666666) * (t155 - t146),
+                t137,
+                k(0.6666666666666666) * (t150 - t141),
             ),
             -T::fused(
                 k(0.3333333333333333),
-                t159,
-                k(0.6666666666666666) * (t166 + t165),
+                t154,
+                k(0.6666666666666666) * (t161 + t160),
             ),
             T::fused(
                 -k(0.3333333333333333),
-                t169,
-                k(0.6666666666666666) * (t171 - t170),
+                t164,
+                k(0.6666666666666666) * (t166 - t165),
             ),
             T::fused(
                 -k(0.3333333333333333),
-                t186,
-                k(0.6666666666666666) * (t208 + t197),
+                t175,
+                k(0.6666666666666666) * (t191 + t183),
             ),
             T::fused(
                 -k(0.3333333333333333),
-                t216,
-                k(0.6666666666666666) * (t228 + t222),
+                t198,
+                k(0.6666666666666666) * (t210 + t204),
             ),
             -T::fused(
                 k(0.3333333333333333),
-                t233,
-                k(0.6666666666666666) * (t241 + t237),
+                t215,
+                k(0.6666666666666666) * (t223 + t219),
             ),
             -T::fused(
                 k(0.3333333333333333),
-                t243,
-                k(0.6666666666666666) * (t245 + t244),
+                t225,
+                k(0.6666666666666666) * (t227 + t226),
             ),
-            t138,
-            t103,
-            t106,
-            t122,
-            t209,
-            t172,
-            t180,
-            t177,
+            t36,
+            t35,
+            t47,
+            t55,
+            t58,
+            t60,
+            t64,
+            t67,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 381 operations (165 ±, 216 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 367 operations (161 ±, 206 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -2579,233 +2530,218 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_e1 = y[11];
         let block_e2 = y[12];
         let block_e3 = y[13];
-        let t0 = arm_e0 * arm_e2;
-        let t1 = arm_e1 * arm_e3;
-        let t2 = t1 + t0;
-        let t3 = k(0.2) * t2;
-        let t4 = k(0.4) * t2;
-        let t5 = arm_e0 * arm_e0;
-        let t6 = k(0.5) - T::fused(arm_e1, arm_e1, t5);
-        let t7 = k(0.2) * t6;
-        let t8 = arm_e0 * arm_e3;
-        let t9 = arm_e1 * arm_e2;
-        let t10 = t9 - t8;
-        let t11 = k(0.4) * t10;
-        let t12 = arm_e0 * arm_e1;
-        let t13 = arm_e2 * arm_e3;
-        let t14 = t13 - t12;
-        let t15 = k(0.2) * t14;
-        let t16 = k(0.4) * t14;
-        let t17 = t9 + t8;
-        let t18 = k(0.2) * t17;
-        let t19 = k(0.5) - T::fused(arm_e2, arm_e2, t5);
-        let t20 = k(0.4) * t19;
-        let t21 = k(0.5) - T::fused(arm_e3, arm_e3, t5);
-        let t22 = k(0.2) * t21;
-        let t23 = k(0.4) * t21;
-        let t24 = t1 - t0;
-        let t25 = k(0.2) * t24;
-        let t26 = t13 + t12;
-        let t27 = k(0.4) * t26;
-        let t28 = k(1.3333333333333333) * t19;
-        let t29 = k(0.6666666666666666) * t14;
-        let t30 = t29 - t28;
-        let t31 = k(1.3333333333333333) * t10;
-        let t32 = k(0.6666666666666666) * t2;
-        let t33 = t32 + t31;
-        let t34 = t17 - t14;
-        let t35 = t6 + t2;
-        let t36 = T::fused(-k(0.6666666666666666), t17, t28);
-        let t37 = T::fused(-k(0.6666666666666666), t6, t31);
-        let t38 = k(1.3333333333333333) * t26;
-        let t39 = k(0.6666666666666666) * t21;
-        let t40 = T::fused(k(0.6666666666666666), t24, t38);
-        let t41 = T::fused(k(1.3333333333333333), t2, t37);
-        let t42 = T::fused(k(1.3333333333333333), t14, -t36);
-        let t43 = T::fused(k(1.3333333333333333), t21, -t40);
-        let t44 = t26 + t21;
-        let t45 = block_e0 * block_e2;
-        let t46 = block_e1 * block_e3;
-        let t47 = t46 - t45;
-        let t48 = block_e0 * block_e1;
-        let t49 = block_e2 * block_e3;
-        let t50 = t49 + t48;
-        let t51 = block_e0 * block_e0;
-        let t52 = k(0.5) - T::fused(block_e3, block_e3, t51);
-        let t53 = block_rz + T::fused(k(0.2), t52, T::fused(k(0.06), t47, k(0.1) * t50))
-            - (arm_rz - (t22 - T::fused(k(0.4), t24, k(0.2) * t26)));
-        let t54 = t19 + t14;
-        let t55 = block_e0 * block_e3;
-        let t56 = block_e1 * block_e2;
-        let t57 = t56 + t55;
-        let t58 = k(0.5) - T::fused(block_e2, block_e2, t51);
-        let t59 = t49 - t48;
-        let t60 = block_ry - T::fused(k(0.2), t59, T::fused(-k(0.06), t57, k(0.1) * t58))
-            - (arm_ry + (t15 - T::fused(-k(0.4), t17, k(0.2) * t19)));
-        let t61 = t10 - t2;
-        let t62 = k(0.5) - T::fused(block_e1, block_e1, t51);
-        let t63 = t56 - t55;
-        let t64 = t46 + t45;
-        let t65 = block_rx
-            - T::fused(k(0.2), t64, -T::fused(-k(0.06), t62, k(0.1) * t63))
-            - (arm_rx + (t3 + T::fused(-k(0.4), t6, k(0.2) * t10)));
-        let t66 = T::fused(-t41, k(0.2) * t61, t65 * (k(1.3333333333333333) * t61))
-            - T::fused(-t42, k(0.2) * t54, t60 * (k(1.3333333333333333) * t54));
-        let t67 = k(1.3333333333333333) * t24;
-        let t68 = k(1.3333333333333333) * t17;
-        let t69 = k(1.3333333333333333) * t6;
-        let t70 = T::fused(-t41, t7 + t4, t65 * (t69 + t32))
-            - T::fused(-t42, t18 - t16, t60 * (t68 - t29));
-        let t71 = T::fused(
-            -t41,
-            t11 + t7,
-            t65 * T::fused(k(0.6666666666666666), t10, t69),
-        ) - T::fused(-t42, t20 + t18, t60 * T::fused(k(0.6666666666666666), t19, t68));
-        let t72 = t71
-            + T::fused(t43, t27 - t25, t53 * T::fused(k(0.6666666666666666), t26, -t67));
-        let t73 = T::fused(
-            T::fused(-k(0.2), t58, k(0.1) * t59),
-            t42,
-            T::fused(k(0.2), t63, k(0.1) * t64) * t41,
+        let t0 = k(2.0) * arm_e0;
+        let t1 = arm_e2 * t0;
+        let t2 = k(2.0) * arm_e1;
+        let t3 = arm_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = k(0.1) * t4;
+        let t6 = k(0.2) * t4;
+        let t7 = T::fused(-arm_e0, t0, k(1.0));
+        let t8 = T::fused(-arm_e1, t2, t7);
+        let t9 = k(0.1) * t8;
+        let t10 = arm_e3 * t0;
+        let t11 = arm_e2 * t2;
+        let t12 = t11 - t10;
+        let t13 = k(0.2) * t12;
+        let t14 = arm_e1 * t0;
+        let t15 = k(2.0) * arm_e2;
+        let t16 = arm_e3 * t15;
+        let t17 = t16 - t14;
+        let t18 = k(0.1) * t17;
+        let t19 = k(0.2) * t17;
+        let t20 = t11 + t10;
+        let t21 = k(0.1) * t20;
+        let t22 = T::fused(-arm_e2, t15, t7);
+        let t23 = k(0.2) * t22;
+        let t24 = T::fused(-arm_e3, k(2.0) * arm_e3, t7);
+        let t25 = k(0.1) * t24;
+        let t26 = k(0.2) * t24;
+        let t27 = t3 - t1;
+        let t28 = k(0.1) * t27;
+        let t29 = t16 + t14;
+        let t30 = k(0.2) * t29;
+        let t31 = k(0.6666666666666666) * t22;
+        let t32 = k(0.3333333333333333) * t17;
+        let t33 = t32 - t31;
+        let t34 = k(0.6666666666666666) * t12;
+        let t35 = k(0.3333333333333333) * t4;
+        let t36 = t35 + t34;
+        let t37 = t20 - t17;
+        let t38 = t8 + t4;
+        let t39 = T::fused(-k(0.3333333333333333), t20, t31);
+        let t40 = T::fused(-k(0.3333333333333333), t8, t34);
+        let t41 = k(0.6666666666666666) * t29;
+        let t42 = k(0.3333333333333333) * t24;
+        let t43 = T::fused(k(0.3333333333333333), t27, t41);
+        let t44 = T::fused(k(0.6666666666666666), t4, t40);
+        let t45 = T::fused(k(0.6666666666666666), t17, -t39);
+        let t46 = T::fused(k(0.6666666666666666), t24, -t43);
+        let t47 = t29 + t24;
+        let t48 = k(2.0) * block_e0;
+        let t49 = block_e2 * t48;
+        let t50 = k(2.0) * block_e1;
+        let t51 = block_e3 * t50;
+        let t52 = t51 - t49;
+        let t53 = block_e1 * t48;
+        let t54 = k(2.0) * block_e2;
+        let t55 = block_e3 * t54;
+        let t56 = t55 + t53;
+        let t57 = T::fused(-block_e0, t48, k(1.0));
+        let t58 = T::fused(-block_e3, k(2.0) * block_e3, t57);
+        let t59 = block_rz + T::fused(k(0.1), t58, T::fused(k(0.03), t52, k(0.05) * t56))
+            - (arm_rz - (t25 - T::fused(k(0.2), t27, k(0.1) * t29)));
+        let t60 = t22 + t17;
+        let t61 = block_e3 * t48;
+        let t62 = block_e2 * t50;
+        let t63 = t62 + t61;
+        let t64 = T::fused(-block_e2, t54, t57);
+        let t65 = t55 - t53;
+        let t66 = block_ry
+            - T::fused(k(0.1), t65, T::fused(-k(0.03), t63, k(0.05) * t64))
+            - (arm_ry + (t18 - T::fused(-k(0.2), t20, k(0.1) * t22)));
+        let t67 = t12 - t4;
+        let t68 = T::fused(-block_e1, t50, t57);
+        let t69 = t62 - t61;
+        let t70 = t51 + t49;
+        let t71 = block_rx
+            - T::fused(k(0.1), t70, -T::fused(-k(0.03), t68, k(0.05) * t69))
+            - (arm_rx + (t5 + T::fused(-k(0.2), t8, k(0.1) * t12)));
+        let t72 = T::fused(-t44, k(0.1) * t67, t71 * (k(0.6666666666666666) * t67))
+            - T::fused(-t45, k(0.1) * t60, t66 * (k(0.6666666666666666) * t60));
+        let t73 = k(0.6666666666666666) * t27;
+        let t74 = k(0.6666666666666666) * t20;
+        let t75 = k(0.6666666666666666) * t8;
+        let t76 = T::fused(-t44, t6 + t9, t71 * (t75 + t35))
+            - T::fused(t45, t19 - t21, t66 * (t74 - t32));
+        let t77 = T::fused(
+            -t44,
+            t13 + t9,
+            T::fused(k(0.3333333333333333), t12, t75) * t71,
+        ) - T::fused(-t45, t23 + t21, T::fused(k(0.3333333333333333), t22, t74) * t66);
+        let t78 = t77
+            + T::fused(t46, t30 - t28, T::fused(k(0.3333333333333333), t29, -t73) * t59);
+        let t79 = T::fused(
+            t45,
+            T::fused(-k(0.1), t64, k(0.05) * t65),
+            t44 * T::fused(k(0.1), t69, k(0.05) * t70),
         );
-        let t74 = T::fused(
-            T::fused(k(0.2), t57, k(0.06) * t59),
-            t42,
-            T::fused(-k(0.2), t62, k(0.06) * t64) * t41,
+        let t80 = T::fused(
+            t45,
+            T::fused(k(0.1), t63, k(0.03) * t65),
+            t44 * T::fused(-k(0.1), t68, k(0.03) * t70),
         );
-        let t75 = T::fused(
-            -T::fused(k(0.1), t57, k(0.06) * t58),
-            t42,
-            T::fused(k(0.1), t62, k(0.06) * t63) * t41,
+        let t81 = T::fused(
+            -t45,
+            T::fused(k(0.05), t63, k(0.03) * t64),
+            t44 * T::fused(k(0.05), t68, k(0.03) * t69),
         );
-        let t76 = k(2.0) * t62;
-        let t77 = k(2.0) * t10;
-        let t78 = k(2.0) * t57;
-        let t79 = k(2.0) * t19;
-        let t80 = k(2.0) * t47;
-        let t81 = k(2.0) * t26;
-        let t82 = T::fused(t81, t80, -T::fused(t77, t76, t79 * t78));
-        let t83 = k(2.0) * t58;
-        let t84 = k(2.0) * t63;
-        let t85 = k(2.0) * t50;
-        let t86 = T::fused(t81, t85, T::fused(t79, t83, t77 * t84));
-        let t87 = k(2.0) * t59;
-        let t88 = k(2.0) * t64;
-        let t89 = k(2.0) * t52;
-        let t90 = T::fused(t81, t89, -T::fused(-t79, t87, t77 * t88));
-        let t91 = T::fused(
+        let t82 = T::fused(t29, t52, -T::fused(t12, t68, t22 * t63));
+        let t83 = T::fused(t29, t56, T::fused(t12, t69, t22 * t64));
+        let t84 = T::fused(t29, t58, T::fused(-t12, t70, t22 * t65));
+        let t85 = T::fused(
             k(0.6666666666666666),
-            t90,
-            -T::fused(k(0.3333333333333333), t82, k(0.6666666666666666) * t86),
+            t84,
+            -T::fused(k(0.3333333333333333), t82, k(0.6666666666666666) * t83),
         );
-        let t92 = k(0.6666666666666666) * t91;
-        let t93 = k(2.0) * t2;
-        let t94 = k(2.0) * t14;
-        let t95 = k(2.0) * t21;
-        let t96 = T::fused(t95, t80, -T::fused(-t93, t76, t94 * t78));
-        let t97 = T::fused(t95, t85, -T::fused(-t94, t83, t93 * t84));
-        let t98 = T::fused(t95, t89, T::fused(t94, t87, t93 * t88));
-        let t99 = T::fused(
+        let t86 = k(0.6666666666666666) * t85;
+        let t87 = T::fused(t24, t52, -T::fused(-t4, t68, t17 * t63));
+        let t88 = T::fused(t24, t56, T::fused(-t4, t69, t17 * t64));
+        let t89 = T::fused(t24, t58, T::fused(t4, t70, t17 * t65));
+        let t90 = T::fused(
             k(0.6666666666666666),
-            t98,
-            -T::fused(k(0.3333333333333333), t96, k(0.6666666666666666) * t97),
+            t89,
+            -T::fused(k(0.3333333333333333), t87, k(0.6666666666666666) * t88),
         );
-        let t100 = k(2.0) * t6;
-        let t101 = k(2.0) * t17;
-        let t102 = k(2.0) * t24;
-        let t103 = T::fused(t102, t80, T::fused(t100, t76, t101 * t78));
-        let t104 = T::fused(t102, t85, -T::fused(t100, t84, t101 * t83));
-        let t105 = T::fused(t102, t89, -T::fused(-t100, t88, t101 * t87));
-        let t106 = T::fused(
+        let t91 = T::fused(t27, t52, T::fused(t8, t68, t20 * t63));
+        let t92 = T::fused(t27, t56, -T::fused(t8, t69, t20 * t64));
+        let t93 = T::fused(t27, t58, -T::fused(-t8, t70, t20 * t65));
+        let t94 = T::fused(
             k(0.6666666666666666),
-            t105,
-            -T::fused(k(0.3333333333333333), t103, k(0.6666666666666666) * t104),
+            t93,
+            -T::fused(k(0.3333333333333333), t91, k(0.6666666666666666) * t92),
         );
-        let t107 = k(0.3333333333333333) * t106;
-        let t108 = t98 + t97;
-        let t109 = t90 + t86;
-        let t110 = t105 + t104;
-        let t111 = k(0.6666666666666666) * t96;
-        let t112 = T::fused(k(0.3333333333333333), t98, t111);
-        let t113 = k(0.6666666666666666) * t82;
-        let t114 = T::fused(k(0.3333333333333333), t90, t113);
-        let t115 = k(0.6666666666666666) * t103;
-        let t116 = T::fused(k(0.3333333333333333), t105, t115);
-        let t117 = T::fused(k(0.3333333333333333), t97, -t111);
-        let t118 = T::fused(k(0.3333333333333333), t86, -t113);
-        let t119 = T::fused(k(0.3333333333333333), t104, -t115);
-        let t120 = k(0.6666666666666666) * t99;
+        let t95 = k(0.3333333333333333) * t94;
+        let t96 = t89 + t88;
+        let t97 = t84 + t83;
+        let t98 = t93 + t92;
+        let t99 = k(0.6666666666666666) * t87;
+        let t100 = T::fused(k(0.3333333333333333), t89, t99);
+        let t101 = k(0.6666666666666666) * t82;
+        let t102 = T::fused(k(0.3333333333333333), t84, t101);
+        let t103 = k(0.6666666666666666) * t91;
+        let t104 = T::fused(k(0.3333333333333333), t93, t103);
+        let t105 = T::fused(k(0.3333333333333333), t88, -t99);
+        let t106 = T::fused(k(0.3333333333333333), t83, -t101);
+        let t107 = T::fused(k(0.3333333333333333), t92, -t103);
+        let t108 = k(0.6666666666666666) * t90;
         *out = [
             k(1.0),
-            t3,
-            t4,
-            t7 - t11,
+            t5,
+            t6,
+            t9 - t13,
             k(1.0),
-            t15,
-            t16,
-            t20 - t18,
+            t18,
+            t19,
+            t23 - t21,
             k(1.0),
-            -t22,
-            -t23,
-            -(t27 + t25),
-            -T::fused(k(0.8944271909999159), t30, k(0.4472135954999579) * t33),
-            T::fused(-k(0.5962847939999439), t35, k(1.1925695879998879) * t34),
-            T::fused(-k(0.8944271909999159), t36, k(0.4472135954999579) * t37),
+            -t25,
+            -t26,
+            -(t30 + t28),
+            -T::fused(k(0.8944271909999159), t33, k(0.4472135954999579) * t36),
+            T::fused(-k(0.29814239699997197), t38, k(0.5962847939999439) * t37),
+            T::fused(-k(0.8944271909999159), t39, k(0.4472135954999579) * t40),
             T::fused(
                 k(0.7453559924999299),
-                t39 - t38,
-                T::fused(-k(0.29814239699997197), t30, k(0.5962847939999439) * t33),
+                t42 - t41,
+                T::fused(-k(0.29814239699997197), t33, k(0.5962847939999439) * t36),
             ),
             T::fused(
-                k(0.9938079899999065),
-                t24 + t21,
-                T::fused(k(0.3975231959999626), t34, k(0.7950463919999252) * t35),
+                k(0.49690399499995325),
+                t27 + t24,
+                T::fused(k(0.1987615979999813), t37, k(0.3975231959999626) * t38),
             ),
             T::fused(
                 k(0.7453559924999299),
-                t40,
-                -T::fused(k(0.29814239699997197), t36, k(0.5962847939999439) * t37),
+                t43,
+                -T::fused(k(0.29814239699997197), t39, k(0.5962847939999439) * t40),
             ),
-            -t41,
-            -t42,
-            t43,
-            -(t66 + T::fused(t43, k(0.2) * t44, t53 * (k(1.3333333333333333) * t44))),
-            T::fused(t43, t25 + t23, t53 * (t67 + t39)) - t70,
-            t72,
-            t41,
-            t42,
-            -t43,
-            T::fused(T::fused(-k(0.2), t50, k(0.1) * t52), t43, t73),
-            -T::fused(T::fused(-k(0.2), t47, k(0.06) * t52), t43, t74),
-            T::fused(-T::fused(-k(0.1), t47, k(0.06) * t50), t43, t75),
-            T::fused(k(0.3333333333333333), t99, -t92),
-            -(k(0.6666666666666666) * (t99 - t106)),
-            t107 - t92,
+            -t44,
+            -t45,
+            t46,
+            -(t72 + T::fused(t46, k(0.1) * t47, t59 * (k(0.6666666666666666) * t47))),
+            T::fused(t46, t26 + t28, t59 * (t73 + t42)) - t76,
+            t78,
+            t44,
+            t45,
+            -t46,
+            T::fused(t46, T::fused(-k(0.1), t56, k(0.05) * t58), t79),
+            -T::fused(t46, T::fused(-k(0.1), t52, k(0.03) * t58), t80),
+            T::fused(-t46, T::fused(-k(0.05), t52, k(0.03) * t56), t81),
+            T::fused(k(0.3333333333333333), t90, -t86),
+            -(k(0.6666666666666666) * (t90 - t94)),
+            t95 - t86,
             -T::fused(
                 k(0.4444444444444444),
-                t108,
-                T::fused(k(0.2222222222222222), t109, k(0.4444444444444444) * t110),
+                t96,
+                T::fused(k(0.2222222222222222), t97, k(0.4444444444444444) * t98),
             ),
             T::fused(
                 k(0.6666666666666666),
-                t112,
-                T::fused(k(0.3333333333333333), t114, k(0.6666666666666666) * t116),
+                t100,
+                T::fused(k(0.3333333333333333), t102, k(0.6666666666666666) * t104),
             ),
             T::fused(
                 k(0.6666666666666666),
-                t117,
-                T::fused(k(0.3333333333333333), t118, k(0.6666666666666666) * t119),
+                t105,
+                T::fused(k(0.3333333333333333), t106, k(0.6666666666666666) * t107),
             ),
-            T::fused(-k(0.3333333333333333), t91, t120),
-            t107 + t120,
-            k(0.6666666666666666) * (t91 + t106),
-            T::fused(
-                -k(0.2222222222222222),
-                t108,
-                k(0.4444444444444444) * (t110 - t109),
-            ),
-            T::fused(-k(0.6666666666666666), t116 - t114, k(0.3333333333333333) * t112),
-            T::fused(-k(0.6666666666666666), t119 - t118, k(0.3333333333333333) * t117),
+            T::fused(-k(0.3333333333333333), t85, t108),
+            t95 + t108,
+            k(0.6666666666666666) * (t85 + t94),
+            T::fused(-k(0.2222222222222222), t96, k(0.4444444444444444) * (t98 - t97)),
+            T::fused(-k(0.6666666666666666), t104 - t102, k(0.3333333333333333) * t100),
+            T::fused(-k(0.6666666666666666), t107 - t106, k(0.3333333333333333) * t105),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -2813,7 +2749,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 663 operations (282 ±, 381 ×, 0 ÷).
+    /// Writes γ: 649 operations (278 ±, 371 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -2842,348 +2778,336 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_wx = y[23];
         let block_wy = y[24];
         let block_wz = y[25];
-        let t0 = arm_wy * arm_wy;
-        let t1 = arm_wz * arm_wz;
-        let t2 = t1 + t0;
-        let t3 = arm_e0 * arm_e0;
-        let t4 = k(0.5) - T::fused(arm_e1, arm_e1, t3);
-        let t5 = k(2.0) * t4;
-        let t6 = arm_wx * arm_wy;
-        let t7 = arm_e0 * arm_e3;
-        let t8 = arm_e1 * arm_e2;
+        let t0 = k(2.0) * arm_e1;
+        let t1 = k(2.0) * arm_e0;
+        let t2 = T::fused(-arm_e0, t1, k(1.0));
+        let t3 = T::fused(-arm_e1, t0, t2);
+        let t4 = arm_wy * arm_wy;
+        let t5 = arm_wz * arm_wz;
+        let t6 = t5 + t4;
+        let t7 = arm_e3 * t1;
+        let t8 = arm_e2 * t0;
         let t9 = t8 - t7;
-        let t10 = k(2.0) * t9;
-        let t11 = arm_wx * arm_wz;
-        let t12 = arm_e0 * arm_e2;
-        let t13 = arm_e1 * arm_e3;
-        let t14 = t13 + t12;
-        let t15 = k(2.0) * t14;
-        let t16 = T::fused(t15, t11, T::fused(t5, t2, t10 * t6));
-        let t17 = k(0.2) * t16;
-        let t18 = arm_wx * arm_wx;
-        let t19 = t1 + t18;
-        let t20 = arm_wy * arm_wz;
-        let t21 = T::fused(t15, t20, -T::fused(t5, t6, t10 * t19));
-        let t22 = k(0.1) * t21;
-        let t23 = t8 + t7;
-        let t24 = k(2.0) * t23;
-        let t25 = k(0.5) - T::fused(arm_e2, arm_e2, t3);
-        let t26 = k(2.0) * t25;
-        let t27 = arm_e0 * arm_e1;
-        let t28 = arm_e2 * arm_e3;
-        let t29 = t28 - t27;
-        let t30 = k(2.0) * t29;
-        let t31 = T::fused(t30, t11, -T::fused(t24, t2, t26 * t6));
-        let t32 = k(0.2) * t31;
-        let t33 = T::fused(t30, t20, T::fused(t24, t6, t26 * t19));
-        let t34 = k(0.1) * t33;
-        let t35 = t13 - t12;
-        let t36 = k(2.0) * t35;
-        let t37 = t28 + t27;
-        let t38 = k(2.0) * t37;
-        let t39 = k(0.5) - T::fused(arm_e3, arm_e3, t3);
-        let t40 = k(2.0) * t39;
-        let t41 = T::fused(t40, t11, -T::fused(-t36, t2, t38 * t6));
-        let t42 = k(0.2) * t41;
-        let t43 = T::fused(t40, t20, T::fused(-t36, t6, t38 * t19));
-        let t44 = k(0.1) * t43;
-        let t45 = t0 + t18;
-        let t46 = T::fused(t15, t45, -T::fused(-t5, t11, t10 * t20));
+        let t10 = arm_wx * arm_wy;
+        let t11 = arm_e2 * t1;
+        let t12 = arm_e3 * t0;
+        let t13 = t12 + t11;
+        let t14 = arm_wx * arm_wz;
+        let t15 = T::fused(t14, t13, T::fused(t6, t3, t10 * t9));
+        let t16 = k(0.2) * t15;
+        let t17 = arm_wx * arm_wx;
+        let t18 = t5 + t17;
+        let t19 = arm_wy * arm_wz;
+        let t20 = T::fused(t19, t13, -T::fused(t10, t3, t18 * t9));
+        let t21 = k(0.1) * t20;
+        let t22 = t8 + t7;
+        let t23 = k(2.0) * arm_e2;
+        let t24 = T::fused(-arm_e2, t23, t2);
+        let t25 = arm_e1 * t1;
+        let t26 = arm_e3 * t23;
+        let t27 = t26 - t25;
+        let t28 = T::fused(t14, t27, -T::fused(t6, t22, t10 * t24));
+        let t29 = k(0.2) * t28;
+        let t30 = T::fused(t19, t27, T::fused(t10, t22, t18 * t24));
+        let t31 = k(0.1) * t30;
+        let t32 = t12 - t11;
+        let t33 = t26 + t25;
+        let t34 = T::fused(-arm_e3, k(2.0) * arm_e3, t2);
+        let t35 = T::fused(t14, t34, -T::fused(-t6, t32, t10 * t33));
+        let t36 = k(0.2) * t35;
+        let t37 = T::fused(t19, t34, T::fused(-t10, t32, t18 * t33));
+        let t38 = k(0.1) * t37;
+        let t39 = t4 + t17;
+        let t40 = T::fused(t39, t13, -T::fused(-t14, t3, t19 * t9));
+        let t41 = k(0.6666666666666666) * t40;
+        let t42 = t41
+            + T::fused(-k(0.6666666666666666), t15, k(0.3333333333333333) * t20);
+        let t43 = T::fused(t39, t27, T::fused(-t14, t22, t19 * t24));
+        let t44 = k(0.6666666666666666) * t43;
+        let t45 = t44
+            + T::fused(-k(0.6666666666666666), t28, k(0.3333333333333333) * t30);
+        let t46 = T::fused(t39, t34, T::fused(t14, t32, t19 * t33));
         let t47 = k(0.6666666666666666) * t46;
-        let t48 = t47
-            + T::fused(-k(0.6666666666666666), t16, k(0.3333333333333333) * t21);
-        let t49 = T::fused(t30, t45, T::fused(-t24, t11, t26 * t20));
-        let t50 = k(0.6666666666666666) * t49;
-        let t51 = t50
-            + T::fused(-k(0.6666666666666666), t31, k(0.3333333333333333) * t33);
-        let t52 = T::fused(t40, t45, T::fused(t36, t11, t38 * t20));
-        let t53 = k(0.6666666666666666) * t52;
-        let t54 = T::fused(
+        let t48 = T::fused(
             k(0.7453559924999299),
-            t53 + T::fused(-k(0.6666666666666666), t41, k(0.3333333333333333) * t43),
-            -T::fused(-k(0.5962847939999439), t48, k(0.29814239699997197) * t51),
+            t47 + T::fused(-k(0.6666666666666666), t35, k(0.3333333333333333) * t37),
+            -T::fused(-k(0.5962847939999439), t42, k(0.29814239699997197) * t45),
         );
-        let t55 = block_e0 * block_e0;
-        let t56 = k(0.5) - T::fused(block_e1, block_e1, t55);
-        let t57 = block_e0 * block_e3;
-        let t58 = block_e1 * block_e2;
-        let t59 = t58 - t57;
-        let t60 = block_e0 * block_e2;
-        let t61 = block_e1 * block_e3;
-        let t62 = t61 + t60;
-        let t63 = block_rx
-            - T::fused(k(0.2), t62, -T::fused(-k(0.06), t56, k(0.1) * t59))
-            - (arm_rx + T::fused(k(0.2), t14, T::fused(-k(0.4), t4, k(0.2) * t9)));
-        let t64 = T::fused(t5, arm_wz, t15 * arm_wx);
-        let t65 = T::fused(-t10, arm_wz, t15 * arm_wy);
-        let t66 = T::fused(t5, arm_wy, t10 * arm_wx);
-        let t67 = k(2.0) * t56;
-        let t68 = k(2.0) * t59;
-        let t69 = k(2.0) * t62;
-        let t70 = T::fused(
+        let t49 = k(2.0) * block_e1;
+        let t50 = k(2.0) * block_e0;
+        let t51 = T::fused(-block_e0, t50, k(1.0));
+        let t52 = T::fused(-block_e1, t49, t51);
+        let t53 = block_e3 * t50;
+        let t54 = block_e2 * t49;
+        let t55 = t54 - t53;
+        let t56 = block_e2 * t50;
+        let t57 = block_e3 * t49;
+        let t58 = t57 + t56;
+        let t59 = block_rx
+            - T::fused(k(0.1), t58, -T::fused(-k(0.03), t52, k(0.05) * t55))
+            - (arm_rx + T::fused(k(0.1), t13, T::fused(-k(0.2), t3, k(0.1) * t9)));
+        let t60 = T::fused(arm_wy, t3, arm_wx * t9);
+        let t61 = T::fused(arm_wz, t3, arm_wx * t13);
+        let t62 = T::fused(-arm_wz, t9, arm_wy * t13);
+        let t63 = T::fused(
             -k(0.05),
-            T::fused(t67, block_wz, t69 * block_wx),
-            k(0.03) * T::fused(-t68, block_wz, t69 * block_wy),
+            T::fused(block_wz, t52, block_wx * t58),
+            k(0.03) * T::fused(-block_wz, t55, block_wy * t58),
         );
-        let t71 = arm_sx - T::fused(k(0.1), t66, T::fused(-k(0.1), t64, k(0.2) * t65))
+        let t64 = arm_sx - T::fused(k(0.1), t60, T::fused(-k(0.1), t61, k(0.2) * t62))
             - (block_sx
-                - T::fused(-k(0.1), T::fused(t67, block_wy, t68 * block_wx), t70));
-        let t72 = t71
+                - T::fused(-k(0.1), T::fused(block_wy, t52, block_wx * t55), t63));
+        let t65 = t64
             * T::fused(
                 k(0.6666666666666666),
-                t66,
-                T::fused(-k(0.6666666666666666), t64, k(0.3333333333333333) * t65),
+                t60,
+                T::fused(-k(0.6666666666666666), t61, k(0.3333333333333333) * t62),
             );
-        let t73 = block_wy * block_wy;
-        let t74 = block_wz * block_wz;
-        let t75 = t74 + t73;
-        let t76 = block_wx * block_wy;
-        let t77 = block_wx * block_wz;
-        let t78 = block_wx * block_wx;
-        let t79 = t74 + t78;
-        let t80 = block_wy * block_wz;
-        let t81 = T::fused(
+        let t66 = block_wy * block_wy;
+        let t67 = block_wz * block_wz;
+        let t68 = t67 + t66;
+        let t69 = block_wx * block_wy;
+        let t70 = block_wx * block_wz;
+        let t71 = block_wx * block_wx;
+        let t72 = t67 + t71;
+        let t73 = block_wy * block_wz;
+        let t74 = T::fused(
             k(0.03),
-            T::fused(t69, t77, T::fused(t67, t75, t68 * t76)),
-            k(0.05) * T::fused(t69, t80, -T::fused(t67, t76, t68 * t79)),
+            T::fused(t70, t58, T::fused(t68, t52, t69 * t55)),
+            k(0.05) * T::fused(t73, t58, -T::fused(t69, t52, t72 * t55)),
         );
-        let t82 = t73 + t78;
-        let t83 = T::fused(
+        let t75 = t66 + t71;
+        let t76 = T::fused(
             k(0.1),
-            T::fused(t69, t82, -T::fused(-t67, t77, t68 * t80)),
-            t81,
+            T::fused(t75, t58, -T::fused(-t70, t52, t73 * t55)),
+            t74,
         );
-        let t84 = T::fused(
+        let t77 = T::fused(
             T::fused(
-                k(1.3333333333333333),
-                t14,
-                T::fused(-k(0.6666666666666666), t4, k(1.3333333333333333) * t9),
+                k(0.6666666666666666),
+                t13,
+                T::fused(-k(0.3333333333333333), t3, k(0.6666666666666666) * t9),
             ),
-            t83 + T::fused(k(0.1), t46, -(t22 + t17)),
-            t72,
+            t76 + T::fused(k(0.1), t40, -(t21 + t16)),
+            t65,
         );
-        let t85 = t84
+        let t78 = t77
             + T::fused(
-                t63,
-                T::fused(k(0.3333333333333333), t16, k(0.6666666666666666) * t21) - t47,
-                t72,
+                T::fused(k(0.3333333333333333), t15, k(0.6666666666666666) * t20) - t41,
+                t59,
+                t65,
             );
-        let t86 = t58 + t57;
-        let t87 = k(0.5) - T::fused(block_e2, block_e2, t55);
-        let t88 = block_e0 * block_e1;
-        let t89 = block_e2 * block_e3;
-        let t90 = t89 - t88;
-        let t91 = block_ry - T::fused(k(0.2), t90, T::fused(-k(0.06), t86, k(0.1) * t87))
-            - (arm_ry + T::fused(k(0.2), t29, -T::fused(-k(0.4), t23, k(0.2) * t25)));
-        let t92 = T::fused(-t24, arm_wz, t30 * arm_wx);
-        let t93 = T::fused(t26, arm_wz, t30 * arm_wy);
-        let t94 = T::fused(t24, arm_wy, t26 * arm_wx);
-        let t95 = k(2.0) * t86;
-        let t96 = k(2.0) * t87;
-        let t97 = k(2.0) * t90;
-        let t98 = T::fused(
+        let t79 = t54 + t53;
+        let t80 = k(2.0) * block_e2;
+        let t81 = T::fused(-block_e2, t80, t51);
+        let t82 = block_e1 * t50;
+        let t83 = block_e3 * t80;
+        let t84 = t83 - t82;
+        let t85 = block_ry
+            - T::fused(k(0.1), t84, T::fused(-k(0.03), t79, k(0.05) * t81))
+            - (arm_ry + T::fused(k(0.1), t27, -T::fused(-k(0.2), t22, k(0.1) * t24)));
+        let t86 = T::fused(arm_wy, t22, arm_wx * t24);
+        let t87 = T::fused(-arm_wz, t22, arm_wx * t27);
+        let t88 = T::fused(arm_wz, t24, arm_wy * t27);
+        let t89 = T::fused(
             -k(0.05),
-            T::fused(-t95, block_wz, t97 * block_wx),
-            k(0.03) * T::fused(t96, block_wz, t97 * block_wy),
+            T::fused(-block_wz, t79, block_wx * t84),
+            k(0.03) * T::fused(block_wz, t81, block_wy * t84),
         );
-        let t99 = arm_sy - T::fused(-k(0.1), t94, T::fused(-k(0.1), t92, k(0.2) * t93))
+        let t90 = arm_sy - T::fused(-k(0.1), t86, T::fused(-k(0.1), t87, k(0.2) * t88))
             - (block_sy
-                - T::fused(k(0.1), T::fused(t95, block_wy, t96 * block_wx), t98));
-        let t100 = t99
+                - T::fused(k(0.1), T::fused(block_wy, t79, block_wx * t81), t89));
+        let t91 = t90
             * T::fused(
-                k(0.6666666666666666),
-                t94,
-                -T::fused(-k(0.6666666666666666), t92, k(0.3333333333333333) * t93),
+                -k(0.6666666666666666),
+                t86,
+                T::fused(-k(0.6666666666666666), t87, k(0.3333333333333333) * t88),
             );
-        let t101 = T::fused(
+        let t92 = T::fused(
             k(0.03),
-            T::fused(t97, t77, -T::fused(t95, t75, t96 * t76)),
-            k(0.05) * T::fused(t97, t80, T::fused(t95, t76, t96 * t79)),
+            T::fused(t70, t84, -T::fused(t68, t79, t69 * t81)),
+            k(0.05) * T::fused(t73, t84, T::fused(t69, t79, t72 * t81)),
         );
-        let t102 = T::fused(
+        let t93 = T::fused(
             k(0.1),
-            T::fused(t97, t82, T::fused(-t95, t77, t96 * t80)),
-            t101,
+            T::fused(t75, t84, T::fused(-t70, t79, t73 * t81)),
+            t92,
         );
-        let t103 = T::fused(
+        let t94 = T::fused(
             T::fused(
-                k(1.3333333333333333),
-                t29,
-                -T::fused(-k(0.6666666666666666), t23, k(1.3333333333333333) * t25),
-            ),
-            t102 + T::fused(k(0.1), t49, -(t34 + t32)),
-            -t100,
-        );
-        let t104 = t103
-            - T::fused(
-                -t91,
-                T::fused(k(0.3333333333333333), t31, k(0.6666666666666666) * t33) - t50,
-                t100,
-            );
-        let t105 = t61 - t60;
-        let t106 = t89 + t88;
-        let t107 = k(0.5) - T::fused(block_e3, block_e3, t55);
-        let t108 = block_rz
-            + T::fused(k(0.2), t107, T::fused(k(0.06), t105, k(0.1) * t106))
-            - (arm_rz - T::fused(k(0.2), t39, -T::fused(k(0.4), t35, k(0.2) * t37)));
-        let t109 = T::fused(t36, arm_wz, t40 * arm_wx);
-        let t110 = T::fused(t38, arm_wz, t40 * arm_wy);
-        let t111 = T::fused(-t36, arm_wy, t38 * arm_wx);
-        let t112 = k(2.0) * t105;
-        let t113 = k(2.0) * t106;
-        let t114 = k(2.0) * t107;
-        let t115 = T::fused(
-            -k(0.05),
-            T::fused(t112, block_wz, t114 * block_wx),
-            k(0.03) * T::fused(t113, block_wz, t114 * block_wy),
-        );
-        let t116 = arm_sz
-            + T::fused(-k(0.1), t111, T::fused(-k(0.1), t109, k(0.2) * t110))
-            - (block_sz
-                + T::fused(k(0.1), T::fused(-t112, block_wy, t113 * block_wx), t115));
-        let t117 = t116
-            * T::fused(
                 k(0.6666666666666666),
-                t111,
-                -T::fused(-k(0.6666666666666666), t109, k(0.3333333333333333) * t110),
-            );
-        let t118 = T::fused(
-            k(0.03),
-            T::fused(t114, t77, -T::fused(-t112, t75, t113 * t76)),
-            k(0.05) * T::fused(t114, t80, T::fused(-t112, t76, t113 * t79)),
-        );
-        let t119 = T::fused(
-            k(0.1),
-            T::fused(t114, t82, T::fused(t112, t77, t113 * t80)),
-            t118,
-        );
-        let t120 = T::fused(
-            T::fused(
-                k(1.3333333333333333),
-                t39,
-                -T::fused(k(0.6666666666666666), t35, k(1.3333333333333333) * t37),
+                t27,
+                -T::fused(-k(0.3333333333333333), t22, k(0.6666666666666666) * t24),
             ),
-            t119 + T::fused(k(0.1), t52, -(t44 + t42)),
-            t117,
+            t93 + T::fused(k(0.1), t43, -(t31 + t29)),
+            t91,
         );
-        let t121 = t120
+        let t95 = t94
             + T::fused(
-                -t108,
-                T::fused(k(0.3333333333333333), t41, k(0.6666666666666666) * t43) - t53,
-                t117,
+                T::fused(k(0.3333333333333333), t28, k(0.6666666666666666) * t30) - t44,
+                t85,
+                t91,
             );
-        let t122 = T::fused(t36, t114, -T::fused(-t5, t69, t24 * t97));
-        let t123 = T::fused(t38, t114, -T::fused(-t26, t97, t10 * t69));
-        let t124 = T::fused(t40, t114, T::fused(t30, t97, t15 * t69));
-        let t125 = T::fused(t38, t112, -T::fused(t10, t67, t26 * t95));
-        let t126 = T::fused(t38, t113, T::fused(t26, t96, t10 * t68));
-        let t127 = T::fused(-block_wy, t125, block_wx * t126);
-        let t128 = T::fused(t40, t112, -T::fused(-t15, t67, t30 * t95));
-        let t129 = T::fused(t40, t113, -T::fused(-t30, t96, t15 * t68));
-        let t130 = T::fused(-block_wy, t128, block_wx * t129);
-        let t131 = T::fused(t36, t112, T::fused(t5, t67, t24 * t95));
-        let t132 = T::fused(t36, t113, -T::fused(t5, t68, t24 * t96));
-        let t133 = T::fused(
-            -k(2.0),
-            T::fused(arm_wz, t127, arm_wy * t130),
-            T::fused(t82, t122, T::fused(t77, t131, t80 * t132)),
+        let t96 = t57 - t56;
+        let t97 = t83 + t82;
+        let t98 = T::fused(-block_e3, k(2.0) * block_e3, t51);
+        let t99 = block_rz + T::fused(k(0.1), t98, T::fused(k(0.03), t96, k(0.05) * t97))
+            - (arm_rz - T::fused(k(0.1), t34, -T::fused(k(0.2), t32, k(0.1) * t33)));
+        let t100 = T::fused(-arm_wy, t32, arm_wx * t33);
+        let t101 = T::fused(arm_wz, t32, arm_wx * t34);
+        let t102 = T::fused(arm_wz, t33, arm_wy * t34);
+        let t103 = T::fused(
+            -k(0.05),
+            T::fused(block_wz, t96, block_wx * t98),
+            k(0.03) * T::fused(block_wz, t97, block_wy * t98),
         );
-        let t134 = T::fused(block_wz, t126, block_wy * t123);
-        let t135 = T::fused(block_wz, t129, block_wy * t124);
-        let t136 = T::fused(
-            -k(2.0),
-            T::fused(arm_wz, t134, arm_wy * t135),
-            T::fused(t77, t122, -T::fused(-t75, t131, t76 * t132)),
+        let t104 = arm_sz
+            + T::fused(-k(0.1), t100, T::fused(-k(0.1), t101, k(0.2) * t102))
+            - (block_sz
+                + T::fused(k(0.1), T::fused(-block_wy, t96, block_wx * t97), t103));
+        let t105 = t104
+            * T::fused(
+                -k(0.6666666666666666),
+                t100,
+                T::fused(-k(0.6666666666666666), t101, k(0.3333333333333333) * t102),
+            );
+        let t106 = T::fused(
+            k(0.03),
+            T::fused(t70, t98, -T::fused(-t68, t96, t69 * t97)),
+            k(0.05) * T::fused(t73, t98, T::fused(-t69, t96, t72 * t97)),
         );
-        let t137 = T::fused(block_wz, t125, block_wx * t123);
-        let t138 = T::fused(block_wz, t128, block_wx * t124);
-        let t139 = T::fused(
+        let t107 = T::fused(
+            k(0.1),
+            T::fused(t75, t98, T::fused(t70, t96, t73 * t97)),
+            t106,
+        );
+        let t108 = T::fused(
+            T::fused(
+                k(0.6666666666666666),
+                t34,
+                -T::fused(k(0.3333333333333333), t32, k(0.6666666666666666) * t33),
+            ),
+            t107 + T::fused(k(0.1), t46, -(t38 + t36)),
+            -t105,
+        );
+        let t109 = t108
+            - T::fused(
+                T::fused(k(0.3333333333333333), t35, k(0.6666666666666666) * t37) - t47,
+                t99,
+                t105,
+            );
+        let t110 = T::fused(t32, t98, -T::fused(-t3, t58, t22 * t84));
+        let t111 = T::fused(t33, t98, T::fused(-t9, t58, t24 * t84));
+        let t112 = T::fused(t34, t98, T::fused(t13, t58, t27 * t84));
+        let t113 = T::fused(t33, t96, -T::fused(t9, t52, t24 * t79));
+        let t114 = T::fused(t33, t97, T::fused(t9, t55, t24 * t81));
+        let t115 = T::fused(-block_wy, t113, block_wx * t114);
+        let t116 = T::fused(t34, t96, -T::fused(-t13, t52, t27 * t79));
+        let t117 = T::fused(t34, t97, T::fused(-t13, t55, t27 * t81));
+        let t118 = T::fused(-block_wy, t116, block_wx * t117);
+        let t119 = T::fused(t32, t96, T::fused(t3, t52, t22 * t79));
+        let t120 = T::fused(t32, t97, -T::fused(t3, t55, t22 * t81));
+        let t121 = T::fused(
+            -k(2.0),
+            T::fused(arm_wz, t115, arm_wy * t118),
+            T::fused(t75, t110, T::fused(t70, t119, t73 * t120)),
+        );
+        let t122 = T::fused(block_wz, t114, block_wy * t111);
+        let t123 = T::fused(block_wz, t117, block_wy * t112);
+        let t124 = T::fused(
+            -k(2.0),
+            T::fused(arm_wz, t122, arm_wy * t123),
+            T::fused(t70, t110, -T::fused(-t68, t119, t69 * t120)),
+        );
+        let t125 = T::fused(block_wz, t113, block_wx * t111);
+        let t126 = T::fused(block_wz, t116, block_wx * t112);
+        let t127 = T::fused(
             k(2.0),
-            T::fused(arm_wz, t137, arm_wy * t138),
-            T::fused(t80, t122, T::fused(-t76, t131, t79 * t132)),
+            T::fused(arm_wz, t125, arm_wy * t126),
+            T::fused(t73, t110, T::fused(-t69, t119, t72 * t120)),
+        );
+        let t128 = T::fused(
+            k(0.3333333333333333),
+            t124 + T::fused(t14, t116, -T::fused(-t6, t119, t10 * t113)),
+            k(0.6666666666666666)
+                * (t127 + T::fused(t14, t117, -T::fused(-t6, t120, t10 * t114))),
+        );
+        let t129 = T::fused(
+            -k(0.6666666666666666),
+            t121 + T::fused(t14, t112, -T::fused(-t6, t110, t10 * t111)),
+            t128,
+        );
+        let t130 = T::fused(-block_wy, t119, block_wx * t120);
+        let t131 = T::fused(
+            k(2.0),
+            T::fused(arm_wz, t130, arm_wx * t118),
+            T::fused(t75, t111, T::fused(t70, t113, t73 * t114)),
+        );
+        let t132 = T::fused(block_wz, t120, block_wy * t110);
+        let t133 = T::fused(
+            k(2.0),
+            T::fused(arm_wz, t132, arm_wx * t123),
+            T::fused(t70, t111, -T::fused(-t68, t113, t69 * t114)),
+        );
+        let t134 = T::fused(block_wz, t119, block_wx * t110);
+        let t135 = T::fused(
+            -k(2.0),
+            T::fused(arm_wz, t134, arm_wx * t126),
+            T::fused(t73, t111, T::fused(-t69, t113, t72 * t114)),
+        );
+        let t136 = T::fused(
+            k(0.3333333333333333),
+            t133 + T::fused(t19, t116, T::fused(-t10, t119, t18 * t113)),
+            k(0.6666666666666666)
+                * (t135 + T::fused(t19, t117, T::fused(-t10, t120, t18 * t114))),
+        );
+        let t137 = T::fused(
+            -k(0.6666666666666666),
+            t131 + T::fused(t19, t112, T::fused(-t10, t110, t18 * t111)),
+            t136,
+        );
+        let t138 = T::fused(
+            -k(2.0),
+            T::fused(-arm_wy, t130, arm_wx * t115),
+            T::fused(t75, t112, T::fused(t70, t116, t73 * t117)),
+        );
+        let t139 = T::fused(
+            -k(2.0),
+            T::fused(-arm_wy, t132, arm_wx * t122),
+            T::fused(t70, t112, -T::fused(-t68, t116, t69 * t117)),
         );
         let t140 = T::fused(
-            k(0.3333333333333333),
-            t136 + T::fused(t11, t128, -T::fused(-t2, t131, t6 * t125)),
-            k(0.6666666666666666)
-                * (t139 + T::fused(t11, t129, -T::fused(-t2, t132, t6 * t126))),
+            k(2.0),
+            T::fused(-arm_wy, t134, arm_wx * t125),
+            T::fused(t73, t112, T::fused(-t69, t116, t72 * t117)),
         );
         let t141 = T::fused(
-            -k(0.6666666666666666),
-            t133 + T::fused(t11, t124, -T::fused(-t2, t122, t6 * t123)),
-            t140,
-        );
-        let t142 = T::fused(-block_wy, t131, block_wx * t132);
-        let t143 = T::fused(
-            k(2.0),
-            T::fused(arm_wz, t142, arm_wx * t130),
-            T::fused(t82, t123, T::fused(t77, t125, t80 * t126)),
-        );
-        let t144 = T::fused(block_wz, t132, block_wy * t122);
-        let t145 = T::fused(
-            k(2.0),
-            T::fused(arm_wz, t144, arm_wx * t135),
-            T::fused(t77, t123, -T::fused(-t75, t125, t76 * t126)),
-        );
-        let t146 = T::fused(block_wz, t131, block_wx * t122);
-        let t147 = T::fused(
-            -k(2.0),
-            T::fused(arm_wz, t146, arm_wx * t138),
-            T::fused(t80, t123, T::fused(-t76, t125, t79 * t126)),
-        );
-        let t148 = T::fused(
             k(0.3333333333333333),
-            t145 + T::fused(t20, t128, T::fused(-t6, t131, t19 * t125)),
+            t139 + T::fused(t39, t116, T::fused(t14, t119, t19 * t113)),
             k(0.6666666666666666)
-                * (t147 + T::fused(t20, t129, T::fused(-t6, t132, t19 * t126))),
+                * (t140 + T::fused(t39, t117, T::fused(t14, t120, t19 * t114))),
         );
-        let t149 = T::fused(
+        let t142 = T::fused(
             -k(0.6666666666666666),
-            t143 + T::fused(t20, t124, T::fused(-t6, t122, t19 * t123)),
-            t148,
-        );
-        let t150 = T::fused(
-            -k(2.0),
-            T::fused(-arm_wy, t142, arm_wx * t127),
-            T::fused(t82, t124, T::fused(t77, t128, t80 * t129)),
-        );
-        let t151 = T::fused(
-            -k(2.0),
-            T::fused(-arm_wy, t144, arm_wx * t134),
-            T::fused(t77, t124, -T::fused(-t75, t128, t76 * t129)),
-        );
-        let t152 = T::fused(
-            k(2.0),
-            T::fused(-arm_wy, t146, arm_wx * t137),
-            T::fused(t80, t124, T::fused(-t76, t128, t79 * t129)),
-        );
-        let t153 = T::fused(
-            k(0.3333333333333333),
-            t151 + T::fused(t45, t128, T::fused(t11, t131, t20 * t125)),
-            k(0.6666666666666666)
-                * (t152 + T::fused(t45, t129, T::fused(t11, t132, t20 * t126))),
-        );
-        let t154 = T::fused(
-            -k(0.6666666666666666),
-            t150 + T::fused(t45, t124, T::fused(t11, t122, t20 * t123)),
-            t153,
+            t138 + T::fused(t39, t112, T::fused(t14, t110, t19 * t111)),
+            t141,
         );
         *out = [
-            t17 - t22,
-            t32 - t34,
-            t44 - t42,
-            T::fused(k(0.4472135954999579), t48, k(0.8944271909999159) * t51),
-            -t54,
-            -(t121 + (t104 + t85)),
+            t16 - t21,
+            t29 - t31,
+            t38 - t36,
+            T::fused(k(0.4472135954999579), t42, k(0.8944271909999159) * t45),
+            -t48,
+            -(t109 + (t95 + t78)),
             T::fused(
                 k(0.6666666666666666),
-                t154,
-                T::fused(k(0.6666666666666666), t141, k(0.3333333333333333) * t149),
+                t142,
+                T::fused(k(0.6666666666666666), t129, k(0.3333333333333333) * t137),
             ),
-            T::fused(k(0.6666666666666666), t149 - t141, k(0.3333333333333333) * t154),
+            T::fused(k(0.6666666666666666), t137 - t129, k(0.3333333333333333) * t142),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 560 operations (247 ±, 313 ×, 0 ÷) and 3 functions.
+    /// Writes (f, n' − w̃'J'w'): 544 operations (243 ±, 301 ×, 0 ÷) and 3 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -3213,226 +3137,223 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_wy = y[24];
         let block_wz = y[25];
         let turn0 = y[27];
-        let t0 = block_e0 * block_e2;
-        let t1 = block_e1 * block_e3;
-        let t2 = t1 - t0;
-        let t3 = k(2.0) * t2;
-        let t4 = block_e0 * block_e1;
-        let t5 = block_e2 * block_e3;
-        let t6 = t5 + t4;
-        let t7 = k(2.0) * t6;
-        let t8 = block_e0 * block_e0;
-        let t9 = k(0.5) - T::fused(block_e3, block_e3, t8);
-        let t10 = k(2.0) * t9;
+        let t0 = k(2.0) * block_e0;
+        let t1 = block_e2 * t0;
+        let t2 = k(2.0) * block_e1;
+        let t3 = block_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = block_e1 * t0;
+        let t6 = k(2.0) * block_e2;
+        let t7 = block_e3 * t6;
+        let t8 = t7 + t5;
+        let t9 = T::fused(-block_e0, t0, k(1.0));
+        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
         let t11 = T::fused(
             -k(0.05),
-            T::fused(t3, block_wz, t10 * block_wx),
-            k(0.03) * T::fused(t7, block_wz, t10 * block_wy),
+            T::fused(block_wz, t4, block_wx * t10),
+            k(0.03) * T::fused(block_wz, t8, block_wy * t10),
         );
-        let t12 = arm_e0 * arm_e2;
-        let t13 = arm_e1 * arm_e3;
-        let t14 = t13 - t12;
-        let t15 = k(2.0) * t14;
-        let t16 = arm_e0 * arm_e1;
-        let t17 = arm_e2 * arm_e3;
-        let t18 = t17 + t16;
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t15, arm_wy, t19 * arm_wx);
-        let t21 = arm_e0 * arm_e0;
-        let t22 = k(0.5) - T::fused(arm_e3, arm_e3, t21);
-        let t23 = k(2.0) * t22;
-        let t24 = T::fused(t15, arm_wz, t23 * arm_wx);
-        let t25 = T::fused(t19, arm_wz, t23 * arm_wy);
-        let t26 = arm_sz + T::fused(-k(0.1), t20, T::fused(-k(0.1), t24, k(0.2) * t25))
-            - (block_sz + T::fused(k(0.1), T::fused(-t3, block_wy, t7 * block_wx), t11));
+        let t12 = k(2.0) * arm_e0;
+        let t13 = arm_e2 * t12;
+        let t14 = k(2.0) * arm_e1;
+        let t15 = arm_e3 * t14;
+        let t16 = t15 - t13;
+        let t17 = arm_e1 * t12;
+        let t18 = k(2.0) * arm_e2;
+        let t19 = arm_e3 * t18;
+        let t20 = t19 + t17;
+        let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
+        let t22 = T::fused(-arm_e0, t12, k(1.0));
+        let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
+        let t24 = T::fused(arm_wz, t16, arm_wx * t23);
+        let t25 = T::fused(arm_wz, t20, arm_wy * t23);
+        let t26 = arm_sz + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
+            - (block_sz + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
         let t27 = T::fused(
-            k(1.3333333333333333),
-            t22,
-            T::fused(k(1.3333333333333333), t14, k(0.6666666666666666) * t18),
+            k(0.6666666666666666),
+            t23,
+            T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20),
         );
-        let t28 = block_rz + T::fused(k(0.2), t9, T::fused(k(0.06), t2, k(0.1) * t6));
+        let t28 = block_rz + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8));
         let t29 = t28
-            - (arm_rz - T::fused(k(0.2), t22, -T::fused(k(0.4), t14, k(0.2) * t18)));
+            - (arm_rz - T::fused(k(0.1), t23, -T::fused(k(0.2), t16, k(0.1) * t20)));
         let t30 = T::fused(
             -t27,
             t26,
             t29
                 * T::fused(
                     k(0.6666666666666666),
-                    t20,
+                    t21,
                     T::fused(-k(0.3333333333333333), t24, k(0.6666666666666666) * t25),
                 ),
         );
-        let t31 = block_e0 * block_e3;
-        let t32 = block_e1 * block_e2;
+        let t31 = block_e3 * t0;
+        let t32 = block_e2 * t2;
         let t33 = t32 + t31;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - T::fused(block_e2, block_e2, t8);
-        let t36 = k(2.0) * t35;
-        let t37 = t5 - t4;
-        let t38 = k(2.0) * t37;
-        let t39 = T::fused(
+        let t34 = T::fused(-block_e2, t6, t9);
+        let t35 = t7 - t5;
+        let t36 = T::fused(
             -k(0.05),
-            T::fused(-t34, block_wz, t38 * block_wx),
-            k(0.03) * T::fused(t36, block_wz, t38 * block_wy),
+            T::fused(-block_wz, t33, block_wx * t35),
+            k(0.03) * T::fused(block_wz, t34, block_wy * t35),
         );
-        let t40 = arm_e0 * arm_e3;
-        let t41 = arm_e1 * arm_e2;
-        let t42 = t41 + t40;
-        let t43 = k(2.0) * t42;
-        let t44 = k(0.5) - T::fused(arm_e2, arm_e2, t21);
-        let t45 = k(2.0) * t44;
-        let t46 = T::fused(t43, arm_wy, t45 * arm_wx);
-        let t47 = t17 - t16;
-        let t48 = k(2.0) * t47;
-        let t49 = T::fused(-t43, arm_wz, t48 * arm_wx);
-        let t50 = T::fused(t45, arm_wz, t48 * arm_wy);
-        let t51 = arm_sy - T::fused(-k(0.1), t46, T::fused(-k(0.1), t49, k(0.2) * t50))
+        let t37 = arm_e3 * t12;
+        let t38 = arm_e2 * t14;
+        let t39 = t38 + t37;
+        let t40 = T::fused(-arm_e2, t18, t22);
+        let t41 = T::fused(arm_wy, t39, arm_wx * t40);
+        let t42 = t19 - t17;
+        let t43 = T::fused(-arm_wz, t39, arm_wx * t42);
+        let t44 = T::fused(arm_wz, t40, arm_wy * t42);
+        let t45 = arm_sy - T::fused(-k(0.1), t41, T::fused(-k(0.1), t43, k(0.2) * t44))
             - (block_sy
-                - T::fused(k(0.1), T::fused(t34, block_wy, t36 * block_wx), t39));
-        let t52 = T::fused(
-            k(1.3333333333333333),
-            t47,
-            T::fused(-k(1.3333333333333333), t42, k(0.6666666666666666) * t44),
+                - T::fused(k(0.1), T::fused(block_wy, t33, block_wx * t34), t36));
+        let t46 = T::fused(
+            k(0.6666666666666666),
+            t42,
+            T::fused(-k(0.6666666666666666), t39, k(0.3333333333333333) * t40),
         );
-        let t53 = block_ry
-            - T::fused(k(0.2), t37, T::fused(-k(0.06), t33, k(0.1) * t35));
-        let t54 = t53
-            - (arm_ry + T::fused(k(0.2), t47, -T::fused(-k(0.4), t42, k(0.2) * t44)));
-        let t55 = T::fused(
-            -t52,
-            t51,
-            t54
+        let t47 = block_ry
+            - T::fused(k(0.1), t35, T::fused(-k(0.03), t33, k(0.05) * t34));
+        let t48 = t47
+            - (arm_ry + T::fused(k(0.1), t42, -T::fused(-k(0.2), t39, k(0.1) * t40)));
+        let t49 = T::fused(
+            -t46,
+            t45,
+            t48
                 * T::fused(
                     k(0.6666666666666666),
-                    t46,
-                    T::fused(-k(0.3333333333333333), t49, k(0.6666666666666666) * t50),
+                    t41,
+                    T::fused(-k(0.3333333333333333), t43, k(0.6666666666666666) * t44),
                 ),
         );
-        let t56 = k(0.5) - T::fused(block_e1, block_e1, t8);
-        let t57 = k(2.0) * t56;
-        let t58 = t32 - t31;
-        let t59 = k(2.0) * t58;
-        let t60 = t1 + t0;
-        let t61 = k(2.0) * t60;
-        let t62 = T::fused(
+        let t50 = T::fused(-block_e1, t2, t9);
+        let t51 = t32 - t31;
+        let t52 = t3 + t1;
+        let t53 = T::fused(
             -k(0.05),
-            T::fused(t57, block_wz, t61 * block_wx),
-            k(0.03) * T::fused(-t59, block_wz, t61 * block_wy),
+            T::fused(block_wz, t50, block_wx * t52),
+            k(0.03) * T::fused(-block_wz, t51, block_wy * t52),
         );
-        let t63 = k(0.5) - T::fused(arm_e1, arm_e1, t21);
-        let t64 = k(2.0) * t63;
-        let t65 = t41 - t40;
-        let t66 = k(2.0) * t65;
-        let t67 = T::fused(t64, arm_wy, t66 * arm_wx);
-        let t68 = t13 + t12;
-        let t69 = k(2.0) * t68;
-        let t70 = T::fused(t64, arm_wz, t69 * arm_wx);
-        let t71 = T::fused(-t66, arm_wz, t69 * arm_wy);
-        let t72 = arm_sx - T::fused(k(0.1), t67, T::fused(-k(0.1), t70, k(0.2) * t71))
+        let t54 = T::fused(-arm_e1, t14, t22);
+        let t55 = t38 - t37;
+        let t56 = T::fused(arm_wy, t54, arm_wx * t55);
+        let t57 = t15 + t13;
+        let t58 = T::fused(arm_wz, t54, arm_wx * t57);
+        let t59 = T::fused(-arm_wz, t55, arm_wy * t57);
+        let t60 = arm_sx - T::fused(k(0.1), t56, T::fused(-k(0.1), t58, k(0.2) * t59))
             - (block_sx
-                - T::fused(-k(0.1), T::fused(t57, block_wy, t59 * block_wx), t62));
-        let t73 = T::fused(
-            -k(1.3333333333333333),
-            t68,
-            T::fused(-k(1.3333333333333333), t63, k(0.6666666666666666) * t65),
+                - T::fused(-k(0.1), T::fused(block_wy, t50, block_wx * t51), t53));
+        let t61 = T::fused(
+            -k(0.6666666666666666),
+            t57,
+            T::fused(-k(0.6666666666666666), t54, k(0.3333333333333333) * t55),
         );
-        let t74 = block_rx
-            - T::fused(k(0.2), t60, -T::fused(-k(0.06), t56, k(0.1) * t58));
-        let t75 = t74
-            - (arm_rx + T::fused(k(0.2), t68, T::fused(-k(0.4), t63, k(0.2) * t65)));
-        let t76 = T::fused(
-            t73,
-            t72,
-            t75
+        let t62 = block_rx
+            - T::fused(k(0.1), t52, -T::fused(-k(0.03), t50, k(0.05) * t51));
+        let t63 = t62
+            - (arm_rx + T::fused(k(0.1), t57, T::fused(-k(0.2), t54, k(0.1) * t55)));
+        let t64 = T::fused(
+            -t61,
+            t60,
+            t63
                 * T::fused(
-                    -k(0.6666666666666666),
-                    t67,
-                    T::fused(-k(0.3333333333333333), t70, k(0.6666666666666666) * t71),
+                    k(0.6666666666666666),
+                    t56,
+                    -T::fused(-k(0.3333333333333333), t58, k(0.6666666666666666) * t59),
                 ),
         );
-        let t77 = k(0.8) * (t76 + t55 - t30);
-        let t78 = T::fused(
-            -k(0.6666666666666666),
-            t68,
-            k(1.3333333333333333) * (t63 + t65),
+        let t65 = k(0.8) * (t64 - t49 + t30);
+        let t66 = T::fused(
+            -k(0.3333333333333333),
+            t57,
+            k(0.6666666666666666) * (t54 + t55),
         );
+        let t67 = T::fused(
+            k(0.3333333333333333),
+            t42,
+            k(0.6666666666666666) * (t39 + t40),
+        );
+        let t68 = T::fused(
+            -k(0.3333333333333333),
+            t23,
+            k(0.6666666666666666) * (t16 - t20),
+        );
+        let t69 = k(40.0)
+            * (k(0.05) + T::fused(t68, t29, T::fused(-t66, t63, t67 * t48)));
+        let t70 = k(25.0) * T::fused(t27, t29, -T::fused(-t61, t63, t46 * t48));
+        let t71 = T::fused(t61, t70, -T::fused(-t61, t65, t66 * t69));
+        let t72 = T::fused(t46, t70, -T::fused(-t46, t65, t67 * t69));
+        let t73 = T::fused(t27, t70, T::fused(t27, t65, t68 * t69));
+        let t74 = k(0.05) * arm_wy;
+        let t75 = arm_wy * arm_wy;
+        let t76 = arm_wz * arm_wz;
+        let t77 = k(0.02) * arm_wz;
+        let t78 = k(0.03) * arm_wy;
         let t79 = T::fused(
+            arm_wx,
+            t78 + t77,
+            T::fused(arm_wz, t74, k(0.01) * (t76 - t75)),
+        );
+        let t80 = arm_rx - t62;
+        let t81 = arm_ry - t47;
+        let t82 = arm_rz - t28;
+        let t83 = T::fused(t23, t82, -T::fused(t57, t80, t42 * t81));
+        let t84 = T::fused(t20, t82, -T::fused(-t55, t80, t40 * t81));
+        let t85 = k(0.6666666666666666) * t84;
+        let t86 = T::fused(-k(0.3333333333333333), t83, t85);
+        let t87 = k(0.6666666666666666) * t83;
+        let t88 = T::fused(
+            t70,
+            t86,
+            T::fused(t65, t86, t69 * T::fused(-k(0.3333333333333333), t84, t87)),
+        );
+        let t89 = T::fused(
             k(0.6666666666666666),
-            t47,
-            k(1.3333333333333333) * (t42 + t44),
+            T::fused(t16, t4, T::fused(t54, t50, t39 * t33)),
+            k(0.3333333333333333) * T::fused(t16, t8, -T::fused(t54, t51, t39 * t34)),
         );
-        let t80 = T::fused(
-            -k(0.6666666666666666),
-            t22,
-            k(1.3333333333333333) * (t14 - t18),
+        let t90 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t16, t10, -T::fused(-t54, t52, t39 * t35)),
+            t89,
         );
-        let t81 = k(40.0)
-            * (k(0.05) + T::fused(t29, t80, T::fused(-t75, t78, t54 * t79)));
-        let t82 = k(25.0) * T::fused(t27, t29, -T::fused(-t73, t75, t52 * t54));
-        let t83 = T::fused(t73, t82, -T::fused(t73, t77, t78 * t81));
-        let t84 = T::fused(t52, t82, -T::fused(t52, t77, t79 * t81));
-        let t85 = T::fused(t27, t82, T::fused(-t27, t77, t80 * t81));
-        let t86 = arm_rx - t74;
-        let t87 = arm_ry - t53;
-        let t88 = arm_rz - t28;
-        let t89 = T::fused(t23, t88, -T::fused(t69, t86, t48 * t87));
-        let t90 = T::fused(t19, t88, -T::fused(-t66, t86, t45 * t87));
-        let t91 = k(0.6666666666666666) * t90;
-        let t92 = T::fused(-k(0.3333333333333333), t89, t91);
-        let t93 = k(0.6666666666666666) * t89;
+        let t91 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t20, t4, -T::fused(t55, t50, t40 * t33)),
+            k(0.3333333333333333) * T::fused(t20, t8, T::fused(t55, t51, t40 * t34)),
+        );
+        let t92 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t20, t10, T::fused(-t55, t52, t40 * t35)),
+            t91,
+        );
+        let t93 = T::fused(
+            k(0.6666666666666666),
+            T::fused(t23, t4, -T::fused(-t57, t50, t42 * t33)),
+            k(0.3333333333333333) * T::fused(t23, t8, T::fused(-t57, t51, t42 * t34)),
+        );
         let t94 = T::fused(
-            t82,
-            t92,
-            T::fused(-t77, t92, t81 * T::fused(-k(0.3333333333333333), t90, t93)),
+            k(0.6666666666666666),
+            T::fused(t23, t10, T::fused(t57, t52, t42 * t35)),
+            t93,
         );
         let t95 = T::fused(
             k(0.6666666666666666),
-            T::fused(t15, t3, T::fused(t64, t57, t43 * t34)),
-            k(0.3333333333333333) * T::fused(t15, t7, -T::fused(t64, t59, t43 * t36)),
+            t94,
+            T::fused(k(0.6666666666666666), t90, k(0.3333333333333333) * t92),
         );
-        let t96 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t15, t10, -T::fused(-t64, t61, t43 * t38)),
-            t95,
-        );
+        let t96 = turn0.cos();
         let t97 = T::fused(
             k(0.6666666666666666),
-            T::fused(t19, t3, -T::fused(t66, t57, t45 * t34)),
-            k(0.3333333333333333) * T::fused(t19, t7, T::fused(t45, t36, t66 * t59)),
+            t92 - t90,
+            k(0.3333333333333333) * t94,
         );
-        let t98 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t19, t10, -T::fused(-t45, t38, t66 * t61)),
-            t97,
-        );
-        let t99 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t23, t3, -T::fused(-t69, t57, t48 * t34)),
-            k(0.3333333333333333) * T::fused(t23, t7, -T::fused(-t48, t36, t69 * t59)),
-        );
-        let t100 = T::fused(
-            k(0.6666666666666666),
-            T::fused(t23, t10, T::fused(t48, t38, t69 * t61)),
-            t99,
-        );
-        let t101 = T::fused(
-            k(0.6666666666666666),
-            t100,
-            T::fused(k(0.6666666666666666), t96, k(0.3333333333333333) * t98),
-        );
-        let t102 = turn0.cos();
-        let t103 = T::fused(
-            k(0.6666666666666666),
-            t98 - t96,
-            k(0.3333333333333333) * t100,
-        );
-        let t104 = turn0.sin();
-        let t105 = T::fused(-t104, t101, t102 * t103)
-            .atan2(T::fused(t102, t101, t104 * t103));
-        let t106 = turn0 + t105;
-        let t107 = k(0.2) * t106;
-        let t108 = T::fused(
+        let t98 = turn0.sin();
+        let t99 = T::fused(-t98, t95, t96 * t97).atan2(T::fused(t96, t95, t98 * t97));
+        let t100 = turn0 + t99;
+        let t101 = k(0.2) * t100;
+        let t102 = T::fused(
             k(0.6666666666666666),
             arm_wz,
             T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
@@ -3446,101 +3367,93 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                     k(0.3333333333333333) * block_wx,
                 ),
             );
-        let t109 = k(0.006666666666666667) * t108;
-        let t110 = arm_wy * arm_wy;
-        let t111 = arm_wz * arm_wz;
-        let t112 = k(0.02) * arm_wz;
-        let t113 = k(0.03) * arm_wy;
-        let t114 = T::fused(
-            arm_wx,
-            t113 + t112,
-            T::fused(k(0.01), t111 - t110, k(0.05) * (arm_wy * arm_wz)),
-        );
-        let t115 = T::fused(t15, t88, T::fused(-t64, t86, t43 * t87));
-        let t116 = k(0.6666666666666666) * (t89 - t115);
-        let t117 = k(0.3333333333333333) * t115;
-        let t118 = k(0.4) * t106;
-        let t119 = t118 + T::fused(t82, t116, T::fused(-t77, t116, t81 * (t117 + t93)));
-        let t120 = k(0.013333333333333334) * t108;
-        let t121 = arm_wx * arm_wx;
-        let t122 = k(0.01) * arm_wx;
-        let t123 = T::fused(
+        let t103 = k(0.006666666666666667) * t102;
+        let t104 = T::fused(t16, t82, T::fused(-t54, t80, t39 * t81));
+        let t105 = k(0.6666666666666666) * (t83 - t104);
+        let t106 = k(0.3333333333333333) * t104;
+        let t107 = k(0.4) * t100;
+        let t108 = t107 + T::fused(t70, t105, T::fused(t65, t105, t69 * (t106 + t87)));
+        let t109 = k(0.013333333333333334) * t102;
+        let t110 = arm_wx * arm_wx;
+        let t111 = k(0.01) * arm_wx;
+        let t112 = T::fused(
             arm_wy,
-            t112 - t122,
-            T::fused(-k(0.03), t111 - t121, k(0.1) * (arm_wx * arm_wz)),
+            t77 - t111,
+            T::fused(-k(0.03), t76 - t110, k(0.1) * (arm_wx * arm_wz)),
         );
-        let t124 = t117 - t91;
-        let t125 = T::fused(
-            t82,
-            t124,
-            -T::fused(t77, t124, t81 * (k(0.6666666666666666) * (t90 + t115))),
-        );
-        let t126 = T::fused(
+        let t113 = T::fused(
             arm_wz,
-            t113 + t122,
-            -T::fused(k(0.02), t110 - t121, k(0.05) * (arm_wx * arm_wy)),
+            t78 + t111,
+            -T::fused(arm_wx, t74, k(0.02) * (t75 - t110)),
         );
-        let t127 = T::fused(t10, t27, T::fused(-t61, t73, t38 * t52));
-        let t128 = T::fused(t7, t27, T::fused(t59, t73, t36 * t52));
-        let t129 = T::fused(-k(0.05), t127, k(0.1) * t128);
-        let t130 = T::fused(t10, t80, -T::fused(-t61, t78, t38 * t79));
-        let t131 = T::fused(t7, t80, -T::fused(t59, t78, t36 * t79));
-        let t132 = T::fused(
-            t82,
-            t129,
-            T::fused(-t77, t129, t81 * T::fused(-k(0.05), t130, k(0.1) * t131)),
+        let t114 = t106 - t85;
+        let t115 = T::fused(
+            t70,
+            t114,
+            -T::fused(-t65, t114, t69 * (k(0.6666666666666666) * (t84 + t104))),
         );
-        let t133 = block_wy * block_wy;
-        let t134 = block_wz * block_wz;
-        let t135 = k(0.001) * block_wz;
-        let t136 = k(0.002) * block_wy;
-        let t137 = T::fused(
+        let t116 = k(0.005) * block_wz;
+        let t117 = block_wy * block_wy;
+        let t118 = block_wz * block_wz;
+        let t119 = k(0.001) * block_wz;
+        let t120 = k(0.002) * block_wy;
+        let t121 = T::fused(
             block_wx,
-            t136 - t135,
-            -T::fused(-k(0.003), t134 - t133, k(0.005) * (block_wy * block_wz)),
+            t120 - t119,
+            T::fused(-block_wy, t116, k(0.003) * (t118 - t117)),
         );
-        let t138 = T::fused(t3, t27, -T::fused(t57, t73, t34 * t52));
-        let t139 = T::fused(-k(0.1), t138, k(0.03) * t127);
-        let t140 = T::fused(t3, t80, T::fused(t57, t78, t34 * t79));
-        let t141 = T::fused(
-            t82,
-            t139,
-            T::fused(-t77, t139, t81 * T::fused(-k(0.1), t140, k(0.03) * t130)),
+        let t122 = T::fused(t10, t27, T::fused(-t52, t61, t35 * t46));
+        let t123 = T::fused(t8, t27, T::fused(t51, t61, t34 * t46));
+        let t124 = T::fused(-k(0.05), t122, k(0.1) * t123);
+        let t125 = T::fused(t10, t68, -T::fused(-t52, t66, t35 * t67));
+        let t126 = T::fused(t8, t68, -T::fused(t51, t66, t34 * t67));
+        let t127 = T::fused(
+            t70,
+            t124,
+            T::fused(t65, t124, t69 * T::fused(-k(0.05), t125, k(0.1) * t126)),
         );
-        let t142 = block_wx * block_wx;
-        let t143 = k(0.003) * block_wx;
-        let t144 = T::fused(
+        let t128 = block_wx * block_wx;
+        let t129 = k(0.003) * block_wx;
+        let t130 = T::fused(
             block_wy,
-            t135 + t143,
-            -T::fused(-k(0.002), t134 - t142, k(0.005) * (block_wx * block_wz)),
+            t119 + t129,
+            T::fused(-block_wx, t116, k(0.002) * (t118 - t128)),
         );
-        let t145 = T::fused(-k(0.03), t128, k(0.05) * t138);
-        let t146 = T::fused(
-            t82,
-            t145,
-            T::fused(-t77, t145, t81 * T::fused(-k(0.03), t131, k(0.05) * t140)),
+        let t131 = T::fused(t4, t27, -T::fused(t50, t61, t33 * t46));
+        let t132 = T::fused(-k(0.1), t131, k(0.03) * t122);
+        let t133 = T::fused(t4, t68, T::fused(t50, t66, t33 * t67));
+        let t134 = T::fused(
+            t70,
+            t132,
+            T::fused(t65, t132, t69 * T::fused(-k(0.1), t133, k(0.03) * t125)),
         );
-        let t147 = T::fused(
+        let t135 = T::fused(-k(0.03), t123, k(0.05) * t131);
+        let t136 = T::fused(
+            t135,
+            t70,
+            T::fused(t135, t65, T::fused(-k(0.03), t126, k(0.05) * t133) * t69),
+        );
+        let t137 = T::fused(
             block_wz,
-            t136 + t143,
-            -T::fused(-k(0.001), t133 - t142, k(0.01) * (block_wx * block_wy)),
+            t120 + t129,
+            -T::fused(-k(0.001), t117 - t128, k(0.01) * (block_wx * block_wy)),
         );
         *out = [
-            k(1.5) + t83,
-            -(k(13.5) + t84),
-            k(4.5) + t85,
-            t114 - (t109 - (t107 + t94)),
-            -(t123 + (t120 - t119)),
-            -(t126 + (t120 - (t118 - t125))),
-            k(0.6) - t83,
-            t84 - k(5.4),
-            k(1.8) - t85,
-            t109 - (t107 + t132) - t137,
-            t120 - (t118 + t141) - t144,
-            t147 + (t120 - (t118 - t146)),
+            k(1.5) + t71,
+            -(k(13.5) + t72),
+            k(4.5) + t73,
+            t79 - (t103 - (t101 + t88)),
+            -(t112 + (t109 - t108)),
+            -(t109 - (t107 - t115) + t113),
+            k(0.6) - t71,
+            t72 - k(5.4),
+            k(1.8) - t73,
+            t103 - (t101 + t127) - t121,
+            t109 - (t107 + t134) - t130,
+            t137 + (t109 - (t107 - t136)),
         ];
     }
-    /// Solves eq. (17): 1779 operations (796 ±, 977 ×, 6 ÷) and 3 functions.
+    /// Solves eq. (17): 1763 operations (792 ±, 965 ×, 6 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -3571,85 +3484,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_wz = y[25];
         let turn0 = y[27];
         let (
-            t2,
             t3,
-            t5,
             t6,
-            t7,
+            t9,
             t10,
-            t14,
+            t11,
             t16,
             t17,
-            t18,
             t19,
-            t20,
-            t21,
+            t22,
+            t23,
             t24,
-            t25,
-            t26,
-            t27,
-            t36,
-            t42,
-            t43,
+            t28,
+            t29,
+            t30,
+            t31,
+            t32,
+            t33,
+            t37,
+            t38,
+            t39,
+            t41,
             t44,
             t45,
+            t46,
             t47,
             t48,
             t49,
             t50,
+            t51,
+            t52,
             t53,
             t54,
             t55,
             t56,
             t57,
-            t58,
-            t59,
-            t63,
+            t60,
+            t61,
+            t62,
             t65,
             t66,
+            t67,
             t70,
+            t71,
             t72,
-            t73,
-            t80,
-            t81,
-            t82,
-            t84,
+            t76,
+            t78,
+            t79,
+            t83,
             t85,
-            t89,
+            t86,
+            t90,
             t91,
             t93,
-            t95,
-            t97,
+            t94,
+            t98,
             t99,
             t100,
-            t101,
-            t102,
-            t103,
             t104,
-            t105,
-            t106,
             t107,
             t111,
-            t112,
             t113,
-            t116,
             t117,
             t119,
+            t120,
             t121,
-            t122,
             t123,
             t124,
             t125,
-            t126,
             t127,
             t128,
-            t129,
+            t130,
             t131,
             t133,
             t134,
+            t135,
             t136,
             t137,
-            t139,
             t140,
             t141,
             t142,
@@ -3659,31 +3570,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t146,
             t147,
             t148,
-            t149,
+            t150,
             t151,
-            t153,
-            t154,
+            t152,
+            t155,
             t156,
             t157,
             t158,
             t159,
+            t160,
             t161,
-            t162,
             t163,
-            t164,
+            t165,
             t166,
             t167,
-            t169,
             t170,
             t171,
+            t172,
             t173,
             t174,
             t175,
+            t176,
             t177,
             t178,
             t179,
             t180,
+            t181,
             t182,
+            t183,
             t184,
             t185,
             t186,
@@ -3692,7 +3606,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t189,
             t190,
             t191,
-            t192,
             t193,
             t194,
             t195,
@@ -3701,355 +3614,367 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = arm_e0 * arm_e3;
-            let t1 = arm_e1 * arm_e2;
-            let t2 = t1 + t0;
-            let t3 = k(0.4) * t2;
-            let t4 = arm_e0 * arm_e0;
-            let t5 = k(0.5) - T::fused(arm_e2, arm_e2, t4);
-            let t6 = k(0.2) * t5;
-            let t7 = t6 + t3;
-            let t8 = arm_e0 * arm_e2;
-            let t9 = arm_e1 * arm_e3;
-            let t10 = t9 - t8;
-            let t11 = k(1.3333333333333333) * t10;
-            let t12 = arm_e0 * arm_e1;
-            let t13 = arm_e2 * arm_e3;
-            let t14 = t13 + t12;
-            let t15 = k(0.6666666666666666) * t14;
-            let t16 = k(0.5) - T::fused(arm_e3, arm_e3, t4);
-            let t17 = k(1.3333333333333333) * t16;
-            let t18 = t17 + (t15 - t11);
-            let t19 = k(0.4) * t10;
-            let t20 = k(0.2) * t14;
-            let t21 = t20 - t19;
-            let t22 = k(1.3333333333333333) * t2;
-            let t23 = k(0.6666666666666666) * t5;
-            let t24 = t13 - t12;
-            let t25 = k(1.3333333333333333) * t24;
-            let t26 = t25 + (t23 + t22);
-            let t27 = T::fused(-t18, t7, t26 * t21);
-            let t28 = block_e0 * block_e2;
-            let t29 = block_e1 * block_e3;
-            let t30 = t29 - t28;
-            let t31 = block_e0 * block_e1;
-            let t32 = block_e2 * block_e3;
-            let t33 = t32 + t31;
-            let t34 = block_e0 * block_e0;
-            let t35 = k(0.5) - T::fused(block_e3, block_e3, t34);
-            let t36 = T::fused(
-                k(1.3333333333333333),
-                t35,
-                -T::fused(k(0.6666666666666666), t30, k(1.3333333333333333) * t33),
-            );
-            let t37 = block_e0 * block_e3;
-            let t38 = block_e1 * block_e2;
-            let t39 = t38 + t37;
-            let t40 = k(0.5) - T::fused(block_e2, block_e2, t34);
-            let t41 = t32 - t31;
-            let t42 = T::fused(k(0.2), t41, T::fused(-k(0.06), t39, k(0.1) * t40));
-            let t43 = T::fused(
-                k(1.3333333333333333),
-                t41,
-                -T::fused(-k(0.6666666666666666), t39, k(1.3333333333333333) * t40),
-            );
-            let t44 = T::fused(k(0.2), t35, T::fused(k(0.06), t30, k(0.1) * t33));
-            let t45 = T::fused(-t42, t36, t44 * t43);
-            let t46 = t9 + t8;
-            let t47 = t1 - t0;
-            let t48 = k(0.5) - T::fused(arm_e1, arm_e1, t4);
-            let t49 = T::fused(
-                -k(0.6666666666666666),
-                t46,
-                k(1.3333333333333333) * (t48 + t47),
-            );
-            let t50 = k(1.3333333333333333) * t46;
-            let t51 = k(1.3333333333333333) * t48;
-            let t52 = k(0.6666666666666666) * t47;
-            let t53 = t52 - t51 - t50;
-            let t54 = k(0.6) * t53;
-            let t55 = t23 - t22 + t25;
-            let t56 = k(0.6) * t55;
-            let t57 = t15 + t11 + t17;
-            let t58 = k(0.6) * t57;
-            let t59 = k(1.0) / T::fused(t57, t58, T::fused(t53, t54, t55 * t56));
-            let t60 = t54 * t59;
-            let t61 = t54 * t60;
-            let t62 = t56 * t60;
-            let t63 = T::fused(
+            let t0 = k(2.0) * block_e1;
+            let t1 = k(2.0) * block_e0;
+            let t2 = T::fused(-block_e0, t1, k(1.0));
+            let t3 = T::fused(-block_e1, t0, t2);
+            let t4 = block_e3 * t1;
+            let t5 = block_e2 * t0;
+            let t6 = t5 - t4;
+            let t7 = block_e2 * t1;
+            let t8 = block_e3 * t0;
+            let t9 = t8 + t7;
+            let t10 = T::fused(k(0.1), t9, -T::fused(-k(0.03), t3, k(0.05) * t6));
+            let t11 = block_rx - t10;
+            let t12 = arm_rx - t11;
+            let t13 = k(2.0) * arm_e1;
+            let t14 = k(2.0) * arm_e0;
+            let t15 = T::fused(-arm_e0, t14, k(1.0));
+            let t16 = T::fused(-arm_e1, t13, t15);
+            let t17 = t5 + t4;
+            let t18 = k(2.0) * block_e2;
+            let t19 = T::fused(-block_e2, t18, t2);
+            let t20 = block_e1 * t1;
+            let t21 = block_e3 * t18;
+            let t22 = t21 - t20;
+            let t23 = T::fused(k(0.1), t22, T::fused(-k(0.03), t17, k(0.05) * t19));
+            let t24 = block_ry - t23;
+            let t25 = arm_ry - t24;
+            let t26 = arm_e3 * t14;
+            let t27 = arm_e2 * t13;
+            let t28 = t27 + t26;
+            let t29 = t8 - t7;
+            let t30 = t21 + t20;
+            let t31 = T::fused(-block_e3, k(2.0) * block_e3, t2);
+            let t32 = T::fused(k(0.1), t31, T::fused(k(0.03), t29, k(0.05) * t30));
+            let t33 = block_rz + t32;
+            let t34 = arm_rz - t33;
+            let t35 = arm_e2 * t14;
+            let t36 = arm_e3 * t13;
+            let t37 = t36 - t35;
+            let t38 = T::fused(t37, t34, T::fused(-t16, t12, t28 * t25));
+            let t39 = t27 - t26;
+            let t40 = k(2.0) * arm_e2;
+            let t41 = T::fused(-arm_e2, t40, t15);
+            let t42 = arm_e1 * t14;
+            let t43 = arm_e3 * t40;
+            let t44 = t43 + t42;
+            let t45 = T::fused(t44, t34, -T::fused(-t39, t12, t41 * t25));
+            let t46 = t36 + t35;
+            let t47 = t43 - t42;
+            let t48 = T::fused(-arm_e3, k(2.0) * arm_e3, t15);
+            let t49 = T::fused(t48, t34, -T::fused(t46, t12, t47 * t25));
+            let t50 = t32 + T::fused(t48, t49, T::fused(t37, t38, t44 * t45));
+            let t51 = k(0.6) * t50;
+            let t52 = t23 + T::fused(t47, t49, T::fused(-t28, t38, t41 * t45));
+            let t53 = T::fused(
                 k(0.6666666666666666),
-                t24,
-                k(1.3333333333333333) * (t2 + t5),
+                t31,
+                -T::fused(k(0.3333333333333333), t29, k(0.6666666666666666) * t30),
             );
-            let t64 = t58 * t60;
-            let t65 = T::fused(
-                -k(0.6666666666666666),
-                t16,
-                k(1.3333333333333333) * (t10 - t14),
+            let t54 = T::fused(
+                k(0.6666666666666666),
+                t22,
+                -T::fused(-k(0.3333333333333333), t17, k(0.6666666666666666) * t19),
             );
-            let t66 = T::fused(
+            let t55 = T::fused(-t53, t23, t54 * t32);
+            let t56 = T::fused(
+                -k(0.3333333333333333),
+                t46,
+                k(0.6666666666666666) * (t16 + t39),
+            );
+            let t57 = k(0.6666666666666666) * t46;
+            let t58 = k(0.6666666666666666) * t16;
+            let t59 = k(0.3333333333333333) * t39;
+            let t60 = t59 - t58 - t57;
+            let t61 = k(0.6) * t60;
+            let t62 = k(0.6666666666666666) * t47;
+            let t63 = k(0.6666666666666666) * t28;
+            let t64 = k(0.3333333333333333) * t41;
+            let t65 = t64 - t63 + t62;
+            let t66 = k(0.6) * t65;
+            let t67 = k(0.6666666666666666) * t48;
+            let t68 = k(0.6666666666666666) * t37;
+            let t69 = k(0.3333333333333333) * t44;
+            let t70 = t69 + t68 + t67;
+            let t71 = k(0.6) * t70;
+            let t72 = k(1.0) / T::fused(t70, t71, T::fused(t60, t61, t65 * t66));
+            let t73 = t61 * t72;
+            let t74 = t61 * t73;
+            let t75 = t66 * t73;
+            let t76 = T::fused(
+                k(0.3333333333333333),
+                t47,
+                k(0.6666666666666666) * (t28 + t41),
+            );
+            let t77 = t71 * t73;
+            let t78 = T::fused(
+                -k(0.3333333333333333),
+                t48,
+                k(0.6666666666666666) * (t37 - t44),
+            );
+            let t79 = T::fused(
                 k(0.6),
-                t49,
-                T::fused(t65, t64, -T::fused(t49, t61, t63 * t62)),
+                t56,
+                T::fused(t78, t77, -T::fused(t56, t74, t76 * t75)),
             );
-            let t67 = t56 * t59;
-            let t68 = t56 * t67;
-            let t69 = t58 * t67;
-            let t70 = T::fused(
+            let t80 = t66 * t72;
+            let t81 = t66 * t80;
+            let t82 = t71 * t80;
+            let t83 = T::fused(
                 k(0.6),
-                t63,
-                T::fused(t65, t69, -T::fused(t49, t62, t63 * t68)),
+                t76,
+                T::fused(t78, t82, -T::fused(t56, t75, t76 * t81)),
             );
-            let t71 = t58 * (t58 * t59);
-            let t72 = T::fused(
-                -k(0.6),
-                t65,
-                T::fused(t65, t71, -T::fused(t49, t64, t63 * t69)),
-            );
-            let t73 = k(1.0) / T::fused(t65, t72, -T::fused(t49, t66, t63 * t70));
-            let t74 = t66 * t73;
-            let t75 = T::fused(-t66, t74, t61);
-            let t76 = T::fused(-t70, t74, t62);
-            let t77 = k(0.5) - T::fused(block_e1, block_e1, t34);
-            let t78 = t38 - t37;
-            let t79 = t29 + t28;
-            let t80 = T::fused(
-                k(1.3333333333333333),
-                t79,
-                T::fused(-k(0.6666666666666666), t77, k(1.3333333333333333) * t78),
-            );
-            let t81 = T::fused(k(0.2), t79, -T::fused(-k(0.06), t77, k(0.1) * t78));
-            let t82 = T::fused(-t44, t80, t81 * t36);
-            let t83 = T::fused(-t72, t74, t64);
-            let t84 = T::fused(-t81, t43, t42 * t80);
+            let t84 = t71 * (t71 * t72);
             let t85 = T::fused(
+                -k(0.6),
+                t78,
+                T::fused(t84, t78, -T::fused(t77, t56, t82 * t76)),
+            );
+            let t86 = k(1.0) / T::fused(t78, t85, -T::fused(t56, t79, t76 * t83));
+            let t87 = t79 * t86;
+            let t88 = T::fused(-t79, t87, t74);
+            let t89 = T::fused(-t83, t87, t75);
+            let t90 = T::fused(
+                k(0.6666666666666666),
+                t9,
+                T::fused(-k(0.3333333333333333), t3, k(0.6666666666666666) * t6),
+            );
+            let t91 = T::fused(-t90, t32, t53 * t10);
+            let t92 = T::fused(-t85, t87, t77);
+            let t93 = T::fused(-t54, t10, t90 * t23);
+            let t94 = T::fused(
                 k(0.6),
-                t45,
-                T::fused(t84, t83, T::fused(-t45, t75, t82 * t76)),
+                t55,
+                T::fused(t93, t92, T::fused(-t55, t88, t91 * t89)),
             );
-            let t86 = t70 * t73;
-            let t87 = T::fused(-t70, t86, t68);
-            let t88 = T::fused(-t72, t86, t69);
-            let t89 = T::fused(
+            let t95 = t83 * t86;
+            let t96 = T::fused(-t83, t95, t81);
+            let t97 = T::fused(-t85, t95, t82);
+            let t98 = T::fused(
                 -k(0.6),
-                t82,
-                T::fused(t84, t88, T::fused(-t45, t76, t82 * t87)),
+                t91,
+                T::fused(t93, t97, T::fused(-t55, t89, t91 * t96)),
             );
-            let t90 = T::fused(-t72, t72 * t73, t71);
-            let t91 = T::fused(
+            let t99 = T::fused(-t85, t85 * t86, t84);
+            let t100 = T::fused(
                 -k(0.6),
-                t84,
-                T::fused(t84, t90, T::fused(-t45, t83, t82 * t88)),
+                t93,
+                T::fused(t93, t99, T::fused(-t55, t92, t91 * t97)),
             );
-            let t92 = T::fused(k(0.002), t78, k(0.004) * t79);
-            let t93 = k(2.0) * t77;
-            let t94 = T::fused(k(0.006), t79, -T::fused(-k(0.002), t77, k(0.02) * t78));
-            let t95 = k(2.0) * t78;
-            let t96 = T::fused(k(0.01), t79, -T::fused(k(0.004), t77, k(0.006) * t78));
-            let t97 = k(2.0) * t79;
-            let t98 = k(0.02) + T::fused(t97, t96, -T::fused(t93, t92, t95 * t94));
-            let t99 = k(2.0) * t39;
-            let t100 = k(2.0) * t40;
-            let t101 = k(2.0) * t41;
-            let t102 = T::fused(t101, t96, T::fused(t99, t92, t100 * t94));
-            let t103 = k(2.0) * t30;
-            let t104 = k(2.0) * t33;
-            let t105 = k(2.0) * t35;
-            let t106 = T::fused(t105, t96, T::fused(-t103, t92, t104 * t94));
-            let t107 = T::fused(t36, t106, T::fused(t80, t98, t43 * t102));
-            let t108 = T::fused(-k(0.002), t40, k(0.004) * t41);
-            let t109 = T::fused(k(0.006), t41, T::fused(-k(0.002), t39, k(0.02) * t40));
-            let t110 = T::fused(k(0.01), t41, T::fused(k(0.004), t39, k(0.006) * t40));
-            let t111 = k(0.02) + T::fused(t101, t110, T::fused(t99, t108, t100 * t109));
-            let t112 = T::fused(t105, t110, T::fused(-t103, t108, t104 * t109));
-            let t113 = T::fused(t36, t112, T::fused(t80, t102, t43 * t111));
+            let t101 = T::fused(k(0.001), t6, k(0.002) * t9);
+            let t102 = T::fused(k(0.003), t9, -T::fused(-k(0.001), t3, k(0.01) * t6));
+            let t103 = T::fused(k(0.005), t9, -T::fused(k(0.002), t3, k(0.003) * t6));
+            let t104 = k(0.02) + T::fused(t9, t103, -T::fused(t3, t101, t6 * t102));
+            let t105 = T::fused(t22, t103, T::fused(t17, t101, t19 * t102));
+            let t106 = T::fused(t31, t103, T::fused(-t29, t101, t30 * t102));
+            let t107 = T::fused(t53, t106, T::fused(t90, t104, t54 * t105));
+            let t108 = T::fused(-k(0.001), t19, k(0.002) * t22);
+            let t109 = T::fused(k(0.003), t22, T::fused(-k(0.001), t17, k(0.01) * t19));
+            let t110 = T::fused(k(0.005), t22, T::fused(k(0.002), t17, k(0.003) * t19));
+            let t111 = k(0.02) + T::fused(t22, t110, T::fused(t17, t108, t19 * t109));
+            let t112 = T::fused(t31, t110, T::fused(-t29, t108, t30 * t109));
+            let t113 = T::fused(t53, t112, T::fused(t90, t105, t54 * t111));
             let t114 = T::fused(
-                -t103,
-                T::fused(-k(0.002), t33, k(0.004) * t35),
-                t104 * T::fused(k(0.006), t35, T::fused(k(0.002), t30, k(0.02) * t33)),
+                -t29,
+                T::fused(-k(0.001), t30, k(0.002) * t31),
+                t30 * T::fused(k(0.003), t31, T::fused(k(0.001), t29, k(0.01) * t30)),
             );
             let t115 = T::fused(
-                t105,
-                T::fused(k(0.01), t35, T::fused(-k(0.004), t30, k(0.006) * t33)),
+                t31,
+                T::fused(k(0.005), t31, T::fused(-k(0.002), t29, k(0.003) * t30)),
                 t114,
             );
             let t116 = k(0.02) + t115;
-            let t117 = T::fused(t116, t36, T::fused(t106, t80, t112 * t43));
-            let t118 = T::fused(t36, t117, T::fused(t80, t107, t43 * t113))
-                - T::fused(t84, t91, T::fused(-t45, t85, t82 * t89));
+            let t117 = T::fused(t116, t53, T::fused(t106, t90, t112 * t54));
+            let t118 = T::fused(t53, t117, T::fused(t90, t107, t54 * t113))
+                - T::fused(t93, t100, T::fused(-t55, t94, t91 * t98));
             let t119 = k(1.0) / t118;
-            let t120 = t85 * t119;
-            let t121 = T::fused(t85, t120, t75);
-            let t122 = t50 - (t52 + t51);
-            let t123 = k(0.4) * t48;
-            let t124 = k(0.2) * t47;
-            let t125 = t124 + t123;
-            let t126 = T::fused(t122, t21, t18 * t125);
-            let t127 = T::fused(t89, t120, t76);
-            let t128 = T::fused(t26, t125, t122 * t7);
-            let t129 = T::fused(t91, t120, t83);
-            let t130 = T::fused(
-                k(2.1),
-                t27,
-                T::fused(t129, t128, -T::fused(t121, t27, t127 * t126)),
+            let t120 = t113 * t119;
+            let t121 = T::fused(-t117, t120, t112);
+            let t122 = t94 * t119;
+            let t123 = T::fused(t94, t122, t88);
+            let t124 = T::fused(t98, t122, t89);
+            let t125 = t10 + T::fused(t46, t49, -T::fused(-t16, t38, t39 * t45));
+            let t126 = T::fused(t52, t123, t125 * t124);
+            let t127 = T::fused(t100, t122, t92);
+            let t128 = t52 * t127;
+            let t129 = t98 * t119;
+            let t130 = T::fused(t100, t129, t97);
+            let t131 = t125 * t130;
+            let t132 = t131 + t128;
+            let t133 = t117 * t122;
+            let t134 = t100 * t119;
+            let t135 = t117 * t134;
+            let t136 = t113 * t122;
+            let t137 = t113 * t129;
+            let t138 = T::fused(t52, t136, t125 * t137)
+                - T::fused(t133, t50, t125 * t135);
+            let t139 = t138 + T::fused(t126, t50, t125 * t132)
+                + T::fused(-t52, t51, t121);
+            let t140 = T::fused(k(0.02), t41, k(0.03) * t47);
+            let t141 = T::fused(k(0.01), t47, T::fused(k(0.02), t28, k(0.05) * t41));
+            let t142 = k(0.1) * t47;
+            let t143 = T::fused(k(0.03), t28, k(0.01) * t41) + t142;
+            let t144 = T::fused(t48, t143, T::fused(-t37, t140, t44 * t141)) - t139;
+            let t145 = t62 + (t64 + t63);
+            let t146 = t107 * t119;
+            let t147 = T::fused(-t117, t146, t106);
+            let t148 = T::fused(t98, t129, t96);
+            let t149 = T::fused(t52, t124, t125 * t148);
+            let t150 = t117 * t129;
+            let t151 = t107 * t122;
+            let t152 = t107 * t129;
+            let t153 = T::fused(t52, t151, t125 * t152)
+                + T::fused(-t150, t50, t52 * t135);
+            let t154 = t153 - T::fused(-t149, t50, t52 * t132)
+                + T::fused(-t125, t51, t147);
+            let t155 = T::fused(-k(0.02), t39, k(0.03) * t46);
+            let t156 = T::fused(k(0.01), t46, -T::fused(k(0.02), t16, k(0.05) * t39));
+            let t157 = k(0.1) * t46;
+            let t158 = T::fused(k(0.03), t16, k(0.01) * t39) - t157;
+            let t159 = T::fused(t48, t158, -T::fused(-t37, t155, t44 * t156)) + t154;
+            let t160 = t57 - (t59 + t58);
+            let t161 = t67 + (t69 - t68);
+            let t162 = T::fused(
+                -t37,
+                T::fused(k(0.02), t44, k(0.03) * t48),
+                t44 * T::fused(k(0.01), t48, T::fused(-k(0.02), t37, k(0.05) * t44)),
             );
-            let t131 = block_rx - t81;
-            let t132 = arm_rx - t131;
-            let t133 = k(2.0) * t48;
-            let t134 = block_ry - t42;
-            let t135 = arm_ry - t134;
-            let t136 = k(2.0) * t2;
-            let t137 = block_rz + t44;
-            let t138 = arm_rz - t137;
-            let t139 = k(2.0) * t10;
-            let t140 = T::fused(t139, t138, T::fused(-t133, t132, t136 * t135));
-            let t141 = k(2.0) * t47;
-            let t142 = k(2.0) * t5;
-            let t143 = k(2.0) * t14;
-            let t144 = T::fused(t143, t138, -T::fused(-t141, t132, t142 * t135));
-            let t145 = k(2.0) * t46;
-            let t146 = k(2.0) * t24;
-            let t147 = k(2.0) * t16;
-            let t148 = T::fused(t147, t138, -T::fused(t145, t132, t146 * t135));
-            let t149 = t44 + T::fused(t147, t148, T::fused(t139, t140, t143 * t144));
-            let t150 = t127 * t149;
-            let t151 = t42 + T::fused(t146, t148, T::fused(-t136, t140, t142 * t144));
-            let t152 = t151 * t129;
-            let t153 = t107 * t120;
-            let t154 = t153 - (t152 - t150);
-            let t155 = k(0.6) * t149;
-            let t156 = t81 + T::fused(t145, t148, -T::fused(-t133, t140, t141 * t144));
-            let t157 = T::fused(t121, t149, t156 * t129);
-            let t158 = t113 * t120;
-            let t159 = t158 + (t157 - t155);
-            let t160 = k(0.6) * t151;
-            let t161 = T::fused(t151, t121, t156 * t127);
-            let t162 = t117 * t120;
-            let t163 = t162 - (t161 - t160);
-            let t164 = T::fused(t18, t163, T::fused(t122, t154, t26 * t159)) - t130;
-            let t165 = t89 * t119;
-            let t166 = T::fused(t89, t165, t87);
-            let t167 = T::fused(t91, t165, t88);
+            let t163 = k(0.1) * t48;
+            let t164 = k(0.3)
+                - T::fused(t48, T::fused(-k(0.03), t37, k(0.01) * t44) + t163, t162);
+            let t165 = T::fused(-t117, t117 * t119, t116);
+            let t166 = t52 * t52;
+            let t167 = t125 * t125;
             let t168 = T::fused(
-                k(2.1),
-                t126,
-                T::fused(t167, t128, -T::fused(t127, t27, t166 * t126)),
+                k(2.0),
+                T::fused(t133, t52, t150 * t125),
+                -T::fused(t52, t126, t125 * t149),
             );
-            let t169 = T::fused(-t166, t149, t151 * t167);
-            let t170 = t107 * t165;
-            let t171 = t170 - (t155 + t169);
-            let t172 = t156 * t167;
-            let t173 = t172 + t150;
-            let t174 = t113 * t165;
-            let t175 = t174 + t173;
-            let t176 = k(0.6) * t156;
-            let t177 = T::fused(t151, t127, t156 * t166);
-            let t178 = t117 * t165;
-            let t179 = t178 - (t177 - t176);
-            let t180 = T::fused(t18, t179, T::fused(t122, t171, t26 * t175)) - t168;
-            let t181 = t91 * t119;
-            let t182 = T::fused(t91, t181, t90);
-            let t183 = T::fused(
-                -k(2.1),
-                t128,
-                T::fused(t128, t182, -T::fused(t129, t27, t167 * t126)),
+            let t169 = T::fused(
+                t168 + T::fused(k(0.6), t167 + t166, t165) + t164,
+                t161,
+                T::fused(-t145, t144, t160 * t159),
             );
-            let t184 = T::fused(-t149, t167, t151 * t182);
-            let t185 = t107 * t181;
-            let t186 = t185 + (t160 - t184);
-            let t187 = T::fused(t149, t129, t156 * t182);
-            let t188 = t113 * t181;
-            let t189 = t188 - (t176 - t187);
-            let t190 = t172 + t152;
-            let t191 = t117 * t181;
-            let t192 = t191 - t190;
-            let t193 = T::fused(t18, t192, T::fused(t122, t186, t26 * t189)) - t183;
-            let t194 = T::fused(-k(0.04), t47, k(0.06) * t46);
-            let t195 = T::fused(k(0.02), t46, -T::fused(k(0.04), t48, k(0.1) * t47));
-            let t196 = k(0.2) * t46;
-            let t197 = t196 - T::fused(k(0.06), t48, k(0.02) * t47);
-            let t198 = t107 * t119;
-            let t199 = T::fused(-t107, t198, t98);
+            let t170 = k(0.2) * t28;
+            let t171 = k(0.1) * t41;
+            let t172 = t171 + t170;
+            let t173 = k(0.2) * t37;
+            let t174 = k(0.1) * t44;
+            let t175 = t174 - t173;
+            let t176 = T::fused(-t161, t172, t145 * t175);
+            let t177 = k(0.6) * t52;
+            let t178 = t133 - (t126 - t177);
+            let t179 = k(0.2) * t16;
+            let t180 = k(0.1) * t39;
+            let t181 = t180 + t179;
+            let t182 = T::fused(t160, t175, t161 * t181);
+            let t183 = k(0.6) * t125;
+            let t184 = t150 - (t149 - t183);
+            let t185 = T::fused(t145, t181, t160 * t172);
+            let t186 = t135 - t132;
+            let t187 = T::fused(t186, t185, -T::fused(t178, t176, t184 * t182)) + t169;
+            let t188 = T::fused(arm_wz, t46, T::fused(-arm_wx, t16, arm_wy * t39));
+            let t189 = T::fused(arm_wz, t47, -T::fused(-arm_wx, t28, arm_wy * t41));
+            let t190 = T::fused(arm_wz, t48, -T::fused(arm_wx, t37, arm_wy * t44));
+            let t191 = T::fused(t161, t190, T::fused(t160, t188, t145 * t189));
+            let t192 = T::fused(-t145, t188, t160 * t189);
+            let t193 = T::fused(-t161, t189, t145 * t190);
+            let t194 = T::fused(-t160, t190, t161 * t188);
+            let t195 = T::fused(t192, t192, T::fused(t193, t193, t194 * t194))
+                / T::fused(
+                    k(0.6666666666666666),
+                    t161,
+                    T::fused(-k(0.6666666666666666), t160, k(0.3333333333333333) * t145),
+                );
+            let t196 = k(0.6666666666666666) * t145;
+            let t197 = T::fused(
+                t192,
+                t191,
+                T::fused(k(0.3333333333333333), t160, t196) * t195,
+            );
+            let t198 = T::fused(-t113, t146, t105);
+            let t199 = t124 * t50;
             (
-                t2,
                 t3,
-                t5,
                 t6,
-                t7,
+                t9,
                 t10,
-                t14,
+                t11,
                 t16,
                 t17,
-                t18,
                 t19,
-                t20,
-                t21,
+                t22,
+                t23,
                 t24,
-                t25,
-                t26,
-                t27,
-                t36,
-                t42,
-                t43,
+                t28,
+                t29,
+                t30,
+                t31,
+                t32,
+                t33,
+                t37,
+                t38,
+                t39,
+                t41,
                 t44,
                 t45,
+                t46,
                 t47,
                 t48,
                 t49,
                 t50,
+                t51,
+                t52,
                 t53,
                 t54,
                 t55,
                 t56,
                 t57,
-                t58,
-                t59,
-                t63,
+                t60,
+                t61,
+                t62,
                 t65,
                 t66,
+                t67,
                 t70,
+                t71,
                 t72,
-                t73,
-                t80,
-                t81,
-                t82,
-                t84,
+                t76,
+                t78,
+                t79,
+                t83,
                 t85,
-                t89,
+                t86,
+                t90,
                 t91,
                 t93,
-                t95,
-                t97,
+                t94,
+                t98,
                 t99,
                 t100,
-                t101,
-                t102,
-                t103,
                 t104,
-                t105,
-                t106,
                 t107,
                 t111,
-                t112,
                 t113,
-                t116,
                 t117,
                 t119,
+                t120,
                 t121,
-                t122,
                 t123,
                 t124,
                 t125,
-                t126,
                 t127,
                 t128,
-                t129,
+                t130,
                 t131,
                 t133,
                 t134,
+                t135,
                 t136,
                 t137,
-                t139,
                 t140,
                 t141,
                 t142,
@@ -4059,31 +3984,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t146,
                 t147,
                 t148,
-                t149,
+                t150,
                 t151,
-                t153,
-                t154,
+                t152,
+                t155,
                 t156,
                 t157,
                 t158,
                 t159,
+                t160,
                 t161,
-                t162,
                 t163,
-                t164,
+                t165,
                 t166,
                 t167,
-                t169,
                 t170,
                 t171,
+                t172,
                 t173,
                 t174,
                 t175,
+                t176,
                 t177,
                 t178,
                 t179,
                 t180,
+                t181,
                 t182,
+                t183,
                 t184,
                 t185,
                 t186,
@@ -4092,7 +4020,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                 t189,
                 t190,
                 t191,
-                t192,
                 t193,
                 t194,
                 t195,
@@ -4103,45 +4030,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             )
         };
         let (
+            t203,
             t204,
             t208,
-            t212,
+            t216,
+            t217,
             t218,
-            t222,
             t226,
-            t230,
-            t233,
-            t234,
-            t259,
-            t260,
-            t261,
-            t266,
-            t268,
-            t273,
+            t227,
+            t228,
+            t229,
+            t231,
+            t232,
+            t235,
+            t237,
+            t240,
+            t242,
+            t247,
+            t249,
+            t254,
+            t256,
+            t257,
+            t282,
+            t283,
+            t284,
+            t289,
+            t291,
             t296,
-            t298,
-            t310,
-            t311,
-            t322,
-            t323,
-            t324,
-            t325,
-            t326,
-            t327,
-            t328,
-            t329,
-            t330,
+            t319,
+            t321,
             t333,
-            t335,
-            t341,
-            t342,
-            t355,
-            t356,
-            t366,
-            t367,
-            t374,
-            t377,
-            t380,
+            t334,
+            t345,
+            t346,
+            t347,
+            t348,
+            t349,
             t387,
             t388,
             t389,
@@ -4153,229 +4077,251 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             t397,
             t399,
         ) = {
-            let t200 = t149 * t149;
-            let t201 = t151 * t151;
-            let t202 = T::fused(
+            let t200 = t131 + t199;
+            let t201 = T::fused(t100, t134, t99);
+            let t202 = T::fused(t50, t127, t125 * t201);
+            let t203 = t113 * t134;
+            let t204 = t107 * t134;
+            let t205 = T::fused(t50, t151, t125 * t204)
+                - T::fused(-t137, t50, t52 * t203);
+            let t206 = t205 - T::fused(-t50, t200, t52 * t202)
+                + T::fused(k(0.6), t125 * t52, -t198);
+            let t207 = t206 - T::fused(t47, t158, -T::fused(t28, t155, t41 * t156));
+            let t208 = T::fused(-t113, t120, t111);
+            let t209 = t50 * t50;
+            let t210 = T::fused(t123, t50, t125 * t127);
+            let t211 = T::fused(
                 k(2.0),
-                T::fused(-t149, t170, t151 * t185),
-                -T::fused(-t149, t169, t151 * t184),
+                T::fused(t136, t50, t125 * t203),
+                T::fused(t50, t210, t125 * t202),
             );
-            let t203 = t202 + T::fused(k(0.6), t201 + t200, t199)
-                + (k(0.3) - T::fused(t145, t197, -T::fused(t133, t194, t141 * t195)));
-            let t204 = T::fused(-t113, t198, t102);
-            let t205 = T::fused(t149, t153, t156 * t185)
-                - T::fused(-t174, t149, t151 * t188);
-            let t206 = t205 - T::fused(-t149, t173, t151 * t187)
-                + T::fused(k(0.6), t156 * t151, -t204);
-            let t207 = t206 + T::fused(t146, t197, T::fused(t136, t194, t142 * t195));
-            let t208 = T::fused(-t117, t198, t106);
-            let t209 = T::fused(t151, t153, t156 * t170)
-                + T::fused(-t178, t149, t151 * t191);
-            let t210 = t209 - T::fused(-t177, t149, t151 * t190)
-                - T::fused(k(0.6), t156 * t149, -t208);
-            let t211 = t210 - T::fused(t147, t197, T::fused(-t139, t194, t143 * t195));
-            let t212 = T::fused(t18, t211, -T::fused(-t122, t203, t26 * t207))
-                + T::fused(t128, t186, -T::fused(t27, t154, t126 * t171));
-            let t213 = T::fused(k(0.04), t5, k(0.06) * t24);
-            let t214 = T::fused(k(0.02), t24, T::fused(k(0.04), t2, k(0.1) * t5));
-            let t215 = k(0.2) * t24;
-            let t216 = t215 + T::fused(k(0.06), t2, k(0.02) * t5);
-            let t217 = t113 * t119;
-            let t218 = T::fused(-t113, t217, t111);
-            let t219 = t156 * t156;
-            let t220 = T::fused(
+            let t212 = t211 - T::fused(k(0.6), t167 + t209, t208)
+                - (k(0.3) - T::fused(t47, t143, T::fused(t28, t140, t41 * t141)));
+            let t213 = t136 + (t210 - t51);
+            let t214 = t137 + t200;
+            let t215 = t203 - (t183 - t202);
+            let t216 = T::fused(t185, t215, -T::fused(t176, t213, t182 * t214))
+                - T::fused(t161, t144, T::fused(t160, t207, t145 * t212));
+            let t217 = T::fused(
+                -t194,
+                t191,
+                t195 * (k(0.6666666666666666) * (t161 + t160)),
+            );
+            let t218 = T::fused(-t107, t146, t104);
+            let t219 = T::fused(-t148, t50, t52 * t130);
+            let t220 = T::fused(-t50, t130, t52 * t201);
+            let t221 = T::fused(
                 k(2.0),
-                T::fused(t158, t149, t156 * t188),
-                T::fused(t149, t157, t156 * t187),
+                T::fused(-t50, t152, t52 * t204),
+                -T::fused(-t50, t219, t52 * t220),
             );
-            let t221 = t220 - T::fused(k(0.6), t219 + t200, t218)
-                - (k(0.3) - T::fused(t146, t216, T::fused(t136, t213, t142 * t214)));
-            let t222 = T::fused(-t117, t217, t112);
-            let t223 = T::fused(t151, t158, t156 * t174)
-                - T::fused(t162, t149, t156 * t191);
-            let t224 = t223 + T::fused(t161, t149, t156 * t190)
-                - T::fused(k(0.6), t151 * t149, -t222);
-            let t225 = t224 - T::fused(t147, t216, T::fused(-t139, t213, t143 * t214));
-            let t226 = T::fused(t18, t225, -T::fused(t122, t207, t26 * t221))
-                + T::fused(t128, t189, -T::fused(t27, t159, t126 * t175));
+            let t222 = t221 + T::fused(k(0.6), t166 + t209, t218)
+                + (k(0.3) + T::fused(t46, t158, T::fused(t16, t155, t39 * t156)));
+            let t223 = t151 - (t128 - t199);
+            let t224 = t152 - (t51 + t219);
+            let t225 = t204 + (t177 - t220);
+            let t226 = T::fused(t185, t225, -T::fused(t176, t223, t182 * t224))
+                - T::fused(-t161, t159, T::fused(-t160, t222, t145 * t207));
             let t227 = T::fused(
-                -t139,
-                T::fused(k(0.04), t14, k(0.06) * t16),
-                t143 * T::fused(k(0.02), t16, T::fused(-k(0.04), t10, k(0.1) * t14)),
+                t193,
+                t191,
+                t195 * T::fused(-k(0.3333333333333333), t161, t196),
             );
-            let t228 = k(0.2) * t16;
-            let t229 = k(0.3)
-                - T::fused(t147, t228 + T::fused(-k(0.06), t10, k(0.02) * t14), t227);
-            let t230 = T::fused(-t117, t117 * t119, t116);
-            let t231 = T::fused(
-                k(2.0),
-                T::fused(t162, t151, t178 * t156),
-                -T::fused(t151, t161, t156 * t177),
+            let t228 = arm_wy * arm_wy;
+            let t229 = arm_wz * arm_wz;
+            let t230 = t229 + t228;
+            let t231 = arm_wx * arm_wy;
+            let t232 = arm_wx * arm_wz;
+            let t233 = T::fused(t232, t46, T::fused(t230, t16, t231 * t39));
+            let t234 = k(0.2) * t233;
+            let t235 = arm_wx * arm_wx;
+            let t236 = t229 + t235;
+            let t237 = arm_wy * arm_wz;
+            let t238 = T::fused(t237, t46, -T::fused(t231, t16, t236 * t39));
+            let t239 = k(0.1) * t238;
+            let t240 = T::fused(t172, t197, t175 * t217) - (t239 - t234);
+            let t241 = T::fused(
+                k(2.1),
+                t176,
+                T::fused(t127, t185, -T::fused(t123, t176, t124 * t182)),
             );
-            let t232 = T::fused(
-                t231 + T::fused(k(0.6), t219 + t201, t230) + t229,
-                t18,
-                T::fused(t211, t122, t225 * t26),
+            let t242 = T::fused(t161, t178, T::fused(t160, t223, t145 * t213)) - t241;
+            let t243 = T::fused(t232, t47, -T::fused(t230, t28, t231 * t41));
+            let t244 = k(0.2) * t243;
+            let t245 = T::fused(t237, t47, T::fused(t231, t28, t236 * t41));
+            let t246 = k(0.1) * t245;
+            let t247 = T::fused(t175, t227, t181 * t197) - (t246 - t244);
+            let t248 = T::fused(
+                k(2.1),
+                t182,
+                T::fused(t130, t185, -T::fused(t124, t176, t148 * t182)),
             );
-            let t233 = t232 + T::fused(t192, t128, -T::fused(t163, t27, t179 * t126));
-            let t234 = T::fused(t18, t233, T::fused(t122, t212, t26 * t226))
-                + T::fused(t128, t193, -T::fused(t27, t164, t126 * t180));
-            let t235 = T::fused(
-                -k(0.05),
-                T::fused(t103, block_wz, t105 * block_wx),
-                k(0.03) * T::fused(t104, block_wz, t105 * block_wy),
+            let t249 = T::fused(t161, t184, T::fused(t160, t224, t145 * t214)) - t248;
+            let t250 = T::fused(t232, t48, -T::fused(-t230, t37, t231 * t44));
+            let t251 = k(0.2) * t250;
+            let t252 = T::fused(t237, t48, T::fused(-t231, t37, t236 * t44));
+            let t253 = k(0.1) * t252;
+            let t254 = T::fused(-t181, t217, t172 * t227) + (t253 - t251);
+            let t255 = T::fused(
+                -k(2.1),
+                t185,
+                T::fused(t185, t201, -T::fused(t127, t176, t130 * t182)),
             );
-            let t236 = T::fused(-t139, arm_wy, t143 * arm_wx);
-            let t237 = T::fused(t139, arm_wz, t147 * arm_wx);
-            let t238 = T::fused(t143, arm_wz, t147 * arm_wy);
-            let t239 = arm_sz
-                + T::fused(-k(0.1), t236, T::fused(-k(0.1), t237, k(0.2) * t238))
-                - (block_sz
-                    + T::fused(
-                        k(0.1),
-                        T::fused(-t103, block_wy, t104 * block_wx),
-                        t235,
-                    ));
-            let t240 = k(0.6666666666666666) * t236;
-            let t241 = t137 - (arm_rz - (t228 - (t20 + t19)));
-            let t242 = T::fused(
-                -t57,
-                t239,
-                t241
-                    * (T::fused(
-                        -k(0.3333333333333333),
-                        t237,
-                        k(0.6666666666666666) * t238,
-                    ) + t240),
-            );
-            let t243 = T::fused(
-                -k(0.05),
-                T::fused(-t99, block_wz, t101 * block_wx),
-                k(0.03) * T::fused(t100, block_wz, t101 * block_wy),
-            );
-            let t244 = T::fused(t136, arm_wy, t142 * arm_wx);
-            let t245 = T::fused(-t136, arm_wz, t146 * arm_wx);
-            let t246 = T::fused(t142, arm_wz, t146 * arm_wy);
-            let t247 = arm_sy
-                - T::fused(-k(0.1), t244, T::fused(-k(0.1), t245, k(0.2) * t246))
-                - (block_sy
-                    - T::fused(k(0.1), T::fused(t99, block_wy, t100 * block_wx), t243));
-            let t248 = k(0.6666666666666666) * t244;
-            let t249 = t134 - (arm_ry + (t215 - (t6 - t3)));
-            let t250 = T::fused(
-                -t55,
-                t247,
-                t249
-                    * (T::fused(
-                        -k(0.3333333333333333),
-                        t245,
-                        k(0.6666666666666666) * t246,
-                    ) + t248),
-            );
-            let t251 = T::fused(
-                -k(0.05),
-                T::fused(t93, block_wz, t97 * block_wx),
-                k(0.03) * T::fused(-t95, block_wz, t97 * block_wy),
-            );
-            let t252 = T::fused(t133, arm_wy, t141 * arm_wx);
-            let t253 = T::fused(t133, arm_wz, t145 * arm_wx);
-            let t254 = T::fused(-t141, arm_wz, t145 * arm_wy);
-            let t255 = arm_sx
-                - T::fused(k(0.1), t252, T::fused(-k(0.1), t253, k(0.2) * t254))
-                - (block_sx
-                    - T::fused(-k(0.1), T::fused(t93, block_wy, t95 * block_wx), t251));
-            let t256 = k(0.6666666666666666) * t252;
-            let t257 = t131 - (arm_rx + (t196 + (t124 - t123)));
+            let t256 = T::fused(t161, t186, T::fused(t160, t225, t145 * t215)) - t255;
+            let t257 = T::fused(t256, t254, -T::fused(-t242, t240, t249 * t247))
+                + T::fused(t197, t187, T::fused(-t217, t216, t227 * t226));
             let t258 = T::fused(
-                t53,
-                t255,
-                t257
-                    * (T::fused(
-                        -k(0.3333333333333333),
-                        t253,
-                        k(0.6666666666666666) * t254,
-                    ) - t256),
+                -k(0.05),
+                T::fused(block_wz, t29, block_wx * t31),
+                k(0.03) * T::fused(block_wz, t30, block_wy * t31),
             );
-            let t259 = k(0.8) * (t258 + t250 - t242);
-            let t260 = k(40.0)
-                * (k(0.05) + T::fused(t241, t65, T::fused(-t257, t49, t249 * t63)));
-            let t261 = k(25.0) * T::fused(t57, t241, -T::fused(-t53, t257, t55 * t249));
-            let t262 = T::fused(t53, t261, -T::fused(t53, t259, t49 * t260));
-            let t263 = k(0.6) - t262;
-            let t264 = T::fused(t55, t261, -T::fused(t55, t259, t63 * t260));
-            let t265 = k(5.4) - t264;
-            let t266 = T::fused(t57, t261, T::fused(-t57, t259, t65 * t260));
-            let t267 = k(1.8) - t266;
-            let t268 = T::fused(t57, t267, T::fused(t53, t263, t55 * t265));
-            let t269 = t59 * t268;
-            let t270 = T::fused(-t54, t269, t263);
-            let t271 = T::fused(-t56, t269, t265);
-            let t272 = T::fused(-t58, t269, t267);
-            let t273 = T::fused(t65, t272, -T::fused(t49, t270, t63 * t271));
-            let t274 = t73 * t273;
-            let t275 = T::fused(-t66, t274, t270);
-            let t276 = T::fused(-t70, t274, t271);
-            let t277 = T::fused(-t72, t274, t272);
-            let t278 = T::fused(t105, t57, T::fused(-t97, t53, t101 * t55));
-            let t279 = T::fused(t104, t57, T::fused(t95, t53, t100 * t55));
-            let t280 = T::fused(-k(0.05), t278, k(0.1) * t279);
-            let t281 = T::fused(t105, t65, -T::fused(-t97, t49, t101 * t63));
-            let t282 = T::fused(t104, t65, -T::fused(t95, t49, t100 * t63));
-            let t283 = T::fused(
-                t261,
-                t280,
-                T::fused(-t259, t280, t260 * T::fused(-k(0.05), t281, k(0.1) * t282)),
+            let t259 = T::fused(-arm_wy, t37, arm_wx * t44);
+            let t260 = T::fused(arm_wz, t37, arm_wx * t48);
+            let t261 = T::fused(arm_wz, t44, arm_wy * t48);
+            let t262 = arm_sz
+                + T::fused(-k(0.1), t259, T::fused(-k(0.1), t260, k(0.2) * t261))
+                - (block_sz
+                    + T::fused(k(0.1), T::fused(-block_wy, t29, block_wx * t30), t258));
+            let t263 = k(0.6666666666666666) * t259;
+            let t264 = t33 - (arm_rz - (t163 - (t174 + t173)));
+            let t265 = T::fused(
+                -t70,
+                t262,
+                t264
+                    * (t263
+                        + T::fused(
+                            -k(0.3333333333333333),
+                            t260,
+                            k(0.6666666666666666) * t261,
+                        )),
             );
-            let t284 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t139, t103, T::fused(t133, t93, t136 * t99)),
-                k(0.3333333333333333)
-                    * T::fused(t139, t104, -T::fused(t133, t95, t136 * t100)),
+            let t266 = T::fused(
+                -k(0.05),
+                T::fused(-block_wz, t17, block_wx * t22),
+                k(0.03) * T::fused(block_wz, t19, block_wy * t22),
             );
-            let t285 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t139, t105, -T::fused(-t133, t97, t136 * t101)),
+            let t267 = T::fused(arm_wy, t28, arm_wx * t41);
+            let t268 = T::fused(-arm_wz, t28, arm_wx * t47);
+            let t269 = T::fused(arm_wz, t41, arm_wy * t47);
+            let t270 = arm_sy
+                - T::fused(-k(0.1), t267, T::fused(-k(0.1), t268, k(0.2) * t269))
+                - (block_sy
+                    - T::fused(k(0.1), T::fused(block_wy, t17, block_wx * t19), t266));
+            let t271 = k(0.6666666666666666) * t267;
+            let t272 = t24 - (arm_ry + (t142 - (t171 - t170)));
+            let t273 = T::fused(
+                -t65,
+                t270,
+                t272
+                    * (t271
+                        + T::fused(
+                            -k(0.3333333333333333),
+                            t268,
+                            k(0.6666666666666666) * t269,
+                        )),
+            );
+            let t274 = T::fused(
+                -k(0.05),
+                T::fused(block_wz, t3, block_wx * t9),
+                k(0.03) * T::fused(-block_wz, t6, block_wy * t9),
+            );
+            let t275 = T::fused(arm_wy, t16, arm_wx * t39);
+            let t276 = T::fused(arm_wz, t16, arm_wx * t46);
+            let t277 = T::fused(-arm_wz, t39, arm_wy * t46);
+            let t278 = arm_sx
+                - T::fused(k(0.1), t275, T::fused(-k(0.1), t276, k(0.2) * t277))
+                - (block_sx
+                    - T::fused(-k(0.1), T::fused(block_wy, t3, block_wx * t6), t274));
+            let t279 = k(0.6666666666666666) * t275;
+            let t280 = t11 - (arm_rx + (t157 + (t180 - t179)));
+            let t281 = T::fused(
+                -t60,
+                t278,
+                t280
+                    * (t279
+                        - T::fused(
+                            -k(0.3333333333333333),
+                            t276,
+                            k(0.6666666666666666) * t277,
+                        )),
+            );
+            let t282 = k(0.8) * (t281 - t273 + t265);
+            let t283 = k(40.0)
+                * (k(0.05) + T::fused(t78, t264, T::fused(-t56, t280, t76 * t272)));
+            let t284 = k(25.0) * T::fused(t70, t264, -T::fused(-t60, t280, t65 * t272));
+            let t285 = T::fused(t60, t284, -T::fused(-t60, t282, t56 * t283));
+            let t286 = k(0.6) - t285;
+            let t287 = T::fused(t65, t284, -T::fused(-t65, t282, t76 * t283));
+            let t288 = k(5.4) - t287;
+            let t289 = T::fused(t70, t284, T::fused(t70, t282, t78 * t283));
+            let t290 = k(1.8) - t289;
+            let t291 = T::fused(t70, t290, T::fused(t60, t286, t65 * t288));
+            let t292 = t72 * t291;
+            let t293 = T::fused(-t61, t292, t286);
+            let t294 = T::fused(-t66, t292, t288);
+            let t295 = T::fused(-t71, t292, t290);
+            let t296 = T::fused(t78, t295, -T::fused(t56, t293, t76 * t294));
+            let t297 = t86 * t296;
+            let t298 = T::fused(-t79, t297, t293);
+            let t299 = T::fused(-t83, t297, t294);
+            let t300 = T::fused(-t85, t297, t295);
+            let t301 = T::fused(t31, t70, T::fused(-t9, t60, t22 * t65));
+            let t302 = T::fused(t30, t70, T::fused(t6, t60, t19 * t65));
+            let t303 = T::fused(-k(0.05), t301, k(0.1) * t302);
+            let t304 = T::fused(t31, t78, -T::fused(-t9, t56, t22 * t76));
+            let t305 = T::fused(t30, t78, -T::fused(t6, t56, t19 * t76));
+            let t306 = T::fused(
                 t284,
+                t303,
+                T::fused(t282, t303, t283 * T::fused(-k(0.05), t304, k(0.1) * t305)),
             );
-            let t286 = T::fused(
+            let t307 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t143, t103, -T::fused(t141, t93, t142 * t99)),
-                k(0.3333333333333333)
-                    * T::fused(t143, t104, T::fused(t142, t100, t141 * t95)),
+                T::fused(t37, t29, T::fused(t16, t3, t28 * t17)),
+                k(0.3333333333333333) * T::fused(t37, t30, -T::fused(t16, t6, t28 * t19)),
             );
-            let t287 = T::fused(
+            let t308 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t143, t105, -T::fused(-t142, t101, t141 * t97)),
-                t286,
+                T::fused(t37, t31, -T::fused(-t16, t9, t28 * t22)),
+                t307,
             );
-            let t288 = T::fused(
+            let t309 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t147, t103, -T::fused(-t145, t93, t146 * t99)),
-                k(0.3333333333333333)
-                    * T::fused(t147, t104, -T::fused(-t146, t100, t145 * t95)),
+                T::fused(t44, t29, -T::fused(t39, t3, t41 * t17)),
+                k(0.3333333333333333) * T::fused(t44, t30, T::fused(t39, t6, t41 * t19)),
             );
-            let t289 = T::fused(
+            let t310 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t147, t105, T::fused(t146, t101, t145 * t97)),
-                t288,
+                T::fused(t44, t31, T::fused(-t39, t9, t41 * t22)),
+                t309,
             );
-            let t290 = T::fused(
+            let t311 = T::fused(
                 k(0.6666666666666666),
-                t289,
-                T::fused(k(0.6666666666666666), t285, k(0.3333333333333333) * t287),
+                T::fused(t48, t29, -T::fused(-t46, t3, t47 * t17)),
+                k(0.3333333333333333) * T::fused(t48, t30, T::fused(-t46, t6, t47 * t19)),
             );
-            let t291 = turn0.cos();
-            let t292 = T::fused(
+            let t312 = T::fused(
                 k(0.6666666666666666),
-                t287 - t285,
-                k(0.3333333333333333) * t289,
+                T::fused(t48, t31, T::fused(t46, t9, t47 * t22)),
+                t311,
             );
-            let t293 = turn0.sin();
-            let t294 = T::fused(-t293, t290, t291 * t292)
-                .atan2(T::fused(t291, t290, t293 * t292));
-            let t295 = turn0 + t294;
-            let t296 = k(0.2) * t295;
-            let t297 = T::fused(
+            let t313 = T::fused(
+                k(0.6666666666666666),
+                t312,
+                T::fused(k(0.6666666666666666), t308, k(0.3333333333333333) * t310),
+            );
+            let t314 = turn0.cos();
+            let t315 = T::fused(
+                k(0.6666666666666666),
+                t310 - t308,
+                k(0.3333333333333333) * t312,
+            );
+            let t316 = turn0.sin();
+            let t317 = T::fused(-t316, t313, t314 * t315)
+                .atan2(T::fused(t314, t313, t316 * t315));
+            let t318 = turn0 + t317;
+            let t319 = k(0.2) * t318;
+            let t320 = T::fused(
                 k(0.6666666666666666),
                 arm_wz,
                 T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
@@ -4389,281 +4335,239 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                         k(0.3333333333333333) * block_wx,
                     ),
                 );
-            let t298 = k(0.006666666666666667) * t297;
-            let t299 = block_wy * block_wy;
-            let t300 = block_wz * block_wz;
-            let t301 = block_wy * block_wz;
-            let t302 = k(0.001) * block_wz;
-            let t303 = k(0.002) * block_wy;
-            let t304 = T::fused(
+            let t321 = k(0.006666666666666667) * t320;
+            let t322 = block_wy * block_wy;
+            let t323 = block_wz * block_wz;
+            let t324 = block_wy * block_wz;
+            let t325 = k(0.001) * block_wz;
+            let t326 = k(0.002) * block_wy;
+            let t327 = T::fused(
                 block_wx,
-                t303 - t302,
-                -T::fused(-k(0.003), t300 - t299, k(0.005) * t301),
+                t326 - t325,
+                -T::fused(-k(0.003), t323 - t322, k(0.005) * t324),
             );
-            let t305 = t304 - (t298 - (t296 + t283));
-            let t306 = T::fused(t103, t57, -T::fused(t93, t53, t99 * t55));
-            let t307 = T::fused(-k(0.1), t306, k(0.03) * t278);
-            let t308 = T::fused(t103, t65, T::fused(t93, t49, t99 * t63));
-            let t309 = T::fused(
-                t261,
-                t307,
-                T::fused(-t259, t307, t260 * T::fused(-k(0.1), t308, k(0.03) * t281)),
+            let t328 = t327 - (t321 - (t319 + t306));
+            let t329 = T::fused(t29, t70, -T::fused(t3, t60, t17 * t65));
+            let t330 = T::fused(-k(0.1), t329, k(0.03) * t301);
+            let t331 = T::fused(t29, t78, T::fused(t3, t56, t17 * t76));
+            let t332 = T::fused(
+                t284,
+                t330,
+                T::fused(t282, t330, t283 * T::fused(-k(0.1), t331, k(0.03) * t304)),
             );
-            let t310 = k(0.4) * t295;
-            let t311 = k(0.013333333333333334) * t297;
-            let t312 = block_wx * block_wx;
-            let t313 = block_wx * block_wz;
-            let t314 = k(0.003) * block_wx;
-            let t315 = T::fused(
+            let t333 = k(0.4) * t318;
+            let t334 = k(0.013333333333333334) * t320;
+            let t335 = block_wx * block_wx;
+            let t336 = block_wx * block_wz;
+            let t337 = k(0.003) * block_wx;
+            let t338 = T::fused(
                 block_wy,
-                t302 + t314,
-                -T::fused(-k(0.002), t300 - t312, k(0.005) * t313),
+                t325 + t337,
+                -T::fused(-k(0.002), t323 - t335, k(0.005) * t336),
             );
-            let t316 = t315 - (t311 - (t310 + t309));
-            let t317 = T::fused(-k(0.03), t279, k(0.05) * t306);
-            let t318 = T::fused(
-                t261,
-                t317,
-                T::fused(-t259, t317, t260 * T::fused(-k(0.03), t282, k(0.05) * t308)),
+            let t339 = t338 - (t334 - (t333 + t332));
+            let t340 = T::fused(-k(0.03), t302, k(0.05) * t329);
+            let t341 = T::fused(
+                t340,
+                t284,
+                T::fused(t340, t282, T::fused(-k(0.03), t305, k(0.05) * t331) * t283),
             );
-            let t319 = block_wx * block_wy;
-            let t320 = T::fused(
+            let t342 = block_wx * block_wy;
+            let t343 = T::fused(
                 block_wz,
-                t303 + t314,
-                -T::fused(-k(0.001), t299 - t312, k(0.01) * t319),
+                t326 + t337,
+                -T::fused(-k(0.001), t322 - t335, k(0.01) * t342),
             );
-            let t321 = t320 + (t311 - (t310 - t318));
-            let t322 = T::fused(t97, t321, -T::fused(-t93, t305, t95 * t316));
-            let t323 = T::fused(t101, t321, T::fused(-t99, t305, t100 * t316));
-            let t324 = T::fused(t105, t321, T::fused(t103, t305, t104 * t316));
-            let t325 = T::fused(t36, t324, T::fused(t80, t322, t43 * t323))
-                + T::fused(t84, t277, T::fused(-t45, t275, t82 * t276));
-            let t326 = t119 * t325;
-            let t327 = arm_wx * arm_wz;
-            let t328 = arm_wy * arm_wz;
-            let t329 = arm_wx * arm_wx;
-            let t330 = arm_wy * arm_wy;
-            let t331 = t330 + t329;
-            let t332 = T::fused(t145, t331, -T::fused(-t133, t327, t141 * t328));
-            let t333 = arm_wz * arm_wz;
-            let t334 = t333 + t330;
-            let t335 = arm_wx * arm_wy;
-            let t336 = T::fused(t145, t327, T::fused(t133, t334, t141 * t335));
-            let t337 = t333 + t329;
-            let t338 = T::fused(t145, t328, -T::fused(t133, t335, t141 * t337));
-            let t339 = t255
-                * (t256
-                    + T::fused(
-                        -k(0.6666666666666666),
-                        t253,
-                        k(0.3333333333333333) * t254,
-                    ));
-            let t340 = T::fused(
-                t257,
+            let t344 = t343 + (t334 - (t333 - t341));
+            let t345 = T::fused(t9, t344, -T::fused(-t3, t328, t6 * t339));
+            let t346 = T::fused(t22, t344, T::fused(-t17, t328, t19 * t339));
+            let t347 = T::fused(t31, t344, T::fused(t29, t328, t30 * t339));
+            let t348 = T::fused(t53, t347, T::fused(t90, t345, t54 * t346))
+                + T::fused(t93, t300, T::fused(-t55, t298, t91 * t299));
+            let t349 = t119 * t348;
+            let t350 = t228 + t235;
+            let t351 = T::fused(t350, t46, -T::fused(-t232, t16, t237 * t39));
+            let t352 = t278
+                * (T::fused(-k(0.6666666666666666), t276, k(0.3333333333333333) * t277)
+                    + t279);
+            let t353 = T::fused(
                 T::fused(
                     -k(0.6666666666666666),
-                    t332,
-                    T::fused(k(0.3333333333333333), t336, k(0.6666666666666666) * t338),
+                    t351,
+                    T::fused(k(0.3333333333333333), t233, k(0.6666666666666666) * t238),
                 ),
-                t339,
+                t280,
+                t352,
             );
-            let t341 = k(0.2) * t336;
-            let t342 = k(0.1) * t338;
-            let t343 = t300 + t299;
-            let t344 = t300 + t312;
-            let t345 = T::fused(
+            let t354 = t323 + t322;
+            let t355 = t323 + t335;
+            let t356 = T::fused(
                 k(0.03),
-                T::fused(t97, t313, T::fused(t93, t343, t95 * t319)),
-                k(0.05) * T::fused(t97, t301, -T::fused(t93, t319, t95 * t344)),
+                T::fused(t336, t9, T::fused(t354, t3, t342 * t6)),
+                k(0.05) * T::fused(t324, t9, -T::fused(t342, t3, t355 * t6)),
             );
-            let t346 = t299 + t312;
-            let t347 = T::fused(
-                k(0.1),
-                T::fused(t97, t346, -T::fused(-t93, t313, t95 * t301)),
-                t345,
-            );
-            let t348 = t50
-                + T::fused(-k(0.6666666666666666), t48, k(1.3333333333333333) * t47);
-            let t349 = T::fused(
-                t348,
-                t347 + T::fused(k(0.1), t332, -(t342 + t341)),
-                t339,
-            ) + t340;
-            let t350 = T::fused(t146, t331, T::fused(-t136, t327, t142 * t328));
-            let t351 = T::fused(t146, t327, -T::fused(t136, t334, t142 * t335));
-            let t352 = T::fused(t146, t328, T::fused(t136, t335, t142 * t337));
-            let t353 = t247
-                * (t248
-                    - T::fused(
-                        -k(0.6666666666666666),
-                        t245,
-                        k(0.3333333333333333) * t246,
-                    ));
-            let t354 = T::fused(
-                -t249,
-                T::fused(
-                    -k(0.6666666666666666),
-                    t350,
-                    T::fused(k(0.3333333333333333), t351, k(0.6666666666666666) * t352),
-                ),
-                t353,
-            );
-            let t355 = k(0.2) * t351;
-            let t356 = k(0.1) * t352;
-            let t357 = T::fused(
-                k(0.03),
-                T::fused(t101, t313, -T::fused(t99, t343, t100 * t319)),
-                k(0.05) * T::fused(t101, t301, T::fused(t99, t319, t100 * t344)),
-            );
+            let t357 = t322 + t335;
             let t358 = T::fused(
                 k(0.1),
-                T::fused(t101, t346, T::fused(-t99, t313, t100 * t301)),
-                t357,
+                T::fused(t357, t9, -T::fused(-t336, t3, t324 * t6)),
+                t356,
             );
-            let t359 = t25
-                - T::fused(-k(0.6666666666666666), t2, k(1.3333333333333333) * t5);
+            let t359 = t57
+                + T::fused(-k(0.3333333333333333), t16, k(0.6666666666666666) * t39);
             let t360 = T::fused(
                 t359,
-                t358 + T::fused(k(0.1), t350, -(t356 + t355)),
-                -t353,
-            ) - t354;
-            let t361 = T::fused(t147, t331, T::fused(t139, t327, t143 * t328));
-            let t362 = T::fused(t147, t327, -T::fused(-t139, t334, t143 * t335));
-            let t363 = T::fused(t147, t328, T::fused(-t139, t335, t143 * t337));
-            let t364 = t239
-                * (t240
-                    - T::fused(
-                        -k(0.6666666666666666),
-                        t237,
-                        k(0.3333333333333333) * t238,
-                    ));
-            let t365 = T::fused(
-                -t241,
+                t358 + T::fused(k(0.1), t351, -(t239 + t234)),
+                t352,
+            ) + t353;
+            let t361 = T::fused(t350, t47, T::fused(-t232, t28, t237 * t41));
+            let t362 = t270
+                * (T::fused(-k(0.6666666666666666), t268, k(0.3333333333333333) * t269)
+                    - t271);
+            let t363 = T::fused(
                 T::fused(
                     -k(0.6666666666666666),
                     t361,
-                    T::fused(k(0.3333333333333333), t362, k(0.6666666666666666) * t363),
+                    T::fused(k(0.3333333333333333), t243, k(0.6666666666666666) * t245),
                 ),
-                t364,
+                t272,
+                t362,
             );
-            let t366 = k(0.2) * t362;
-            let t367 = k(0.1) * t363;
-            let t368 = T::fused(
+            let t364 = T::fused(
                 k(0.03),
-                T::fused(t105, t313, -T::fused(-t103, t343, t104 * t319)),
-                k(0.05) * T::fused(t105, t301, T::fused(-t103, t319, t104 * t344)),
+                T::fused(t336, t22, -T::fused(t354, t17, t342 * t19)),
+                k(0.05) * T::fused(t324, t22, T::fused(t342, t17, t355 * t19)),
             );
-            let t369 = T::fused(
+            let t365 = T::fused(
                 k(0.1),
-                T::fused(t105, t346, T::fused(t103, t313, t104 * t301)),
-                t368,
-            );
-            let t370 = t17
-                - T::fused(k(0.6666666666666666), t10, k(1.3333333333333333) * t14);
-            let t371 = T::fused(
-                t370,
-                t369 + T::fused(k(0.1), t361, -(t367 + t366)),
+                T::fused(t357, t22, T::fused(-t336, t17, t324 * t19)),
                 t364,
-            ) + t365;
-            let t372 = t371 + (t360 + t349);
-            let t373 = T::fused(t97, block_wz, T::fused(-t93, block_wx, t95 * block_wy));
-            let t374 = T::fused(t145, arm_wz, T::fused(-t133, arm_wx, t141 * arm_wy));
-            let t375 = t374 - t373;
-            let t376 = T::fused(
-                t101,
-                block_wz,
-                -T::fused(-t99, block_wx, t100 * block_wy),
             );
-            let t377 = T::fused(t146, arm_wz, -T::fused(-t136, arm_wx, t142 * arm_wy));
-            let t378 = t377 - t376;
-            let t379 = T::fused(
-                t105,
-                block_wz,
-                -T::fused(t103, block_wx, t104 * block_wy),
+            let t366 = t62
+                - T::fused(-k(0.3333333333333333), t28, k(0.6666666666666666) * t41);
+            let t367 = T::fused(
+                t366,
+                t365 + T::fused(k(0.1), t361, -(t246 + t244)),
+                t362,
+            ) + t363;
+            let t368 = T::fused(t350, t48, T::fused(t232, t37, t237 * t44));
+            let t369 = t262
+                * (T::fused(-k(0.6666666666666666), t260, k(0.3333333333333333) * t261)
+                    - t263);
+            let t370 = T::fused(
+                T::fused(
+                    -k(0.6666666666666666),
+                    t368,
+                    T::fused(k(0.3333333333333333), t250, k(0.6666666666666666) * t252),
+                ),
+                t264,
+                t369,
             );
-            let t380 = T::fused(t147, arm_wz, -T::fused(t139, arm_wx, t143 * arm_wy));
-            let t381 = t380 - t379;
-            let t382 = T::fused(t36, t381, T::fused(t80, t375, t43 * t378));
-            let t383 = T::fused(-t43, t375, t80 * t378);
-            let t384 = T::fused(-t36, t378, t43 * t381);
-            let t385 = T::fused(-t80, t381, t36 * t375);
+            let t371 = T::fused(
+                k(0.03),
+                T::fused(t336, t31, -T::fused(-t354, t29, t342 * t30)),
+                k(0.05) * T::fused(t324, t31, T::fused(-t342, t29, t355 * t30)),
+            );
+            let t372 = T::fused(
+                k(0.1),
+                T::fused(t357, t31, T::fused(t336, t29, t324 * t30)),
+                t371,
+            );
+            let t373 = t67
+                - T::fused(k(0.3333333333333333), t37, k(0.6666666666666666) * t44);
+            let t374 = T::fused(
+                t373,
+                t372 + T::fused(k(0.1), t368, -(t253 + t251)),
+                -t369,
+            ) - t370;
+            let t375 = t374 + (t367 + t360);
+            let t376 = T::fused(block_wz, t9, T::fused(-block_wx, t3, block_wy * t6));
+            let t377 = t188 - t376;
+            let t378 = T::fused(
+                block_wz,
+                t22,
+                -T::fused(-block_wx, t17, block_wy * t19),
+            );
+            let t379 = t189 - t378;
+            let t380 = T::fused(block_wz, t31, -T::fused(block_wx, t29, block_wy * t30));
+            let t381 = t190 - t380;
+            let t382 = T::fused(t53, t381, T::fused(t90, t377, t54 * t379));
+            let t383 = T::fused(-t54, t377, t90 * t379);
+            let t384 = T::fused(-t53, t379, t54 * t381);
+            let t385 = T::fused(-t90, t381, t53 * t377);
             let t386 = T::fused(t383, t383, T::fused(t384, t384, t385 * t385))
-                / T::fused(t36, t370, T::fused(t80, t348, t43 * t359));
-            let t387 = T::fused(-t374, t376, t377 * t373)
-                + T::fused(t383, t382, T::fused(-t43, t348, t80 * t359) * t386);
-            let t388 = T::fused(-t380, t373, t374 * t379)
-                + T::fused(t385, t382, t386 * T::fused(-t80, t370, t36 * t348));
-            let t389 = T::fused(t348, t372, T::fused(-t42, t387, t44 * t388));
-            let t390 = T::fused(-t377, t379, t380 * t376)
-                + T::fused(t384, t382, t386 * T::fused(-t36, t359, t43 * t370));
-            let t391 = T::fused(t359, t372, T::fused(-t44, t390, t81 * t387));
-            let t392 = T::fused(t370, t372, T::fused(-t81, t388, t42 * t390));
+                / T::fused(t53, t373, T::fused(t90, t359, t54 * t366));
+            let t387 = T::fused(-t188, t378, t189 * t376)
+                + T::fused(t383, t382, T::fused(-t54, t359, t90 * t366) * t386);
+            let t388 = T::fused(-t190, t376, t188 * t380)
+                + T::fused(t385, t382, t386 * T::fused(-t90, t373, t53 * t359));
+            let t389 = T::fused(t359, t375, T::fused(-t23, t387, t32 * t388));
+            let t390 = T::fused(-t189, t380, t190 * t378)
+                + T::fused(t384, t382, t386 * T::fused(-t53, t366, t54 * t373));
+            let t391 = T::fused(t366, t375, T::fused(-t32, t390, t10 * t387));
+            let t392 = T::fused(t373, t375, T::fused(-t10, t388, t23 * t390));
             let t393 = T::fused(
                 k(0.6),
                 t389,
-                T::fused(t129, t392, T::fused(-t121, t389, t127 * t391)),
+                T::fused(t127, t392, T::fused(-t123, t389, t124 * t391)),
             );
-            let t394 = T::fused(t162, t387, T::fused(t153, t390, t158 * t388)) - t393
-                - T::fused(t85, t326, t275);
+            let t394 = T::fused(t133, t387, T::fused(t151, t390, t136 * t388)) - t393
+                - T::fused(t94, t349, t298);
             let t395 = T::fused(
                 -k(0.6),
                 t391,
-                T::fused(t167, t392, T::fused(-t127, t389, t166 * t391)),
+                T::fused(t130, t392, T::fused(-t124, t389, t148 * t391)),
             );
-            let t396 = T::fused(t178, t387, T::fused(t170, t390, t174 * t388)) - t395
-                - T::fused(t89, t326, t276);
+            let t396 = T::fused(t150, t387, T::fused(t152, t390, t137 * t388)) - t395
+                - T::fused(t98, t349, t299);
             let t397 = T::fused(
-                t27,
-                t394 - (k(1.5) + t262),
-                t126 * (t396 - (k(13.5) + t264)),
+                t176,
+                t394 - (k(1.5) + t285),
+                t182 * (t396 - (k(13.5) + t287)),
             );
             let t398 = T::fused(
                 -k(0.6),
                 t392,
-                T::fused(t182, t392, T::fused(-t129, t389, t167 * t391)),
+                T::fused(t201, t392, T::fused(-t127, t389, t130 * t391)),
             );
-            let t399 = T::fused(t191, t387, T::fused(t185, t390, t188 * t388)) - t398
-                - T::fused(t91, t326, t277);
+            let t399 = T::fused(t135, t387, T::fused(t204, t390, t203 * t388)) - t398
+                - T::fused(t100, t349, t300);
             (
+                t203,
                 t204,
                 t208,
-                t212,
+                t216,
+                t217,
                 t218,
-                t222,
                 t226,
-                t230,
-                t233,
-                t234,
-                t259,
-                t260,
-                t261,
-                t266,
-                t268,
-                t273,
+                t227,
+                t228,
+                t229,
+                t231,
+                t232,
+                t235,
+                t237,
+                t240,
+                t242,
+                t247,
+                t249,
+                t254,
+                t256,
+                t257,
+                t282,
+                t283,
+                t284,
+                t289,
+                t291,
                 t296,
-                t298,
-                t310,
-                t311,
-                t322,
-                t323,
-                t324,
-                t325,
-                t326,
-                t327,
-                t328,
-                t329,
-                t330,
+                t319,
+                t321,
                 t333,
-                t335,
-                t341,
-                t342,
-                t355,
-                t356,
-                t366,
-                t367,
-                t374,
-                t377,
-                t380,
+                t334,
+                t345,
+                t346,
+                t347,
+                t348,
+                t349,
                 t387,
                 t388,
                 t389,
@@ -4677,178 +4581,145 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
             )
         };
         let (
-            t440,
-            t441,
-            t442,
-            t443,
-            t444,
-            t445,
-            t458,
-            t459,
-            t460,
-            t461,
-            t462,
-            t463,
-            t464,
+            t428,
+            t429,
+            t430,
+            t431,
+            t432,
+            t433,
+            t446,
+            t447,
+            t448,
+            t449,
+            t450,
+            t451,
+            t452,
         ) = {
-            let t400 = k(0.6666666666666666) * t144;
-            let t401 = T::fused(-k(0.3333333333333333), t148, t400);
-            let t402 = k(0.6666666666666666) * t148;
+            let t400 = k(0.6666666666666666) * t45;
+            let t401 = T::fused(-k(0.3333333333333333), t49, t400);
+            let t402 = k(0.6666666666666666) * t49;
             let t403 = T::fused(
-                t261,
+                t284,
                 t401,
-                T::fused(
-                    -t259,
-                    t401,
-                    t260 * T::fused(-k(0.3333333333333333), t144, t402),
-                ),
+                T::fused(t282, t401, t283 * T::fused(-k(0.3333333333333333), t45, t402)),
             );
             let t404 = k(0.02) * arm_wz;
             let t405 = k(0.03) * arm_wy;
             let t406 = T::fused(
                 arm_wx,
                 t405 + t404,
-                T::fused(k(0.01), t333 - t330, k(0.05) * t328),
+                T::fused(k(0.01), t229 - t228, k(0.05) * t237),
             );
-            let t407 = t406 - (t298 - (t296 + t403));
-            let t408 = k(0.6666666666666666) * (t148 - t140);
-            let t409 = k(0.3333333333333333) * t140;
-            let t410 = t310
-                + T::fused(t261, t408, T::fused(-t259, t408, t260 * (t409 + t402)));
+            let t407 = t406 - (t321 - (t319 + t403));
+            let t408 = k(0.6666666666666666) * (t49 - t38);
+            let t409 = k(0.3333333333333333) * t38;
+            let t410 = t333
+                + T::fused(t284, t408, T::fused(t282, t408, t283 * (t409 + t402)));
             let t411 = k(0.01) * arm_wx;
             let t412 = T::fused(
                 arm_wy,
                 t404 - t411,
-                T::fused(-k(0.03), t333 - t329, k(0.1) * t327),
+                T::fused(-k(0.03), t229 - t235, k(0.1) * t232),
             );
-            let t413 = t412 + (t311 - t410);
+            let t413 = t412 + (t334 - t410);
             let t414 = t409 - t400;
             let t415 = T::fused(
-                t261,
+                t284,
                 t414,
-                -T::fused(t259, t414, t260 * (k(0.6666666666666666) * (t144 + t140))),
+                -T::fused(-t282, t414, t283 * (k(0.6666666666666666) * (t45 + t38))),
             );
             let t416 = T::fused(
                 arm_wz,
                 t405 + t411,
-                -T::fused(k(0.02), t330 - t329, k(0.05) * t335),
+                -T::fused(k(0.02), t228 - t235, k(0.05) * t231),
             );
-            let t417 = t416 + (t311 - (t310 - t415));
-            let t418 = T::fused(t208, t387, T::fused(t199, t390, t204 * t388))
-                + T::fused(t185, t392, T::fused(-t153, t389, t170 * t391));
-            let t419 = T::fused(-t149, t396, t151 * t399)
-                + (t418 - T::fused(-t107, t326, t322));
-            let t420 = T::fused(t222, t387, T::fused(t204, t390, t218 * t388))
-                + T::fused(t188, t392, T::fused(-t158, t389, t174 * t391));
-            let t421 = T::fused(t149, t394, t156 * t399)
-                - (t420 - T::fused(-t113, t326, t323));
+            let t417 = t416 + (t334 - (t333 - t415));
+            let t418 = T::fused(t147, t387, T::fused(t218, t390, t198 * t388))
+                + T::fused(t204, t392, T::fused(-t151, t389, t152 * t391));
+            let t419 = T::fused(-t50, t396, t52 * t399)
+                + (t418 - T::fused(-t107, t349, t345));
+            let t420 = T::fused(t121, t387, T::fused(t198, t390, t208 * t388))
+                + T::fused(t203, t392, T::fused(-t136, t389, t137 * t391));
+            let t421 = T::fused(t50, t394, t125 * t399)
+                - (t420 - T::fused(-t113, t349, t346));
             let t422 = T::fused(
-                -t122,
-                t419 + T::fused(t145, t417, T::fused(t133, t407, t141 * t413)),
-                t26 * (t421 - T::fused(t146, t417, -T::fused(t136, t407, t142 * t413))),
+                -t160,
+                t419 + T::fused(t46, t417, T::fused(t16, t407, t39 * t413)),
+                t145 * (t421 - T::fused(t47, t417, -T::fused(t28, t407, t41 * t413))),
             );
-            let t423 = T::fused(t230, t387, T::fused(t208, t390, t222 * t388))
-                + T::fused(t191, t392, T::fused(-t162, t389, t178 * t391));
-            let t424 = T::fused(t151, t394, t156 * t396)
-                + (t423 - T::fused(-t117, t326, t324));
+            let t423 = T::fused(t165, t387, T::fused(t147, t390, t121 * t388))
+                + T::fused(t135, t392, T::fused(-t133, t389, t150 * t391));
+            let t424 = T::fused(t52, t394, t125 * t396)
+                + (t423 - T::fused(-t117, t349, t347));
             let t425 = T::fused(
-                t18,
-                t424 + T::fused(t147, t417, -T::fused(-t139, t407, t143 * t413)),
+                t161,
+                t424 + T::fused(t48, t417, -T::fused(-t37, t407, t44 * t413)),
                 -t422,
             );
-            let t426 = T::fused(t18, t380, T::fused(t122, t374, t26 * t377));
-            let t427 = T::fused(-t26, t374, t122 * t377);
-            let t428 = T::fused(-t18, t377, t26 * t380);
-            let t429 = T::fused(-t122, t380, t18 * t374);
-            let t430 = T::fused(t427, t427, T::fused(t428, t428, t429 * t429))
-                / T::fused(
-                    k(0.6666666666666666),
-                    t18,
-                    T::fused(-k(0.6666666666666666), t122, k(0.3333333333333333) * t26),
-                );
-            let t431 = k(0.6666666666666666) * t26;
-            let t432 = T::fused(
-                t427,
-                t426,
-                T::fused(k(0.3333333333333333), t122, t431) * t430,
-            );
-            let t433 = T::fused(
-                -t429,
-                t426,
-                t430 * (k(0.6666666666666666) * (t18 + t122)),
-            );
-            let t434 = T::fused(t7, t432, t21 * t433) - (t342 - t341);
-            let t435 = T::fused(
-                t428,
-                t426,
-                t430 * T::fused(-k(0.3333333333333333), t18, t431),
-            );
-            let t436 = T::fused(t21, t435, t125 * t432) - (t356 - t355);
-            let t437 = T::fused(-t125, t433, t7 * t435) + (t367 - t366);
-            let t438 = T::fused(t233, t432, -T::fused(-t212, t435, t226 * t433))
-                + T::fused(t193, t437, -T::fused(-t164, t434, t180 * t436));
-            let t439 = (t438 + (t425 + T::fused(t128, t399 - (k(4.5) + t266), -t397)))
-                / t234;
-            let t440 = T::fused(t27, t439, t434);
-            let t441 = T::fused(-t126, t439, t436);
-            let t442 = T::fused(-t128, t439, t437);
-            let t443 = T::fused(-t122, t439, t435);
-            let t444 = T::fused(t26, t439, t433);
-            let t445 = T::fused(-t18, t439, t432);
-            let t446 = t389 - (t440 + T::fused(t149, t444, t151 * t445));
-            let t447 = t391 - (t441 - T::fused(-t149, t443, t156 * t445));
-            let t448 = t392 + (t442 + T::fused(t151, t443, t156 * t444));
-            let t449 = t390 + t443;
-            let t450 = t388 - t444;
-            let t451 = t387 + t445;
-            let t452 = T::fused(t117, t451, T::fused(t107, t449, t113 * t450))
-                - T::fused(t91, t448, T::fused(-t85, t446, t89 * t447));
-            let t453 = t119 * (t325 - t452);
-            let t454 = T::fused(t45, t453, t446);
-            let t455 = T::fused(t82, t453, t447);
-            let t456 = T::fused(t84, t453, t448);
-            let t457 = t73
-                * (t273 + T::fused(t72, t456, T::fused(-t66, t454, t70 * t455)));
-            let t458 = T::fused(-t49, t457, t454);
-            let t459 = T::fused(t63, t457, t455);
-            let t460 = T::fused(-t65, t457, t456);
-            let t461 = t59
-                * (t268 - T::fused(t58, t460, T::fused(-t54, t458, t56 * t459)));
-            let t462 = T::fused(t80, t453, t449);
-            let t463 = T::fused(t43, t453, t450);
-            let t464 = T::fused(t36, t453, t451);
+            let t426 = T::fused(t185, t256, -T::fused(t176, t242, t182 * t249))
+                + T::fused(t161, t187, T::fused(t145, t216, t160 * t226));
+            let t427 = (t425 + T::fused(t185, t399 - (k(4.5) + t289), -t397) + t257)
+                / t426;
+            let t428 = T::fused(t176, t427, t240);
+            let t429 = T::fused(-t182, t427, t247);
+            let t430 = T::fused(-t185, t427, t254);
+            let t431 = T::fused(-t161, t427, t197);
+            let t432 = T::fused(t145, t427, t217);
+            let t433 = T::fused(-t160, t427, t227);
+            let t434 = t387 + t431;
+            let t435 = t388 - t432;
+            let t436 = t390 + t433;
+            let t437 = t392 + (t430 + T::fused(t125, t432, t52 * t433));
+            let t438 = t391 - (t429 + T::fused(-t125, t431, t50 * t433));
+            let t439 = t389 - (t428 + T::fused(t52, t431, t50 * t432));
+            let t440 = T::fused(-t100, t437, T::fused(-t98, t438, t94 * t439))
+                + T::fused(t117, t434, T::fused(t113, t435, t107 * t436));
+            let t441 = t119 * (t348 - t440);
+            let t442 = T::fused(t93, t441, t437);
+            let t443 = T::fused(t91, t441, t438);
+            let t444 = T::fused(t55, t441, t439);
+            let t445 = t86
+                * (t296 - T::fused(-t85, t442, T::fused(-t83, t443, t79 * t444)));
+            let t446 = T::fused(-t78, t445, t442);
+            let t447 = T::fused(t76, t445, t443);
+            let t448 = T::fused(-t56, t445, t444);
+            let t449 = t72
+                * (t291 + T::fused(-t71, t446, T::fused(-t66, t447, t61 * t448)));
+            let t450 = T::fused(t53, t441, t434);
+            let t451 = T::fused(t54, t441, t435);
+            let t452 = T::fused(t90, t441, t436);
             (
-                t440,
-                t441,
-                t442,
-                t443,
-                t444,
-                t445,
-                t458,
-                t459,
-                t460,
-                t461,
-                t462,
-                t463,
-                t464,
+                t428,
+                t429,
+                t430,
+                t431,
+                t432,
+                t433,
+                t446,
+                t447,
+                t448,
+                t449,
+                t450,
+                t451,
+                t452,
             )
         };
         *out = [
-            t440,
-            t441,
-            t442,
-            -T::fused(t139, t445, T::fused(t133, t443, t136 * t444)),
-            T::fused(-t143, t445, T::fused(t141, t443, t142 * t444)),
-            T::fused(t147, t445, -T::fused(-t145, t443, t146 * t444)),
-            T::fused(t53, t461, -t458),
-            -T::fused(t55, t461, t459),
-            T::fused(t57, t461, t460),
-            T::fused(-t103, t464, T::fused(-t93, t462, t99 * t463)),
-            -T::fused(t104, t464, T::fused(-t95, t462, t100 * t463)),
-            T::fused(t105, t464, T::fused(t97, t462, t101 * t463)),
+            t428,
+            t429,
+            t430,
+            -T::fused(t37, t431, T::fused(t28, t432, t16 * t433)),
+            T::fused(-t44, t431, T::fused(t41, t432, t39 * t433)),
+            T::fused(t48, t431, T::fused(-t47, t432, t46 * t433)),
+            T::fused(t60, t449, -t448),
+            -T::fused(t65, t449, t447),
+            T::fused(t70, t449, t446),
+            -T::fused(t29, t450, T::fused(-t17, t451, t3 * t452)),
+            T::fused(-t30, t450, T::fused(-t19, t451, t6 * t452)),
+            T::fused(t31, t450, T::fused(t22, t451, t9 * t452)),
         ];
     }
-    /// Writes λ: 907 operations (399 ±, 506 ×, 2 ÷) and 3 functions.
+    /// Writes λ: 891 operations (395 ±, 494 ×, 2 ÷) and 3 functions.
     fn multipliers(
         &self,
         _t: T,
@@ -4897,123 +4768,117 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
         let block_dwy = accelerations[10];
         let block_dwz = accelerations[11];
         let (
-            t14,
-            t15,
-            t18,
-            t19,
-            t22,
+            t20,
             t23,
             t27,
+            t29,
+            t42,
             t44,
-            t45,
-            t46,
-            t47,
-            t49,
-            t54,
+            t48,
+            t50,
+            t59,
+            t61,
+            t65,
             t67,
-            t68,
-            t69,
-            t70,
-            t72,
-            t77,
-            t83,
-            t90,
-            t91,
-            t93,
-            t94,
-            t96,
-            t97,
-            t99,
-            t100,
+            t71,
+            t78,
+            t79,
+            t81,
+            t82,
+            t84,
+            t85,
+            t87,
+            t88,
+            t101,
+            t102,
+            t103,
+            t104,
+            t105,
             t108,
             t109,
             t110,
             t111,
-            t113,
             t114,
             t115,
             t116,
             t117,
-            t119,
-            t120,
-            t121,
-            t122,
-            t123,
-            t141,
-            t146,
-            t147,
-            t153,
-            t159,
-            t163,
-            t164,
-            t167,
-            t169,
-            t171,
+            t130,
+            t138,
+            t139,
+            t142,
+            t148,
+            t152,
+            t156,
+            t158,
+            t160,
+            t162,
+            t168,
+            t170,
             t172,
-            t173,
             t174,
-            t177,
             t179,
-            t181,
-            t183,
+            t182,
+            t184,
+            t185,
+            t186,
+            t187,
             t188,
+            t189,
             t191,
             t193,
-            t194,
             t195,
             t196,
-            t197,
             t198,
             t199,
         ) = {
-            let t0 = block_e0 * block_e2;
-            let t1 = block_e1 * block_e3;
-            let t2 = t1 - t0;
-            let t3 = k(2.0) * t2;
-            let t4 = block_e0 * block_e1;
-            let t5 = block_e2 * block_e3;
-            let t6 = t5 + t4;
-            let t7 = k(2.0) * t6;
-            let t8 = block_e0 * block_e0;
-            let t9 = k(0.5) - T::fused(block_e3, block_e3, t8);
-            let t10 = k(2.0) * t9;
+            let t0 = k(2.0) * block_e0;
+            let t1 = block_e2 * t0;
+            let t2 = k(2.0) * block_e1;
+            let t3 = block_e3 * t2;
+            let t4 = t3 - t1;
+            let t5 = block_e1 * t0;
+            let t6 = k(2.0) * block_e2;
+            let t7 = block_e3 * t6;
+            let t8 = t7 + t5;
+            let t9 = T::fused(-block_e0, t0, k(1.0));
+            let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
             let t11 = T::fused(
                 -k(0.05),
-                T::fused(t3, block_wz, t10 * block_wx),
-                k(0.03) * T::fused(t7, block_wz, t10 * block_wy),
+                T::fused(block_wz, t4, block_wx * t10),
+                k(0.03) * T::fused(block_wz, t8, block_wy * t10),
             );
-            let t12 = arm_e0 * arm_e2;
-            let t13 = arm_e1 * arm_e3;
-            let t14 = t13 - t12;
-            let t15 = k(2.0) * t14;
-            let t16 = arm_e0 * arm_e1;
-            let t17 = arm_e2 * arm_e3;
-            let t18 = t17 + t16;
-            let t19 = k(2.0) * t18;
-            let t20 = T::fused(-t15, arm_wy, t19 * arm_wx);
-            let t21 = arm_e0 * arm_e0;
-            let t22 = k(0.5) - T::fused(arm_e3, arm_e3, t21);
-            let t23 = k(2.0) * t22;
-            let t24 = T::fused(t15, arm_wz, t23 * arm_wx);
-            let t25 = T::fused(t19, arm_wz, t23 * arm_wy);
+            let t12 = k(2.0) * arm_e0;
+            let t13 = arm_e2 * t12;
+            let t14 = k(2.0) * arm_e1;
+            let t15 = arm_e3 * t14;
+            let t16 = t15 - t13;
+            let t17 = arm_e1 * t12;
+            let t18 = k(2.0) * arm_e2;
+            let t19 = arm_e3 * t18;
+            let t20 = t19 + t17;
+            let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
+            let t22 = T::fused(-arm_e0, t12, k(1.0));
+            let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
+            let t24 = T::fused(arm_wz, t16, arm_wx * t23);
+            let t25 = T::fused(arm_wz, t20, arm_wy * t23);
             let t26 = arm_sz
-                + T::fused(-k(0.1), t20, T::fused(-k(0.1), t24, k(0.2) * t25))
+                + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
                 - (block_sz
-                    + T::fused(k(0.1), T::fused(-t3, block_wy, t7 * block_wx), t11));
-            let t27 = k(1.3333333333333333) * t22;
-            let t28 = T::fused(k(1.3333333333333333), t14, k(0.6666666666666666) * t18)
+                    + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
+            let t27 = k(0.6666666666666666) * t23;
+            let t28 = T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20)
                 + t27;
-            let t29 = k(0.2) * t22;
+            let t29 = k(0.1) * t23;
             let t30 = block_rz
-                + T::fused(k(0.2), t9, T::fused(k(0.06), t2, k(0.1) * t6));
-            let t31 = t30 - (arm_rz - (t29 - T::fused(k(0.4), t14, k(0.2) * t18)));
+                + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8));
+            let t31 = t30 - (arm_rz - (t29 - T::fused(k(0.2), t16, k(0.1) * t20)));
             let t32 = T::fused(
                 -t28,
                 t26,
                 t31
                     * T::fused(
                         k(0.6666666666666666),
-                        t20,
+                        t21,
                         T::fused(
                             -k(0.3333333333333333),
                             t24,
@@ -5021,164 +4886,162 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                         ),
                     ),
             );
-            let t33 = block_e0 * block_e3;
-            let t34 = block_e1 * block_e2;
+            let t33 = block_e3 * t0;
+            let t34 = block_e2 * t2;
             let t35 = t34 + t33;
-            let t36 = k(2.0) * t35;
-            let t37 = k(0.5) - T::fused(block_e2, block_e2, t8);
-            let t38 = k(2.0) * t37;
-            let t39 = t5 - t4;
-            let t40 = k(2.0) * t39;
-            let t41 = T::fused(
+            let t36 = T::fused(-block_e2, t6, t9);
+            let t37 = t7 - t5;
+            let t38 = T::fused(
                 -k(0.05),
-                T::fused(-t36, block_wz, t40 * block_wx),
-                k(0.03) * T::fused(t38, block_wz, t40 * block_wy),
+                T::fused(-block_wz, t35, block_wx * t37),
+                k(0.03) * T::fused(block_wz, t36, block_wy * t37),
             );
-            let t42 = arm_e0 * arm_e3;
-            let t43 = arm_e1 * arm_e2;
-            let t44 = t43 + t42;
-            let t45 = k(2.0) * t44;
-            let t46 = k(0.5) - T::fused(arm_e2, arm_e2, t21);
-            let t47 = k(2.0) * t46;
-            let t48 = T::fused(t45, arm_wy, t47 * arm_wx);
-            let t49 = t17 - t16;
-            let t50 = k(2.0) * t49;
-            let t51 = T::fused(-t45, arm_wz, t50 * arm_wx);
-            let t52 = T::fused(t47, arm_wz, t50 * arm_wy);
-            let t53 = arm_sy
-                - T::fused(-k(0.1), t48, T::fused(-k(0.1), t51, k(0.2) * t52))
+            let t39 = arm_e3 * t12;
+            let t40 = arm_e2 * t14;
+            let t41 = t40 + t39;
+            let t42 = T::fused(-arm_e2, t18, t22);
+            let t43 = T::fused(arm_wy, t41, arm_wx * t42);
+            let t44 = t19 - t17;
+            let t45 = T::fused(-arm_wz, t41, arm_wx * t44);
+            let t46 = T::fused(arm_wz, t42, arm_wy * t44);
+            let t47 = arm_sy
+                - T::fused(-k(0.1), t43, T::fused(-k(0.1), t45, k(0.2) * t46))
                 - (block_sy
-                    - T::fused(k(0.1), T::fused(t36, block_wy, t38 * block_wx), t41));
-            let t54 = k(1.3333333333333333) * t49;
-            let t55 = T::fused(-k(1.3333333333333333), t44, k(0.6666666666666666) * t46)
-                + t54;
-            let t56 = k(0.2) * t49;
-            let t57 = block_ry
-                - T::fused(k(0.2), t39, T::fused(-k(0.06), t35, k(0.1) * t37));
-            let t58 = t57 - (arm_ry + (t56 - T::fused(-k(0.4), t44, k(0.2) * t46)));
-            let t59 = T::fused(
-                -t55,
-                t53,
-                t58
+                    - T::fused(k(0.1), T::fused(block_wy, t35, block_wx * t36), t38));
+            let t48 = k(0.6666666666666666) * t44;
+            let t49 = T::fused(-k(0.6666666666666666), t41, k(0.3333333333333333) * t42)
+                + t48;
+            let t50 = k(0.1) * t44;
+            let t51 = block_ry
+                - T::fused(k(0.1), t37, T::fused(-k(0.03), t35, k(0.05) * t36));
+            let t52 = t51 - (arm_ry + (t50 - T::fused(-k(0.2), t41, k(0.1) * t42)));
+            let t53 = T::fused(
+                -t49,
+                t47,
+                t52
                     * T::fused(
                         k(0.6666666666666666),
-                        t48,
+                        t43,
                         T::fused(
                             -k(0.3333333333333333),
-                            t51,
-                            k(0.6666666666666666) * t52,
+                            t45,
+                            k(0.6666666666666666) * t46,
                         ),
                     ),
             );
-            let t60 = k(0.5) - T::fused(block_e1, block_e1, t8);
-            let t61 = k(2.0) * t60;
-            let t62 = t34 - t33;
-            let t63 = k(2.0) * t62;
-            let t64 = t1 + t0;
-            let t65 = k(2.0) * t64;
-            let t66 = T::fused(
+            let t54 = T::fused(-block_e1, t2, t9);
+            let t55 = t34 - t33;
+            let t56 = t3 + t1;
+            let t57 = T::fused(
                 -k(0.05),
-                T::fused(t61, block_wz, t65 * block_wx),
-                k(0.03) * T::fused(-t63, block_wz, t65 * block_wy),
+                T::fused(block_wz, t54, block_wx * t56),
+                k(0.03) * T::fused(-block_wz, t55, block_wy * t56),
             );
-            let t67 = k(0.5) - T::fused(arm_e1, arm_e1, t21);
-            let t68 = k(2.0) * t67;
-            let t69 = t43 - t42;
-            let t70 = k(2.0) * t69;
-            let t71 = T::fused(t68, arm_wy, t70 * arm_wx);
-            let t72 = t13 + t12;
-            let t73 = k(2.0) * t72;
-            let t74 = T::fused(t68, arm_wz, t73 * arm_wx);
-            let t75 = T::fused(-t70, arm_wz, t73 * arm_wy);
-            let t76 = arm_sx
-                - T::fused(k(0.1), t71, T::fused(-k(0.1), t74, k(0.2) * t75))
+            let t58 = T::fused(-arm_e1, t14, t22);
+            let t59 = t40 - t39;
+            let t60 = T::fused(arm_wy, t58, arm_wx * t59);
+            let t61 = t15 + t13;
+            let t62 = T::fused(arm_wz, t58, arm_wx * t61);
+            let t63 = T::fused(-arm_wz, t59, arm_wy * t61);
+            let t64 = arm_sx
+                - T::fused(k(0.1), t60, T::fused(-k(0.1), t62, k(0.2) * t63))
                 - (block_sx
-                    - T::fused(-k(0.1), T::fused(t61, block_wy, t63 * block_wx), t66));
-            let t77 = k(1.3333333333333333) * t72;
-            let t78 = T::fused(-k(1.3333333333333333), t67, k(0.6666666666666666) * t69)
-                - t77;
-            let t79 = k(0.2) * t72;
-            let t80 = block_rx
-                - T::fused(k(0.2), t64, -T::fused(-k(0.06), t60, k(0.1) * t62));
-            let t81 = t80 - (arm_rx + (t79 + T::fused(-k(0.4), t67, k(0.2) * t69)));
-            let t82 = T::fused(
-                t78,
-                t76,
-                t81
+                    - T::fused(-k(0.1), T::fused(block_wy, t54, block_wx * t55), t57));
+            let t65 = k(0.6666666666666666) * t61;
+            let t66 = T::fused(-k(0.6666666666666666), t58, k(0.3333333333333333) * t59)
+                - t65;
+            let t67 = k(0.1) * t61;
+            let t68 = block_rx
+                - T::fused(k(0.1), t56, -T::fused(-k(0.03), t54, k(0.05) * t55));
+            let t69 = t68 - (arm_rx + (t67 + T::fused(-k(0.2), t58, k(0.1) * t59)));
+            let t70 = T::fused(
+                -t66,
+                t64,
+                t69
                     * T::fused(
-                        -k(0.6666666666666666),
-                        t71,
-                        T::fused(
+                        k(0.6666666666666666),
+                        t60,
+                        -T::fused(
                             -k(0.3333333333333333),
-                            t74,
-                            k(0.6666666666666666) * t75,
+                            t62,
+                            k(0.6666666666666666) * t63,
                         ),
                     ),
             );
-            let t83 = k(0.8) * (t82 + t59 - t32);
-            let t84 = k(0.6666666666666666) * t72;
-            let t85 = T::fused(k(1.3333333333333333), t67 + t69, -t84);
-            let t86 = k(0.6666666666666666) * t49;
-            let t87 = T::fused(k(1.3333333333333333), t44 + t46, t86);
-            let t88 = k(0.6666666666666666) * t22;
-            let t89 = T::fused(k(1.3333333333333333), t14 - t18, -t88);
-            let t90 = k(40.0)
-                * (k(0.05) + T::fused(t31, t89, T::fused(-t81, t85, t58 * t87)));
-            let t91 = k(25.0) * T::fused(t28, t31, -T::fused(-t78, t81, t55 * t58));
-            let t92 = T::fused(t78, t91, -T::fused(t78, t83, t85 * t90));
-            let t93 = T::fused(k(0.6), block_dsx, -(k(0.6) - t92));
-            let t94 = t93 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t92));
-            let t95 = T::fused(t55, t91, -T::fused(t55, t83, t87 * t90));
-            let t96 = T::fused(k(0.6), block_dsy, k(5.4) - t95);
-            let t97 = t96 + T::fused(k(1.5), arm_dsy, k(13.5) + t95);
-            let t98 = T::fused(t28, t91, T::fused(-t28, t83, t89 * t90));
-            let t99 = T::fused(k(0.6), block_dsz, -(k(1.8) - t98));
-            let t100 = t99 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t98));
-            let t101 = T::fused(t10, t28, T::fused(-t65, t78, t40 * t55));
-            let t102 = T::fused(t7, t28, T::fused(t63, t78, t38 * t55));
-            let t103 = T::fused(-k(0.05), t101, k(0.1) * t102);
-            let t104 = T::fused(t10, t89, -T::fused(-t65, t85, t40 * t87));
-            let t105 = T::fused(t7, t89, -T::fused(t63, t85, t38 * t87));
-            let t106 = T::fused(
-                t91,
-                t103,
-                T::fused(-t83, t103, t90 * T::fused(-k(0.05), t104, k(0.1) * t105)),
+            let t71 = k(0.8) * (t70 - t53 + t32);
+            let t72 = k(0.3333333333333333) * t61;
+            let t73 = T::fused(k(0.6666666666666666), t58 + t59, -t72);
+            let t74 = k(0.3333333333333333) * t44;
+            let t75 = T::fused(k(0.6666666666666666), t41 + t42, t74);
+            let t76 = k(0.3333333333333333) * t23;
+            let t77 = T::fused(k(0.6666666666666666), t16 - t20, -t76);
+            let t78 = k(40.0)
+                * (k(0.05) + T::fused(t77, t31, T::fused(-t73, t69, t75 * t52)));
+            let t79 = k(25.0) * T::fused(t28, t31, -T::fused(-t66, t69, t49 * t52));
+            let t80 = T::fused(t66, t79, -T::fused(-t66, t71, t73 * t78));
+            let t81 = T::fused(k(0.6), block_dsx, -(k(0.6) - t80));
+            let t82 = t81 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t80));
+            let t83 = T::fused(t49, t79, -T::fused(-t49, t71, t75 * t78));
+            let t84 = T::fused(k(0.6), block_dsy, k(5.4) - t83);
+            let t85 = t84 + T::fused(k(1.5), arm_dsy, k(13.5) + t83);
+            let t86 = T::fused(t28, t79, T::fused(t28, t71, t77 * t78));
+            let t87 = T::fused(k(0.6), block_dsz, -(k(1.8) - t86));
+            let t88 = t87 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t86));
+            let t89 = k(0.005) * block_wz;
+            let t90 = block_wx * block_wx;
+            let t91 = block_wz * block_wz;
+            let t92 = k(0.003) * block_wx;
+            let t93 = k(0.001) * block_wz;
+            let t94 = T::fused(
+                block_wy,
+                t93 + t92,
+                T::fused(-block_wx, t89, k(0.002) * (t91 - t90)),
             );
-            let t107 = T::fused(t15, t3, T::fused(t68, t61, t45 * t36));
+            let t95 = T::fused(t4, t28, -T::fused(t54, t66, t35 * t49));
+            let t96 = T::fused(t10, t28, T::fused(-t56, t66, t37 * t49));
+            let t97 = T::fused(-k(0.1), t95, k(0.03) * t96);
+            let t98 = T::fused(t4, t77, T::fused(t54, t73, t35 * t75));
+            let t99 = T::fused(t10, t77, -T::fused(-t56, t73, t37 * t75));
+            let t100 = T::fused(
+                t79,
+                t97,
+                T::fused(t71, t97, t78 * T::fused(-k(0.1), t98, k(0.03) * t99)),
+            );
+            let t101 = T::fused(t16, t4, T::fused(t58, t54, t41 * t35));
+            let t102 = k(0.6666666666666666) * t101;
+            let t103 = T::fused(t16, t8, -T::fused(t58, t55, t41 * t36));
+            let t104 = k(0.3333333333333333) * t103;
+            let t105 = T::fused(t16, t10, -T::fused(-t58, t56, t41 * t37));
+            let t106 = T::fused(k(0.6666666666666666), t105, t104 + t102);
+            let t107 = T::fused(t20, t4, -T::fused(t59, t54, t42 * t35));
             let t108 = k(0.6666666666666666) * t107;
-            let t109 = T::fused(t15, t7, -T::fused(t68, t63, t45 * t38));
+            let t109 = T::fused(t20, t8, T::fused(t59, t55, t42 * t36));
             let t110 = k(0.3333333333333333) * t109;
-            let t111 = T::fused(t15, t10, -T::fused(-t68, t65, t45 * t40));
+            let t111 = T::fused(t20, t10, T::fused(-t59, t56, t42 * t37));
             let t112 = T::fused(k(0.6666666666666666), t111, t110 + t108);
-            let t113 = T::fused(t19, t3, -T::fused(t70, t61, t47 * t36));
+            let t113 = T::fused(t23, t4, -T::fused(-t61, t54, t44 * t35));
             let t114 = k(0.6666666666666666) * t113;
-            let t115 = T::fused(t19, t7, T::fused(t47, t38, t70 * t63));
+            let t115 = T::fused(t23, t8, T::fused(-t61, t55, t44 * t36));
             let t116 = k(0.3333333333333333) * t115;
-            let t117 = T::fused(t19, t10, -T::fused(-t47, t40, t70 * t65));
+            let t117 = T::fused(t23, t10, T::fused(t61, t56, t44 * t37));
             let t118 = T::fused(k(0.6666666666666666), t117, t116 + t114);
-            let t119 = T::fused(t23, t3, -T::fused(-t73, t61, t50 * t36));
-            let t120 = k(0.6666666666666666) * t119;
-            let t121 = T::fused(t23, t7, -T::fused(-t50, t38, t73 * t63));
-            let t122 = k(0.3333333333333333) * t121;
-            let t123 = T::fused(t23, t10, T::fused(t50, t40, t73 * t65));
-            let t124 = T::fused(k(0.6666666666666666), t123, t122 + t120);
-            let t125 = T::fused(
+            let t119 = T::fused(
                 k(0.6666666666666666),
-                t124,
-                T::fused(k(0.6666666666666666), t112, k(0.3333333333333333) * t118),
+                t118,
+                T::fused(k(0.6666666666666666), t106, k(0.3333333333333333) * t112),
             );
-            let t126 = turn0.cos();
-            let t127 = T::fused(
+            let t120 = turn0.cos();
+            let t121 = T::fused(
                 k(0.6666666666666666),
-                t118 - t112,
-                k(0.3333333333333333) * t124,
+                t112 - t106,
+                k(0.3333333333333333) * t118,
             );
-            let t128 = turn0.sin();
-            let t129 = T::fused(-t128, t125, t126 * t127)
-                .atan2(T::fused(t126, t125, t128 * t127));
-            let t130 = turn0 + t129;
-            let t131 = k(0.2) * t130;
-            let t132 = T::fused(
+            let t122 = turn0.sin();
+            let t123 = T::fused(-t122, t119, t120 * t121)
+                .atan2(T::fused(t120, t119, t122 * t121));
+            let t124 = turn0 + t123;
+            let t125 = k(0.4) * t124;
+            let t126 = T::fused(
                 k(0.6666666666666666),
                 arm_wz,
                 T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
@@ -5192,379 +5055,365 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for CarriedBlock<T> {
                         k(0.3333333333333333) * block_wx,
                     ),
                 );
-            let t133 = k(0.006666666666666667) * t132;
-            let t134 = block_wy * block_wy;
-            let t135 = block_wz * block_wz;
-            let t136 = k(0.001) * block_wz;
-            let t137 = k(0.002) * block_wy;
-            let t138 = T::fused(
-                block_wx,
-                t137 - t136,
-                -T::fused(-k(0.003), t135 - t134, k(0.005) * (block_wy * block_wz)),
-            );
-            let t139 = T::fused(
-                k(0.002),
-                block_dwz,
-                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
-            ) + (t138 - (t133 - (t131 + t106)));
-            let t140 = T::fused(
-                T::fused(k(0.2), t62, k(0.1) * t64),
-                t93,
-                T::fused(-k(0.2), t37, k(0.1) * t39) * t96,
-            );
-            let t141 = T::fused(T::fused(-k(0.2), t6, k(0.1) * t9), t99, -t140) + t139;
-            let t142 = T::fused(t3, t28, -T::fused(t61, t78, t36 * t55));
-            let t143 = T::fused(-k(0.1), t142, k(0.03) * t101);
-            let t144 = T::fused(t3, t89, T::fused(t61, t85, t36 * t87));
-            let t145 = T::fused(
-                t91,
-                t143,
-                T::fused(-t83, t143, t90 * T::fused(-k(0.1), t144, k(0.03) * t104)),
-            );
-            let t146 = k(0.4) * t130;
-            let t147 = k(0.013333333333333334) * t132;
-            let t148 = block_wx * block_wx;
-            let t149 = k(0.003) * block_wx;
-            let t150 = T::fused(
-                block_wy,
-                t136 + t149,
-                -T::fused(-k(0.002), t135 - t148, k(0.005) * (block_wx * block_wz)),
-            );
-            let t151 = T::fused(
+            let t127 = k(0.013333333333333334) * t126;
+            let t128 = T::fused(
                 -k(0.003),
                 block_dwz,
                 T::fused(k(0.03), block_dwy, k(0.001) * block_dwx),
-            ) + (t150 - (t147 - (t146 + t145)));
-            let t152 = T::fused(
-                T::fused(-k(0.2), t60, k(0.06) * t64),
-                t93,
-                T::fused(k(0.2), t35, k(0.06) * t39) * t96,
+            ) - (t127 - (t125 + t100) - t94);
+            let t129 = T::fused(
+                T::fused(-k(0.1), t54, k(0.03) * t56),
+                t81,
+                T::fused(k(0.1), t35, k(0.03) * t37) * t84,
             );
-            let t153 = T::fused(T::fused(-k(0.2), t2, k(0.06) * t9), t99, -t152) - t151;
-            let t154 = T::fused(-k(0.03), t102, k(0.05) * t142);
-            let t155 = T::fused(
-                t91,
-                t154,
-                T::fused(-t83, t154, t90 * T::fused(-k(0.03), t105, k(0.05) * t144)),
+            let t130 = T::fused(T::fused(-k(0.1), t4, k(0.03) * t10), t87, -t129) - t128;
+            let t131 = block_wy * block_wy;
+            let t132 = k(0.002) * block_wy;
+            let t133 = T::fused(
+                block_wx,
+                t132 - t93,
+                T::fused(-block_wy, t89, k(0.003) * (t91 - t131)),
             );
-            let t156 = T::fused(
+            let t134 = T::fused(t8, t28, T::fused(t55, t66, t36 * t49));
+            let t135 = T::fused(-k(0.05), t96, k(0.1) * t134);
+            let t136 = T::fused(t8, t77, -T::fused(t55, t73, t36 * t75));
+            let t137 = T::fused(
+                t79,
+                t135,
+                T::fused(t71, t135, t78 * T::fused(-k(0.05), t99, k(0.1) * t136)),
+            );
+            let t138 = k(0.2) * t124;
+            let t139 = k(0.006666666666666667) * t126;
+            let t140 = T::fused(
+                k(0.002),
+                block_dwz,
+                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
+            ) - (t139 - (t138 + t137) - t133);
+            let t141 = T::fused(
+                T::fused(k(0.1), t55, k(0.05) * t56),
+                t81,
+                T::fused(-k(0.1), t36, k(0.05) * t37) * t84,
+            );
+            let t142 = T::fused(T::fused(-k(0.1), t8, k(0.05) * t10), t87, -t141) + t140;
+            let t143 = T::fused(-k(0.03), t134, k(0.05) * t95);
+            let t144 = T::fused(
+                t143,
+                t79,
+                T::fused(t143, t71, T::fused(-k(0.03), t136, k(0.05) * t98) * t78),
+            );
+            let t145 = T::fused(
                 block_wz,
-                t137 + t149,
-                -T::fused(-k(0.001), t134 - t148, k(0.01) * (block_wx * block_wy)),
+                t132 + t92,
+                -T::fused(-k(0.001), t131 - t90, k(0.01) * (block_wx * block_wy)),
             );
-            let t157 = T::fused(
+            let t146 = T::fused(
                 k(0.025),
                 block_dwz,
                 T::fused(-k(0.003), block_dwy, k(0.002) * block_dwx),
-            ) - (t156 + (t147 - (t146 - t155)));
-            let t158 = T::fused(
-                -T::fused(k(0.1), t60, k(0.06) * t62),
-                t93,
-                T::fused(k(0.1), t35, k(0.06) * t37) * t96,
+            ) - (t145 + (t127 - (t125 - t144)));
+            let t147 = T::fused(
+                -T::fused(k(0.05), t54, k(0.03) * t55),
+                t81,
+                T::fused(k(0.05), t35, k(0.03) * t36) * t84,
             );
-            let t159 = T::fused(T::fused(-k(0.1), t2, k(0.06) * t6), t99, -t158) - t157;
-            let t160 = arm_rx - t80;
-            let t161 = arm_ry - t57;
-            let t162 = arm_rz - t30;
-            let t163 = T::fused(t23, t162, -T::fused(t73, t160, t50 * t161));
-            let t164 = T::fused(t19, t162, -T::fused(-t70, t160, t47 * t161));
+            let t148 = T::fused(T::fused(-k(0.05), t4, k(0.03) * t8), t87, -t147) - t146;
+            let t149 = arm_rx - t68;
+            let t150 = arm_ry - t51;
+            let t151 = arm_rz - t30;
+            let t152 = T::fused(t20, t151, -T::fused(-t59, t149, t42 * t150));
+            let t153 = T::fused(t16, t151, T::fused(-t58, t149, t41 * t150));
+            let t154 = T::fused(
+                -t81,
+                T::fused(t58, t152, t59 * t153),
+                t84 * T::fused(t41, t152, t42 * t153),
+            );
+            let t155 = T::fused(t87, T::fused(-t16, t152, t20 * t153), -t154)
+                + T::fused(t117, t148, T::fused(-t115, t130, t113 * t142));
+            let t156 = k(0.05) * arm_wy;
+            let t157 = arm_wx * arm_wx;
+            let t158 = arm_wy * arm_wy;
+            let t159 = k(0.01) * arm_wx;
+            let t160 = k(0.03) * arm_wy;
+            let t161 = T::fused(
+                arm_wz,
+                t160 + t159,
+                -T::fused(arm_wx, t156, k(0.02) * (t158 - t157)),
+            );
+            let t162 = k(0.6666666666666666) * t152;
+            let t163 = k(0.3333333333333333) * t153;
+            let t164 = t163 - t162;
             let t165 = T::fused(
-                t93,
-                T::fused(t70, t163, t73 * t164),
-                t96 * T::fused(-t47, t163, t50 * t164),
+                t79,
+                t164,
+                -T::fused(-t71, t164, t78 * (k(0.6666666666666666) * (t152 + t153))),
             );
-            let t166 = T::fused(t99, T::fused(-t19, t163, t23 * t164), -t165)
-                + T::fused(t111, t159, -T::fused(-t107, t141, t109 * t153));
-            let t167 = k(0.6666666666666666) * t164;
-            let t168 = T::fused(-k(0.3333333333333333), t163, t167);
-            let t169 = k(0.6666666666666666) * t163;
-            let t170 = T::fused(
-                t91,
-                t168,
-                T::fused(-t83, t168, t90 * T::fused(-k(0.3333333333333333), t164, t169)),
-            );
-            let t171 = arm_wy * arm_wy;
-            let t172 = arm_wz * arm_wz;
-            let t173 = k(0.02) * arm_wz;
-            let t174 = k(0.03) * arm_wy;
-            let t175 = T::fused(
-                arm_wx,
-                t174 + t173,
-                T::fused(k(0.01), t172 - t171, k(0.05) * (arm_wy * arm_wz)),
-            );
-            let t176 = T::fused(
-                -k(0.03),
+            let t166 = T::fused(
+                -k(0.2),
                 arm_dwz,
-                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
-            ) - (t175 - (t133 - (t131 + t170)));
-            let t177 = T::fused(t29, t100, -T::fused(t79, t94, t56 * t97))
-                + (t176 + t166);
-            let t178 = k(1.3333333333333333) * t18;
-            let t179 = T::fused(k(0.6666666666666666), t14, t178);
-            let t180 = k(1.3333333333333333) * t46;
-            let t181 = T::fused(-k(0.6666666666666666), t44, t180);
-            let t182 = k(1.3333333333333333) * t69;
-            let t183 = T::fused(-k(0.6666666666666666), t67, t182);
-            let t184 = T::fused(
+                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
+            ) - (t127 - (t125 - t165) + t161);
+            let t167 = T::fused(
+                -T::fused(-k(0.1), t58, k(0.2) * t59),
+                t82,
+                T::fused(-k(0.1), t41, k(0.2) * t42) * t85,
+            );
+            let t168 = T::fused(T::fused(k(0.1), t16, k(0.2) * t20), t88, -t167)
+                - (t166 + t155);
+            let t169 = k(0.6666666666666666) * t20;
+            let t170 = T::fused(k(0.3333333333333333), t16, t169);
+            let t171 = k(0.6666666666666666) * t42;
+            let t172 = T::fused(-k(0.3333333333333333), t41, t171);
+            let t173 = k(0.6666666666666666) * t59;
+            let t174 = T::fused(-k(0.3333333333333333), t58, t173);
+            let t175 = T::fused(
                 -k(0.7453559924999299),
-                t179,
-                T::fused(k(0.29814239699997197), t181, k(0.5962847939999439) * t183),
+                t170,
+                T::fused(k(0.29814239699997197), t172, k(0.5962847939999439) * t174),
             );
-            let t185 = t44 - t49;
-            let t186 = t67 + t72;
-            let t187 = k(0.6666666666666666)
+            let t176 = t41 - t44;
+            let t177 = t58 + t61;
+            let t178 = k(0.6666666666666666)
                 * T::fused(
-                    k(0.9938079899999065),
-                    t14 + t22,
-                    T::fused(k(0.3975231959999626), t185, k(0.7950463919999252) * t186),
+                    k(0.49690399499995325),
+                    t16 + t23,
+                    T::fused(k(0.1987615979999813), t176, k(0.3975231959999626) * t177),
                 );
-            let t188 = T::fused(-k(0.3333333333333333), t184, t187);
-            let t189 = t86 - t180;
-            let t190 = t84 + t182;
-            let t191 = T::fused(
+            let t179 = T::fused(-k(0.3333333333333333), t175, t178);
+            let t180 = t74 - t171;
+            let t181 = t72 + t173;
+            let t182 = T::fused(
                 k(0.8944271909999159),
-                t189,
-                k(0.4472135954999579) * t190,
+                t180,
+                k(0.4472135954999579) * t181,
             );
-            let t192 = T::fused(
+            let t183 = T::fused(
                 k(0.7453559924999299),
-                t88 - t178,
-                T::fused(-k(0.29814239699997197), t189, k(0.5962847939999439) * t190),
+                t76 - t169,
+                T::fused(-k(0.29814239699997197), t180, k(0.5962847939999439) * t181),
             );
-            let t193 = k(0.6666666666666666) * (t192 + t184);
-            let t194 = T::fused(
-                -k(1.1925695879998879),
-                t185,
-                k(0.5962847939999439) * t186,
+            let t184 = k(0.6666666666666666) * (t183 + t175);
+            let t185 = T::fused(
+                -k(0.5962847939999439),
+                t176,
+                k(0.29814239699997197) * t177,
             );
-            let t195 = T::fused(k(0.3333333333333333), t192, t187);
-            let t196 = T::fused(
+            let t186 = T::fused(k(0.3333333333333333), t183, t178);
+            let t187 = T::fused(
                 -k(0.8944271909999159),
-                t181,
-                k(0.4472135954999579) * t183,
+                t172,
+                k(0.4472135954999579) * t174,
             );
-            let t197 = k(1.0)
-                / T::fused(t196, t195, -T::fused(-t191, t188, t194 * t193));
-            let t198 = T::fused(t15, t162, T::fused(-t68, t160, t45 * t161));
+            let t188 = k(1.0)
+                / T::fused(t187, t186, -T::fused(-t182, t179, t185 * t184));
+            let t189 = T::fused(t23, t151, -T::fused(t61, t149, t44 * t150));
+            let t190 = T::fused(
+                t81,
+                T::fused(-t58, t189, t61 * t153),
+                t84 * T::fused(t41, t189, t44 * t153),
+            );
+            let t191 = T::fused(t87, T::fused(-t16, t189, t23 * t153), -t190)
+                - T::fused(t111, t148, T::fused(-t109, t130, t107 * t142));
+            let t192 = k(0.6666666666666666) * (t189 - t153);
+            let t193 = k(0.6666666666666666) * t189;
+            let t194 = t125
+                + T::fused(t79, t192, T::fused(t71, t192, t78 * (t163 + t193)));
+            let t195 = arm_wz * arm_wz;
+            let t196 = k(0.02) * arm_wz;
+            let t197 = T::fused(
+                arm_wy,
+                t196 - t159,
+                T::fused(-k(0.03), t195 - t157, k(0.1) * (arm_wx * arm_wz)),
+            );
+            let t198 = T::fused(
+                k(0.01),
+                arm_dwz,
+                T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
+            ) + (t197 + (t127 - t194));
             let t199 = T::fused(
-                t93,
-                T::fused(-t68, t163, t73 * t198),
-                t96 * T::fused(t45, t163, t50 * t198),
+                k(0.2) * t23,
+                t88,
+                -T::fused(k(0.2) * t61, t82, k(0.2) * t44 * t85),
             );
             (
-                t14,
-                t15,
-                t18,
-                t19,
-                t22,
+                t20,
                 t23,
                 t27,
+                t29,
+                t42,
                 t44,
-                t45,
-                t46,
-                t47,
-                t49,
-                t54,
+                t48,
+                t50,
+                t59,
+                t61,
+                t65,
                 t67,
-                t68,
-                t69,
-                t70,
-                t72,
-                t77,
-                t83,
-                t90,
-                t91,
-                t93,
-                t94,
-                t96,
-                t97,
-                t99,
-                t100,
+                t71,
+                t78,
+                t79,
+                t81,
+                t82,
+                t84,
+                t85,
+                t87,
+                t88,
+                t101,
+                t102,
+                t103,
+                t104,
+                t105,
                 t108,
                 t109,
                 t110,
                 t111,
-                t113,
                 t114,
                 t115,
                 t116,
                 t117,
-                t119,
-                t120,
-                t121,
-                t122,
-                t123,
-                t141,
-                t146,
-                t147,
-                t153,
-                t159,
-                t163,
-                t164,
-                t167,
-                t169,
-                t171,
+                t130,
+                t138,
+                t139,
+                t142,
+                t148,
+                t152,
+                t156,
+                t158,
+                t160,
+                t162,
+                t168,
+                t170,
                 t172,
-                t173,
                 t174,
-                t177,
                 t179,
-                t181,
-                t183,
+                t182,
+                t184,
+                t185,
+                t186,
+                t187,
                 t188,
+                t189,
                 t191,
                 t193,
-                t194,
                 t195,
                 t196,
-                t197,
                 t198,
                 t199,
             )
         };
-        let (t217, t218, t219, t220, t221, t237, t240, t241, t242, t243) = {
-            let t200 = T::fused(t99, T::fused(-t15, t163, t23 * t198), -t199)
-                - T::fused(t117, t159, -T::fused(-t113, t141, t115 * t153));
-            let t201 = k(0.6666666666666666) * (t163 - t198);
-            let t202 = k(0.3333333333333333) * t198;
-            let t203 = t146
-                + T::fused(t91, t201, T::fused(-t83, t201, t90 * (t202 + t169)));
-            let t204 = arm_wx * arm_wx;
-            let t205 = k(0.01) * arm_wx;
+        let (t208, t209, t210, t211, t227, t230, t231, t232, t233) = {
+            let t200 = t199 + (t198 - t191);
+            let t201 = T::fused(
+                t81,
+                T::fused(t59, t189, t61 * t152),
+                t84 * T::fused(-t42, t189, t44 * t152),
+            );
+            let t202 = T::fused(t87, T::fused(-t20, t189, t23 * t152), -t201)
+                + T::fused(t105, t148, T::fused(-t103, t130, t101 * t142));
+            let t203 = T::fused(
+                arm_wx,
+                t160 + t196,
+                T::fused(arm_wz, t156, k(0.01) * (t195 - t158)),
+            );
+            let t204 = T::fused(-k(0.3333333333333333), t189, t162);
+            let t205 = T::fused(
+                t79,
+                t204,
+                T::fused(t71, t204, t78 * T::fused(-k(0.3333333333333333), t152, t193)),
+            );
             let t206 = T::fused(
-                arm_wy,
-                t173 - t205,
-                T::fused(-k(0.03), t172 - t204, k(0.1) * (arm_wx * arm_wz)),
-            );
-            let t207 = T::fused(
-                k(0.01),
+                -k(0.03),
                 arm_dwz,
-                T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
-            ) + (t206 + (t147 - t203));
+                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
+            ) + (t139 - (t138 + t205) - t203);
+            let t207 = T::fused(t29, t88, -T::fused(t67, t82, t50 * t85))
+                + (t206 + t202);
             let t208 = T::fused(
-                k(0.4) * t22,
-                t100,
-                -T::fused(k(0.4) * t72, t94, k(0.4) * t49 * t97),
+                -(t186 * t188),
+                t168,
+                T::fused(-(t184 * t188), t200, t179 * t188 * t207),
             );
-            let t209 = t208 + (t207 - t200);
+            let t209 = k(0.6666666666666666) * t185;
             let t210 = T::fused(
-                -t93,
-                T::fused(t68, t164, t70 * t198),
-                t96 * T::fused(t45, t164, t47 * t198),
+                -(t188 * (k(0.6666666666666666) * (t182 + t187))),
+                t200,
+                t188 * T::fused(-k(0.3333333333333333), t187, t209) * t207,
             );
-            let t211 = T::fused(t99, T::fused(-t15, t164, t19 * t198), -t210)
-                + T::fused(t123, t159, -T::fused(-t119, t141, t121 * t153));
-            let t212 = t202 - t167;
-            let t213 = T::fused(
-                t91,
-                t212,
-                -T::fused(t83, t212, t90 * (k(0.6666666666666666) * (t164 + t198))),
+            let t211 = T::fused(
+                t27 - t170,
+                t87,
+                -T::fused(t65 + t174, t81, (t48 - t172) * t84),
             );
-            let t214 = T::fused(
-                arm_wz,
-                t174 + t205,
-                -T::fused(k(0.02), t171 - t204, k(0.05) * (arm_wx * arm_wy)),
-            );
+            let t212 = t116 - t114;
+            let t213 = t110 - t108;
+            let t214 = t104 - t102;
             let t215 = T::fused(
-                -k(0.2),
-                arm_dwz,
-                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
-            ) - (t214 + (t147 - (t146 - t213)));
-            let t216 = T::fused(
-                -T::fused(-k(0.2), t67, k(0.4) * t69),
-                t94,
-                T::fused(-k(0.2), t44, k(0.4) * t46) * t97,
-            );
-            let t217 = T::fused(T::fused(k(0.2), t14, k(0.4) * t18), t100, -t216)
-                - (t215 + t211);
-            let t218 = T::fused(
-                t195 * t197,
-                t217,
-                T::fused(-(t188 * t197), t177, t193 * t197 * t209),
-            );
-            let t219 = k(0.6666666666666666) * t194;
-            let t220 = T::fused(
-                -(t197 * T::fused(-k(0.3333333333333333), t196, t219)),
-                t177,
-                t197 * (k(0.6666666666666666) * (t191 + t196)) * t209,
-            );
-            let t221 = T::fused(
-                t27 - t179,
-                t99,
-                -T::fused(t77 + t183, t93, (t54 - t181) * t96),
-            );
-            let t222 = t122 - t120;
-            let t223 = t116 - t114;
-            let t224 = t110 - t108;
-            let t225 = T::fused(
                 -k(0.3333333333333333),
-                t222,
-                k(0.6666666666666666) * (t224 - t223),
+                t212,
+                k(0.6666666666666666) * (t214 - t213),
             );
-            let t226 = T::fused(k(0.3333333333333333), t123, t120);
-            let t227 = T::fused(k(0.3333333333333333), t117, t114);
-            let t228 = T::fused(k(0.3333333333333333), t111, t108);
-            let t229 = T::fused(
+            let t216 = T::fused(k(0.3333333333333333), t117, t114);
+            let t217 = T::fused(k(0.3333333333333333), t111, t108);
+            let t218 = T::fused(k(0.3333333333333333), t105, t102);
+            let t219 = T::fused(
                 -k(0.3333333333333333),
-                t226,
-                k(0.6666666666666666) * (t228 - t227),
+                t216,
+                k(0.6666666666666666) * (t218 - t217),
             );
-            let t230 = k(0.6666666666666666) * (t229 - t225);
-            let t231 = t123 + t121;
-            let t232 = t117 + t115;
-            let t233 = t111 + t109;
-            let t234 = T::fused(
+            let t220 = k(0.6666666666666666) * (t219 - t215);
+            let t221 = t117 + t115;
+            let t222 = t111 + t109;
+            let t223 = t105 + t103;
+            let t224 = T::fused(
                 k(0.4444444444444444),
-                t231,
-                T::fused(k(0.2222222222222222), t232, k(0.4444444444444444) * t233),
+                t221,
+                T::fused(k(0.2222222222222222), t222, k(0.4444444444444444) * t223),
             );
-            let t235 = k(0.6666666666666666)
+            let t225 = k(0.6666666666666666)
                 * T::fused(
                     -k(0.2222222222222222),
-                    t231,
-                    k(0.4444444444444444) * (t233 - t232),
+                    t221,
+                    k(0.4444444444444444) * (t223 - t222),
                 );
-            let t236 = T::fused(k(0.3333333333333333), t225, t235);
-            let t237 = T::fused(
+            let t226 = T::fused(k(0.3333333333333333), t215, t225);
+            let t227 = T::fused(
                 k(0.6666666666666666),
-                t226,
-                T::fused(k(0.3333333333333333), t227, k(0.6666666666666666) * t228),
+                t216,
+                T::fused(k(0.3333333333333333), t217, k(0.6666666666666666) * t218),
             );
-            let t238 = T::fused(k(0.3333333333333333), t229, t235);
-            let t239 = T::fused(
+            let t228 = T::fused(k(0.3333333333333333), t219, t225);
+            let t229 = T::fused(
                 k(0.6666666666666666),
-                t222,
-                T::fused(k(0.3333333333333333), t223, k(0.6666666666666666) * t224),
+                t212,
+                T::fused(k(0.3333333333333333), t213, k(0.6666666666666666) * t214),
             );
-            let t240 = k(1.0)
-                / T::fused(t239, t238, -T::fused(-t234, t230, t237 * t236));
-            let t241 = T::fused(
-                t159,
-                t238 * t240,
-                -T::fused(-t141, t230 * t240, t153 * (t236 * t240)),
+            let t230 = k(1.0)
+                / T::fused(t229, t228, -T::fused(-t224, t220, t227 * t226));
+            let t231 = T::fused(
+                t228 * t230,
+                t148,
+                T::fused(-(t226 * t230), t130, t220 * t230 * t142),
             );
-            let t242 = k(0.6666666666666666) * t234;
-            let t243 = T::fused(
-                -t141,
-                t240 * (k(0.6666666666666666) * (t237 - t239)),
-                t153 * (t240 * T::fused(k(0.3333333333333333), t239, t242)),
+            let t232 = k(0.6666666666666666) * t224;
+            let t233 = T::fused(
+                -(t230 * T::fused(k(0.3333333333333333), t229, t232)),
+                t130,
+                t230 * (k(0.6666666666666666) * (t227 - t229)) * t142,
             );
-            (t217, t218, t219, t220, t221, t237, t240, t241, t242, t243)
+            (t208, t209, t210, t211, t227, t230, t231, t232, t233)
         };
         *lambda = [
-            -t94,
-            -t97,
-            -t100,
-            -t218,
-            -T::fused(t197 * T::fused(k(0.3333333333333333), t191, t219), t217, t220),
-            t221,
-            t241,
-            T::fused(t159, t240 * T::fused(k(0.3333333333333333), t237, t242), -t243),
+            -t82,
+            -t85,
+            -t88,
+            t208,
+            T::fused(-(t188 * T::fused(k(0.3333333333333333), t182, t209)), t168, t210),
+            t211,
+            t231,
+            T::fused(t230 * T::fused(k(0.3333333333333333), t227, t232), t148, t233),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for CarriedBlock<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 1016 operations (429 ±, 581 ×, 6 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 1002 operations (425 ±, 571 ×, 6 ÷).
     fn project(
         &self,
         _t: T,
@@ -5596,695 +5445,684 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for CarriedBlock<T> {
         let row6 = rows[6];
         let row7 = rows[7];
         let (
-            t10,
+            t3,
+            t7,
             t11,
-            t12,
-            t20,
+            t13,
+            t14,
+            t17,
             t21,
             t22,
+            t23,
+            t24,
+            t26,
             t28,
             t29,
             t30,
-            t32,
-            t33,
-            t34,
             t36,
             t37,
             t38,
-            t42,
-            t43,
-            t44,
-            t45,
-            t46,
+            t39,
+            t40,
+            t41,
             t47,
-            t52,
-            t55,
+            t50,
+            t53,
+            t57,
+            t58,
             t59,
-            t64,
-            t66,
-            t68,
+            t61,
+            t62,
+            t63,
+            t67,
+            t69,
             t71,
-            t73,
-            t75,
+            t76,
+            t77,
+            t78,
             t79,
+            t80,
             t81,
             t83,
-            t88,
-            t89,
-            t90,
-            t91,
+            t84,
+            t85,
             t92,
             t93,
-            t95,
-            t96,
-            t97,
-            t104,
+            t94,
+            t98,
+            t99,
+            t101,
+            t103,
             t105,
-            t106,
+            t107,
             t110,
             t111,
+            t112,
             t113,
-            t115,
-            t117,
+            t114,
+            t116,
             t119,
             t122,
             t123,
             t124,
-            t125,
             t126,
-            t128,
-            t131,
-            t134,
             t135,
-            t136,
-            t138,
-            t140,
+            t146,
             t147,
-            t158,
-            t159,
-            t160,
-            t161,
-            t162,
-            t163,
-            t164,
-            t165,
-            t166,
-            t167,
-            t168,
+            t148,
+            t149,
+            t150,
+            t151,
+            t152,
+            t153,
+            t154,
+            t155,
+            t156,
             t185,
+            t187,
             t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
             t194,
             t195,
-            t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = arm_e0 * arm_e0;
-            let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
-            let t2 = k(1.3333333333333333) * t1;
-            let t3 = arm_e0 * arm_e3;
-            let t4 = arm_e1 * arm_e2;
-            let t5 = t4 - t3;
-            let t6 = k(0.6666666666666666) * t5;
-            let t7 = arm_e0 * arm_e2;
-            let t8 = arm_e1 * arm_e3;
-            let t9 = t8 + t7;
-            let t10 = k(1.3333333333333333) * t9;
-            let t11 = t10 - (t6 + t2);
-            let t12 = k(2.0) * t5;
-            let t13 = t4 + t3;
-            let t14 = k(1.3333333333333333) * t13;
-            let t15 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
-            let t16 = k(0.6666666666666666) * t15;
-            let t17 = arm_e0 * arm_e1;
-            let t18 = arm_e2 * arm_e3;
-            let t19 = t18 - t17;
-            let t20 = k(1.3333333333333333) * t19;
-            let t21 = t20 + (t16 + t14);
-            let t22 = k(2.0) * t15;
-            let t23 = t8 - t7;
-            let t24 = k(1.3333333333333333) * t23;
-            let t25 = t18 + t17;
-            let t26 = k(0.6666666666666666) * t25;
-            let t27 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
-            let t28 = k(1.3333333333333333) * t27;
-            let t29 = t28 + (t26 - t24);
-            let t30 = k(2.0) * t25;
-            let t31 = T::fused(t30, t29, T::fused(-t12, t11, t22 * t21));
-            let t32 = k(2.0) * t9;
-            let t33 = k(2.0) * t19;
-            let t34 = k(2.0) * t27;
-            let t35 = T::fused(t34, t29, T::fused(t32, t11, t33 * t21));
-            let t36 = k(2.0) * t1;
-            let t37 = k(2.0) * t13;
-            let t38 = k(2.0) * t23;
-            let t39 = T::fused(t38, t29, -T::fused(-t36, t11, t37 * t21));
-            let t40 = T::fused(
-                -t39,
-                T::fused(k(0.02), t31, k(0.03) * t35),
-                t31 * T::fused(k(0.01), t35, T::fused(-k(0.02), t39, k(0.05) * t31)),
+            let t0 = k(2.0) * arm_e1;
+            let t1 = k(2.0) * arm_e0;
+            let t2 = T::fused(-arm_e0, t1, k(1.0));
+            let t3 = T::fused(-arm_e1, t0, t2);
+            let t4 = k(0.6666666666666666) * t3;
+            let t5 = arm_e3 * t1;
+            let t6 = arm_e2 * t0;
+            let t7 = t6 - t5;
+            let t8 = k(0.3333333333333333) * t7;
+            let t9 = arm_e2 * t1;
+            let t10 = arm_e3 * t0;
+            let t11 = t10 + t9;
+            let t12 = k(0.6666666666666666) * t11;
+            let t13 = t12 - (t8 + t4);
+            let t14 = t6 + t5;
+            let t15 = k(0.6666666666666666) * t14;
+            let t16 = k(2.0) * arm_e2;
+            let t17 = T::fused(-arm_e2, t16, t2);
+            let t18 = k(0.3333333333333333) * t17;
+            let t19 = arm_e1 * t1;
+            let t20 = arm_e3 * t16;
+            let t21 = t20 - t19;
+            let t22 = k(0.6666666666666666) * t21;
+            let t23 = t22 + (t18 + t15);
+            let t24 = t10 - t9;
+            let t25 = k(0.6666666666666666) * t24;
+            let t26 = t20 + t19;
+            let t27 = k(0.3333333333333333) * t26;
+            let t28 = T::fused(-arm_e3, k(2.0) * arm_e3, t2);
+            let t29 = k(0.6666666666666666) * t28;
+            let t30 = t29 + (t27 - t25);
+            let t31 = T::fused(t26, t30, T::fused(-t7, t13, t17 * t23));
+            let t32 = T::fused(t28, t30, T::fused(t11, t13, t21 * t23));
+            let t33 = T::fused(t24, t30, -T::fused(-t3, t13, t14 * t23));
+            let t34 = T::fused(
+                -t33,
+                T::fused(k(0.02), t31, k(0.03) * t32),
+                t31 * T::fused(k(0.01), t32, T::fused(-k(0.02), t33, k(0.05) * t31)),
             );
-            let t41 = T::fused(
-                t35,
-                T::fused(k(0.1), t35, T::fused(-k(0.03), t39, k(0.01) * t31)),
-                t40,
+            let t35 = T::fused(
+                t32,
+                T::fused(k(0.1), t32, T::fused(-k(0.03), t33, k(0.01) * t31)),
+                t34,
             );
-            let t42 = T::fused(k(0.4), t13, k(0.2) * t15);
-            let t43 = T::fused(-k(0.4), t23, k(0.2) * t25);
-            let t44 = T::fused(-t29, t42, t21 * t43);
-            let t45 = T::fused(k(0.4), t1, k(0.2) * t5);
-            let t46 = T::fused(t11, t43, t29 * t45);
-            let t47 = T::fused(t21, t45, t11 * t42);
-            let t48 = T::fused(
+            let t36 = T::fused(k(0.2), t14, k(0.1) * t17);
+            let t37 = T::fused(-k(0.2), t24, k(0.1) * t26);
+            let t38 = T::fused(-t30, t36, t23 * t37);
+            let t39 = T::fused(k(0.2), t3, k(0.1) * t7);
+            let t40 = T::fused(t13, t37, t30 * t39);
+            let t41 = T::fused(t23, t39, t13 * t36);
+            let t42 = T::fused(
                 k(1.5),
-                T::fused(t47, t47, T::fused(t44, t44, t46 * t46)),
-                -t41,
+                T::fused(t41, t41, T::fused(t38, t38, t40 * t40)),
+                -t35,
             );
-            let t49 = block_e0 * block_e3;
-            let t50 = block_e1 * block_e2;
-            let t51 = t50 - t49;
-            let t52 = k(2.0) * t51;
-            let t53 = block_e0 * block_e0;
-            let t54 = k(0.5) - T::fused(block_e2, block_e2, t53);
-            let t55 = k(2.0) * t54;
-            let t56 = block_e0 * block_e1;
-            let t57 = block_e2 * block_e3;
-            let t58 = t57 + t56;
-            let t59 = k(2.0) * t58;
-            let t60 = T::fused(t59, t29, T::fused(-t52, t11, t55 * t21));
-            let t61 = block_e0 * block_e2;
-            let t62 = block_e1 * block_e3;
-            let t63 = t62 + t61;
-            let t64 = k(2.0) * t63;
-            let t65 = t57 - t56;
-            let t66 = k(2.0) * t65;
-            let t67 = k(0.5) - T::fused(block_e3, block_e3, t53);
-            let t68 = k(2.0) * t67;
-            let t69 = T::fused(t68, t29, T::fused(t64, t11, t66 * t21));
-            let t70 = k(0.5) - T::fused(block_e1, block_e1, t53);
-            let t71 = k(2.0) * t70;
-            let t72 = t50 + t49;
-            let t73 = k(2.0) * t72;
-            let t74 = t62 - t61;
-            let t75 = k(2.0) * t74;
-            let t76 = T::fused(t75, t29, -T::fused(-t71, t11, t73 * t21));
-            let t77 = T::fused(
-                -t76,
-                T::fused(-k(0.001), t60, k(0.002) * t69),
-                t60 * T::fused(k(0.003), t69, T::fused(k(0.001), t76, k(0.01) * t60)),
+            let t43 = k(2.0) * block_e0;
+            let t44 = block_e3 * t43;
+            let t45 = k(2.0) * block_e1;
+            let t46 = block_e2 * t45;
+            let t47 = t46 - t44;
+            let t48 = k(2.0) * block_e2;
+            let t49 = T::fused(-block_e0, t43, k(1.0));
+            let t50 = T::fused(-block_e2, t48, t49);
+            let t51 = block_e1 * t43;
+            let t52 = block_e3 * t48;
+            let t53 = t52 + t51;
+            let t54 = T::fused(t53, t30, T::fused(-t47, t13, t50 * t23));
+            let t55 = block_e2 * t43;
+            let t56 = block_e3 * t45;
+            let t57 = t56 + t55;
+            let t58 = t52 - t51;
+            let t59 = T::fused(-block_e3, k(2.0) * block_e3, t49);
+            let t60 = T::fused(t59, t30, T::fused(t57, t13, t58 * t23));
+            let t61 = T::fused(-block_e1, t45, t49);
+            let t62 = t46 + t44;
+            let t63 = t56 - t55;
+            let t64 = T::fused(t63, t30, -T::fused(-t61, t13, t62 * t23));
+            let t65 = T::fused(
+                -t64,
+                T::fused(-k(0.001), t54, k(0.002) * t60),
+                t54 * T::fused(k(0.003), t60, T::fused(k(0.001), t64, k(0.01) * t54)),
             );
-            let t78 = T::fused(
-                t69,
-                T::fused(k(0.005), t69, T::fused(-k(0.002), t76, k(0.003) * t60)),
-                t77,
+            let t66 = T::fused(
+                t60,
+                T::fused(k(0.005), t60, T::fused(-k(0.002), t64, k(0.003) * t54)),
+                t65,
             );
-            let t79 = T::fused(k(0.2), t63, -T::fused(-k(0.06), t70, k(0.1) * t51));
-            let t80 = arm_rx - (block_rx - t79);
-            let t81 = T::fused(k(0.2), t65, T::fused(-k(0.06), t72, k(0.1) * t54));
-            let t82 = arm_ry - (block_ry - t81);
-            let t83 = T::fused(k(0.2), t67, T::fused(k(0.06), t74, k(0.1) * t58));
-            let t84 = arm_rz - (block_rz + t83);
-            let t85 = T::fused(t38, t84, T::fused(-t36, t80, t37 * t82));
-            let t86 = T::fused(t30, t84, -T::fused(-t12, t80, t22 * t82));
-            let t87 = T::fused(t34, t84, -T::fused(t32, t80, t33 * t82));
-            let t88 = t83 + T::fused(t34, t87, T::fused(t38, t85, t30 * t86));
-            let t89 = t81 + T::fused(t33, t87, T::fused(-t37, t85, t22 * t86));
-            let t90 = t44 - T::fused(-t88, t21, t89 * t29);
-            let t91 = t79 + T::fused(t32, t87, -T::fused(-t36, t85, t12 * t86));
-            let t92 = t46 - T::fused(-t88, t11, t91 * t29);
-            let t93 = t47 - T::fused(-t89, t11, t91 * t21);
-            let t94 = T::fused(
+            let t67 = T::fused(k(0.1), t57, -T::fused(-k(0.03), t61, k(0.05) * t47));
+            let t68 = arm_rx - (block_rx - t67);
+            let t69 = T::fused(k(0.1), t58, T::fused(-k(0.03), t62, k(0.05) * t50));
+            let t70 = arm_ry - (block_ry - t69);
+            let t71 = T::fused(k(0.1), t59, T::fused(k(0.03), t63, k(0.05) * t53));
+            let t72 = arm_rz - (block_rz + t71);
+            let t73 = T::fused(t24, t72, T::fused(-t3, t68, t14 * t70));
+            let t74 = T::fused(t26, t72, -T::fused(-t7, t68, t17 * t70));
+            let t75 = T::fused(t28, t72, -T::fused(t11, t68, t21 * t70));
+            let t76 = t71 + T::fused(t28, t75, T::fused(t24, t73, t26 * t74));
+            let t77 = t69 + T::fused(t21, t75, T::fused(-t14, t73, t17 * t74));
+            let t78 = t38 - T::fused(-t76, t23, t77 * t30);
+            let t79 = t67 + T::fused(t11, t75, -T::fused(-t3, t73, t7 * t74));
+            let t80 = t40 - T::fused(-t76, t13, t79 * t30);
+            let t81 = t41 - T::fused(-t77, t13, t79 * t23);
+            let t82 = T::fused(
                 k(0.6),
-                T::fused(t93, t93, T::fused(t90, t90, t92 * t92)),
-                t78,
+                T::fused(t81, t81, T::fused(t78, t78, t80 * t80)),
+                t66,
             );
+            let t83 = T::fused(
+                k(0.6666666666666666),
+                t57,
+                T::fused(-k(0.3333333333333333), t61, k(0.6666666666666666) * t47),
+            );
+            let t84 = T::fused(
+                k(0.6666666666666666),
+                t58,
+                -T::fused(-k(0.3333333333333333), t62, k(0.6666666666666666) * t50),
+            );
+            let t85 = T::fused(
+                k(0.6666666666666666),
+                t59,
+                -T::fused(k(0.3333333333333333), t63, k(0.6666666666666666) * t53),
+            );
+            let t86 = T::fused(t53, t85, T::fused(-t47, t83, t50 * t84));
+            let t87 = T::fused(t59, t85, T::fused(t57, t83, t58 * t84));
+            let t88 = T::fused(-k(0.001), t86, k(0.002) * t87);
+            let t89 = T::fused(t63, t85, -T::fused(-t61, t83, t62 * t84));
+            let t90 = T::fused(k(0.003), t87, T::fused(k(0.001), t89, k(0.01) * t86));
+            let t91 = T::fused(k(0.005), t87, T::fused(-k(0.002), t89, k(0.003) * t86));
+            let t92 = T::fused(-t85, t69, t84 * t71);
+            let t93 = T::fused(-t83, t71, t85 * t67);
+            let t94 = T::fused(-t84, t67, t83 * t69);
             let t95 = T::fused(
-                k(1.3333333333333333),
-                t63,
-                T::fused(-k(0.6666666666666666), t70, k(1.3333333333333333) * t51),
+                k(0.6),
+                T::fused(t94, t81, -T::fused(-t92, t78, t93 * t80)),
+                T::fused(t91, t60, T::fused(-t88, t64, t90 * t54)),
             );
             let t96 = T::fused(
-                k(1.3333333333333333),
-                t65,
-                -T::fused(-k(0.6666666666666666), t72, k(1.3333333333333333) * t54),
+                k(0.02),
+                T::fused(t85, t30, T::fused(t83, t13, t84 * t23)),
+                t95,
             );
             let t97 = T::fused(
-                k(1.3333333333333333),
-                t67,
-                -T::fused(k(0.6666666666666666), t74, k(1.3333333333333333) * t58),
-            );
-            let t98 = T::fused(t59, t97, T::fused(-t52, t95, t55 * t96));
-            let t99 = T::fused(t68, t97, T::fused(t64, t95, t66 * t96));
-            let t100 = T::fused(-k(0.001), t98, k(0.002) * t99);
-            let t101 = T::fused(t75, t97, -T::fused(-t71, t95, t73 * t96));
-            let t102 = T::fused(k(0.003), t99, T::fused(k(0.001), t101, k(0.01) * t98));
-            let t103 = T::fused(
-                k(0.005),
-                t99,
-                T::fused(-k(0.002), t101, k(0.003) * t98),
-            );
-            let t104 = T::fused(-t81, t97, t83 * t96);
-            let t105 = T::fused(-t83, t95, t79 * t97);
-            let t106 = T::fused(-t79, t96, t81 * t95);
-            let t107 = T::fused(
                 k(0.6),
-                T::fused(t106, t93, -T::fused(-t104, t90, t105 * t92)),
-                T::fused(t103, t69, T::fused(-t100, t76, t102 * t60)),
+                T::fused(t94, t94, T::fused(t92, t92, t93 * t93)),
+                T::fused(t87, t91, T::fused(-t89, t88, t86 * t90)),
             );
+            let t98 = k(1.0) / (k(0.02) + t97);
+            let t99 = t98 * t96;
+            let t100 = k(0.3333333333333333) * t11;
+            let t101 = T::fused(k(0.6666666666666666), t3 + t7, -t100);
+            let t102 = k(0.3333333333333333) * t21;
+            let t103 = T::fused(k(0.6666666666666666), t14 + t17, t102);
+            let t104 = k(0.3333333333333333) * t28;
+            let t105 = T::fused(k(0.6666666666666666), t24 - t26, -t104);
+            let t106 = k(0.6) * T::fused(t94, t105, -T::fused(-t101, t92, t103 * t93));
+            let t107 = t98 * t106;
             let t108 = T::fused(
-                k(0.02),
-                T::fused(t97, t29, T::fused(t95, t11, t96 * t21)),
-                t107,
+                -k(0.6),
+                T::fused(t105, t81, T::fused(t101, t78, t103 * t80)),
+                t107 * t96,
             );
             let t109 = T::fused(
-                k(0.6),
-                T::fused(t106, t106, T::fused(t104, t104, t105 * t105)),
-                T::fused(t99, t103, T::fused(-t101, t100, t98 * t102)),
-            );
-            let t110 = k(1.0) / (k(0.02) + t109);
-            let t111 = t110 * t108;
-            let t112 = k(0.6666666666666666) * t9;
-            let t113 = T::fused(k(1.3333333333333333), t1 + t5, -t112);
-            let t114 = k(0.6666666666666666) * t19;
-            let t115 = T::fused(k(1.3333333333333333), t13 + t15, t114);
-            let t116 = k(0.6666666666666666) * t27;
-            let t117 = T::fused(k(1.3333333333333333), t23 - t25, -t116);
-            let t118 = k(0.6)
-                * T::fused(t117, t106, -T::fused(-t113, t104, t115 * t105));
-            let t119 = t110 * t118;
-            let t120 = T::fused(
                 -k(0.6),
-                T::fused(t117, t93, T::fused(t113, t90, t115 * t92)),
-                t119 * t108,
+                T::fused(t105, t105, T::fused(t101, t101, t103 * t103)),
+                t106 * t107,
             );
+            let t110 = k(1.0) / t109;
+            let t111 = t110 * t108;
+            let t112 = t8 - t4 - t12;
+            let t113 = t18 - t15 + t22;
+            let t114 = t27 + t25 + t29;
+            let t115 = k(0.6) * T::fused(t94, t114, T::fused(-t112, t92, t113 * t93));
+            let t116 = t98 * t115;
+            let t117 = T::fused(
+                -k(0.6),
+                T::fused(t114, t81, -T::fused(t112, t78, t113 * t80)),
+                t116 * t96,
+            );
+            let t118 = T::fused(
+                -k(0.6),
+                T::fused(t114, t105, -T::fused(t112, t101, t113 * t103)),
+                t107 * t115,
+            );
+            let t119 = t110 * t118;
+            let t120 = T::fused(t119, t108, -t117);
             let t121 = T::fused(
                 -k(0.6),
-                T::fused(t117, t117, T::fused(t113, t113, t115 * t115)),
-                t118 * t119,
+                T::fused(t114, t114, T::fused(t112, t112, t113 * t113)),
+                t115 * t116,
             );
-            let t122 = k(1.0) / t121;
+            let t122 = k(1.0) / T::fused(t118, t119, -t121);
             let t123 = t122 * t120;
-            let t124 = t6 - t2 - t10;
-            let t125 = t16 - t14 + t20;
-            let t126 = t26 + t24 + t28;
-            let t127 = k(0.6) * T::fused(t126, t106, T::fused(-t124, t104, t125 * t105));
-            let t128 = t110 * t127;
+            let t124 = T::fused(
+                t120,
+                t123,
+                -T::fused(t108, t111, -T::fused(t96, t99, -(k(0.32) + (t82 + t42)))),
+            );
+            let t125 = k(0.6666666666666666) * t17;
+            let t126 = T::fused(-k(0.3333333333333333), t14, t125);
+            let t127 = k(0.6666666666666666) * t7;
+            let t128 = T::fused(-k(0.3333333333333333), t3, t127);
             let t129 = T::fused(
-                -k(0.6),
-                T::fused(t126, t93, -T::fused(t124, t90, t125 * t92)),
-                t128 * t108,
-            );
-            let t130 = T::fused(
-                -k(0.6),
-                T::fused(t126, t117, -T::fused(t124, t113, t125 * t115)),
-                t119 * t127,
-            );
-            let t131 = t122 * t130;
-            let t132 = T::fused(t131, t120, -t129);
-            let t133 = T::fused(
-                -k(0.6),
-                T::fused(t126, t126, T::fused(t124, t124, t125 * t125)),
-                t127 * t128,
-            );
-            let t134 = k(1.0) / T::fused(t130, t131, -t133);
-            let t135 = t134 * t132;
-            let t136 = T::fused(
-                t132,
-                t135,
-                -T::fused(t120, t123, -T::fused(t108, t111, -(k(0.32) + (t94 + t48)))),
-            );
-            let t137 = k(1.3333333333333333) * t15;
-            let t138 = T::fused(-k(0.6666666666666666), t13, t137);
-            let t139 = k(1.3333333333333333) * t5;
-            let t140 = T::fused(-k(0.6666666666666666), t1, t139);
-            let t141 = T::fused(
                 -k(0.8944271909999159),
-                t138,
+                t126,
+                k(0.4472135954999579) * t128,
+            );
+            let t130 = t14 - t21;
+            let t131 = t3 + t11;
+            let t132 = T::fused(
+                -k(0.5962847939999439),
+                t130,
+                k(0.29814239699997197) * t131,
+            );
+            let t133 = k(0.6666666666666666) * t132;
+            let t134 = k(0.6666666666666666) * t26;
+            let t135 = T::fused(k(0.3333333333333333), t24, t134);
+            let t136 = T::fused(
+                -k(0.7453559924999299),
+                t135,
+                T::fused(k(0.29814239699997197), t126, k(0.5962847939999439) * t128),
+            );
+            let t137 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.49690399499995325),
+                    t24 + t28,
+                    T::fused(k(0.1987615979999813), t130, k(0.3975231959999626) * t131),
+                );
+            let t138 = T::fused(-k(0.3333333333333333), t136, t137);
+            let t139 = t102 - t125;
+            let t140 = t100 + t127;
+            let t141 = T::fused(
+                k(0.8944271909999159),
+                t139,
                 k(0.4472135954999579) * t140,
             );
-            let t142 = t13 - t19;
-            let t143 = t1 + t9;
-            let t144 = T::fused(
-                -k(1.1925695879998879),
-                t142,
-                k(0.5962847939999439) * t143,
-            );
-            let t145 = k(0.6666666666666666) * t144;
-            let t146 = k(1.3333333333333333) * t25;
-            let t147 = T::fused(k(0.6666666666666666), t23, t146);
-            let t148 = T::fused(
-                -k(0.7453559924999299),
-                t147,
-                T::fused(k(0.29814239699997197), t138, k(0.5962847939999439) * t140),
-            );
-            let t149 = k(0.6666666666666666)
-                * T::fused(
-                    k(0.9938079899999065),
-                    t23 + t27,
-                    T::fused(k(0.3975231959999626), t142, k(0.7950463919999252) * t143),
-                );
-            let t150 = T::fused(-k(0.3333333333333333), t148, t149);
-            let t151 = t114 - t137;
-            let t152 = t112 + t139;
-            let t153 = T::fused(
-                k(0.8944271909999159),
-                t151,
-                k(0.4472135954999579) * t152,
-            );
-            let t154 = T::fused(
+            let t142 = T::fused(
                 k(0.7453559924999299),
-                t116 - t146,
-                T::fused(-k(0.29814239699997197), t151, k(0.5962847939999439) * t152),
+                t104 - t134,
+                T::fused(-k(0.29814239699997197), t139, k(0.5962847939999439) * t140),
             );
-            let t155 = k(0.6666666666666666) * (t154 + t148);
-            let t156 = T::fused(k(0.3333333333333333), t154, t149);
-            let t157 = k(1.0)
-                / T::fused(t141, t156, -T::fused(-t153, t150, t144 * t155));
-            let t158 = t157 * T::fused(-k(0.3333333333333333), t141, t145);
-            let t159 = t157 * (k(0.6666666666666666) * (t153 + t141));
-            let t160 = t157 * T::fused(k(0.3333333333333333), t153, t145);
-            let t161 = T::fused(t34, t160, -T::fused(-t38, t158, t30 * t159));
-            let t162 = T::fused(t33, t160, -T::fused(t37, t158, t22 * t159));
-            let t163 = t150 * t157;
-            let t164 = t155 * t157;
-            let t165 = t156 * t157;
-            let t166 = T::fused(t34, t165, -T::fused(-t38, t163, t30 * t164));
-            let t167 = T::fused(t33, t165, -T::fused(t37, t163, t22 * t164));
-            let t168 = T::fused(
+            let t143 = k(0.6666666666666666) * (t142 + t136);
+            let t144 = T::fused(k(0.3333333333333333), t142, t137);
+            let t145 = k(1.0)
+                / T::fused(t129, t144, -T::fused(-t141, t138, t132 * t143));
+            let t146 = t145 * T::fused(-k(0.3333333333333333), t129, t133);
+            let t147 = t145 * (k(0.6666666666666666) * (t141 + t129));
+            let t148 = t145 * T::fused(k(0.3333333333333333), t141, t133);
+            let t149 = T::fused(t28, t148, -T::fused(-t24, t146, t26 * t147));
+            let t150 = T::fused(t21, t148, -T::fused(t14, t146, t17 * t147));
+            let t151 = t138 * t145;
+            let t152 = t143 * t145;
+            let t153 = t144 * t145;
+            let t154 = T::fused(t28, t153, -T::fused(-t24, t151, t26 * t152));
+            let t155 = T::fused(t21, t153, -T::fused(t14, t151, t17 * t152));
+            let t156 = T::fused(
                 -row4,
-                T::fused(-t42, t161, t43 * t162),
-                T::fused(-row3, T::fused(-t42, t166, t43 * t167), row0),
+                T::fused(-t36, t149, t37 * t150),
+                T::fused(-row3, T::fused(-t36, t154, t37 * t155), row0),
             );
-            let t169 = k(0.6666666666666666)
-                * T::fused(t34, t75, -T::fused(-t32, t71, t33 * t73));
-            let t170 = T::fused(t34, t59, -T::fused(-t33, t55, t32 * t52));
-            let t171 = T::fused(k(0.3333333333333333), t170, -t169);
-            let t172 = k(0.6666666666666666)
-                * T::fused(t30, t75, -T::fused(t12, t71, t22 * t73));
-            let t173 = T::fused(t30, t59, T::fused(t22, t55, t12 * t52));
-            let t174 = T::fused(k(0.3333333333333333), t173, -t172);
-            let t175 = k(0.6666666666666666)
-                * T::fused(t38, t75, T::fused(t36, t71, t37 * t73));
-            let t176 = T::fused(t38, t59, -T::fused(t36, t52, t37 * t55));
-            let t177 = T::fused(k(0.3333333333333333), t176, -t175);
-            let t178 = T::fused(
+            let t157 = k(0.6666666666666666)
+                * T::fused(t28, t63, -T::fused(-t11, t61, t21 * t62));
+            let t158 = T::fused(t28, t53, T::fused(-t11, t47, t21 * t50));
+            let t159 = T::fused(k(0.3333333333333333), t158, -t157);
+            let t160 = k(0.6666666666666666)
+                * T::fused(t26, t63, -T::fused(t7, t61, t17 * t62));
+            let t161 = T::fused(t26, t53, T::fused(t7, t47, t17 * t50));
+            let t162 = T::fused(k(0.3333333333333333), t161, -t160);
+            let t163 = k(0.6666666666666666)
+                * T::fused(t24, t63, T::fused(t3, t61, t14 * t62));
+            let t164 = T::fused(t24, t53, -T::fused(t3, t47, t14 * t50));
+            let t165 = T::fused(k(0.3333333333333333), t164, -t163);
+            let t166 = T::fused(
                 k(0.6666666666666666),
-                t171,
-                T::fused(k(0.3333333333333333), t174, k(0.6666666666666666) * t177),
+                t159,
+                T::fused(k(0.3333333333333333), t162, k(0.6666666666666666) * t165),
             );
-            let t179 = T::fused(t34, t68, T::fused(t33, t66, t32 * t64));
-            let t180 = T::fused(k(0.3333333333333333), t179, t169);
-            let t181 = T::fused(t30, t68, -T::fused(-t22, t66, t12 * t64));
-            let t182 = T::fused(k(0.3333333333333333), t181, t172);
-            let t183 = T::fused(t38, t68, -T::fused(-t36, t64, t37 * t66));
-            let t184 = T::fused(k(0.3333333333333333), t183, t175);
-            let t185 = T::fused(
+            let t167 = T::fused(t28, t59, T::fused(t11, t57, t21 * t58));
+            let t168 = T::fused(k(0.3333333333333333), t167, t157);
+            let t169 = T::fused(t26, t59, T::fused(-t7, t57, t17 * t58));
+            let t170 = T::fused(k(0.3333333333333333), t169, t160);
+            let t171 = T::fused(t24, t59, -T::fused(-t3, t57, t14 * t58));
+            let t172 = T::fused(k(0.3333333333333333), t171, t163);
+            let t173 = T::fused(
                 k(0.6666666666666666),
-                t180,
-                T::fused(k(0.3333333333333333), t182, k(0.6666666666666666) * t184),
+                t168,
+                T::fused(k(0.3333333333333333), t170, k(0.6666666666666666) * t172),
             );
-            let t186 = T::fused(
+            let t174 = T::fused(
                 -k(0.3333333333333333),
-                t171,
-                k(0.6666666666666666) * (t177 - t174),
+                t159,
+                k(0.6666666666666666) * (t165 - t162),
             );
-            let t187 = T::fused(
+            let t175 = T::fused(
                 -k(0.3333333333333333),
-                t180,
-                k(0.6666666666666666) * (t184 - t182),
+                t168,
+                k(0.6666666666666666) * (t172 - t170),
             );
-            let t188 = k(0.6666666666666666) * (t187 - t186);
-            let t189 = t179 + t170;
-            let t190 = t181 + t173;
-            let t191 = t183 + t176;
-            let t192 = T::fused(
+            let t176 = k(0.6666666666666666) * (t175 - t174);
+            let t177 = t167 + t158;
+            let t178 = t169 + t161;
+            let t179 = t171 + t164;
+            let t180 = T::fused(
                 k(0.4444444444444444),
-                t189,
-                T::fused(k(0.2222222222222222), t190, k(0.4444444444444444) * t191),
+                t177,
+                T::fused(k(0.2222222222222222), t178, k(0.4444444444444444) * t179),
             );
-            let t193 = k(0.6666666666666666)
+            let t181 = k(0.6666666666666666)
                 * T::fused(
                     -k(0.2222222222222222),
-                    t189,
-                    k(0.4444444444444444) * (t191 - t190),
+                    t177,
+                    k(0.4444444444444444) * (t179 - t178),
                 );
-            let t194 = T::fused(k(0.3333333333333333), t186, t193);
-            let t195 = T::fused(k(0.3333333333333333), t187, t193);
-            let t196 = k(1.0)
-                / T::fused(t178, t195, -T::fused(-t192, t188, t185 * t194));
-            let t197 = t196 * (k(0.6666666666666666) * (t185 - t178));
-            let t198 = k(0.6666666666666666) * t192;
-            let t199 = t196 * T::fused(k(0.3333333333333333), t178, t198);
+            let t182 = T::fused(k(0.3333333333333333), t174, t181);
+            let t183 = T::fused(k(0.3333333333333333), t175, t181);
+            let t184 = k(1.0)
+                / T::fused(t166, t183, -T::fused(-t180, t176, t173 * t182));
+            let t185 = t184 * (k(0.6666666666666666) * (t173 - t166));
+            let t186 = k(0.6666666666666666) * t180;
+            let t187 = t184 * T::fused(k(0.3333333333333333), t166, t186);
+            let t188 = t184 * T::fused(k(0.3333333333333333), t173, t186);
+            let t189 = T::fused(t59, t188, T::fused(t63, t185, t53 * t187));
+            let t190 = T::fused(t58, t188, T::fused(-t62, t185, t50 * t187));
+            let t191 = t176 * t184;
+            let t192 = t182 * t184;
+            let t193 = t183 * t184;
+            let t194 = T::fused(t59, t193, T::fused(t63, t191, t53 * t192));
+            let t195 = T::fused(t58, t193, T::fused(-t62, t191, t50 * t192));
+            let t196 = T::fused(
+                -(t12 + t128),
+                row5,
+                row6 * T::fused(-t69, t194, t71 * t195),
+            );
+            let t197 = T::fused(row3, t155, row4 * t150);
+            let t198 = T::fused(row3, t154, row4 * t149);
+            let t199 = T::fused(-t76, t197, t77 * t198) + t156
+                - T::fused(row7, T::fused(-t69, t189, t71 * t190), t196);
             (
-                t10,
+                t3,
+                t7,
                 t11,
-                t12,
-                t20,
+                t13,
+                t14,
+                t17,
                 t21,
                 t22,
+                t23,
+                t24,
+                t26,
                 t28,
                 t29,
                 t30,
-                t32,
-                t33,
-                t34,
                 t36,
                 t37,
                 t38,
-                t42,
-                t43,
-                t44,
-                t45,
-                t46,
+                t39,
+                t40,
+                t41,
                 t47,
-                t52,
-                t55,
+                t50,
+                t53,
+                t57,
+                t58,
                 t59,
-                t64,
-                t66,
-                t68,
+                t61,
+                t62,
+                t63,
+                t67,
+                t69,
                 t71,
-                t73,
-                t75,
+                t76,
+                t77,
+                t78,
                 t79,
+                t80,
                 t81,
                 t83,
-                t88,
-                t89,
-                t90,
-                t91,
+                t84,
+                t85,
                 t92,
                 t93,
-                t95,
-                t96,
-                t97,
-                t104,
+                t94,
+                t98,
+                t99,
+                t101,
+                t103,
                 t105,
-                t106,
+                t107,
                 t110,
                 t111,
+                t112,
                 t113,
-                t115,
-                t117,
+                t114,
+                t116,
                 t119,
                 t122,
                 t123,
                 t124,
-                t125,
                 t126,
-                t128,
-                t131,
-                t134,
                 t135,
-                t136,
-                t138,
-                t140,
+                t146,
                 t147,
-                t158,
-                t159,
-                t160,
-                t161,
-                t162,
-                t163,
-                t164,
-                t165,
-                t166,
-                t167,
-                t168,
+                t148,
+                t149,
+                t150,
+                t151,
+                t152,
+                t153,
+                t154,
+                t155,
+                t156,
                 t185,
+                t187,
                 t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
                 t194,
                 t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (t215, t223, t255, t257, t259, t261, t265, t266, t267, t268, t269, t270) = {
-            let t200 = t196 * T::fused(k(0.3333333333333333), t185, t198);
-            let t201 = T::fused(t68, t200, T::fused(t75, t197, t59 * t199));
-            let t202 = T::fused(t66, t200, T::fused(-t73, t197, t55 * t199));
-            let t203 = t188 * t196;
-            let t204 = t194 * t196;
-            let t205 = t195 * t196;
-            let t206 = T::fused(t68, t205, T::fused(t75, t203, t59 * t204));
-            let t207 = T::fused(t66, t205, T::fused(-t73, t203, t55 * t204));
-            let t208 = T::fused(
-                -(t10 + t140),
-                row5,
-                row6 * T::fused(-t81, t206, t83 * t207),
-            );
-            let t209 = T::fused(row3, t167, row4 * t162);
-            let t210 = T::fused(row3, t166, row4 * t161);
-            let t211 = T::fused(-t88, t209, t89 * t210) + t168
-                - T::fused(row7, T::fused(-t81, t201, t83 * t202), t208);
-            let t212 = k(0.6) * t211;
-            let t213 = T::fused(t32, t160, T::fused(t36, t158, t12 * t159));
-            let t214 = T::fused(t32, t165, T::fused(t36, t163, t12 * t164));
-            let t215 = T::fused(
+        let (t203, t211, t243, t245, t247, t249, t253, t254, t255, t256, t257, t258) = {
+            let t200 = k(0.6) * t199;
+            let t201 = T::fused(t11, t148, T::fused(t3, t146, t7 * t147));
+            let t202 = T::fused(t11, t153, T::fused(t3, t151, t7 * t152));
+            let t203 = T::fused(
                 row4,
-                T::fused(t43, t213, t45 * t161),
-                T::fused(row3, T::fused(t43, t214, t45 * t166), row1),
+                T::fused(t37, t201, t39 * t149),
+                T::fused(row3, T::fused(t37, t202, t39 * t154), row1),
             );
-            let t216 = T::fused(t64, t200, -T::fused(-t71, t197, t52 * t199));
-            let t217 = T::fused(t64, t205, -T::fused(-t71, t203, t52 * t204));
-            let t218 = T::fused(
-                -(t20 - t138),
+            let t204 = T::fused(t57, t188, -T::fused(-t61, t185, t47 * t187));
+            let t205 = T::fused(t57, t193, -T::fused(-t61, t191, t47 * t192));
+            let t206 = T::fused(
+                -(t22 - t126),
                 row5,
-                row6 * T::fused(-t83, t217, t79 * t206),
+                row6 * T::fused(-t71, t205, t67 * t194),
             );
-            let t219 = T::fused(row3, t214, row4 * t213);
-            let t220 = T::fused(-t88, t219, t91 * t210) - t215
-                + T::fused(row7, T::fused(-t83, t216, t79 * t201), t218);
-            let t221 = k(0.6) * t220;
-            let t222 = T::fused(
-                t44,
-                T::fused(k(1.5), t168, t212),
-                t46 * T::fused(-k(1.5), t215, t221),
+            let t207 = T::fused(row3, t202, row4 * t201);
+            let t208 = T::fused(-t76, t207, t79 * t198) - t203
+                + T::fused(row7, T::fused(-t71, t204, t67 * t189), t206);
+            let t209 = k(0.6) * t208;
+            let t210 = T::fused(
+                t38,
+                T::fused(k(1.5), t156, t200),
+                t40 * T::fused(-k(1.5), t203, t209),
             );
-            let t223 = T::fused(
+            let t211 = T::fused(
                 row4,
-                T::fused(t45, t162, t42 * t213),
-                T::fused(row3, T::fused(t45, t167, t42 * t214), row2),
+                T::fused(t39, t150, t36 * t201),
+                T::fused(row3, T::fused(t39, t155, t36 * t202), row2),
             );
-            let t224 = T::fused(
-                -(t28 - t147),
+            let t212 = T::fused(
+                -(t29 - t135),
                 row5,
-                row6 * T::fused(-t79, t207, t81 * t217),
+                row6 * T::fused(-t67, t195, t69 * t205),
             );
-            let t225 = T::fused(-t89, t219, t91 * t209) - t223
-                - T::fused(row7, T::fused(-t79, t202, t81 * t216), t224);
-            let t226 = k(0.6) * t225;
-            let t227 = T::fused(t30, t210, T::fused(-t12, t219, t22 * t209));
-            let t228 = T::fused(t34, t210, T::fused(t32, t219, t33 * t209));
-            let t229 = T::fused(k(0.02), t227, k(0.03) * t228);
-            let t230 = T::fused(t38, t210, -T::fused(-t36, t219, t37 * t209));
-            let t231 = T::fused(k(0.01), t228, T::fused(-k(0.02), t230, k(0.05) * t227));
-            let t232 = T::fused(k(0.1), t228, T::fused(-k(0.03), t230, k(0.01) * t227));
-            let t233 = T::fused(
+            let t213 = T::fused(-t77, t207, t79 * t197) - t211
+                - T::fused(row7, T::fused(-t67, t190, t69 * t204), t212);
+            let t214 = k(0.6) * t213;
+            let t215 = T::fused(t26, t198, T::fused(-t7, t207, t17 * t197));
+            let t216 = T::fused(t28, t198, T::fused(t11, t207, t21 * t197));
+            let t217 = T::fused(k(0.02), t215, k(0.03) * t216);
+            let t218 = T::fused(t24, t198, -T::fused(-t3, t207, t14 * t197));
+            let t219 = T::fused(k(0.01), t216, T::fused(-k(0.02), t218, k(0.05) * t215));
+            let t220 = T::fused(k(0.1), t216, T::fused(-k(0.03), t218, k(0.01) * t215));
+            let t221 = T::fused(
                 k(0.3),
-                t219,
-                -T::fused(t32, t232, -T::fused(t36, t229, t12 * t231)),
+                t207,
+                -T::fused(t11, t220, -T::fused(t3, t217, t7 * t219)),
             );
-            let t234 = T::fused(row6, t217, row7 * t216) + t219;
-            let t235 = T::fused(row6, t207, row7 * t202) + t209;
-            let t236 = T::fused(row6, t206, row7 * t201) + t210;
-            let t237 = T::fused(t59, t236, T::fused(-t52, t234, t55 * t235));
-            let t238 = T::fused(t68, t236, T::fused(t64, t234, t66 * t235));
-            let t239 = T::fused(-k(0.001), t237, k(0.002) * t238);
-            let t240 = T::fused(t75, t236, -T::fused(-t71, t234, t73 * t235));
-            let t241 = T::fused(
+            let t222 = T::fused(row6, t205, row7 * t204) + t207;
+            let t223 = T::fused(row6, t195, row7 * t190) + t197;
+            let t224 = T::fused(row6, t194, row7 * t189) + t198;
+            let t225 = T::fused(t53, t224, T::fused(-t47, t222, t50 * t223));
+            let t226 = T::fused(t59, t224, T::fused(t57, t222, t58 * t223));
+            let t227 = T::fused(-k(0.001), t225, k(0.002) * t226);
+            let t228 = T::fused(t63, t224, -T::fused(-t61, t222, t62 * t223));
+            let t229 = T::fused(
                 k(0.003),
-                t238,
-                T::fused(k(0.001), t240, k(0.01) * t237),
+                t226,
+                T::fused(k(0.001), t228, k(0.01) * t225),
             );
-            let t242 = T::fused(
+            let t230 = T::fused(
                 k(0.005),
-                t238,
-                T::fused(-k(0.002), t240, k(0.003) * t237),
+                t226,
+                T::fused(-k(0.002), t228, k(0.003) * t225),
             );
-            let t243 = T::fused(
+            let t231 = T::fused(
                 k(0.02),
+                t222,
+                T::fused(t57, t230, -T::fused(t61, t227, t47 * t229)),
+            );
+            let t232 = T::fused(
+                k(0.3),
+                t197,
+                -T::fused(t21, t220, T::fused(t14, t217, t17 * t219)),
+            );
+            let t233 = T::fused(
+                k(0.02),
+                t223,
+                T::fused(t58, t230, T::fused(t62, t227, t50 * t229)),
+            );
+            let t234 = T::fused(
+                t13,
+                t231 - T::fused(t76, t209, t77 * t214) + t221,
+                t23 * (t233 + T::fused(-t76, t200, t79 * t214) + t232),
+            );
+            let t235 = T::fused(
+                k(0.3),
+                t198,
+                -T::fused(t28, t220, T::fused(-t24, t217, t26 * t219)),
+            );
+            let t236 = T::fused(
+                k(0.02),
+                t224,
+                T::fused(t59, t230, T::fused(-t63, t227, t53 * t229)),
+            );
+            let t237 = T::fused(
+                t30,
+                t236 + T::fused(t77, t200, t79 * t209) + t235,
                 t234,
-                T::fused(t64, t242, -T::fused(t71, t239, t52 * t241)),
             );
-            let t244 = T::fused(
-                k(0.3),
-                t209,
-                -T::fused(t33, t232, T::fused(t37, t229, t22 * t231)),
+            let t238 = T::fused(t85, t236, T::fused(t83, t231, t84 * t233))
+                - T::fused(t94, t214, -T::fused(-t92, t200, t93 * t209));
+            let t239 = T::fused(
+                t238,
+                t99,
+                -(t237 - T::fused(t41, T::fused(-k(1.5), t211, t214), t210)),
             );
-            let t245 = T::fused(
-                k(0.02),
-                t235,
-                T::fused(t66, t242, T::fused(t73, t239, t55 * t241)),
+            let t240 = T::fused(
+                t238,
+                t107,
+                T::fused(t105, t214, T::fused(t101, t200, t103 * t209)),
             );
-            let t246 = T::fused(
-                t11,
-                t243 - T::fused(t88, t221, t89 * t226) + t233,
-                t21 * (t245 + T::fused(-t88, t212, t91 * t226) + t244),
+            let t241 = T::fused(
+                t238,
+                t116,
+                T::fused(t114, t214, -T::fused(t112, t200, t113 * t209)),
             );
-            let t247 = T::fused(
-                k(0.3),
-                t210,
-                -T::fused(t34, t232, T::fused(-t38, t229, t30 * t231)),
-            );
-            let t248 = T::fused(
-                k(0.02),
-                t236,
-                T::fused(t68, t242, T::fused(-t75, t239, t59 * t241)),
-            );
-            let t249 = T::fused(
-                t29,
-                t248 + T::fused(t89, t212, t91 * t221) + t247,
-                t246,
-            );
-            let t250 = T::fused(t97, t248, T::fused(t95, t243, t96 * t245))
-                - T::fused(t106, t226, -T::fused(-t104, t212, t105 * t221));
-            let t251 = T::fused(
-                t250,
-                t111,
-                -(t249 - T::fused(t47, T::fused(-k(1.5), t223, t226), t222)),
-            );
+            let t242 = T::fused(t240, t119, -t241);
+            let t243 = T::fused(t242, t123, -T::fused(t240, t111, -t239)) / t124;
+            let t244 = t13 * t243;
+            let t245 = t207 - t244;
+            let t246 = t23 * t243;
+            let t247 = t197 - t246;
+            let t248 = t30 * t243;
+            let t249 = t198 - t248;
+            let t250 = T::fused(-t242, t122, t123 * t243);
+            let t251 = T::fused(t119, t250, -T::fused(-t240, t110, t111 * t243));
             let t252 = T::fused(
-                t250,
-                t119,
-                T::fused(t117, t226, T::fused(t113, t212, t115 * t221)),
+                t107,
+                t251,
+                -T::fused(t116, t250, -T::fused(-t238, t98, t99 * t243)),
             );
             let t253 = T::fused(
-                t250,
-                t128,
-                T::fused(t126, t226, -T::fused(t124, t212, t125 * t221)),
+                t92,
+                t252,
+                -T::fused(t101, t251, T::fused(t112, t250, T::fused(t78, t243, t199))),
             );
-            let t254 = T::fused(t252, t131, -t253);
-            let t255 = T::fused(t254, t135, -T::fused(t252, t123, -t251)) / t136;
-            let t256 = t11 * t255;
-            let t257 = t219 - t256;
-            let t258 = t21 * t255;
-            let t259 = t209 - t258;
-            let t260 = t29 * t255;
-            let t261 = t210 - t260;
-            let t262 = T::fused(-t254, t134, t135 * t255);
-            let t263 = T::fused(t131, t262, -T::fused(-t252, t122, t123 * t255));
-            let t264 = T::fused(
-                t119,
-                t263,
-                -T::fused(t128, t262, -T::fused(-t250, t110, t111 * t255)),
+            let t254 = T::fused(
+                t93,
+                t252,
+                T::fused(t103, t251, T::fused(t113, t250, T::fused(t80, t243, t208))),
             );
-            let t265 = T::fused(
-                t104,
-                t264,
-                -T::fused(t113, t263, T::fused(t124, t262, T::fused(t90, t255, t211))),
+            let t255 = T::fused(
+                t94,
+                t252,
+                -T::fused(t105, t251, -T::fused(t114, t250, -T::fused(t81, t243, t213))),
             );
-            let t266 = T::fused(
-                t105,
-                t264,
-                T::fused(t115, t263, T::fused(t125, t262, T::fused(t92, t255, t220))),
-            );
-            let t267 = T::fused(
-                t106,
-                t264,
-                -T::fused(t117, t263, -T::fused(t126, t262, -T::fused(t93, t255, t225))),
-            );
-            let t268 = T::fused(t95, t264, t234 - t256);
-            let t269 = T::fused(t96, t264, t235 - t258);
-            let t270 = T::fused(t97, t264, t236 - t260);
-            (t215, t223, t255, t257, t259, t261, t265, t266, t267, t268, t269, t270)
+            let t256 = T::fused(t83, t252, t222 - t244);
+            let t257 = T::fused(t84, t252, t223 - t246);
+            let t258 = T::fused(t85, t252, t224 - t248);
+            (t203, t211, t243, t245, t247, t249, t253, t254, t255, t256, t257, t258)
         };
         *out = [
-            T::fused(t44, t255, t168),
-            T::fused(-t46, t255, t215),
-            T::fused(-t47, t255, t223),
-            T::fused(-t38, t261, T::fused(-t36, t257, t37 * t259)),
-            -T::fused(t30, t261, T::fused(-t12, t257, t22 * t259)),
-            T::fused(t34, t261, T::fused(t32, t257, t33 * t259)),
-            -t265,
-            -t266,
-            t267,
-            T::fused(-t75, t270, T::fused(-t71, t268, t73 * t269)),
-            -T::fused(t59, t270, T::fused(-t52, t268, t55 * t269)),
-            T::fused(t68, t270, T::fused(t64, t268, t66 * t269)),
+            T::fused(t38, t243, t156),
+            T::fused(-t40, t243, t203),
+            T::fused(-t41, t243, t211),
+            T::fused(-t24, t249, T::fused(-t3, t245, t14 * t247)),
+            -T::fused(t26, t249, T::fused(-t7, t245, t17 * t247)),
+            T::fused(t28, t249, T::fused(t11, t245, t21 * t247)),
+            -t253,
+            -t254,
+            t255,
+            T::fused(-t63, t258, T::fused(-t61, t256, t62 * t257)),
+            -T::fused(t53, t258, T::fused(-t47, t256, t50 * t257)),
+            T::fused(t59, t258, T::fused(t57, t256, t58 * t257)),
         ];
     }
 }
@@ -7148,13 +6986,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             - (block_sx
                 - T::fused(-k(0.1), T::fused(t75, block_wy, t72 * block_wx), t104));
         let t109 = T::fused(
-            t39,
+            -t39,
             t108,
             t38
                 * T::fused(
-                    -k(0.6666666666666666),
+                    k(0.6666666666666666),
                     t105,
-                    T::fused(-k(0.3333333333333333), t106, k(0.6666666666666666) * t107),
+                    -T::fused(-k(0.3333333333333333), t106, k(0.6666666666666666) * t107),
                 ),
         );
         let t110 = T::fused(
@@ -7203,11 +7041,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             );
         x[0] = x0 + t27;
         x[1] = T::fused(t55, t54, -T::fused(-t39, t38, t48 * t47));
-        x[2] = -T::fused(t54, t58, T::fused(-t38, t56, t47 * t57));
+        x[2] = -T::fused(t58, t54, T::fused(-t56, t38, t57 * t47));
         x[3] = x3 + t90;
         x[4] = t91
             + T::fused(-k(0.3333333333333333), arm_wy, k(0.6666666666666666) * arm_wx);
-        x[5] = t97 - (t109 + t103);
+        x[5] = t109 - t103 + t97;
         x[6] = t112 - t111 + t110;
         x[7] = -t113;
         x[8] = y[26];
@@ -7242,57 +7080,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let block_wy = y[24];
         let block_wz = y[25];
         let turn0 = y[27];
-        let t0 = arm_e0 * arm_e2;
-        let t1 = arm_e1 * arm_e3;
-        let t2 = t1 + t0;
-        let t3 = arm_e0 * arm_e3;
-        let t4 = arm_e1 * arm_e2;
-        let t5 = t4 - t3;
-        let t6 = arm_e0 * arm_e0;
-        let t7 = k(0.5) - T::fused(arm_e1, arm_e1, t6);
-        let t8 = T::fused(-k(0.6666666666666666), t2, k(1.3333333333333333) * (t7 + t5));
-        let t9 = block_e0 * block_e0;
-        let t10 = k(0.5) - T::fused(block_e1, block_e1, t9);
-        let t11 = block_e0 * block_e3;
-        let t12 = block_e1 * block_e2;
-        let t13 = t12 - t11;
-        let t14 = block_e0 * block_e2;
-        let t15 = block_e1 * block_e3;
-        let t16 = t15 + t14;
-        let t17 = block_rx
-            - T::fused(k(0.2), t16, -T::fused(-k(0.06), t10, k(0.1) * t13))
-            - (arm_rx + T::fused(k(0.2), t2, T::fused(-k(0.4), t7, k(0.2) * t5)));
-        let t18 = arm_e0 * arm_e1;
-        let t19 = arm_e2 * arm_e3;
-        let t20 = t19 - t18;
-        let t21 = k(0.5) - T::fused(arm_e2, arm_e2, t6);
-        let t22 = t4 + t3;
-        let t23 = T::fused(
-            k(0.6666666666666666),
-            t20,
-            k(1.3333333333333333) * (t22 + t21),
-        );
-        let t24 = t12 + t11;
-        let t25 = k(0.5) - T::fused(block_e2, block_e2, t9);
-        let t26 = block_e0 * block_e1;
-        let t27 = block_e2 * block_e3;
-        let t28 = t27 - t26;
-        let t29 = block_ry - T::fused(k(0.2), t28, T::fused(-k(0.06), t24, k(0.1) * t25))
-            - (arm_ry + T::fused(k(0.2), t20, -T::fused(-k(0.4), t22, k(0.2) * t21)));
-        let t30 = k(0.5) - T::fused(arm_e3, arm_e3, t6);
-        let t31 = t19 + t18;
-        let t32 = t1 - t0;
-        let t33 = T::fused(
+        let t0 = arm_e0 * arm_e0;
+        let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
+        let t2 = arm_e0 * arm_e3;
+        let t3 = arm_e1 * arm_e2;
+        let t4 = t3 - t2;
+        let t5 = arm_e0 * arm_e2;
+        let t6 = arm_e1 * arm_e3;
+        let t7 = t6 + t5;
+        let t8 = block_e0 * block_e0;
+        let t9 = k(0.5) - T::fused(block_e1, block_e1, t8);
+        let t10 = block_e0 * block_e3;
+        let t11 = block_e1 * block_e2;
+        let t12 = t11 - t10;
+        let t13 = block_e0 * block_e2;
+        let t14 = block_e1 * block_e3;
+        let t15 = t14 + t13;
+        let t16 = block_rx - T::fused(k(0.2), t15, -T::fused(-k(0.06), t9, k(0.1) * t12))
+            - (arm_rx + T::fused(k(0.2), t7, T::fused(-k(0.4), t1, k(0.2) * t4)));
+        let t17 = T::fused(
             -k(0.6666666666666666),
-            t30,
-            k(1.3333333333333333) * (t32 - t31),
+            t7,
+            k(1.3333333333333333) * (t1 + t4),
         );
-        let t34 = t15 - t14;
-        let t35 = t27 + t26;
-        let t36 = k(0.5) - T::fused(block_e3, block_e3, t9);
-        let t37 = block_rz + T::fused(k(0.2), t36, T::fused(k(0.06), t34, k(0.1) * t35))
-            - (arm_rz - T::fused(k(0.2), t30, -T::fused(k(0.4), t32, k(0.2) * t31)));
-        let t38 = T::fused(t37, t33, T::fused(-t17, t8, t29 * t23));
+        let t18 = t3 + t2;
+        let t19 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
+        let t20 = arm_e0 * arm_e1;
+        let t21 = arm_e2 * arm_e3;
+        let t22 = t21 - t20;
+        let t23 = t11 + t10;
+        let t24 = k(0.5) - T::fused(block_e2, block_e2, t8);
+        let t25 = block_e0 * block_e1;
+        let t26 = block_e2 * block_e3;
+        let t27 = t26 - t25;
+        let t28 = block_ry - T::fused(k(0.2), t27, T::fused(-k(0.06), t23, k(0.1) * t24))
+            - (arm_ry + T::fused(k(0.2), t22, -T::fused(-k(0.4), t18, k(0.2) * t19)));
+        let t29 = T::fused(
+            k(0.6666666666666666),
+            t22,
+            k(1.3333333333333333) * (t18 + t19),
+        );
+        let t30 = t6 - t5;
+        let t31 = t21 + t20;
+        let t32 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
+        let t33 = t14 - t13;
+        let t34 = t26 + t25;
+        let t35 = k(0.5) - T::fused(block_e3, block_e3, t8);
+        let t36 = block_rz + T::fused(k(0.2), t35, T::fused(k(0.06), t33, k(0.1) * t34))
+            - (arm_rz - T::fused(k(0.2), t32, -T::fused(k(0.4), t30, k(0.2) * t31)));
+        let t37 = T::fused(
+            -k(0.6666666666666666),
+            t32,
+            k(1.3333333333333333) * (t30 - t31),
+        );
+        let t38 = T::fused(t37, t36, T::fused(-t17, t16, t29 * t28));
         let t39 = T::fused(
             -arm_e0,
             block_e3,
@@ -7317,20 +7158,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t44 = T::fused(-t42, t43, k(1.0));
         let t45 = T::fused(
             -k(1.3333333333333333),
-            t2,
-            T::fused(-k(1.3333333333333333), t7, k(0.6666666666666666) * t5),
+            t7,
+            T::fused(-k(1.3333333333333333), t1, k(0.6666666666666666) * t4),
         );
         let t46 = T::fused(
             k(1.3333333333333333),
-            t20,
-            T::fused(-k(1.3333333333333333), t22, k(0.6666666666666666) * t21),
+            t22,
+            T::fused(-k(1.3333333333333333), t18, k(0.6666666666666666) * t19),
         );
         let t47 = T::fused(
             k(1.3333333333333333),
-            t30,
-            T::fused(k(1.3333333333333333), t32, k(0.6666666666666666) * t31),
+            t32,
+            T::fused(k(1.3333333333333333), t30, k(0.6666666666666666) * t31),
         );
-        let t48 = T::fused(t47, t37, -T::fused(-t45, t17, t46 * t29));
+        let t48 = T::fused(t47, t36, -T::fused(-t45, t16, t46 * t28));
         let t49 = T::fused(
             arm_e3,
             block_e3,
@@ -7392,18 +7233,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     -T::fused(-k(10.135135135135135), t48, t44),
                 ),
             );
-        let t63 = k(2.0) * t34;
-        let t64 = k(2.0) * t35;
-        let t65 = k(2.0) * t36;
+        let t63 = k(2.0) * t33;
+        let t64 = k(2.0) * t34;
+        let t65 = k(2.0) * t35;
         let t66 = T::fused(
             -k(0.05),
             T::fused(t63, block_wz, t65 * block_wx),
             k(0.03) * T::fused(t64, block_wz, t65 * block_wy),
         );
-        let t67 = k(2.0) * t32;
+        let t67 = k(2.0) * t30;
         let t68 = k(2.0) * t31;
         let t69 = T::fused(-t67, arm_wy, t68 * arm_wx);
-        let t70 = k(2.0) * t30;
+        let t70 = k(2.0) * t32;
         let t71 = T::fused(t67, arm_wz, t70 * arm_wx);
         let t72 = T::fused(t68, arm_wz, t70 * arm_wy);
         let t73 = arm_sz + T::fused(-k(0.1), t69, T::fused(-k(0.1), t71, k(0.2) * t72))
@@ -7412,25 +7253,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t74 = T::fused(
             -t47,
             t73,
-            t37
+            t36
                 * T::fused(
                     k(0.6666666666666666),
                     t69,
                     T::fused(-k(0.3333333333333333), t71, k(0.6666666666666666) * t72),
                 ),
         );
-        let t75 = k(2.0) * t24;
-        let t76 = k(2.0) * t25;
-        let t77 = k(2.0) * t28;
+        let t75 = k(2.0) * t23;
+        let t76 = k(2.0) * t24;
+        let t77 = k(2.0) * t27;
         let t78 = T::fused(
             -k(0.05),
             T::fused(-t75, block_wz, t77 * block_wx),
             k(0.03) * T::fused(t76, block_wz, t77 * block_wy),
         );
-        let t79 = k(2.0) * t22;
-        let t80 = k(2.0) * t21;
+        let t79 = k(2.0) * t18;
+        let t80 = k(2.0) * t19;
         let t81 = T::fused(t79, arm_wy, t80 * arm_wx);
-        let t82 = k(2.0) * t20;
+        let t82 = k(2.0) * t22;
         let t83 = T::fused(-t79, arm_wz, t82 * arm_wx);
         let t84 = T::fused(t80, arm_wz, t82 * arm_wy);
         let t85 = arm_sy - T::fused(-k(0.1), t81, T::fused(-k(0.1), t83, k(0.2) * t84))
@@ -7439,41 +7280,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t86 = T::fused(
             -t46,
             t85,
-            t29
+            t28
                 * T::fused(
                     k(0.6666666666666666),
                     t81,
                     T::fused(-k(0.3333333333333333), t83, k(0.6666666666666666) * t84),
                 ),
         );
-        let t87 = k(2.0) * t10;
-        let t88 = k(2.0) * t13;
-        let t89 = k(2.0) * t16;
+        let t87 = k(2.0) * t9;
+        let t88 = k(2.0) * t12;
+        let t89 = k(2.0) * t15;
         let t90 = T::fused(
             -k(0.05),
             T::fused(t87, block_wz, t89 * block_wx),
             k(0.03) * T::fused(-t88, block_wz, t89 * block_wy),
         );
-        let t91 = k(2.0) * t7;
-        let t92 = k(2.0) * t5;
+        let t91 = k(2.0) * t1;
+        let t92 = k(2.0) * t4;
         let t93 = T::fused(t91, arm_wy, t92 * arm_wx);
-        let t94 = k(2.0) * t2;
+        let t94 = k(2.0) * t7;
         let t95 = T::fused(t91, arm_wz, t94 * arm_wx);
         let t96 = T::fused(-t92, arm_wz, t94 * arm_wy);
         let t97 = arm_sx - T::fused(k(0.1), t93, T::fused(-k(0.1), t95, k(0.2) * t96))
             - (block_sx
                 - T::fused(-k(0.1), T::fused(t87, block_wy, t88 * block_wx), t90));
         let t98 = T::fused(
-            t45,
+            -t45,
             t97,
-            t17
+            t16
                 * T::fused(
-                    -k(0.6666666666666666),
+                    k(0.6666666666666666),
                     t93,
-                    T::fused(-k(0.3333333333333333), t95, k(0.6666666666666666) * t96),
+                    -T::fused(-k(0.3333333333333333), t95, k(0.6666666666666666) * t96),
                 ),
         );
-        let t99 = t98 + t86 - t74;
+        let t99 = t98 - t86 + t74;
         let t100 = k(0.03106238683127572)
             + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t48);
         let t101 = k(0.01146962962962963)
@@ -7500,9 +7341,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             ),
         );
         let t106 = T::fused(
-            t33,
+            t37,
             t73,
-            t37
+            t36
                 * T::fused(
                     -k(0.6666666666666666),
                     t72 + t71,
@@ -7510,9 +7351,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
         );
         let t107 = T::fused(
-            -t23,
+            -t29,
             t85,
-            t29
+            t28
                 * T::fused(
                     -k(0.6666666666666666),
                     t84 + t83,
@@ -7520,9 +7361,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
         );
         let t108 = T::fused(
-            -t8,
+            -t17,
             t97,
-            t17 * T::fused(k(0.6666666666666666), t96 + t95, k(0.3333333333333333) * t93),
+            t16 * T::fused(k(0.6666666666666666), t96 + t95, k(0.3333333333333333) * t93),
         );
         let t109 = t108 - t107 + t106;
         let t110 = t57
@@ -7532,7 +7373,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t58 * t58,
             t110
                 * T::fused(
-                    k(0.11693827160493828),
+                    -k(0.11693827160493828),
                     t99 * t62,
                     T::fused(-t58, t103, t109 * t105),
                 ),
@@ -7588,7 +7429,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             T::fused(-k(0.6), turn0 + t123, k(0.02) * t58),
         );
         let t125 = T::fused(
-            -T::fused(k(0.25), t110 * t103, T::fused(t109, t60, t99 * t59)),
+            -T::fused(k(0.25), t110 * t103, -T::fused(-t109, t60, t99 * t59)),
             t112,
             T::fused(
                 k(0.3313333333333333),
@@ -7627,7 +7468,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t129 = t58 * T::fused(-k(2.25), t58, t112);
         let t130 = k(0.5333333333333333) * t110;
         let t131 = T::fused(
-            -T::fused(-k(0.9375), t110 * t105, t99),
+            T::fused(k(0.9375), t110 * t105, t99),
             t130,
             T::fused(
                 -k(40.0),
@@ -7651,7 +7492,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let t137 = T::fused(
             k(0.8),
             t99,
-            -T::fused(
+            T::fused(
                 k(25.0),
                 t48,
                 T::fused(
@@ -7662,15 +7503,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             ),
         );
         let t138 = T::fused(
-            t59,
+            -t59,
             t129,
-            T::fused(t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
+            T::fused(-t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
         );
         let t139 = k(68.08553560621344) * t60;
         let t140 = k(2.25) * t60;
         let t141 = t132 * t140;
         let t142 = t135 * t141;
-        let t143 = T::fused(t142, t133, T::fused(t139, t125, t138));
+        let t143 = T::fused(t142, t133, T::fused(t139, t125, -t138));
         let t144 = T::fused(
             t142,
             t134,
@@ -7796,64 +7637,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = arm_e0 * arm_e2;
-            let t1 = arm_e1 * arm_e3;
-            let t2 = t1 + t0;
-            let t3 = arm_e0 * arm_e3;
-            let t4 = arm_e1 * arm_e2;
-            let t5 = t4 - t3;
-            let t6 = arm_e0 * arm_e0;
-            let t7 = k(0.5) - T::fused(arm_e1, arm_e1, t6);
-            let t8 = T::fused(
+            let t0 = arm_e0 * arm_e0;
+            let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
+            let t2 = arm_e0 * arm_e3;
+            let t3 = arm_e1 * arm_e2;
+            let t4 = t3 - t2;
+            let t5 = arm_e0 * arm_e2;
+            let t6 = arm_e1 * arm_e3;
+            let t7 = t6 + t5;
+            let t8 = block_e0 * block_e0;
+            let t9 = k(0.5) - T::fused(block_e1, block_e1, t8);
+            let t10 = block_e0 * block_e3;
+            let t11 = block_e1 * block_e2;
+            let t12 = t11 - t10;
+            let t13 = block_e0 * block_e2;
+            let t14 = block_e1 * block_e3;
+            let t15 = t14 + t13;
+            let t16 = block_rx
+                - T::fused(k(0.2), t15, -T::fused(-k(0.06), t9, k(0.1) * t12))
+                - (arm_rx + T::fused(k(0.2), t7, T::fused(-k(0.4), t1, k(0.2) * t4)));
+            let t17 = T::fused(
                 -k(0.6666666666666666),
-                t2,
-                k(1.3333333333333333) * (t7 + t5),
+                t7,
+                k(1.3333333333333333) * (t1 + t4),
             );
-            let t9 = block_e0 * block_e0;
-            let t10 = k(0.5) - T::fused(block_e1, block_e1, t9);
-            let t11 = block_e0 * block_e3;
-            let t12 = block_e1 * block_e2;
-            let t13 = t12 - t11;
-            let t14 = block_e0 * block_e2;
-            let t15 = block_e1 * block_e3;
-            let t16 = t15 + t14;
-            let t17 = block_rx
-                - T::fused(k(0.2), t16, -T::fused(-k(0.06), t10, k(0.1) * t13))
-                - (arm_rx + T::fused(k(0.2), t2, T::fused(-k(0.4), t7, k(0.2) * t5)));
-            let t18 = arm_e0 * arm_e1;
-            let t19 = arm_e2 * arm_e3;
-            let t20 = t19 - t18;
-            let t21 = k(0.5) - T::fused(arm_e2, arm_e2, t6);
-            let t22 = t4 + t3;
-            let t23 = T::fused(
-                k(0.6666666666666666),
-                t20,
-                k(1.3333333333333333) * (t22 + t21),
-            );
-            let t24 = t12 + t11;
-            let t25 = k(0.5) - T::fused(block_e2, block_e2, t9);
-            let t26 = block_e0 * block_e1;
-            let t27 = block_e2 * block_e3;
-            let t28 = t27 - t26;
-            let t29 = block_ry
-                - T::fused(k(0.2), t28, T::fused(-k(0.06), t24, k(0.1) * t25))
+            let t18 = t3 + t2;
+            let t19 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
+            let t20 = arm_e0 * arm_e1;
+            let t21 = arm_e2 * arm_e3;
+            let t22 = t21 - t20;
+            let t23 = t11 + t10;
+            let t24 = k(0.5) - T::fused(block_e2, block_e2, t8);
+            let t25 = block_e0 * block_e1;
+            let t26 = block_e2 * block_e3;
+            let t27 = t26 - t25;
+            let t28 = block_ry
+                - T::fused(k(0.2), t27, T::fused(-k(0.06), t23, k(0.1) * t24))
                 - (arm_ry
-                    + T::fused(k(0.2), t20, -T::fused(-k(0.4), t22, k(0.2) * t21)));
-            let t30 = k(0.5) - T::fused(arm_e3, arm_e3, t6);
-            let t31 = t19 + t18;
-            let t32 = t1 - t0;
-            let t33 = T::fused(
-                -k(0.6666666666666666),
-                t30,
-                k(1.3333333333333333) * (t32 - t31),
+                    + T::fused(k(0.2), t22, -T::fused(-k(0.4), t18, k(0.2) * t19)));
+            let t29 = T::fused(
+                k(0.6666666666666666),
+                t22,
+                k(1.3333333333333333) * (t18 + t19),
             );
-            let t34 = t15 - t14;
-            let t35 = t27 + t26;
-            let t36 = k(0.5) - T::fused(block_e3, block_e3, t9);
-            let t37 = block_rz
-                + T::fused(k(0.2), t36, T::fused(k(0.06), t34, k(0.1) * t35))
-                - (arm_rz - T::fused(k(0.2), t30, -T::fused(k(0.4), t32, k(0.2) * t31)));
-            let t38 = T::fused(t37, t33, T::fused(-t17, t8, t29 * t23));
+            let t30 = t6 - t5;
+            let t31 = t21 + t20;
+            let t32 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
+            let t33 = t14 - t13;
+            let t34 = t26 + t25;
+            let t35 = k(0.5) - T::fused(block_e3, block_e3, t8);
+            let t36 = block_rz
+                + T::fused(k(0.2), t35, T::fused(k(0.06), t33, k(0.1) * t34))
+                - (arm_rz - T::fused(k(0.2), t32, -T::fused(k(0.4), t30, k(0.2) * t31)));
+            let t37 = T::fused(
+                -k(0.6666666666666666),
+                t32,
+                k(1.3333333333333333) * (t30 - t31),
+            );
+            let t38 = T::fused(t37, t36, T::fused(-t17, t16, t29 * t28));
             let t39 = T::fused(
                 -arm_e0,
                 block_e3,
@@ -7890,20 +7731,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t44 = T::fused(-t42, t43, k(1.0));
             let t45 = T::fused(
                 -k(1.3333333333333333),
-                t2,
-                T::fused(-k(1.3333333333333333), t7, k(0.6666666666666666) * t5),
+                t7,
+                T::fused(-k(1.3333333333333333), t1, k(0.6666666666666666) * t4),
             );
             let t46 = T::fused(
                 k(1.3333333333333333),
-                t20,
-                T::fused(-k(1.3333333333333333), t22, k(0.6666666666666666) * t21),
+                t22,
+                T::fused(-k(1.3333333333333333), t18, k(0.6666666666666666) * t19),
             );
             let t47 = T::fused(
                 k(1.3333333333333333),
-                t30,
-                T::fused(k(1.3333333333333333), t32, k(0.6666666666666666) * t31),
+                t32,
+                T::fused(k(1.3333333333333333), t30, k(0.6666666666666666) * t31),
             );
-            let t48 = T::fused(t47, t37, -T::fused(-t45, t17, t46 * t29));
+            let t48 = T::fused(t47, t36, -T::fused(-t45, t16, t46 * t28));
             let t49 = T::fused(
                 arm_e3,
                 block_e3,
@@ -7976,18 +7817,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         -T::fused(-k(10.135135135135135), t48, t44),
                     ),
                 );
-            let t63 = k(2.0) * t34;
-            let t64 = k(2.0) * t35;
-            let t65 = k(2.0) * t36;
+            let t63 = k(2.0) * t33;
+            let t64 = k(2.0) * t34;
+            let t65 = k(2.0) * t35;
             let t66 = T::fused(
                 -k(0.05),
                 T::fused(t63, block_wz, t65 * block_wx),
                 k(0.03) * T::fused(t64, block_wz, t65 * block_wy),
             );
-            let t67 = k(2.0) * t32;
+            let t67 = k(2.0) * t30;
             let t68 = k(2.0) * t31;
             let t69 = T::fused(-t67, arm_wy, t68 * arm_wx);
-            let t70 = k(2.0) * t30;
+            let t70 = k(2.0) * t32;
             let t71 = T::fused(t67, arm_wz, t70 * arm_wx);
             let t72 = T::fused(t68, arm_wz, t70 * arm_wy);
             let t73 = arm_sz
@@ -7997,7 +7838,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t74 = T::fused(
                 -t47,
                 t73,
-                t37
+                t36
                     * T::fused(
                         k(0.6666666666666666),
                         t69,
@@ -8008,18 +7849,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         ),
                     ),
             );
-            let t75 = k(2.0) * t24;
-            let t76 = k(2.0) * t25;
-            let t77 = k(2.0) * t28;
+            let t75 = k(2.0) * t23;
+            let t76 = k(2.0) * t24;
+            let t77 = k(2.0) * t27;
             let t78 = T::fused(
                 -k(0.05),
                 T::fused(-t75, block_wz, t77 * block_wx),
                 k(0.03) * T::fused(t76, block_wz, t77 * block_wy),
             );
-            let t79 = k(2.0) * t22;
-            let t80 = k(2.0) * t21;
+            let t79 = k(2.0) * t18;
+            let t80 = k(2.0) * t19;
             let t81 = T::fused(t79, arm_wy, t80 * arm_wx);
-            let t82 = k(2.0) * t20;
+            let t82 = k(2.0) * t22;
             let t83 = T::fused(-t79, arm_wz, t82 * arm_wx);
             let t84 = T::fused(t80, arm_wz, t82 * arm_wy);
             let t85 = arm_sy
@@ -8029,7 +7870,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t86 = T::fused(
                 -t46,
                 t85,
-                t29
+                t28
                     * T::fused(
                         k(0.6666666666666666),
                         t81,
@@ -8040,18 +7881,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         ),
                     ),
             );
-            let t87 = k(2.0) * t10;
-            let t88 = k(2.0) * t13;
-            let t89 = k(2.0) * t16;
+            let t87 = k(2.0) * t9;
+            let t88 = k(2.0) * t12;
+            let t89 = k(2.0) * t15;
             let t90 = T::fused(
                 -k(0.05),
                 T::fused(t87, block_wz, t89 * block_wx),
                 k(0.03) * T::fused(-t88, block_wz, t89 * block_wy),
             );
-            let t91 = k(2.0) * t7;
-            let t92 = k(2.0) * t5;
+            let t91 = k(2.0) * t1;
+            let t92 = k(2.0) * t4;
             let t93 = T::fused(t91, arm_wy, t92 * arm_wx);
-            let t94 = k(2.0) * t2;
+            let t94 = k(2.0) * t7;
             let t95 = T::fused(t91, arm_wz, t94 * arm_wx);
             let t96 = T::fused(-t92, arm_wz, t94 * arm_wy);
             let t97 = arm_sx
@@ -8059,20 +7900,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sx
                     - T::fused(-k(0.1), T::fused(t87, block_wy, t88 * block_wx), t90));
             let t98 = T::fused(
-                t45,
+                -t45,
                 t97,
-                t17
+                t16
                     * T::fused(
-                        -k(0.6666666666666666),
+                        k(0.6666666666666666),
                         t93,
-                        T::fused(
+                        -T::fused(
                             -k(0.3333333333333333),
                             t95,
                             k(0.6666666666666666) * t96,
                         ),
                     ),
             );
-            let t99 = t98 + t86 - t74;
+            let t99 = t98 - t86 + t74;
             let t100 = k(0.03106238683127572)
                 + T::fused(k(0.0004938271604938272), t38, k(0.11693827160493828) * t48);
             let t101 = k(0.01146962962962963)
@@ -8099,9 +7940,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
             );
             let t106 = T::fused(
-                t33,
+                t37,
                 t73,
-                t37
+                t36
                     * T::fused(
                         -k(0.6666666666666666),
                         t72 + t71,
@@ -8109,9 +7950,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
             );
             let t107 = T::fused(
-                -t23,
+                -t29,
                 t85,
-                t29
+                t28
                     * T::fused(
                         -k(0.6666666666666666),
                         t84 + t83,
@@ -8119,9 +7960,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
             );
             let t108 = T::fused(
-                -t8,
+                -t17,
                 t97,
-                t17
+                t16
                     * T::fused(
                         k(0.6666666666666666),
                         t96 + t95,
@@ -8140,7 +7981,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t58 * t58,
                 t110
                     * T::fused(
-                        k(0.11693827160493828),
+                        -k(0.11693827160493828),
                         t99 * t62,
                         T::fused(-t58, t103, t109 * t105),
                     ),
@@ -8198,7 +8039,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 T::fused(-k(0.6), turn0 + t123, k(0.02) * t58),
             );
             let t125 = T::fused(
-                -T::fused(k(0.25), t110 * t103, T::fused(t109, t60, t99 * t59)),
+                -T::fused(k(0.25), t110 * t103, -T::fused(-t109, t60, t99 * t59)),
                 t112,
                 T::fused(
                     k(0.3313333333333333),
@@ -8237,7 +8078,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t129 = t58 * T::fused(-k(2.25), t58, t112);
             let t130 = k(0.5333333333333333) * t110;
             let t131 = T::fused(
-                -T::fused(-k(0.9375), t110 * t105, t99),
+                T::fused(k(0.9375), t110 * t105, t99),
                 t130,
                 T::fused(
                     -k(40.0),
@@ -8261,7 +8102,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t137 = T::fused(
                 k(0.8),
                 t99,
-                -T::fused(
+                T::fused(
                     k(25.0),
                     t48,
                     T::fused(
@@ -8272,15 +8113,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
             );
             let t138 = T::fused(
-                t59,
+                -t59,
                 t129,
-                T::fused(t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
+                T::fused(-t130, T::fused(k(0.10962962962962963), t110 * t62, t109), t137),
             );
             let t139 = k(68.08553560621344) * t60;
             let t140 = k(2.25) * t60;
             let t141 = t132 * t140;
             let t142 = t135 * t141;
-            let t143 = T::fused(t142, t133, T::fused(t139, t125, t138));
+            let t143 = T::fused(t142, t133, T::fused(t139, t125, -t138));
             let t144 = T::fused(
                 t142,
                 t134,
@@ -8345,12 +8186,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t174 = t162 + T::fused(-t166, t160, t169 * t161);
             let t175 = t172 + t171;
             let t176 = T::fused(
-                -k(0.6666666666666666),
+                k(0.6666666666666666),
                 t99,
                 k(0.3333333333333333) * t109,
             );
             let t177 = T::fused(
-                -k(0.3333333333333333),
+                k(0.3333333333333333),
                 t99,
                 k(0.6666666666666666) * t109,
             );
@@ -8361,16 +8202,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 T::fused(arm_wy, t176, arm_wz * t177),
                 T::fused(-arm_wy, t178, arm_wz * t179),
             );
-            let t181 = k(0.6666666666666666) * (t99 + t109);
+            let t181 = k(0.6666666666666666) * (t99 - t109);
             let t182 = T::fused(arm_wy, t164, arm_wz * t166);
             let t183 = T::fused(
                 k(2.0),
-                T::fused(-arm_wz, t181, arm_wx * t176),
+                T::fused(arm_wz, t181, arm_wx * t176),
                 T::fused(arm_wz, t182, arm_wx * t178),
             );
             let t184 = T::fused(
-                -k(2.0),
-                T::fused(arm_wx, t177, arm_wy * t181),
+                k(2.0),
+                T::fused(-arm_wx, t177, arm_wy * t181),
                 T::fused(arm_wx, t179, arm_wy * t182),
             );
             let t185 = T::fused(k(0.1), block_wx, k(0.03) * block_wz);
@@ -8532,7 +8373,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t205,
         ];
     }
-    /// Writes λ: 882 operations (392 ±, 490 ×, 0 ÷) and 3 functions.
+    /// Writes λ: 880 operations (392 ±, 488 ×, 0 ÷) and 3 functions.
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -8585,20 +8426,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t15,
             t18,
             t19,
+            t22,
             t23,
             t27,
+            t29,
             t44,
-            t45,
             t46,
             t47,
+            t49,
             t50,
             t54,
+            t56,
             t67,
-            t68,
             t69,
             t70,
+            t72,
             t73,
             t77,
+            t79,
             t83,
             t88,
             t90,
@@ -8608,31 +8453,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t96,
             t98,
             t99,
-            t104,
-            t105,
-            t124,
-            t127,
-            t143,
+            t126,
+            t129,
+            t138,
+            t147,
+            t148,
+            t151,
             t154,
-            t155,
-            t161,
+            t160,
+            t162,
+            t164,
             t166,
+            t168,
+            t169,
+            t170,
+            t171,
             t172,
-            t174,
-            t176,
+            t177,
             t178,
-            t181,
-            t183,
-            t184,
-            t185,
             t186,
-            t187,
+            t188,
             t189,
+            t190,
             t191,
             t192,
+            t193,
             t194,
             t195,
-            t196,
             t197,
             t198,
             t199,
@@ -8773,20 +8620,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - T::fused(k(0.2), t64, -T::fused(-k(0.06), t60, k(0.1) * t62));
             let t81 = t80 - (arm_rx + (t79 + T::fused(-k(0.4), t67, k(0.2) * t69)));
             let t82 = T::fused(
-                t78,
+                -t78,
                 t76,
                 t81
                     * T::fused(
-                        -k(0.6666666666666666),
+                        k(0.6666666666666666),
                         t71,
-                        T::fused(
+                        -T::fused(
                             -k(0.3333333333333333),
                             t74,
                             k(0.6666666666666666) * t75,
                         ),
                     ),
             );
-            let t83 = k(0.8) * (t82 + t59 - t32);
+            let t83 = k(0.8) * (t82 - t59 + t32);
             let t84 = T::fused(
                 -k(0.6666666666666666),
                 t72,
@@ -8802,80 +8649,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t22,
                 k(1.3333333333333333) * (t14 - t18),
             );
-            let t87 = T::fused(t31, t86, T::fused(-t81, t84, t58 * t85));
+            let t87 = T::fused(t86, t31, T::fused(-t84, t81, t85 * t58));
             let t88 = k(40.0) * (k(0.05) + t87);
             let t89 = T::fused(t28, t31, -T::fused(-t78, t81, t55 * t58));
             let t90 = k(25.0) * t89;
-            let t91 = T::fused(t78, t90, -T::fused(t78, t83, t84 * t88));
+            let t91 = T::fused(t78, t90, -T::fused(-t78, t83, t84 * t88));
             let t92 = T::fused(k(0.6), block_dsx, -(k(0.6) - t91));
             let t93 = t92 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t91));
-            let t94 = T::fused(t55, t90, -T::fused(t55, t83, t85 * t88));
+            let t94 = T::fused(t55, t90, -T::fused(-t55, t83, t85 * t88));
             let t95 = T::fused(k(0.6), block_dsy, k(5.4) - t94);
             let t96 = t95 + T::fused(k(1.5), arm_dsy, k(13.5) + t94);
-            let t97 = T::fused(t28, t90, T::fused(-t28, t83, t86 * t88));
+            let t97 = T::fused(t28, t90, T::fused(t28, t83, t86 * t88));
             let t98 = T::fused(k(0.6), block_dsz, -(k(1.8) - t97));
             let t99 = t98 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t97));
-            let t100 = arm_rx - t80;
-            let t101 = arm_ry - t57;
-            let t102 = arm_rz - t30;
-            let t103 = T::fused(t23, t102, -T::fused(t73, t100, t50 * t101));
-            let t104 = T::fused(t19, t102, -T::fused(-t70, t100, t47 * t101));
-            let t105 = k(0.6666666666666666) * t104;
-            let t106 = T::fused(-k(0.3333333333333333), t103, t105);
-            let t107 = k(0.6666666666666666) * t103;
-            let t108 = T::fused(
-                t90,
-                t106,
-                T::fused(-t83, t106, t88 * T::fused(-k(0.3333333333333333), t104, t107)),
+            let t100 = k(0.005) * block_wz;
+            let t101 = block_wx * block_wx;
+            let t102 = block_wz * block_wz;
+            let t103 = k(0.003) * block_wx;
+            let t104 = k(0.001) * block_wz;
+            let t105 = T::fused(
+                block_wy,
+                t104 + t103,
+                T::fused(-block_wx, t100, k(0.002) * (t102 - t101)),
             );
-            let t109 = T::fused(
+            let t106 = T::fused(t3, t28, -T::fused(t61, t78, t36 * t55));
+            let t107 = T::fused(t10, t28, T::fused(-t65, t78, t40 * t55));
+            let t108 = T::fused(-k(0.1), t106, k(0.03) * t107);
+            let t109 = T::fused(t3, t86, T::fused(t61, t84, t36 * t85));
+            let t110 = T::fused(t10, t86, -T::fused(-t65, t84, t40 * t85));
+            let t111 = T::fused(
+                t90,
+                t108,
+                T::fused(t83, t108, t88 * T::fused(-k(0.1), t109, k(0.03) * t110)),
+            );
+            let t112 = T::fused(
                 k(0.6666666666666666),
                 T::fused(t15, t3, T::fused(t68, t61, t45 * t36)),
                 k(0.3333333333333333) * T::fused(t15, t7, -T::fused(t68, t63, t45 * t38)),
             );
-            let t110 = T::fused(
+            let t113 = T::fused(
                 k(0.6666666666666666),
                 T::fused(t15, t10, -T::fused(-t68, t65, t45 * t40)),
-                t109,
+                t112,
             );
-            let t111 = T::fused(
+            let t114 = T::fused(
                 k(0.6666666666666666),
                 T::fused(t19, t3, -T::fused(t70, t61, t47 * t36)),
                 k(0.3333333333333333) * T::fused(t19, t7, T::fused(t47, t38, t70 * t63)),
             );
-            let t112 = T::fused(
+            let t115 = T::fused(
                 k(0.6666666666666666),
                 T::fused(t19, t10, -T::fused(-t47, t40, t70 * t65)),
-                t111,
+                t114,
             );
-            let t113 = T::fused(
+            let t116 = T::fused(
                 k(0.6666666666666666),
                 T::fused(t23, t3, -T::fused(-t73, t61, t50 * t36)),
                 k(0.3333333333333333)
                     * T::fused(t23, t7, -T::fused(-t50, t38, t73 * t63)),
             );
-            let t114 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t23, t10, T::fused(t50, t40, t73 * t65)),
-                t113,
-            );
-            let t115 = T::fused(
-                k(0.6666666666666666),
-                t114,
-                T::fused(k(0.6666666666666666), t110, k(0.3333333333333333) * t112),
-            );
-            let t116 = turn0.cos();
             let t117 = T::fused(
                 k(0.6666666666666666),
-                t112 - t110,
-                k(0.3333333333333333) * t114,
+                T::fused(t23, t10, T::fused(t50, t40, t73 * t65)),
+                t116,
             );
-            let t118 = turn0.sin();
-            let t119 = T::fused(-t118, t115, t116 * t117)
-                .atan2(T::fused(t116, t115, t118 * t117));
-            let t120 = turn0 + t119;
-            let t121 = k(0.2) * t120;
-            let t122 = T::fused(
+            let t118 = T::fused(
+                k(0.6666666666666666),
+                t117,
+                T::fused(k(0.6666666666666666), t113, k(0.3333333333333333) * t115),
+            );
+            let t119 = turn0.cos();
+            let t120 = T::fused(
+                k(0.6666666666666666),
+                t115 - t113,
+                k(0.3333333333333333) * t117,
+            );
+            let t121 = turn0.sin();
+            let t122 = T::fused(-t121, t118, t119 * t120)
+                .atan2(T::fused(t119, t118, t121 * t120));
+            let t123 = turn0 + t122;
+            let t124 = k(0.4) * t123;
+            let t125 = T::fused(
                 k(0.6666666666666666),
                 arm_wz,
                 T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
@@ -8889,52 +8743,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         k(0.3333333333333333) * block_wx,
                     ),
                 );
-            let t123 = k(0.006666666666666667) * t122;
-            let t124 = arm_wy * arm_wy;
-            let t125 = arm_wz * arm_wz;
-            let t126 = k(0.02) * arm_wz;
-            let t127 = k(0.03) * arm_wy;
-            let t128 = T::fused(
-                arm_wx,
-                t127 + t126,
-                T::fused(k(0.01), t125 - t124, k(0.05) * (arm_wy * arm_wz)),
-            );
-            let t129 = T::fused(
-                -k(0.03),
-                arm_dwz,
-                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
-            ) - (t128 - (t123 - (t121 + t108)));
-            let t130 = T::fused(t10, t28, T::fused(-t65, t78, t40 * t55));
-            let t131 = T::fused(t7, t28, T::fused(t63, t78, t38 * t55));
-            let t132 = T::fused(-k(0.05), t130, k(0.1) * t131);
-            let t133 = T::fused(t10, t86, -T::fused(-t65, t84, t40 * t85));
-            let t134 = T::fused(t7, t86, -T::fused(t63, t84, t38 * t85));
-            let t135 = T::fused(
-                t90,
-                t132,
-                T::fused(-t83, t132, t88 * T::fused(-k(0.05), t133, k(0.1) * t134)),
-            );
-            let t136 = block_wy * block_wy;
-            let t137 = block_wz * block_wz;
-            let t138 = k(0.001) * block_wz;
-            let t139 = k(0.002) * block_wy;
-            let t140 = T::fused(
-                block_wx,
-                t139 - t138,
-                -T::fused(-k(0.003), t137 - t136, k(0.005) * (block_wy * block_wz)),
-            );
-            let t141 = T::fused(
-                k(0.002),
+            let t126 = k(0.013333333333333334) * t125;
+            let t127 = T::fused(
+                -k(0.003),
                 block_dwz,
-                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
-            ) + (t140 - (t123 - (t121 + t135)));
-            let t142 = T::fused(
-                T::fused(k(0.2), t62, k(0.1) * t64),
+                T::fused(k(0.03), block_dwy, k(0.001) * block_dwx),
+            ) - (t126 - (t124 + t111) - t105);
+            let t128 = T::fused(
+                T::fused(-k(0.2), t60, k(0.06) * t64),
                 t92,
-                T::fused(-k(0.2), t37, k(0.1) * t39) * t95,
+                T::fused(k(0.2), t35, k(0.06) * t39) * t95,
             );
-            let t143 = T::fused(T::fused(-k(0.2), t6, k(0.1) * t9), t98, -t142) + t141;
-            let t144 = T::fused(
+            let t129 = T::fused(T::fused(-k(0.2), t2, k(0.06) * t9), t98, -t128) - t127;
+            let t130 = T::fused(
                 -arm_e0,
                 block_e3,
                 T::fused(
@@ -8943,7 +8764,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     T::fused(-arm_e2, block_e1, arm_e3 * block_e0),
                 ),
             );
-            let t145 = T::fused(
+            let t131 = T::fused(
                 -arm_e1,
                 block_e3,
                 T::fused(
@@ -8952,7 +8773,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     T::fused(arm_e3, block_e1, arm_e2 * block_e0),
                 ),
             );
-            let t146 = T::fused(
+            let t132 = T::fused(
                 arm_e2,
                 block_e3,
                 T::fused(
@@ -8961,148 +8782,170 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     T::fused(-arm_e0, block_e1, arm_e1 * block_e0),
                 ),
             );
-            let t147 = T::fused(
+            let t133 = T::fused(
                 k(0.6666666666666666),
-                t144,
-                T::fused(k(0.6666666666666666), t145, k(0.3333333333333333) * t146),
+                t130,
+                T::fused(k(0.6666666666666666), t131, k(0.3333333333333333) * t132),
             );
-            let t148 = k(2.0) * t147;
-            let t149 = T::fused(-t147, t148, k(1.0));
-            let t150 = T::fused(t3, t28, -T::fused(t61, t78, t36 * t55));
-            let t151 = T::fused(-k(0.1), t150, k(0.03) * t130);
-            let t152 = T::fused(t3, t86, T::fused(t61, t84, t36 * t85));
-            let t153 = T::fused(
-                t90,
-                t151,
-                T::fused(-t83, t151, t88 * T::fused(-k(0.1), t152, k(0.03) * t133)),
-            );
-            let t154 = k(0.4) * t120;
-            let t155 = k(0.013333333333333334) * t122;
-            let t156 = block_wx * block_wx;
-            let t157 = k(0.003) * block_wx;
-            let t158 = T::fused(
-                block_wy,
-                t138 + t157,
-                -T::fused(-k(0.002), t137 - t156, k(0.005) * (block_wx * block_wz)),
-            );
-            let t159 = T::fused(
-                -k(0.003),
-                block_dwz,
-                T::fused(k(0.03), block_dwy, k(0.001) * block_dwx),
-            ) + (t158 - (t155 - (t154 + t153)));
-            let t160 = T::fused(
-                T::fused(-k(0.2), t60, k(0.06) * t64),
-                t92,
-                T::fused(k(0.2), t35, k(0.06) * t39) * t95,
-            );
-            let t161 = T::fused(T::fused(-k(0.2), t2, k(0.06) * t9), t98, -t160) - t159;
-            let t162 = T::fused(
+            let t134 = k(2.0) * t133;
+            let t135 = T::fused(
                 arm_e3,
                 block_e3,
                 T::fused(arm_e2, block_e2, T::fused(arm_e1, block_e1, arm_e0 * block_e0)),
             );
-            let t163 = t162 * t148;
-            let t164 = k(0.6666666666666666) * t163;
-            let t165 = T::fused(-k(0.2222222222222222), t149, k(0.2222222222222222));
-            let t166 = t165 + t164;
-            let t167 = T::fused(-k(0.03), t131, k(0.05) * t150);
-            let t168 = T::fused(
+            let t136 = t135 * t134;
+            let t137 = k(0.3333333333333333) * t136;
+            let t138 = T::fused(-t133, t134, k(1.0));
+            let t139 = T::fused(-k(0.4444444444444444), t138, k(0.4444444444444444));
+            let t140 = block_wy * block_wy;
+            let t141 = k(0.002) * block_wy;
+            let t142 = T::fused(
+                block_wx,
+                t141 - t104,
+                T::fused(-block_wy, t100, k(0.003) * (t102 - t140)),
+            );
+            let t143 = T::fused(t7, t28, T::fused(t63, t78, t38 * t55));
+            let t144 = T::fused(-k(0.05), t107, k(0.1) * t143);
+            let t145 = T::fused(t7, t86, -T::fused(t63, t84, t38 * t85));
+            let t146 = T::fused(
                 t90,
-                t167,
-                T::fused(-t83, t167, t88 * T::fused(-k(0.03), t134, k(0.05) * t152)),
+                t144,
+                T::fused(t83, t144, t88 * T::fused(-k(0.05), t110, k(0.1) * t145)),
             );
-            let t169 = T::fused(
+            let t147 = k(0.2) * t123;
+            let t148 = k(0.006666666666666667) * t125;
+            let t149 = T::fused(
+                k(0.002),
+                block_dwz,
+                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
+            ) - (t148 - (t147 + t146) - t142);
+            let t150 = T::fused(
+                T::fused(k(0.2), t62, k(0.1) * t64),
+                t92,
+                T::fused(-k(0.2), t37, k(0.1) * t39) * t95,
+            );
+            let t151 = T::fused(T::fused(-k(0.2), t6, k(0.1) * t9), t98, -t150) + t149;
+            let t152 = k(0.6666666666666666) * t136;
+            let t153 = T::fused(-k(0.2222222222222222), t138, k(0.2222222222222222));
+            let t154 = t153 + t152;
+            let t155 = T::fused(-k(0.03), t143, k(0.05) * t106);
+            let t156 = T::fused(
+                t155,
+                t90,
+                T::fused(t155, t83, T::fused(-k(0.03), t145, k(0.05) * t109) * t88),
+            );
+            let t157 = T::fused(
                 block_wz,
-                t139 + t157,
-                -T::fused(-k(0.001), t136 - t156, k(0.01) * (block_wx * block_wy)),
+                t141 + t103,
+                -T::fused(-k(0.001), t140 - t101, k(0.01) * (block_wx * block_wy)),
             );
-            let t170 = T::fused(
+            let t158 = T::fused(
                 k(0.025),
                 block_dwz,
                 T::fused(-k(0.003), block_dwy, k(0.002) * block_dwx),
-            ) - (t169 + (t155 - (t154 - t168)));
-            let t171 = T::fused(
+            ) - (t157 + (t126 - (t124 - t156)));
+            let t159 = T::fused(
                 -T::fused(k(0.1), t60, k(0.06) * t62),
                 t92,
                 T::fused(k(0.1), t35, k(0.06) * t37) * t95,
             );
-            let t172 = T::fused(T::fused(-k(0.1), t2, k(0.06) * t6), t98, -t171) - t170;
-            let t173 = t165 - t164;
-            let t174 = T::fused(
-                t173,
-                t172,
-                T::fused(
-                    -T::fused(k(0.8888888888888888), t149, k(0.1111111111111111)),
-                    t143,
-                    t166 * t161,
-                ),
+            let t160 = T::fused(T::fused(-k(0.1), t2, k(0.06) * t6), t98, -t159) - t158;
+            let t161 = T::fused(k(0.5555555555555556), t138, k(0.4444444444444444));
+            let t162 = T::fused(
+                t161,
+                t160,
+                -T::fused(-(t139 - t137), t129, t154 * t151),
             );
-            let t175 = k(0.6666666666666666) * t89;
-            let t176 = T::fused(k(0.3333333333333333), t87, k(0.1) - t175);
-            let t177 = k(0.6666666666666666) * t87;
-            let t178 = t177 - T::fused(k(0.3333333333333333), t89, k(0.1));
-            let t179 = T::fused(
-                T::fused(t70, t176, t73 * t178),
+            let t163 = k(0.6666666666666666) * t87;
+            let t164 = t163 - T::fused(k(0.3333333333333333), t89, k(0.1));
+            let t165 = k(0.6666666666666666) * t89;
+            let t166 = t163 + (k(0.2) + t165);
+            let t167 = T::fused(
+                -T::fused(-t68, t164, t70 * t166),
                 t92,
-                T::fused(-t47, t176, t50 * t178) * t95,
+                T::fused(-t45, t164, t47 * t166) * t95,
             );
-            let t180 = T::fused(T::fused(-t19, t176, t23 * t178), t98, -t179) - t174
-                + t129;
-            let t181 = t180 + T::fused(t29, t99, -T::fused(t79, t93, t56 * t96));
+            let t168 = k(0.05) * arm_wy;
+            let t169 = arm_wx * arm_wx;
+            let t170 = arm_wy * arm_wy;
+            let t171 = k(0.01) * arm_wx;
+            let t172 = k(0.03) * arm_wy;
+            let t173 = T::fused(
+                arm_wz,
+                t172 + t171,
+                -T::fused(arm_wx, t168, k(0.02) * (t170 - t169)),
+            );
+            let t174 = arm_rx - t80;
+            let t175 = arm_ry - t57;
+            let t176 = arm_rz - t30;
+            let t177 = T::fused(t19, t176, -T::fused(-t70, t174, t47 * t175));
+            let t178 = k(0.6666666666666666) * t177;
+            let t179 = T::fused(t15, t176, T::fused(-t68, t174, t45 * t175));
+            let t180 = k(0.3333333333333333) * t179;
+            let t181 = t180 - t178;
             let t182 = T::fused(
+                t90,
+                t181,
+                -T::fused(-t83, t181, t88 * (k(0.6666666666666666) * (t177 + t179))),
+            );
+            let t183 = T::fused(
+                -k(0.2),
+                arm_dwz,
+                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
+            ) - (t126 - (t124 - t182) + t173);
+            let t184 = t183
+                - (T::fused(T::fused(t15, t164, t19 * t166), t98, -t167) - t162);
+            let t185 = T::fused(
+                -T::fused(-k(0.2), t67, k(0.4) * t69),
+                t93,
+                T::fused(-k(0.2), t44, k(0.4) * t46) * t96,
+            );
+            let t186 = T::fused(T::fused(k(0.2), t14, k(0.4) * t18), t99, -t185) - t184;
+            let t187 = T::fused(
                 k(0.6666666666666666),
                 arm_e3,
                 T::fused(-k(0.3333333333333333), arm_e2, k(0.6666666666666666) * arm_e1),
             );
-            let t183 = k(2.0) * t182;
-            let t184 = T::fused(-t182, t183, k(1.0));
-            let t185 = T::fused(k(0.5555555555555556), t184, k(0.4444444444444444));
-            let t186 = T::fused(
-                k(0.4) * t22,
-                t99,
-                -T::fused(k(0.4) * t72, t93, k(0.4) * t49 * t96),
-            );
-            let t187 = T::fused(t15, t102, T::fused(-t68, t100, t45 * t101));
-            let t188 = k(0.6666666666666666) * (t103 - t187);
-            let t189 = k(0.3333333333333333) * t187;
-            let t190 = t154
-                + T::fused(t90, t188, T::fused(-t83, t188, t88 * (t189 + t107)));
-            let t191 = arm_wx * arm_wx;
-            let t192 = k(0.01) * arm_wx;
-            let t193 = T::fused(
-                arm_wy,
-                t126 - t192,
-                T::fused(-k(0.03), t125 - t191, k(0.1) * (arm_wx * arm_wz)),
-            );
+            let t188 = k(2.0) * t187;
+            let t189 = T::fused(-t187, t188, k(1.0));
+            let t190 = T::fused(k(0.5555555555555556), t189, k(0.4444444444444444));
+            let t191 = t153 - t152;
+            let t192 = T::fused(t139 + t137, t160, -T::fused(-t161, t129, t191 * t151));
+            let t193 = T::fused(k(0.3333333333333333), t87, k(0.1) - t165);
             let t194 = T::fused(
-                k(0.01),
-                arm_dwz,
-                T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
-            ) + (t193 + (t155 - t190));
-            let t195 = T::fused(k(0.5555555555555556), t149, k(0.4444444444444444));
-            let t196 = k(0.3333333333333333) * t163;
-            let t197 = T::fused(-k(0.4444444444444444), t149, k(0.4444444444444444));
-            let t198 = T::fused(t197 + t196, t172, T::fused(-t173, t143, t195 * t161));
-            let t199 = t177 + (k(0.2) + t175);
+                T::fused(t68, t193, t73 * t166),
+                t92,
+                T::fused(-t45, t193, t50 * t166) * t95,
+            );
+            let t195 = T::fused(t23, t176, -T::fused(t73, t174, t50 * t175));
+            let t196 = k(0.6666666666666666) * (t195 - t179);
+            let t197 = k(0.6666666666666666) * t195;
+            let t198 = t124
+                + T::fused(t90, t196, T::fused(t83, t196, t88 * (t180 + t197)));
+            let t199 = arm_wz * arm_wz;
             (
                 t14,
                 t15,
                 t18,
                 t19,
+                t22,
                 t23,
                 t27,
+                t29,
                 t44,
-                t45,
                 t46,
                 t47,
+                t49,
                 t50,
                 t54,
+                t56,
                 t67,
-                t68,
                 t69,
                 t70,
+                t72,
                 t73,
                 t77,
+                t79,
                 t83,
                 t88,
                 t90,
@@ -9112,130 +8955,146 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t96,
                 t98,
                 t99,
-                t104,
-                t105,
-                t124,
-                t127,
-                t143,
+                t126,
+                t129,
+                t138,
+                t147,
+                t148,
+                t151,
                 t154,
-                t155,
-                t161,
+                t160,
+                t162,
+                t164,
                 t166,
+                t168,
+                t169,
+                t170,
+                t171,
                 t172,
-                t174,
-                t176,
+                t177,
                 t178,
-                t181,
-                t183,
-                t184,
-                t185,
                 t186,
-                t187,
+                t188,
                 t189,
+                t190,
                 t191,
                 t192,
+                t193,
                 t194,
                 t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
-        let (t212, t218, t220, t221, t222) = {
-            let t200 = T::fused(
-                T::fused(t68, t176, t73 * t199),
-                t92,
-                T::fused(-t45, t176, t50 * t199) * t95,
+        let (t210, t221, t222, t223, t224) = {
+            let t200 = k(0.02) * arm_wz;
+            let t201 = T::fused(
+                arm_wy,
+                t200 - t171,
+                T::fused(-k(0.03), t199 - t169, k(0.1) * (arm_wx * arm_wz)),
             );
-            let t201 = T::fused(T::fused(t15, t176, t23 * t199), t98, -t200) - t198
-                + t194;
-            let t202 = t201 + t186;
-            let t203 = arm_e0 * t183;
-            let t204 = k(0.6666666666666666) * t203;
-            let t205 = T::fused(-k(0.2222222222222222), t184, k(0.2222222222222222));
-            let t206 = t205 + t204;
-            let t207 = T::fused(
-                -T::fused(-k(0.2), t67, k(0.4) * t69),
-                t93,
-                T::fused(-k(0.2), t44, k(0.4) * t46) * t96,
-            );
-            let t208 = t189 - t105;
-            let t209 = T::fused(
-                t90,
-                t208,
-                -T::fused(t83, t208, t88 * (k(0.6666666666666666) * (t104 + t187))),
-            );
-            let t210 = T::fused(
-                arm_wz,
-                t127 + t192,
-                -T::fused(k(0.02), t124 - t191, k(0.05) * (arm_wx * arm_wy)),
-            );
-            let t211 = T::fused(
-                -k(0.2),
+            let t202 = T::fused(
+                k(0.01),
                 arm_dwz,
-                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
-            ) - (t210 + (t155 - (t154 - t209)));
-            let t212 = T::fused(t195, t172, T::fused(-t166, t143, (t197 - t196) * t161));
-            let t213 = T::fused(
-                -T::fused(-t68, t178, t70 * t199),
-                t92,
-                T::fused(-t45, t178, t47 * t199) * t95,
+                T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
+            ) + (t201 + (t126 - t198));
+            let t203 = t202
+                + (T::fused(T::fused(t15, t193, t23 * t166), t98, -t194) - t192);
+            let t204 = T::fused(
+                k(0.4) * t22,
+                t99,
+                -T::fused(k(0.4) * t72, t93, k(0.4) * t49 * t96),
             );
-            let t214 = T::fused(T::fused(t15, t178, t19 * t199), t98, -t213) - t212
-                - t211;
-            let t215 = t214 + T::fused(T::fused(k(0.2), t14, k(0.4) * t18), t99, -t207);
-            let t216 = k(0.3333333333333333) * t203;
-            let t217 = T::fused(-k(0.4444444444444444), t184, k(0.4444444444444444));
-            let t218 = T::fused(t217 - t216, t215, -T::fused(-t185, t181, t206 * t202));
-            let t219 = t205 - t204;
-            let t220 = T::fused(
-                t206,
-                t215,
+            let t205 = t204 + t203;
+            let t206 = arm_e0 * t188;
+            let t207 = k(0.6666666666666666) * t206;
+            let t208 = T::fused(-k(0.2222222222222222), t189, k(0.2222222222222222));
+            let t209 = t208 - t207;
+            let t210 = T::fused(
+                t191,
+                t160,
                 -T::fused(
-                    -t219,
-                    t181,
-                    T::fused(k(0.8888888888888888), t184, k(0.1111111111111111)) * t202,
+                    -t154,
+                    t129,
+                    T::fused(k(0.8888888888888888), t138, k(0.1111111111111111)) * t151,
                 ),
             );
-            let t221 = T::fused(
-                k(0.7453559924999299),
-                T::fused(t185, t215, -T::fused(-(t217 + t216), t181, t219 * t202)),
-                -T::fused(k(0.5962847939999439), t218, k(0.29814239699997197) * t220),
+            let t211 = T::fused(
+                T::fused(t70, t193, t73 * t164),
+                t92,
+                T::fused(-t47, t193, t50 * t164) * t95,
             );
-            let t222 = T::fused(
+            let t212 = T::fused(
+                arm_wx,
+                t172 + t200,
+                T::fused(arm_wz, t168, k(0.01) * (t199 - t170)),
+            );
+            let t213 = T::fused(-k(0.3333333333333333), t195, t178);
+            let t214 = T::fused(
+                t90,
+                t213,
+                T::fused(t83, t213, t88 * T::fused(-k(0.3333333333333333), t177, t197)),
+            );
+            let t215 = T::fused(
+                -k(0.03),
+                arm_dwz,
+                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
+            ) + (t148 - (t147 + t214) - t212);
+            let t216 = t215
+                + (T::fused(T::fused(-t19, t193, t23 * t164), t98, -t211) - t210);
+            let t217 = T::fused(t29, t99, -T::fused(t79, t93, t56 * t96)) + t216;
+            let t218 = k(0.3333333333333333) * t206;
+            let t219 = T::fused(-k(0.4444444444444444), t189, k(0.4444444444444444));
+            let t220 = t208 + t207;
+            let t221 = T::fused(
+                t220,
+                t186,
+                T::fused(
+                    -T::fused(k(0.8888888888888888), t189, k(0.1111111111111111)),
+                    t205,
+                    t209 * t217,
+                ),
+            );
+            let t222 = T::fused(t219 - t218, t186, T::fused(-t220, t205, t190 * t217));
+            let t223 = T::fused(
+                -k(0.7453559924999299),
+                T::fused(t190, t186, T::fused(-t209, t205, (t219 + t218) * t217)),
+                T::fused(k(0.29814239699997197), t221, k(0.5962847939999439) * t222),
+            );
+            let t224 = T::fused(
                 t77 + T::fused(-k(0.6666666666666666), t67, k(1.3333333333333333) * t69),
                 t92,
                 (t54
                     - T::fused(-k(0.6666666666666666), t44, k(1.3333333333333333) * t46))
                     * t95,
             );
-            (t212, t218, t220, t221, t222)
+            (t210, t221, t222, t223, t224)
         };
         *lambda = [
             -t93,
             -t96,
             -t99,
-            -t221,
-            T::fused(-k(0.8944271909999159), t220, k(0.4472135954999579) * t218),
+            t223,
+            T::fused(-k(0.8944271909999159), t221, k(0.4472135954999579) * t222),
             T::fused(
                 t27 - T::fused(k(0.6666666666666666), t14, k(1.3333333333333333) * t18),
                 t98,
-                -t222,
+                -t224,
             ),
-            T::fused(
-                -k(0.3333333333333333),
-                t212,
-                k(0.6666666666666666) * (t198 - t174),
+            -T::fused(
+                k(0.3333333333333333),
+                t162,
+                k(0.6666666666666666) * (t210 - t192),
             ),
             T::fused(
                 k(0.6666666666666666),
-                t212,
-                -T::fused(k(0.6666666666666666), t174, k(0.3333333333333333) * t198),
+                t162,
+                -T::fused(k(0.3333333333333333), t192, k(0.6666666666666666) * t210),
             ),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1378 operations (610 ±, 765 ×, 3 ÷) and 3 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 1376 operations (610 ±, 763 ×, 3 ÷) and 3 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -9266,24 +9125,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
         let block_wz = y[25];
         let turn0 = y[27];
         let (
-            t2,
-            t5,
+            t1,
+            t4,
             t7,
             t8,
-            t9,
-            t11,
-            t14,
+            t10,
+            t13,
+            t16,
             t17,
-            t18,
-            t22,
-            t23,
+            t19,
+            t20,
+            t21,
             t24,
             t25,
             t26,
             t27,
-            t28,
+            t30,
             t31,
-            t32,
+            t33,
             t34,
             t35,
             t36,
@@ -9292,7 +9151,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t39,
             t40,
             t41,
-            t42,
+            t43,
             t44,
             t50,
             t51,
@@ -9358,66 +9217,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = arm_e0 * arm_e2;
-            let t1 = arm_e1 * arm_e3;
-            let t2 = t1 + t0;
-            let t3 = arm_e0 * arm_e3;
-            let t4 = arm_e1 * arm_e2;
-            let t5 = t4 - t3;
-            let t6 = arm_e0 * arm_e0;
-            let t7 = k(0.5) - T::fused(arm_e1, arm_e1, t6);
-            let t8 = T::fused(
+            let t0 = arm_e0 * arm_e0;
+            let t1 = k(0.5) - T::fused(arm_e1, arm_e1, t0);
+            let t2 = arm_e0 * arm_e3;
+            let t3 = arm_e1 * arm_e2;
+            let t4 = t3 - t2;
+            let t5 = arm_e0 * arm_e2;
+            let t6 = arm_e1 * arm_e3;
+            let t7 = t6 + t5;
+            let t8 = k(0.2) * t7;
+            let t9 = block_e0 * block_e0;
+            let t10 = k(0.5) - T::fused(block_e1, block_e1, t9);
+            let t11 = block_e0 * block_e3;
+            let t12 = block_e1 * block_e2;
+            let t13 = t12 - t11;
+            let t14 = block_e0 * block_e2;
+            let t15 = block_e1 * block_e3;
+            let t16 = t15 + t14;
+            let t17 = block_rx
+                - T::fused(k(0.2), t16, -T::fused(-k(0.06), t10, k(0.1) * t13));
+            let t18 = t17 - (arm_rx + (t8 + T::fused(-k(0.4), t1, k(0.2) * t4)));
+            let t19 = T::fused(
                 -k(0.6666666666666666),
-                t2,
-                k(1.3333333333333333) * (t7 + t5),
+                t7,
+                k(1.3333333333333333) * (t1 + t4),
             );
-            let t9 = k(0.2) * t2;
-            let t10 = block_e0 * block_e0;
-            let t11 = k(0.5) - T::fused(block_e1, block_e1, t10);
-            let t12 = block_e0 * block_e3;
-            let t13 = block_e1 * block_e2;
-            let t14 = t13 - t12;
-            let t15 = block_e0 * block_e2;
-            let t16 = block_e1 * block_e3;
-            let t17 = t16 + t15;
-            let t18 = block_rx
-                - T::fused(k(0.2), t17, -T::fused(-k(0.06), t11, k(0.1) * t14));
-            let t19 = t18 - (arm_rx + (t9 + T::fused(-k(0.4), t7, k(0.2) * t5)));
-            let t20 = arm_e0 * arm_e1;
-            let t21 = arm_e2 * arm_e3;
-            let t22 = t21 - t20;
-            let t23 = k(0.5) - T::fused(arm_e2, arm_e2, t6);
-            let t24 = t4 + t3;
-            let t25 = T::fused(
+            let t20 = t3 + t2;
+            let t21 = k(0.5) - T::fused(arm_e2, arm_e2, t0);
+            let t22 = arm_e0 * arm_e1;
+            let t23 = arm_e2 * arm_e3;
+            let t24 = t23 - t22;
+            let t25 = k(0.2) * t24;
+            let t26 = t12 + t11;
+            let t27 = k(0.5) - T::fused(block_e2, block_e2, t9);
+            let t28 = block_e0 * block_e1;
+            let t29 = block_e2 * block_e3;
+            let t30 = t29 - t28;
+            let t31 = block_ry
+                - T::fused(k(0.2), t30, T::fused(-k(0.06), t26, k(0.1) * t27));
+            let t32 = t31 - (arm_ry + (t25 - T::fused(-k(0.4), t20, k(0.2) * t21)));
+            let t33 = T::fused(
                 k(0.6666666666666666),
-                t22,
-                k(1.3333333333333333) * (t24 + t23),
+                t24,
+                k(1.3333333333333333) * (t20 + t21),
             );
-            let t26 = k(0.2) * t22;
-            let t27 = t13 + t12;
-            let t28 = k(0.5) - T::fused(block_e2, block_e2, t10);
-            let t29 = block_e0 * block_e1;
-            let t30 = block_e2 * block_e3;
-            let t31 = t30 - t29;
-            let t32 = block_ry
-                - T::fused(k(0.2), t31, T::fused(-k(0.06), t27, k(0.1) * t28));
-            let t33 = t32 - (arm_ry + (t26 - T::fused(-k(0.4), t24, k(0.2) * t23)));
-            let t34 = k(0.5) - T::fused(arm_e3, arm_e3, t6);
-            let t35 = t21 + t20;
-            let t36 = t1 - t0;
-            let t37 = T::fused(
+            let t34 = t6 - t5;
+            let t35 = t23 + t22;
+            let t36 = k(0.5) - T::fused(arm_e3, arm_e3, t0);
+            let t37 = k(0.2) * t36;
+            let t38 = t15 - t14;
+            let t39 = t29 + t28;
+            let t40 = k(0.5) - T::fused(block_e3, block_e3, t9);
+            let t41 = block_rz
+                + T::fused(k(0.2), t40, T::fused(k(0.06), t38, k(0.1) * t39));
+            let t42 = t41 - (arm_rz - (t37 - T::fused(k(0.4), t34, k(0.2) * t35)));
+            let t43 = T::fused(
                 -k(0.6666666666666666),
-                t34,
-                k(1.3333333333333333) * (t36 - t35),
+                t36,
+                k(1.3333333333333333) * (t34 - t35),
             );
-            let t38 = k(0.2) * t34;
-            let t39 = t16 - t15;
-            let t40 = t30 + t29;
-            let t41 = k(0.5) - T::fused(block_e3, block_e3, t10);
-            let t42 = block_rz
-                + T::fused(k(0.2), t41, T::fused(k(0.06), t39, k(0.1) * t40));
-            let t43 = t42 - (arm_rz - (t38 - T::fused(k(0.4), t36, k(0.2) * t35)));
-            let t44 = T::fused(t43, t37, T::fused(-t19, t8, t33 * t25));
+            let t44 = T::fused(t43, t42, T::fused(-t19, t18, t33 * t32));
             let t45 = T::fused(
                 -arm_e0,
                 block_e3,
@@ -9452,16 +9311,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             );
             let t49 = k(2.0) * t48;
             let t50 = T::fused(-t48, t49, k(1.0));
-            let t51 = k(1.3333333333333333) * t2;
-            let t52 = T::fused(-k(1.3333333333333333), t7, k(0.6666666666666666) * t5)
+            let t51 = k(1.3333333333333333) * t7;
+            let t52 = T::fused(-k(1.3333333333333333), t1, k(0.6666666666666666) * t4)
                 - t51;
-            let t53 = k(1.3333333333333333) * t22;
-            let t54 = T::fused(-k(1.3333333333333333), t24, k(0.6666666666666666) * t23)
+            let t53 = k(1.3333333333333333) * t24;
+            let t54 = T::fused(-k(1.3333333333333333), t20, k(0.6666666666666666) * t21)
                 + t53;
-            let t55 = k(1.3333333333333333) * t34;
-            let t56 = T::fused(k(1.3333333333333333), t36, k(0.6666666666666666) * t35)
+            let t55 = k(1.3333333333333333) * t36;
+            let t56 = T::fused(k(1.3333333333333333), t34, k(0.6666666666666666) * t35)
                 + t55;
-            let t57 = T::fused(t56, t43, -T::fused(-t52, t19, t54 * t33));
+            let t57 = T::fused(t56, t42, -T::fused(-t52, t18, t54 * t32));
             let t58 = T::fused(
                 arm_e3,
                 block_e3,
@@ -9534,18 +9393,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         -T::fused(-k(10.135135135135135), t57, t50),
                     ),
                 );
-            let t72 = k(2.0) * t39;
-            let t73 = k(2.0) * t40;
-            let t74 = k(2.0) * t41;
+            let t72 = k(2.0) * t38;
+            let t73 = k(2.0) * t39;
+            let t74 = k(2.0) * t40;
             let t75 = T::fused(
                 -k(0.05),
                 T::fused(t72, block_wz, t74 * block_wx),
                 k(0.03) * T::fused(t73, block_wz, t74 * block_wy),
             );
-            let t76 = k(2.0) * t36;
+            let t76 = k(2.0) * t34;
             let t77 = k(2.0) * t35;
             let t78 = T::fused(-t76, arm_wy, t77 * arm_wx);
-            let t79 = k(2.0) * t34;
+            let t79 = k(2.0) * t36;
             let t80 = T::fused(t76, arm_wz, t79 * arm_wx);
             let t81 = T::fused(t77, arm_wz, t79 * arm_wy);
             let t82 = arm_sz
@@ -9555,7 +9414,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t83 = T::fused(
                 -t56,
                 t82,
-                t43
+                t42
                     * T::fused(
                         k(0.6666666666666666),
                         t78,
@@ -9566,18 +9425,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         ),
                     ),
             );
-            let t84 = k(2.0) * t27;
-            let t85 = k(2.0) * t28;
-            let t86 = k(2.0) * t31;
+            let t84 = k(2.0) * t26;
+            let t85 = k(2.0) * t27;
+            let t86 = k(2.0) * t30;
             let t87 = T::fused(
                 -k(0.05),
                 T::fused(-t84, block_wz, t86 * block_wx),
                 k(0.03) * T::fused(t85, block_wz, t86 * block_wy),
             );
-            let t88 = k(2.0) * t24;
-            let t89 = k(2.0) * t23;
+            let t88 = k(2.0) * t20;
+            let t89 = k(2.0) * t21;
             let t90 = T::fused(t88, arm_wy, t89 * arm_wx);
-            let t91 = k(2.0) * t22;
+            let t91 = k(2.0) * t24;
             let t92 = T::fused(-t88, arm_wz, t91 * arm_wx);
             let t93 = T::fused(t89, arm_wz, t91 * arm_wy);
             let t94 = arm_sy
@@ -9587,7 +9446,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t95 = T::fused(
                 -t54,
                 t94,
-                t33
+                t32
                     * T::fused(
                         k(0.6666666666666666),
                         t90,
@@ -9598,18 +9457,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                         ),
                     ),
             );
-            let t96 = k(2.0) * t11;
-            let t97 = k(2.0) * t14;
-            let t98 = k(2.0) * t17;
+            let t96 = k(2.0) * t10;
+            let t97 = k(2.0) * t13;
+            let t98 = k(2.0) * t16;
             let t99 = T::fused(
                 -k(0.05),
                 T::fused(t96, block_wz, t98 * block_wx),
                 k(0.03) * T::fused(-t97, block_wz, t98 * block_wy),
             );
-            let t100 = k(2.0) * t7;
-            let t101 = k(2.0) * t5;
+            let t100 = k(2.0) * t1;
+            let t101 = k(2.0) * t4;
             let t102 = T::fused(t100, arm_wy, t101 * arm_wx);
-            let t103 = k(2.0) * t2;
+            let t103 = k(2.0) * t7;
             let t104 = T::fused(t100, arm_wz, t103 * arm_wx);
             let t105 = T::fused(-t101, arm_wz, t103 * arm_wy);
             let t106 = arm_sx
@@ -9617,20 +9476,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 - (block_sx
                     - T::fused(-k(0.1), T::fused(t96, block_wy, t97 * block_wx), t99));
             let t107 = T::fused(
-                t52,
+                -t52,
                 t106,
-                t19
+                t18
                     * T::fused(
-                        -k(0.6666666666666666),
+                        k(0.6666666666666666),
                         t102,
-                        T::fused(
+                        -T::fused(
                             -k(0.3333333333333333),
                             t104,
                             k(0.6666666666666666) * t105,
                         ),
                     ),
             );
-            let t108 = t107 + t95 - t83;
+            let t108 = t107 - t95 + t83;
             let t109 = k(0.03106238683127572)
                 + T::fused(k(0.0004938271604938272), t44, k(0.11693827160493828) * t57);
             let t110 = k(0.01146962962962963)
@@ -9657,9 +9516,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 ),
             );
             let t115 = T::fused(
-                t37,
+                t43,
                 t82,
-                t43
+                t42
                     * T::fused(
                         -k(0.6666666666666666),
                         t81 + t80,
@@ -9667,9 +9526,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
             );
             let t116 = T::fused(
-                -t25,
+                -t33,
                 t94,
-                t33
+                t32
                     * T::fused(
                         -k(0.6666666666666666),
                         t93 + t92,
@@ -9677,9 +9536,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                     ),
             );
             let t117 = T::fused(
-                -t8,
+                -t19,
                 t106,
-                t19
+                t18
                     * T::fused(
                         k(0.6666666666666666),
                         t105 + t104,
@@ -9698,7 +9557,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t67 * t67,
                 t119
                     * T::fused(
-                        k(0.11693827160493828),
+                        -k(0.11693827160493828),
                         t108 * t71,
                         T::fused(-t67, t112, t118 * t114),
                     ),
@@ -9758,7 +9617,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 T::fused(-k(0.6), t133, k(0.02) * t67),
             );
             let t135 = T::fused(
-                -T::fused(k(0.25), t119 * t112, T::fused(t118, t69, t108 * t68)),
+                -T::fused(k(0.25), t119 * t112, -T::fused(-t118, t69, t108 * t68)),
                 t121,
                 T::fused(
                     k(0.3313333333333333),
@@ -9797,7 +9656,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t139 = t67 * T::fused(-k(2.25), t67, t121);
             let t140 = k(0.5333333333333333) * t119;
             let t141 = T::fused(
-                -T::fused(-k(0.9375), t119 * t114, t108),
+                T::fused(k(0.9375), t119 * t114, t108),
                 t140,
                 T::fused(
                     -k(40.0),
@@ -9821,10 +9680,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t147 = k(25.0) * t57;
             let t148 = k(0.8) * t108;
             let t149 = T::fused(
-                t140,
+                -t140,
                 T::fused(k(0.10962962962962963), t119 * t71, t118),
                 t148
-                    - (t147
+                    + (t147
                         + T::fused(
                             k(2.2222222222222223),
                             t63,
@@ -9838,7 +9697,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t154 = T::fused(
                 t153,
                 t143,
-                T::fused(t150, t135, T::fused(t68, t139, t149)),
+                T::fused(t150, t135, -T::fused(-t68, t139, t149)),
             );
             let t155 = T::fused(
                 t153,
@@ -9908,12 +9767,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t189 = t174 + T::fused(-t181, t172, t184 * t173);
             let t190 = t187 + t186;
             let t191 = T::fused(
-                -k(0.6666666666666666),
+                k(0.6666666666666666),
                 t108,
                 k(0.3333333333333333) * t118,
             );
             let t192 = T::fused(
-                -k(0.3333333333333333),
+                k(0.3333333333333333),
                 t108,
                 k(0.6666666666666666) * t118,
             );
@@ -9924,37 +9783,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 T::fused(arm_wy, t191, arm_wz * t192),
                 T::fused(-arm_wy, t193, arm_wz * t194),
             );
-            let t196 = k(0.6666666666666666) * (t108 + t118);
+            let t196 = k(0.6666666666666666) * (t108 - t118);
             let t197 = T::fused(arm_wy, t179, arm_wz * t181);
             let t198 = T::fused(
                 k(2.0),
-                T::fused(-arm_wz, t196, arm_wx * t191),
+                T::fused(arm_wz, t196, arm_wx * t191),
                 T::fused(arm_wz, t197, arm_wx * t193),
             );
             let t199 = T::fused(
-                -k(2.0),
-                T::fused(arm_wx, t192, arm_wy * t196),
+                k(2.0),
+                T::fused(-arm_wx, t192, arm_wy * t196),
                 T::fused(arm_wx, t194, arm_wy * t197),
             );
             (
-                t2,
-                t5,
+                t1,
+                t4,
                 t7,
                 t8,
-                t9,
-                t11,
-                t14,
+                t10,
+                t13,
+                t16,
                 t17,
-                t18,
-                t22,
-                t23,
+                t19,
+                t20,
+                t21,
                 t24,
                 t25,
                 t26,
                 t27,
-                t28,
+                t30,
                 t31,
-                t32,
+                t33,
                 t34,
                 t35,
                 t36,
@@ -9963,7 +9822,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t39,
                 t40,
                 t41,
-                t42,
+                t43,
                 t44,
                 t50,
                 t51,
@@ -10041,13 +9900,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t243,
             t245,
             t246,
-            t282,
+            t298,
             t303,
-            t319,
-            t329,
+            t323,
             t330,
-            t331,
             t332,
+            t333,
+            t334,
         ) = {
             let t200 = T::fused(k(0.1), block_wx, k(0.03) * block_wz);
             let t201 = T::fused(-k(0.05), block_wx, k(0.03) * block_wy);
@@ -10140,218 +9999,212 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             let t235 = T::fused(t86, t233, T::fused(t84, t221, t85 * t228));
             let t236 = T::fused(t74, t233, T::fused(-t72, t221, t73 * t228));
             let t237 = k(40.0) * (k(0.05) + t44);
-            let t238 = T::fused(t52, t147, -T::fused(t52, t148, t8 * t237));
+            let t238 = T::fused(t52, t147, -T::fused(-t52, t148, t19 * t237));
             let t239 = T::fused(-k(0.6), t234, k(0.6) - t238);
             let t240 = T::fused(-k(1.5), t175, k(1.5) + t238) + t239;
-            let t241 = T::fused(t54, t147, -T::fused(t54, t148, t25 * t237));
+            let t241 = T::fused(t54, t147, -T::fused(-t54, t148, t33 * t237));
             let t242 = T::fused(k(0.6), t235, k(5.4) - t241);
             let t243 = T::fused(k(1.5), t176, k(13.5) + t241) + t242;
-            let t244 = T::fused(t56, t147, T::fused(-t56, t148, t37 * t237));
+            let t244 = T::fused(t56, t147, T::fused(t56, t148, t43 * t237));
             let t245 = T::fused(k(0.6), t236, k(1.8) - t244);
             let t246 = T::fused(k(1.5), t177, k(4.5) + t244) + t245;
-            let t247 = T::fused(
-                T::fused(-t88, t181, t89 * t184),
-                t242,
-                T::fused(-t100, t181, t101 * t184) * t239,
+            let t247 = k(0.05) * arm_wy;
+            let t248 = arm_wy * arm_wy;
+            let t249 = arm_wz * arm_wz;
+            let t250 = k(0.02) * arm_wz;
+            let t251 = k(0.03) * arm_wy;
+            let t252 = T::fused(
+                arm_wx,
+                t251 + t250,
+                T::fused(arm_wz, t247, k(0.01) * (t249 - t248)),
             );
-            let t248 = T::fused(
-                T::fused(k(0.1), t27, k(0.06) * t28),
-                t242,
-                T::fused(k(0.1), t11, k(0.06) * t14) * t239,
-            );
-            let t249 = T::fused(t73, t56, T::fused(t97, t52, t85 * t54));
-            let t250 = T::fused(t72, t56, -T::fused(t96, t52, t84 * t54));
-            let t251 = T::fused(-k(0.03), t249, k(0.05) * t250);
-            let t252 = T::fused(t73, t37, -T::fused(t97, t8, t85 * t25));
-            let t253 = T::fused(t72, t37, T::fused(t96, t8, t84 * t25));
-            let t254 = T::fused(
-                t147,
-                t251,
-                T::fused(-t148, t251, t237 * T::fused(-k(0.03), t252, k(0.05) * t253)),
-            );
-            let t255 = k(0.4) * t133;
-            let t256 = k(0.013333333333333334) * t67;
-            let t257 = block_wx * block_wx;
-            let t258 = block_wy * block_wy;
-            let t259 = k(0.003) * block_wx;
-            let t260 = k(0.002) * block_wy;
+            let t253 = arm_rx - t17;
+            let t254 = arm_ry - t31;
+            let t255 = arm_rz - t41;
+            let t256 = T::fused(t79, t255, -T::fused(t103, t253, t91 * t254));
+            let t257 = T::fused(t77, t255, -T::fused(-t101, t253, t89 * t254));
+            let t258 = k(0.6666666666666666) * t257;
+            let t259 = T::fused(-k(0.3333333333333333), t256, t258);
+            let t260 = k(0.6666666666666666) * t256;
             let t261 = T::fused(
-                block_wz,
-                t260 + t259,
-                -T::fused(-k(0.001), t258 - t257, k(0.01) * (block_wx * block_wy)),
-            );
-            let t262 = t261 + (t256 - (t255 - t254))
-                - T::fused(k(0.025), t220, -T::fused(-k(0.002), t227, k(0.003) * t217));
-            let t263 = t262
-                - T::fused(T::fused(-k(0.1), t39, k(0.06) * t40), t245, t248);
-            let t264 = T::fused(
-                -T::fused(k(0.2), t27, k(0.06) * t31),
-                t242,
-                T::fused(-k(0.2), t11, k(0.06) * t17) * t239,
-            );
-            let t265 = T::fused(t74, t56, T::fused(-t98, t52, t86 * t54));
-            let t266 = T::fused(-k(0.1), t250, k(0.03) * t265);
-            let t267 = T::fused(t74, t37, -T::fused(-t98, t8, t86 * t25));
-            let t268 = T::fused(
                 t147,
-                t266,
-                T::fused(-t148, t266, t237 * T::fused(-k(0.1), t253, k(0.03) * t267)),
+                t259,
+                T::fused(t148, t259, t237 * T::fused(-k(0.3333333333333333), t257, t260)),
             );
-            let t269 = block_wz * block_wz;
-            let t270 = k(0.001) * block_wz;
-            let t271 = T::fused(
-                block_wy,
-                t270 + t259,
-                -T::fused(-k(0.002), t269 - t257, k(0.005) * (block_wx * block_wz)),
+            let t262 = k(0.2) * t133;
+            let t263 = k(0.006666666666666667) * t67;
+            let t264 = T::fused(k(0.03), t165, -T::fused(-k(0.3), t172, k(0.02) * t173))
+                + (t263 - (t262 + t261) - t252);
+            let t265 = k(0.005) * block_wz;
+            let t266 = block_wy * block_wy;
+            let t267 = block_wz * block_wz;
+            let t268 = k(0.001) * block_wz;
+            let t269 = k(0.002) * block_wy;
+            let t270 = T::fused(
+                block_wx,
+                t269 - t268,
+                T::fused(-block_wy, t265, k(0.003) * (t267 - t266)),
             );
-            let t272 = t271 - (t256 - (t255 + t268))
-                - T::fused(k(0.003), t220, -T::fused(k(0.001), t227, t232));
-            let t273 = t272
-                - T::fused(-T::fused(-k(0.2), t39, k(0.06) * t41), t245, t264);
-            let t274 = T::fused(
-                -T::fused(-k(0.2), t28, k(0.1) * t31),
-                t242,
-                T::fused(k(0.2), t14, k(0.1) * t17) * t239,
-            );
-            let t275 = T::fused(-k(0.05), t265, k(0.1) * t249);
+            let t271 = T::fused(t74, t56, T::fused(-t98, t52, t86 * t54));
+            let t272 = T::fused(t73, t56, T::fused(t97, t52, t85 * t54));
+            let t273 = T::fused(-k(0.05), t271, k(0.1) * t272);
+            let t274 = T::fused(t74, t43, -T::fused(-t98, t19, t86 * t33));
+            let t275 = T::fused(t73, t43, -T::fused(t97, t19, t85 * t33));
             let t276 = T::fused(
                 t147,
-                t275,
-                T::fused(-t148, t275, t237 * T::fused(-k(0.05), t267, k(0.1) * t252)),
+                t273,
+                T::fused(t148, t273, t237 * T::fused(-k(0.05), t274, k(0.1) * t275)),
             );
-            let t277 = k(0.2) * t133;
-            let t278 = k(0.006666666666666667) * t67;
-            let t279 = T::fused(
-                block_wx,
-                t260 - t270,
-                -T::fused(-k(0.003), t269 - t258, k(0.005) * (block_wy * block_wz)),
-            );
-            let t280 = t279 - (t278 - (t277 + t276))
-                + T::fused(k(0.002), t220, T::fused(k(0.02), t227, k(0.001) * t217));
-            let t281 = t280
-                + T::fused(-T::fused(-k(0.2), t40, k(0.1) * t41), t245, t274);
-            let t282 = T::fused(-t207, t263, T::fused(t210, t273, t190 * t281));
-            let t283 = arm_rx - t18;
-            let t284 = arm_ry - t32;
-            let t285 = arm_rz - t42;
-            let t286 = T::fused(t77, t285, -T::fused(-t101, t283, t89 * t284));
-            let t287 = k(0.6666666666666666) * t286;
-            let t288 = T::fused(t76, t285, T::fused(-t100, t283, t88 * t284));
-            let t289 = k(0.3333333333333333) * t288;
-            let t290 = t289 - t287;
-            let t291 = T::fused(
-                t147,
-                t290,
-                -T::fused(t148, t290, t237 * (k(0.6666666666666666) * (t286 + t288))),
-            );
-            let t292 = arm_wx * arm_wx;
-            let t293 = arm_wy * arm_wy;
-            let t294 = k(0.01) * arm_wx;
-            let t295 = k(0.03) * arm_wy;
-            let t296 = T::fused(
-                arm_wz,
-                t295 + t294,
-                -T::fused(k(0.02), t293 - t292, k(0.05) * (arm_wx * arm_wy)),
-            );
-            let t297 = t296 + (t256 - (t255 - t291))
-                - (t169 + T::fused(k(0.03), t172, k(0.01) * t173));
-            let t298 = t297
-                + (t282 - T::fused(T::fused(t76, t181, t77 * t184), t245, t247));
-            let t299 = T::fused(
-                T::fused(-k(0.2), t24, k(0.4) * t23),
-                t243,
-                T::fused(-k(0.2), t7, k(0.4) * t5) * t240,
-            );
-            let t300 = T::fused(T::fused(k(0.2), t36, k(0.4) * t35), t246, t299) - t298;
-            let t301 = T::fused(k(0.5555555555555556), t63, k(0.4444444444444444));
-            let t302 = T::fused(
-                -T::fused(-t88, t179, t91 * t184),
+            let t277 = T::fused(k(0.002), t220, T::fused(k(0.02), t227, k(0.001) * t217))
+                - (t263 - (t262 + t276) - t270);
+            let t278 = T::fused(
+                -T::fused(-k(0.2), t27, k(0.1) * t30),
                 t242,
-                T::fused(t100, t179, t103 * t184) * t239,
+                T::fused(k(0.2), t13, k(0.1) * t16) * t239,
             );
-            let t303 = T::fused(-t218, t263, T::fused(t207, t273, t188 * t281));
-            let t304 = T::fused(t79, t285, -T::fused(t103, t283, t91 * t284));
-            let t305 = k(0.6666666666666666) * (t304 - t288);
-            let t306 = k(0.6666666666666666) * t304;
-            let t307 = t255
-                + T::fused(t147, t305, T::fused(-t148, t305, t237 * (t289 + t306)));
-            let t308 = arm_wz * arm_wz;
-            let t309 = k(0.02) * arm_wz;
-            let t310 = T::fused(
-                arm_wy,
-                t309 - t294,
-                T::fused(-k(0.03), t308 - t292, k(0.1) * (arm_wx * arm_wz)),
+            let t279 = T::fused(-T::fused(-k(0.2), t39, k(0.1) * t40), t245, t278)
+                + t277;
+            let t280 = block_wx * block_wx;
+            let t281 = k(0.003) * block_wx;
+            let t282 = T::fused(
+                block_wy,
+                t268 + t281,
+                T::fused(-block_wx, t265, k(0.002) * (t267 - t280)),
             );
-            let t311 = t310 + (t256 - t307)
-                - T::fused(k(0.01), t165, T::fused(-k(0.02), t172, k(0.25) * t173));
-            let t312 = t311
-                + (t303 + T::fused(-T::fused(t76, t179, t79 * t184), t245, t302));
-            let t313 = T::fused(
-                -(k(0.4) * t34),
-                t246,
-                T::fused(-(k(0.4) * t22), t243, k(0.4) * t2 * t240),
+            let t283 = T::fused(t72, t56, -T::fused(t96, t52, t84 * t54));
+            let t284 = T::fused(-k(0.1), t283, k(0.03) * t271);
+            let t285 = T::fused(t72, t43, T::fused(t96, t19, t84 * t33));
+            let t286 = T::fused(
+                t147,
+                t284,
+                T::fused(t148, t284, t237 * T::fused(-k(0.1), t285, k(0.03) * t274)),
             );
-            let t314 = t313 + t312;
-            let t315 = k(0.6666666666666666) * t65;
-            let t316 = T::fused(-k(0.2222222222222222), t63, k(0.2222222222222222));
-            let t317 = t316 - t315;
-            let t318 = T::fused(
+            let t287 = k(0.4) * t133;
+            let t288 = k(0.013333333333333334) * t67;
+            let t289 = T::fused(k(0.003), t220, -T::fused(k(0.001), t227, t232))
+                + (t288 - (t287 + t286) - t282);
+            let t290 = T::fused(
+                -T::fused(k(0.2), t26, k(0.06) * t30),
+                t242,
+                T::fused(-k(0.2), t10, k(0.06) * t16) * t239,
+            );
+            let t291 = T::fused(-T::fused(-k(0.2), t38, k(0.06) * t40), t245, t290)
+                + t289;
+            let t292 = T::fused(
+                T::fused(k(0.1), t26, k(0.06) * t27),
+                t242,
+                T::fused(k(0.1), t10, k(0.06) * t13) * t239,
+            );
+            let t293 = T::fused(-k(0.03), t272, k(0.05) * t283);
+            let t294 = T::fused(
+                t293,
+                t147,
+                T::fused(t293, t148, T::fused(-k(0.03), t275, k(0.05) * t285) * t237),
+            );
+            let t295 = T::fused(
+                block_wz,
+                t269 + t281,
+                -T::fused(-k(0.001), t266 - t280, k(0.01) * (block_wx * block_wy)),
+            );
+            let t296 = t295 + (t288 - (t287 - t294))
+                - T::fused(k(0.025), t220, -T::fused(-k(0.002), t227, k(0.003) * t217));
+            let t297 = t296
+                - T::fused(T::fused(-k(0.1), t38, k(0.06) * t39), t245, t292);
+            let t298 = T::fused(t188, t297, T::fused(-t183, t279, t190 * t291));
+            let t299 = T::fused(
                 -T::fused(-t89, t179, t91 * t181),
                 t242,
                 T::fused(t101, t179, t103 * t181) * t239,
             );
-            let t319 = T::fused(-t188, t263, T::fused(t190, t273, t183 * t281));
-            let t320 = T::fused(-k(0.3333333333333333), t304, t287);
+            let t300 = T::fused(-T::fused(-t77, t179, t79 * t181), t245, t299) - t298
+                + t264;
+            let t301 = T::fused(-t37, t246, T::fused(-t25, t243, t8 * t240)) + t300;
+            let t302 = T::fused(k(0.5555555555555556), t63, k(0.4444444444444444));
+            let t303 = T::fused(t218, t297, T::fused(-t188, t279, t207 * t291));
+            let t304 = T::fused(
+                -T::fused(-t88, t179, t91 * t184),
+                t242,
+                T::fused(t100, t179, t103 * t184) * t239,
+            );
+            let t305 = T::fused(t76, t255, T::fused(-t100, t253, t88 * t254));
+            let t306 = k(0.6666666666666666) * (t256 - t305);
+            let t307 = k(0.3333333333333333) * t305;
+            let t308 = t287
+                + T::fused(t147, t306, T::fused(t148, t306, t237 * (t307 + t260)));
+            let t309 = arm_wx * arm_wx;
+            let t310 = k(0.01) * arm_wx;
+            let t311 = T::fused(
+                arm_wy,
+                t250 - t310,
+                T::fused(-k(0.03), t249 - t309, k(0.1) * (arm_wx * arm_wz)),
+            );
+            let t312 = t311 + (t288 - t308)
+                - T::fused(k(0.01), t165, T::fused(-k(0.02), t172, k(0.25) * t173));
+            let t313 = t312
+                + (T::fused(-T::fused(t76, t179, t79 * t184), t245, t304) - t303);
+            let t314 = T::fused(
+                -(k(0.4) * t36),
+                t246,
+                T::fused(-(k(0.4) * t24), t243, k(0.4) * t7 * t240),
+            );
+            let t315 = t314 + t313;
+            let t316 = k(0.6666666666666666) * t65;
+            let t317 = T::fused(-k(0.2222222222222222), t63, k(0.2222222222222222));
+            let t318 = t317 + t316;
+            let t319 = T::fused(
+                arm_wz,
+                t251 + t310,
+                -T::fused(arm_wx, t247, k(0.02) * (t248 - t309)),
+            );
+            let t320 = t307 - t258;
             let t321 = T::fused(
                 t147,
                 t320,
-                T::fused(
-                    -t148,
-                    t320,
-                    t237 * T::fused(-k(0.3333333333333333), t286, t306),
-                ),
+                -T::fused(-t148, t320, t237 * (k(0.6666666666666666) * (t257 + t305))),
             );
-            let t322 = T::fused(
-                arm_wx,
-                t295 + t309,
-                T::fused(k(0.01), t308 - t293, k(0.05) * (arm_wy * arm_wz)),
+            let t322 = t169 + T::fused(k(0.03), t172, k(0.01) * t173)
+                - (t288 - (t287 - t321) + t319);
+            let t323 = T::fused(t207, t297, T::fused(-t190, t279, t210 * t291));
+            let t324 = T::fused(
+                T::fused(-t88, t181, t89 * t184),
+                t242,
+                T::fused(-t100, t181, t101 * t184) * t239,
             );
-            let t323 = t322 - (t278 - (t277 + t321))
-                - T::fused(k(0.03), t165, -T::fused(-k(0.3), t172, k(0.02) * t173));
-            let t324 = t323
-                - (t319 + T::fused(-T::fused(-t77, t179, t79 * t181), t245, t318));
-            let t325 = T::fused(-t38, t246, T::fused(-t26, t243, t9 * t240)) - t324;
-            let t326 = k(0.3333333333333333) * t65;
-            let t327 = T::fused(-k(0.4444444444444444), t63, k(0.4444444444444444));
-            let t328 = t316 + t315;
-            let t329 = T::fused(
-                -t328,
-                t300,
-                T::fused(
-                    -T::fused(k(0.8888888888888888), t63, k(0.1111111111111111)),
-                    t314,
-                    t317 * t325,
-                ),
+            let t325 = T::fused(T::fused(t76, t181, t77 * t184), t245, t324) + t323
+                + t322;
+            let t326 = T::fused(
+                T::fused(-k(0.2), t20, k(0.4) * t21),
+                t243,
+                T::fused(-k(0.2), t1, k(0.4) * t4) * t240,
             );
-            let t330 = T::fused(
-                -(t327 - t326),
-                t300,
-                T::fused(-t328, t314, t301 * t325),
-            );
-            let t331 = T::fused(
-                -k(0.7453559924999299),
-                T::fused(-t301, t300, T::fused(-t317, t314, (t327 + t326) * t325)),
-                T::fused(k(0.29814239699997197), t329, k(0.5962847939999439) * t330),
-            );
+            let t327 = T::fused(T::fused(k(0.2), t34, k(0.4) * t35), t246, t326) + t325;
+            let t328 = k(0.3333333333333333) * t65;
+            let t329 = T::fused(-k(0.4444444444444444), t63, k(0.4444444444444444));
+            let t330 = T::fused(t329 - t328, t327, T::fused(-t302, t301, t318 * t315));
+            let t331 = t317 - t316;
             let t332 = T::fused(
+                t318,
+                t327,
+                T::fused(
+                    -t331,
+                    t301,
+                    T::fused(k(0.8888888888888888), t63, k(0.1111111111111111)) * t315,
+                ),
+            );
+            let t333 = T::fused(
+                k(0.7453559924999299),
+                T::fused(t302, t327, T::fused(-(t329 + t328), t301, t331 * t315)),
+                -T::fused(k(0.5962847939999439), t330, k(0.29814239699997197) * t332),
+            );
+            let t334 = T::fused(
                 -(t53
                     - T::fused(
                         -k(0.6666666666666666),
-                        t24,
-                        k(1.3333333333333333) * t23,
+                        t20,
+                        k(1.3333333333333333) * t21,
                     )),
                 t242,
-                (t51 + T::fused(-k(0.6666666666666666), t7, k(1.3333333333333333) * t5))
+                (t51 + T::fused(-k(0.6666666666666666), t1, k(1.3333333333333333) * t4))
                     * t239,
             );
             (
@@ -10365,13 +10218,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
                 t243,
                 t245,
                 t246,
-                t282,
+                t298,
                 t303,
-                t319,
-                t329,
+                t323,
                 t330,
-                t331,
                 t332,
+                t333,
+                t334,
             )
         };
         *out = [
@@ -10390,19 +10243,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for CarriedBlock<T> {
             t240,
             -t243,
             t246,
-            t331,
-            T::fused(-k(0.8944271909999159), t329, k(0.4472135954999579) * t330),
+            t333,
+            T::fused(-k(0.4472135954999579), t330, k(0.8944271909999159) * t332),
             T::fused(
                 -(t55
-                    - T::fused(k(0.6666666666666666), t36, k(1.3333333333333333) * t35)),
+                    - T::fused(k(0.6666666666666666), t34, k(1.3333333333333333) * t35)),
                 t245,
-                t332,
+                t334,
             ),
-            T::fused(k(0.3333333333333333), t282, k(0.6666666666666666) * (t319 - t303)),
             T::fused(
-                -k(0.6666666666666666),
-                t282,
-                T::fused(k(0.3333333333333333), t303, k(0.6666666666666666) * t319),
+                -k(0.3333333333333333),
+                t323,
+                k(0.6666666666666666) * (t303 - t298),
+            ),
+            T::fused(
+                k(0.6666666666666666),
+                t323,
+                -T::fused(k(0.6666666666666666), t298, k(0.3333333333333333) * t303),
             ),
         ];
     }
@@ -10416,7 +10273,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1657 operations (732 ±, 922 ×, 3 ÷) and 8 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1650 operations (732 ±, 915 ×, 3 ÷) and 8 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -10434,32 +10291,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
         let u2 = x[6];
         let u3 = x[7];
         let (
-            t6,
+            t16,
             t17,
-            t34,
-            t49,
-            t102,
-            t117,
-            t140,
-            t146,
-            t151,
+            t31,
+            t51,
+            t107,
+            t122,
+            t144,
+            t150,
             t155,
-            t160,
-            t161,
-            t163,
+            t159,
             t164,
             t165,
-            t166,
             t167,
             t168,
             t169,
             t170,
             t171,
             t172,
+            t173,
+            t174,
             t175,
             t176,
-            t177,
-            t178,
             t179,
             t180,
             t181,
@@ -10469,10 +10322,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             t185,
             t186,
             t187,
+            t188,
             t189,
             t190,
             t191,
-            t192,
             t193,
             t194,
             t195,
@@ -10481,135 +10334,161 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = x0.sin();
-            let t1 = x0.cos();
-            let t2 = x3.sin();
-            let t3 = x3.cos();
-            let t4 = T::fused(
-                k(0.348),
-                t2 * T::fused(-k(0.8714346530438485), t0, t1),
-                k(0.3313333333333333) * (t3 * T::fused(k(0.1790744466800805), t0, t1)),
+            let t0 = x3.cos();
+            let t1 = x3.sin();
+            let t2 = T::fused(
+                k(0.9521072796934866),
+                T::fused(k(12.072434607645874), x1, t1),
+                -T::fused(k(4.022988505747127), x2 - k(1.7985714285714285), t0),
             );
+            let t3 = k(0.348) * t2;
+            let t4 = x0.sin();
             let t5 = T::fused(
-                -k(0.027555555555555555),
-                t3,
-                k(0.012444444444444444) * t2,
-            );
-            let t6 = k(68.08553560621344) * t5;
-            let t7 = k(1.4) * t1;
-            let t8 = k(1.5777777777777777) * t0;
-            let t9 = T::fused(t6, t4, t8 + t7);
-            let t10 = T::fused(
-                k(0.012444444444444444),
-                t3,
-                k(0.027555555555555555) * t2,
-            );
-            let t11 = k(2.25) * t10;
-            let t12 = t6 * t11;
-            let t13 = k(2.25) * t5;
-            let t14 = t6 * t13;
-            let t15 = k(1.0) / (k(0.6) - t14);
-            let t16 = t15 * t12;
-            let t17 = k(68.08553560621344) * t10;
-            let t18 = k(4.0) * t1;
-            let t19 = k(2.2222222222222223) * t0;
-            let t20 = T::fused(t16, t9, T::fused(t17, t4, t19 - t18));
-            let t21 = x1 * t5;
-            let t22 = x2 * t10;
-            let t23 = k(0.002191111111111111) * t2;
-            let t24 = k(0.010245185185185185) * t3;
-            let t25 = k(0.014687407407407408) - t24 - t23 - t22 + t21;
-            let t26 = t17 * t25;
-            let t27 = t6 * t25;
-            let t28 = t27
-                - (T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) + t5);
-            let t29 = T::fused(
-                t16,
-                t28,
-                t26
-                    + (T::fused(k(0.26666666666666666), x2, k(0.03911111111111111))
-                        - t10),
-            );
-            let t30 = t11 * t17;
-            let t31 = k(1.0) / T::fused(t12, t16, -(k(0.6) - t30));
-            let t32 = t31 * t29;
-            let t33 = t15 * t28;
-            let t34 = k(30.26023804720597) * t25;
-            let t35 = T::fused(
                 k(5.202735710796287),
                 x2,
                 T::fused(
                     k(7.327796775769419),
                     x1,
-                    -T::fused(k(0.1956521739130435), t2 - k(9.549313358302122), t3),
+                    -T::fused(k(0.1956521739130435), t1 - k(9.549313358302122), t0),
                 ),
             );
+            let t6 = k(0.3032592592592593) * t5;
+            let t7 = x0.cos();
+            let t8 = T::fused(
+                k(0.348),
+                t1 * T::fused(-k(0.8714346530438485), t4, t7),
+                k(0.3313333333333333) * (t0 * T::fused(k(0.1790744466800805), t4, t7)),
+            );
+            let t9 = T::fused(
+                -k(0.027555555555555555),
+                t0,
+                k(0.012444444444444444) * t1,
+            );
+            let t10 = x1 * t9;
+            let t11 = T::fused(
+                k(0.012444444444444444),
+                t0,
+                k(0.027555555555555555) * t1,
+            );
+            let t12 = x2 * t11;
+            let t13 = k(0.002191111111111111) * t1;
+            let t14 = k(0.010245185185185185) * t0;
+            let t15 = k(0.014687407407407408) - t14 - t13 - t12 + t10;
+            let t16 = k(30.26023804720597) * t15;
+            let t17 = k(68.08553560621344) * t9;
+            let t18 = k(1.4) * t7;
+            let t19 = k(1.5777777777777777) * t4;
+            let t20 = T::fused(t17, t8, t19 + t18);
+            let t21 = t17 * t15;
+            let t22 = t21
+                - (T::fused(k(0.26666666666666666), x1, k(0.06822222222222223)) + t9);
+            let t23 = k(2.25) * t9;
+            let t24 = t17 * t23;
+            let t25 = k(1.0) / (k(0.6) - t24);
+            let t26 = t25 * t22;
+            let t27 = T::fused(t26, t20, T::fused(t16, t8, T::fused(t4, t3, t7 * t6)));
+            let t28 = k(2.25) * t11;
+            let t29 = t17 * t28;
+            let t30 = t25 * t29;
+            let t31 = k(68.08553560621344) * t11;
+            let t32 = k(4.0) * t7;
+            let t33 = k(2.2222222222222223) * t4;
+            let t34 = T::fused(t30, t20, T::fused(t31, t8, t33 - t32));
+            let t35 = t31 * t15;
             let t36 = T::fused(
-                k(0.9521072796934866),
-                T::fused(k(12.072434607645874), x1, t2),
-                -T::fused(k(4.022988505747127), x2 - k(1.7985714285714285), t3),
+                t30,
+                t22,
+                t35
+                    + (T::fused(k(0.26666666666666666), x2, k(0.03911111111111111))
+                        - t11),
             );
-            let t37 = T::fused(
-                t34,
-                t4,
-                T::fused(k(0.3032592592592593), t1 * t35, k(0.348) * (t0 * t36)),
-            );
-            let t38 = k(0.03106238683127572)
+            let t37 = t28 * t31;
+            let t38 = k(1.0) / T::fused(t29, t30, -(k(0.6) - t37));
+            let t39 = t38 * t36;
+            let t40 = k(0.03106238683127572)
                 - T::fused(-k(0.11693827160493828), x1, k(0.0004938271604938272) * x2);
-            let t39 = T::fused(-k(0.007395637860082305), t3, t38);
-            let t40 = k(0.01146962962962963)
+            let t41 = T::fused(-k(0.007395637860082305), t0, t40);
+            let t42 = k(0.01146962962962963)
                 - T::fused(-k(0.06755555555555555), x1, k(0.03155555555555556) * x2);
-            let t41 = T::fused(k(0.002714074074074074), t3, t40);
-            let t42 = x1 + k(0.48233333333333334);
-            let t43 = k(0.1259259259259259) * x2;
-            let t44 = T::fused(-k(0.11851851851851852), x1, k(0.0066172839506172835));
-            let t45 = t44 + t43;
-            let t46 = T::fused(
+            let t43 = T::fused(k(0.002714074074074074), t0, t42);
+            let t44 = x1 + k(0.48233333333333334);
+            let t45 = k(0.1259259259259259) * x2;
+            let t46 = T::fused(-k(0.11851851851851852), x1, k(0.0066172839506172835));
+            let t47 = t46 + t45;
+            let t48 = T::fused(
                 x2,
-                t45,
+                t47,
                 T::fused(
                     k(0.5925925925925926),
-                    x1 * t42,
-                    T::fused(t2, t41, k(0.3062334156378601)),
+                    x1 * t44,
+                    T::fused(t1, t43, k(0.3062334156378601)),
                 ),
             );
-            let t47 = T::fused(
-                t29,
-                t32,
-                -T::fused(t28, t33, T::fused(t25, t34, -T::fused(-t3, t39, t46))),
+            let t49 = T::fused(
+                t36,
+                t39,
+                -T::fused(t22, t26, T::fused(t15, t16, -T::fused(-t0, t41, t48))),
             );
-            let t48 = k(1.0) / t47;
-            let t49 = t48 * T::fused(-t32, t20, T::fused(t33, t9, t37));
-            let t50 = T::fused(k(0.06755555555555555), t3, k(0.11693827160493828) * t2);
-            let t51 = k(2.0) * u0;
-            let t52 = t51 * (k(0.25) * (u0 * t50));
-            let t53 = k(0.5333333333333333) * u0;
-            let t54 = t53 * (k(0.1111111111111111) * u0);
-            let t55 = T::fused(t6, t52, t54);
-            let t56 = T::fused(
-                t16,
-                t55,
-                T::fused(t17, t52, T::fused(-t53, k(1.1111111111111112) * u0, k(25.0))),
+            let t50 = k(1.0) / t49;
+            let t51 = t50 * T::fused(t39, t34, -t27);
+            let t52 = k(0.348)
+                * T::fused(k(0.8714346530438485), t7 + k(0.5937957987298486), t4);
+            let t53 = k(0.3313333333333333)
+                * T::fused(k(0.1790744466800805), t7, -(t4 - k(0.8893360160965795)));
+            let t54 = T::fused(
+                t0,
+                t53,
+                -T::fused(t1, t52, T::fused(k(0.02), u3, k(0.6) * x3)),
             );
-            let t57 = T::fused(-t5, t6, k(0.26666666666666666));
-            let t58 = T::fused(-t16, t57, t5 * t17);
-            let t59 = t31 * t58;
-            let t60 = k(2.25) * u3;
-            let t61 = t60 + t51;
-            let t62 = u3 * t61;
-            let t63 = t62 * t5;
-            let t64 = k(2.4442567567567566)
+            let t55 = T::fused(
+                k(0.005428148148148148),
+                T::fused(-k(2.7249211547792336), t1, t0),
+                t42,
+            );
+            let t56 = k(0.002714074074074074) - T::fused(t1, t40, t0 * t55);
+            let t57 = u0 * t56;
+            let t58 = T::fused(k(0.25), t57, T::fused(-u2, t11, u1 * t9));
+            let t59 = k(2.0) * u0;
+            let t60 = T::fused(t59, t58, -t54);
+            let t61 = t17 * t60;
+            let t62 = k(2.25) * u3;
+            let t63 = t62 + t59;
+            let t64 = u3 * t63;
+            let t65 = t64 * t11;
+            let t66 = k(0.0004938271604938272) * t0;
+            let t67 = k(0.03155555555555556) * t1;
+            let t68 = T::fused(k(0.2518518518518518), x2, t46 - t67 + t66);
+            let t69 = u0 * t68;
+            let t70 = T::fused(-k(0.9375), t69, u1);
+            let t71 = k(0.5333333333333333) * u0;
+            let t72 = T::fused(
+                t71,
+                t70,
+                T::fused(
+                    k(40.0),
+                    x2,
+                    T::fused(
+                        k(1.5777777777777777),
+                        t7,
+                        T::fused(-k(1.4), t4, k(1.0222222222222221)),
+                    ),
+                ),
+            );
+            let t73 = t72 + t65 - t61;
+            let t74 = t31 * t60;
+            let t75 = k(0.10962962962962963) * u0;
+            let t76 = k(2.4442567567567566)
                 + T::fused(
                     k(0.5777027027027027),
-                    t2,
+                    t1,
                     -T::fused(
                         k(1.0135135135135136),
                         x2,
-                        T::fused(-k(10.135135135135135), x1, t3),
+                        T::fused(-k(10.135135135135135), x1, t0),
                     ),
                 );
-            let t65 = T::fused(k(0.10962962962962963), u0 * t64, u2);
-            let t66 = T::fused(
+            let t77 = T::fused(t76, t75, u2);
+            let t78 = T::fused(
                 k(0.8),
                 u1,
                 T::fused(
@@ -10617,374 +10496,323 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                     x1,
                     T::fused(
                         k(2.2222222222222223),
-                        t1,
-                        T::fused(k(4.0), t0, k(0.37777777777777777)),
+                        t7,
+                        T::fused(k(4.0), t4, k(0.37777777777777777)),
                     ),
                 ),
             );
-            let t67 = T::fused(
-                k(0.005428148148148148),
-                T::fused(-k(2.7249211547792336), t2, t3),
-                t40,
-            );
-            let t68 = k(0.002714074074074074) - T::fused(t2, t38, t3 * t67);
-            let t69 = u0 * t68;
-            let t70 = T::fused(k(0.25), t69, T::fused(-u2, t10, u1 * t5));
-            let t71 = T::fused(k(0.1790744466800805), t1, -(t0 - k(0.8893360160965795)));
-            let t72 = T::fused(k(0.8714346530438485), t1 + k(0.5937957987298486), t0);
-            let t73 = T::fused(
-                -k(0.3313333333333333),
-                t3 * t71,
-                T::fused(k(0.348), t2 * t72, T::fused(k(0.02), u3, k(0.6) * x3)),
-            );
-            let t74 = T::fused(t51, t70, t73);
-            let t75 = t17 * t74;
-            let t76 = t62 * t10;
-            let t77 = k(0.0004938271604938272) * t3;
-            let t78 = k(0.03155555555555556) * t2;
-            let t79 = T::fused(k(0.2518518518518518), x2, t44 - t78 + t77);
-            let t80 = u0 * t79;
-            let t81 = T::fused(-k(0.9375), t80, u1);
-            let t82 = T::fused(
-                t53,
-                t81,
-                T::fused(
-                    k(40.0),
-                    x2,
-                    T::fused(
-                        k(1.5777777777777777),
-                        t1,
-                        T::fused(-k(1.4), t0, k(1.0222222222222221)),
-                    ),
-                ),
-            );
-            let t83 = t6 * t74;
-            let t84 = t83 - (t82 + t76);
-            let t85 = T::fused(t16, t84, t75 - (T::fused(-t53, t65, t66) - t63));
-            let t86 = t15 * t57;
-            let t87 = k(30.26023804720597) * t5;
+            let t79 = t64 * t9;
+            let t80 = T::fused(-t30, t73, t79 - T::fused(-t71, t77, t78) + t74);
+            let t81 = k(0.11693827160493828) * u1;
+            let t82 = T::fused(t76, t81, T::fused(-u3, t56, u2 * t68));
+            let t83 = x2 * t9;
+            let t84 = k(0.002191111111111111) * t0;
+            let t85 = x1 * t11;
+            let t86 = k(0.010245185185185185) * t1;
+            let t87 = t86 + (t85 - t84) + t83;
             let t88 = u3 * u3;
-            let t89 = T::fused(
-                u0,
-                T::fused(
-                    k(1.1851851851851851),
-                    u1,
-                    T::fused(-k(0.11851851851851852), u2, u3 * t50),
-                ),
-                t88 * t10,
-            );
-            let t90 = t18 - (t19 - t89) - T::fused(-t34, t52, t74 * t87)
-                + T::fused(t33, t55, t84 * t86);
-            let t91 = T::fused(
+            let t89 = T::fused(t7, t3, -T::fused(t4, t6, -T::fused(u0, t82, t88 * t87)));
+            let t90 = T::fused(t39, t80, T::fused(t26, t73, T::fused(-t16, t60, t89)));
+            let t91 = T::fused(-t9, t17, k(0.26666666666666666));
+            let t92 = T::fused(-t30, t91, t9 * t31);
+            let t93 = t38 * t92;
+            let t94 = t25 * t91;
+            let t95 = k(30.26023804720597) * t9;
+            let t96 = T::fused(
                 k(0.11693827160493828),
-                t3,
+                t0,
                 -T::fused(
                     -k(0.11851851851851852),
                     x2,
                     T::fused(
                         k(0.5925925925925926),
-                        x1 + t42,
-                        k(0.06755555555555555) * t2,
+                        x1 + t44,
+                        k(0.06755555555555555) * t1,
                     ),
                 ),
             );
-            let t92 = t91 + T::fused(t25, t87, t5 * t34) - T::fused(t28, t86, t33 * t57);
-            let t93 = t48 * t48;
-            let t94 = x2 * t5;
-            let t95 = k(0.002191111111111111) * t3;
-            let t96 = x1 * t10;
-            let t97 = k(0.010245185185185185) * t2;
-            let t98 = t97 + (t96 - t95) + t94;
-            let t99 = T::fused(
-                k(0.11693827160493828),
-                u1 * t64,
-                T::fused(-u3, t68, u2 * t79),
-            );
-            let t100 = T::fused(
-                k(0.348),
-                t1 * t36,
-                T::fused(-k(0.3032592592592593), t0 * t35, T::fused(t88, t98, u0 * t99)),
-            );
-            let t101 = T::fused(
-                t32,
-                t85,
-                -T::fused(t33, t84, T::fused(t34, t74, -t100)),
-            );
+            let t97 = t96 + T::fused(t15, t95, t9 * t16) - T::fused(t22, t94, t26 * t91);
+            let t98 = t50 * t50;
+            let t99 = k(0.25) * u0;
+            let t100 = T::fused(k(0.06755555555555555), t0, k(0.11693827160493828) * t1);
+            let t101 = t59 * (t100 * t99);
             let t102 = T::fused(
-                t48,
-                t90 + T::fused(-t32, t56, t85 * t59),
-                t101 * (t93 * (t92 - T::fused(t29, t59, t32 * t58))),
+                u0,
+                T::fused(
+                    k(1.1851851851851851),
+                    u1,
+                    T::fused(-k(0.11851851851851852), u2, u3 * t100),
+                ),
+                t88 * t11,
             );
-            let t103 = T::fused(
-                k(0.03155555555555556),
-                t3,
-                k(0.0004938271604938272) * t2,
-            );
-            let t104 = u0 * t103;
-            let t105 = t51 * (k(0.25) * t104);
+            let t103 = t71 * (k(0.1111111111111111) * u0);
+            let t104 = T::fused(t17, t101, t103);
+            let t105 = T::fused(-t94, t73, t26 * t104)
+                + (t32 - (t33 - t102) + T::fused(-t95, t60, t16 * t101));
             let t106 = T::fused(
-                -t6,
-                t105,
-                T::fused(-t53, k(0.2361111111111111) * u0, k(40.0)),
+                t30,
+                t104,
+                T::fused(t31, t101, T::fused(-t71, k(1.1111111111111112) * u0, k(25.0))),
             );
-            let t107 = T::fused(t16, t106, T::fused(-t17, t105, t54));
-            let t108 = t6 * t10;
-            let t109 = T::fused(-t16, t108, T::fused(-t10, t17, k(0.26666666666666666)));
-            let t110 = t31 * t109;
-            let t111 = t15 * t108;
-            let t112 = k(30.26023804720597) * t10;
-            let t113 = T::fused(
+            let t107 = T::fused(
+                -(t98 * (t97 - T::fused(t36, t93, t39 * t92))),
+                t90,
+                t50 * (T::fused(-t93, t80, t39 * t106) - t105),
+            );
+            let t108 = t17 * t11;
+            let t109 = T::fused(-t30, t108, T::fused(-t11, t31, k(0.26666666666666666)));
+            let t110 = t38 * t109;
+            let t111 = t25 * t108;
+            let t112 = k(30.26023804720597) * t11;
+            let t113 = t66 - (t67 - (t45 + t47)) + T::fused(t15, t112, t11 * t16);
+            let t114 = t113 + T::fused(t22, t111, t26 * t108)
+                + T::fused(t36, t110, t39 * t109);
+            let t115 = T::fused(
+                k(0.03155555555555556),
+                t0,
+                k(0.0004938271604938272) * t1,
+            );
+            let t116 = u0 * t115;
+            let t117 = t59 * (k(0.25) * t116);
+            let t118 = T::fused(
                 -u0,
                 T::fused(
                     k(0.11851851851851852),
                     u1,
-                    T::fused(-k(0.2518518518518518), u2, u3 * t103),
+                    T::fused(-k(0.2518518518518518), u2, u3 * t115),
                 ),
-                t88 * t5,
-            );
-            let t114 = t7 + (t8 - t113) - T::fused(-t34, t105, t74 * t112)
-                - T::fused(t33, t106, t84 * t111);
-            let t115 = t77 - (t78 - (t43 + t45)) + T::fused(t25, t112, t10 * t34);
-            let t116 = t115 + T::fused(t28, t111, t33 * t108)
-                + T::fused(t29, t110, t32 * t109);
-            let t117 = T::fused(
-                t48,
-                t114 - T::fused(-t32, t107, t85 * t110),
-                t101 * (t93 * t116),
-            );
-            let t118 = T::fused(
-                t3,
-                t38,
-                -T::fused(
-                    t3,
-                    k(0.005428148148148148) * T::fused(k(2.7249211547792336), t3, t2),
-                    t2 * t67,
-                ),
+                t88 * t9,
             );
             let t119 = T::fused(
-                t51,
-                T::fused(-k(0.25), u0 * t118, T::fused(u1, t10, u2 * t5)),
-                T::fused(
-                    k(0.3313333333333333),
-                    t2 * t71,
-                    T::fused(k(0.348), t3 * t72, k(0.6)),
+                -t17,
+                t117,
+                T::fused(-t71, k(0.2361111111111111) * u0, k(40.0)),
+            );
+            let t120 = T::fused(-t111, t73, t26 * t119)
+                - (t18 + (t19 - t118) + T::fused(-t112, t60, t16 * t117));
+            let t121 = T::fused(t30, t119, T::fused(-t31, t117, t103));
+            let t122 = T::fused(
+                t98 * t114,
+                t90,
+                t50 * (T::fused(-t110, t80, t39 * t121) - t120),
+            );
+            let t123 = t85 + (t83 + (t86 - t84));
+            let t124 = t11 - T::fused(t17, t123, t35);
+            let t125 = t24 - t37;
+            let t126 = T::fused(t23, t31, t29);
+            let t127 = t25 * t25 * t126;
+            let t128 = T::fused(-t25, t125, t29 * t127);
+            let t129 = t9 - T::fused(-t31, t123, t21) + T::fused(-t30, t124, t22 * t128);
+            let t130 = t38 * t38 * (t126 + T::fused(-t29, t128, t30 * t125));
+            let t131 = T::fused(t38, t129, t36 * t130);
+            let t132 = T::fused(-t25, t124, t22 * t127);
+            let t133 = k(30.26023804720597) * t123;
+            let t134 = T::fused(-t0, k(0.007395637860082305) * t1, t1 * t41)
+                + T::fused(-t1, k(0.002714074074074074) * t1, t0 * t43);
+            let t135 = t134 - T::fused(t15, t133, t16 * t123)
+                + T::fused(-t22, t132, t26 * t124);
+            let t136 = T::fused(k(0.5777027027027027), t0, t1);
+            let t137 = T::fused(
+                t0,
+                t40,
+                -T::fused(
+                    t0,
+                    k(0.005428148148148148) * T::fused(k(2.7249211547792336), t0, t1),
+                    t1 * t55,
                 ),
             );
-            let t120 = T::fused(-t53, k(0.9375) * t104, t63) + T::fused(t6, t119, t75);
-            let t121 = t14 - t30;
-            let t122 = T::fused(t13, t17, t12);
-            let t123 = t15 * t15 * t122;
-            let t124 = T::fused(-t15, t121, t12 * t123);
-            let t125 = T::fused(k(0.5777027027027027), t3, t2);
-            let t126 = T::fused(t53, k(0.10962962962962963) * (u0 * t125), t76)
-                - T::fused(-t17, t119, t83);
-            let t127 = t126 + T::fused(t16, t120, t84 * t124);
-            let t128 = t96 + (t94 + (t97 - t95));
-            let t129 = t10 - T::fused(t6, t128, t26);
-            let t130 = t5 - T::fused(-t17, t128, t27) + T::fused(-t16, t129, t28 * t124);
-            let t131 = t31 * t31 * (t122 + T::fused(-t12, t124, t16 * t121));
-            let t132 = T::fused(t31, t130, t29 * t131);
-            let t133 = T::fused(-t15, t129, t28 * t123);
-            let t134 = k(30.26023804720597) * t128;
-            let t135 = T::fused(
+            let t138 = T::fused(
                 u0,
-                T::fused(
-                    k(0.11693827160493828),
-                    u1 * t125,
-                    T::fused(-u2, t103, u3 * t118),
-                ),
-                t88 * (t22 + (t24 + (t23 - t21))),
+                T::fused(t136, t81, T::fused(-u2, t115, u3 * t137)),
+                t88 * (t12 + (t14 + (t13 - t10))),
             );
-            let t136 = T::fused(
+            let t139 = T::fused(
                 k(0.348),
-                t1 * T::fused(k(0.9521072796934866), t3, t2),
+                t7 * T::fused(k(0.9521072796934866), t0, t1),
                 -T::fused(
                     k(0.3032592592592593),
-                    t0 * T::fused(-k(0.1956521739130435), t3, t2),
-                    -t135,
+                    t4 * T::fused(-k(0.1956521739130435), t0, t1),
+                    -t138,
                 ),
             );
-            let t137 = t136 - T::fused(t34, t119, t74 * t134)
-                - T::fused(t33, t120, t84 * t133);
-            let t138 = T::fused(-t3, k(0.007395637860082305) * t2, t2 * t39)
-                + T::fused(-t2, k(0.002714074074074074) * t2, t3 * t41);
-            let t139 = t138 - T::fused(t25, t134, t34 * t128)
-                + T::fused(-t28, t133, t33 * t129);
             let t140 = T::fused(
-                -t48,
-                t137 + T::fused(t32, t127, t85 * t132),
-                t101 * (t93 * (t139 + T::fused(t29, t132, t32 * t130))),
+                t59,
+                T::fused(-t137, t99, T::fused(u1, t11, u2 * t9)),
+                T::fused(t1, t53, T::fused(t0, t52, k(0.6))),
             );
-            let t141 = T::fused(t51, k(0.25) * t68, k(2.0) * t70);
-            let t142 = k(2.0) * u3;
-            let t143 = T::fused(
-                -t6,
-                t141,
+            let t141 = T::fused(-t71, k(0.9375) * t116, t79) + T::fused(t17, t140, t74);
+            let t142 = T::fused(-t132, t73, t26 * t141)
+                + (T::fused(t133, t60, t16 * t140) - t139);
+            let t143 = T::fused(-t128, t73, t30 * t141)
+                - (T::fused(-t31, t140, t61) - T::fused(t71, t136 * t75, t65));
+            let t144 = T::fused(
+                -(t98 * (t135 + T::fused(t36, t131, t39 * t129))),
+                t90,
+                t50 * (T::fused(t131, t80, t39 * t143) - t142),
+            );
+            let t145 = T::fused(t59, k(0.25) * t56, k(2.0) * t58);
+            let t146 = k(2.0) * u3;
+            let t147 = T::fused(
+                -t17,
+                t145,
                 T::fused(
-                    t10,
-                    t142,
-                    T::fused(-t53, k(0.9375) * t79, k(0.5333333333333333) * t81),
+                    t11,
+                    t146,
+                    T::fused(-t71, k(0.9375) * t68, k(0.5333333333333333) * t70),
                 ),
             );
-            let t144 = T::fused(
-                t17,
-                t141,
+            let t148 = T::fused(
+                t31,
+                t145,
                 T::fused(
-                    t5,
-                    t142,
+                    t9,
+                    t146,
                     T::fused(
-                        t53,
-                        k(0.10962962962962963) * t64,
-                        k(0.5333333333333333) * t65,
+                        k(0.5333333333333333),
+                        t77,
+                        t71 * (k(0.10962962962962963) * t76),
                     ),
                 ),
             );
-            let t145 = T::fused(-t16, t143, t144);
-            let t146 = t48
-                * T::fused(t32, t145, T::fused(t33, t143, T::fused(-t34, t141, t99)));
-            let t147 = t51 * t5;
-            let t148 = T::fused(-t6, t147, t53);
-            let t149 = T::fused(t16, t148, T::fused(-t17, t147, k(0.8)));
-            let t150 = T::fused(
-                -t32,
-                t149,
+            let t149 = T::fused(t30, t147, -t148);
+            let t150 = t50
+                * T::fused(t39, t149, -T::fused(t26, t147, -T::fused(t16, t145, -t82)));
+            let t151 = t59 * t9;
+            let t152 = T::fused(-t17, t151, t71);
+            let t153 = T::fused(t30, t152, T::fused(-t31, t151, k(0.8)));
+            let t154 = T::fused(
+                -t39,
+                t153,
                 T::fused(
-                    t33,
-                    t148,
-                    T::fused(-t34, t147, u0 * (k(0.11693827160493828) * t64)),
+                    t26,
+                    t152,
+                    T::fused(-t16, t151, u0 * (k(0.11693827160493828) * t76)),
                 ),
             );
-            let t151 = t48 * t150;
-            let t152 = t51 * t10;
-            let t153 = t6 * t152;
-            let t154 = T::fused(-t16, t153, T::fused(-t17, t152, t53));
-            let t155 = t48
-                * T::fused(t32, t154, T::fused(t33, t153, T::fused(t34, t152, t80)));
-            let t156 = t60 + t61;
-            let t157 = T::fused(-k(1.3617107121242686), t5, t10 * t156);
-            let t158 = T::fused(
-                -t16,
-                t157,
-                T::fused(k(1.3617107121242686), t10, t5 * t156),
+            let t155 = t50 * t154;
+            let t156 = t59 * t11;
+            let t157 = t17 * t156;
+            let t158 = T::fused(-t30, t157, T::fused(-t31, t156, t71));
+            let t159 = t50
+                * T::fused(t39, t158, T::fused(t26, t157, T::fused(t16, t156, t69)));
+            let t160 = t62 + t63;
+            let t161 = T::fused(-k(1.3617107121242686), t9, t11 * t160);
+            let t162 = T::fused(
+                -t30,
+                t161,
+                T::fused(k(1.3617107121242686), t11, t9 * t160),
             );
-            let t159 = T::fused(
-                -t32,
-                t158,
+            let t163 = T::fused(
+                -t39,
+                t162,
                 T::fused(
-                    -t33,
-                    t157,
-                    T::fused(k(0.6052047609441195), t25, T::fused(-t98, t142, t69)),
+                    -t26,
+                    t161,
+                    T::fused(k(0.6052047609441195), t15, T::fused(-t87, t146, t57)),
                 ),
             );
-            let t160 = t48 * t159;
-            let t161 = T::fused(t32, t49, t31 * t20);
-            let t162 = t48 * t101;
-            let t163 = T::fused(t31, t56, T::fused(t32, t102, t162 * t59));
-            let t164 = T::fused(t31, t107, T::fused(-t32, t117, t162 * t110));
-            let t165 = T::fused(t31, t127, t85 * t131)
-                - T::fused(-t32, t140, t162 * t132);
-            let t166 = T::fused(-t32, t146, t31 * t145);
-            let t167 = T::fused(t32, t151, t31 * t149);
-            let t168 = T::fused(-t32, t155, t31 * t154);
-            let t169 = T::fused(t32, t160, t31 * t158);
-            let t170 = T::fused(-t16, t161, T::fused(t33, t49, t15 * t9));
-            let t171 = T::fused(
-                -t16,
-                t163,
-                T::fused(t15, t55, -T::fused(-t33, t102, t162 * t86)),
+            let t164 = t50 * t163;
+            let t165 = T::fused(-t39, t51, t38 * t34);
+            let t166 = t50 * t90;
+            let t167 = T::fused(-t38, t106, T::fused(-t93, t166, t39 * t107));
+            let t168 = T::fused(t38, t121, -T::fused(-t110, t166, t39 * t122));
+            let t169 = T::fused(t131, t166, t39 * t144)
+                - T::fused(t130, t80, t38 * t143);
+            let t170 = T::fused(-t38, t149, t39 * t150);
+            let t171 = T::fused(t39, t155, t38 * t153);
+            let t172 = T::fused(-t39, t159, t38 * t158);
+            let t173 = T::fused(t39, t164, t38 * t162);
+            let t174 = T::fused(t30, t165, -T::fused(-t26, t51, t25 * t20));
+            let t175 = T::fused(
+                t30,
+                t167,
+                -T::fused(-t25, t104, T::fused(t94, t166, t26 * t107)),
             );
-            let t172 = T::fused(
-                -t16,
-                t164,
-                T::fused(t15, t106, -T::fused(t33, t117, t162 * t111)),
+            let t176 = T::fused(
+                t30,
+                t168,
+                -T::fused(t25, t119, -T::fused(t111, t166, t26 * t122)),
             );
-            let t173 = T::fused(-t31, t85, t32 * t162);
-            let t174 = T::fused(t15, t120, t84 * t123)
-                - T::fused(-t33, t140, t162 * t133);
-            let t175 = t174 + T::fused(-t16, t165, t173 * t124);
-            let t176 = T::fused(t16, t166, T::fused(t33, t146, t15 * t143));
-            let t177 = T::fused(-t16, t167, T::fused(t33, t151, t15 * t148));
-            let t178 = T::fused(t16, t168, T::fused(t33, t155, t15 * t153));
-            let t179 = T::fused(t16, t169, T::fused(-t33, t160, t15 * t157));
-            let t180 = T::fused(
-                t6,
-                t170,
-                T::fused(-t17, t161, T::fused(t34, t49, k(30.26023804720597) * t4)),
-            );
-            let t181 = T::fused(
-                -t17,
-                t163,
-                T::fused(k(30.26023804720597), t52, T::fused(t34, t102, t162 * t87)),
-            );
-            let t182 = T::fused(
-                t17,
-                t164,
-                T::fused(k(30.26023804720597), t105, T::fused(t34, t117, t162 * t112)),
-            );
-            let t183 = T::fused(
-                t6,
-                t175,
-                t17 * T::fused(t16, t173, -T::fused(-t15, t84, t33 * t162)),
-            );
+            let t177 = T::fused(t132, t166, t26 * t144)
+                - T::fused(-t127, t73, t25 * t141);
+            let t178 = T::fused(-t39, t166, t38 * t80);
+            let t179 = T::fused(-t128, t178, t30 * t169) - t177;
+            let t180 = T::fused(t30, t170, T::fused(-t26, t150, t25 * t147));
+            let t181 = T::fused(-t30, t171, T::fused(t26, t155, t25 * t152));
+            let t182 = T::fused(t30, t172, T::fused(t26, t159, t25 * t157));
+            let t183 = T::fused(t30, t173, T::fused(-t26, t164, t25 * t161));
             let t184 = T::fused(
-                k(30.26023804720597),
-                t119,
-                -T::fused(-t34, t140, t162 * t134),
-            ) - T::fused(t17, t165, t6 * t173);
+                t17,
+                t174,
+                T::fused(t31, t165, -T::fused(-t16, t51, k(30.26023804720597) * t8)),
+            );
             let t185 = T::fused(
-                -t6,
-                t176,
-                T::fused(-t17, t166, T::fused(-t34, t146, k(30.26023804720597) * t141)),
+                t31,
+                t167,
+                -T::fused(-k(30.26023804720597), t101, T::fused(-t95, t166, t16 * t107)),
             );
             let t186 = T::fused(
-                -t6,
-                t177,
-                T::fused(t17, t167, T::fused(-t34, t151, k(30.26023804720597) * t147)),
+                t31,
+                t168,
+                T::fused(k(30.26023804720597), t117, T::fused(t112, t166, t16 * t122)),
             );
-            let t187 = T::fused(
-                t6,
-                t178,
-                T::fused(t17, t168, T::fused(t34, t155, k(30.26023804720597) * t152)),
+            let t187 = T::fused(t17, t178, t31 * t169)
+                - T::fused(
+                    -k(30.26023804720597),
+                    t140,
+                    T::fused(t133, t166, t16 * t144),
+                );
+            let t188 = T::fused(
+                -t31,
+                T::fused(t30, t178, T::fused(t26, t166, t25 * t73)),
+                t17 * t179,
             );
-            let t188 = k(0.5) * x3;
-            let t189 = t188.sin();
-            let t190 = k(2.0) * t189;
-            let t191 = t188.cos();
-            let t192 = t191 * t190;
-            let t193 = k(0.6666666666666666) * t192;
-            let t194 = T::fused(-t189, t190, k(1.0));
-            let t195 = T::fused(-k(0.2222222222222222), t194, k(0.2222222222222222));
-            let t196 = t195 - t193;
-            let t197 = k(0.6666666666666666) * u0;
-            let t198 = t197 * t196;
-            let t199 = T::fused(k(0.5555555555555556), t194, k(0.4444444444444444));
-            (
-                t6,
+            let t189 = T::fused(
                 t17,
-                t34,
-                t49,
-                t102,
-                t117,
-                t140,
-                t146,
-                t151,
+                t180,
+                T::fused(t31, t170, -T::fused(t16, t150, k(30.26023804720597) * t145)),
+            );
+            let t190 = T::fused(
+                -t17,
+                t181,
+                T::fused(t31, t171, T::fused(-t16, t155, k(30.26023804720597) * t151)),
+            );
+            let t191 = T::fused(
+                t17,
+                t182,
+                T::fused(t31, t172, T::fused(t16, t159, k(30.26023804720597) * t156)),
+            );
+            let t192 = k(0.5) * x3;
+            let t193 = t192.sin();
+            let t194 = k(2.0) * t193;
+            let t195 = t192.cos();
+            let t196 = t195 * t194;
+            let t197 = k(0.6666666666666666) * t196;
+            let t198 = T::fused(-t193, t194, k(1.0));
+            let t199 = T::fused(-k(0.2222222222222222), t198, k(0.2222222222222222));
+            (
+                t16,
+                t17,
+                t31,
+                t51,
+                t107,
+                t122,
+                t144,
+                t150,
                 t155,
-                t160,
-                t161,
-                t163,
+                t159,
                 t164,
                 t165,
-                t166,
                 t167,
                 t168,
                 t169,
                 t170,
                 t171,
                 t172,
+                t173,
+                t174,
                 t175,
                 t176,
-                t177,
-                t178,
                 t179,
                 t180,
                 t181,
@@ -10994,10 +10822,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
                 t185,
                 t186,
                 t187,
+                t188,
                 t189,
                 t190,
                 t191,
-                t192,
                 t193,
                 t194,
                 t195,
@@ -11009,438 +10837,436 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
         };
         let (
             t200,
+            t201,
             t203,
-            t205,
-            t206,
-            t208,
+            t204,
+            t207,
+            t209,
             t210,
-            t211,
             t212,
+            t214,
             t215,
-            t225,
-            t226,
-            t227,
-            t228,
+            t216,
+            t219,
+            t229,
+            t230,
+            t231,
             t232,
-            t233,
-            t234,
+            t236,
             t237,
-            t244,
-            t245,
-            t247,
+            t238,
+            t241,
+            t248,
+            t249,
             t251,
-            t252,
-            t253,
+            t255,
+            t256,
             t257,
-            t258,
             t261,
-            t285,
-            t287,
+            t262,
+            t265,
             t289,
-            t292,
-            t294,
-            t313,
-            t315,
+            t291,
+            t293,
+            t296,
+            t298,
             t317,
-            t320,
-            t336,
-            t337,
-            t338,
+            t319,
+            t321,
+            t324,
             t340,
             t341,
             t342,
+            t344,
             t345,
-            t347,
-            t348,
+            t346,
             t349,
+            t351,
             t352,
-            t354,
-            t359,
-            t364,
-            t365,
+            t353,
+            t356,
+            t358,
+            t363,
+            t368,
             t369,
-            t371,
             t373,
             t375,
-            t376,
-            t378,
+            t377,
             t379,
             t380,
             t381,
             t382,
             t383,
+            t384,
             t385,
             t386,
             t387,
-            t388,
+            t389,
+            t390,
             t391,
             t392,
             t393,
-            t394,
             t395,
             t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = k(0.3333333333333333) * u0;
-            let t201 = k(0.3333333333333333) * t192;
-            let t202 = T::fused(-k(0.4444444444444444), t194, k(0.4444444444444444));
-            let t203 = t202 + t201;
-            let t204 = k(0.6666666666666666) * u3;
-            let t205 = t204 + T::fused(t197, t203, -T::fused(t200, t199, -t198));
-            let t206 = k(0.6666666666666666) * t189;
-            let t207 = k(0.5) * x0;
-            let t208 = t207.cos();
-            let t209 = t208 * t206;
-            let t210 = k(0.3333333333333333) * t189;
-            let t211 = t207.sin();
-            let t212 = k(0.6666666666666666) * t211;
+            let t200 = t199 - t197;
+            let t201 = k(0.6666666666666666) * u0;
+            let t202 = t201 * t200;
+            let t203 = T::fused(k(0.5555555555555556), t198, k(0.4444444444444444));
+            let t204 = k(0.3333333333333333) * u0;
+            let t205 = k(0.3333333333333333) * t196;
+            let t206 = T::fused(-k(0.4444444444444444), t198, k(0.4444444444444444));
+            let t207 = t206 + t205;
+            let t208 = k(0.6666666666666666) * u3;
+            let t209 = t208 + T::fused(t201, t207, -T::fused(t204, t203, -t202));
+            let t210 = k(0.6666666666666666) * t193;
+            let t211 = k(0.5) * x0;
+            let t212 = t211.cos();
             let t213 = t212 * t210;
-            let t214 = t212 * t206;
-            let t215 = k(0.3333333333333333) * t211;
-            let t216 = T::fused(t215, t191, t214 - (t213 + t209));
-            let t217 = t215 * t206;
-            let t218 = T::fused(t208, t191, -(t213 - t217 + t214));
-            let t219 = t218 * t216;
-            let t220 = t212 * t191;
-            let t221 = t220 + (t209 + T::fused(t215, t210, t214));
-            let t222 = t220 - (t217 + T::fused(-t208, t210, t214));
-            let t223 = t222 * t221;
-            let t224 = t223 + t219;
-            let t225 = k(2.0) * t224;
-            let t226 = T::fused(k(0.8888888888888888), t194, k(0.1111111111111111));
-            let t227 = t195 + t193;
-            let t228 = T::fused(
+            let t214 = k(0.3333333333333333) * t193;
+            let t215 = t211.sin();
+            let t216 = k(0.6666666666666666) * t215;
+            let t217 = t216 * t214;
+            let t218 = t216 * t210;
+            let t219 = k(0.3333333333333333) * t215;
+            let t220 = T::fused(t219, t195, t218 - (t217 + t213));
+            let t221 = t219 * t210;
+            let t222 = T::fused(t212, t195, -(t217 - t221 + t218));
+            let t223 = t222 * t220;
+            let t224 = t216 * t195;
+            let t225 = t224 + (t213 + T::fused(t219, t214, t218));
+            let t226 = t224 - (t221 + T::fused(-t212, t214, t218));
+            let t227 = t226 * t225;
+            let t228 = t227 + t223;
+            let t229 = k(2.0) * t228;
+            let t230 = T::fused(k(0.8888888888888888), t198, k(0.1111111111111111));
+            let t231 = t199 + t197;
+            let t232 = T::fused(
                 k(0.3333333333333333),
                 u3,
-                t198 - T::fused(-t197, t226, t200 * t227),
+                t202 - T::fused(-t201, t230, t204 * t231),
             );
-            let t229 = t218 * t222;
-            let t230 = t216 * t221;
-            let t231 = t230 - t229;
-            let t232 = k(2.0) * t231;
-            let t233 = t202 - t201;
-            let t234 = t204 + T::fused(t197, t199, -T::fused(-t197, t227, t200 * t233));
-            let t235 = t218 * t218;
-            let t236 = k(0.5) - T::fused(t221, t221, t235);
-            let t237 = k(2.0) * t236;
-            let t238 = T::fused(
+            let t233 = t222 * t226;
+            let t234 = t220 * t225;
+            let t235 = t234 - t233;
+            let t236 = k(2.0) * t235;
+            let t237 = t206 - t205;
+            let t238 = t208 + T::fused(t201, t203, -T::fused(-t201, t231, t204 * t237));
+            let t239 = t222 * t222;
+            let t240 = k(0.5) - T::fused(t225, t225, t239);
+            let t241 = k(2.0) * t240;
+            let t242 = T::fused(
                 -k(0.05),
-                T::fused(t225, t234, t237 * t228),
-                k(0.03) * T::fused(-t232, t234, t237 * t205),
+                T::fused(t229, t238, t241 * t232),
+                k(0.03) * T::fused(-t236, t238, t241 * t209),
             );
-            let t239 = T::fused(k(0.1), t205, k(0.05) * t234);
-            let t240 = T::fused(k(0.03), t234, k(0.1) * t228);
-            let t241 = T::fused(-k(0.05), t228, k(0.03) * t205);
-            let t242 = k(0.6666666666666666) * x2;
-            let t243 = k(0.6666666666666666) * x1;
-            let t244 = k(0.2) + t243 - t242;
-            let t245 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t242;
-            let t246 = t245 * t197;
-            let t247 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
-                - T::fused(t244, t200, t246);
-            let t248 = t212 * t212;
-            let t249 = t208 * t208;
-            let t250 = k(0.5) - (t249 + t248);
-            let t251 = k(2.0) * t250;
-            let t252 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t243);
-            let t253 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
-                + T::fused(-t252, t197, t244 * t197);
-            let t254 = t208 * t212;
-            let t255 = t212 * t215;
-            let t256 = t255 - t254;
-            let t257 = k(2.0) * t256;
-            let t258 = T::fused(
+            let t243 = T::fused(k(0.1), t209, k(0.05) * t238);
+            let t244 = T::fused(k(0.03), t238, k(0.1) * t232);
+            let t245 = T::fused(-k(0.05), t232, k(0.03) * t209);
+            let t246 = k(0.6666666666666666) * x2;
+            let t247 = k(0.6666666666666666) * x1;
+            let t248 = k(0.2) + t247 - t246;
+            let t249 = T::fused(k(0.3333333333333333), x1, k(0.1)) + t246;
+            let t250 = t249 * t201;
+            let t251 = T::fused(k(0.3333333333333333), u2, k(0.6666666666666666) * u1)
+                - T::fused(t248, t204, t250);
+            let t252 = t216 * t216;
+            let t253 = t212 * t212;
+            let t254 = k(0.5) - (t253 + t252);
+            let t255 = k(2.0) * t254;
+            let t256 = T::fused(-k(0.3333333333333333), x2, k(0.1) - t247);
+            let t257 = T::fused(k(0.6666666666666666), u2, k(0.3333333333333333) * u1)
+                + T::fused(-t256, t201, t248 * t201);
+            let t258 = t212 * t216;
+            let t259 = t216 * t219;
+            let t260 = t259 - t258;
+            let t261 = k(2.0) * t260;
+            let t262 = T::fused(
                 k(0.6666666666666666),
                 u1 - u2,
-                -T::fused(t252, t200, t246),
+                -T::fused(t256, t204, t250),
             );
-            let t259 = t208 * t215;
-            let t260 = t248 + t259;
-            let t261 = k(2.0) * t260;
-            let t262 = k(0.13333333333333333) * u0;
-            let t263 = k(0.06666666666666667) * u0;
-            let t264 = T::fused(-t257, t262, t261 * t263);
-            let t265 = t264 + T::fused(t251, t247, T::fused(-t257, t253, t261 * t258))
-                - T::fused(t237, t241, -T::fused(t225, t239, t232 * t240));
-            let t266 = t197 * t257;
-            let t267 = T::fused(-t200, t261, t266);
-            let t268 = t197 * t251;
-            let t269 = T::fused(t197, t261, t268);
-            let t270 = t200 * t251;
-            let t271 = t270 + t266;
-            let t272 = t264
-                - T::fused(-k(0.1), t267, T::fused(k(0.1), t269, k(0.2) * t271))
-                - (t265 + T::fused(-k(0.1), T::fused(t225, t205, t232 * t228), t238));
-            let t273 = k(1.3333333333333333) * t250;
-            let t274 = t273
-                - T::fused(-k(1.3333333333333333), t260, k(0.6666666666666666) * t256);
-            let t275 = k(0.2) * t256;
-            let t276 = k(0.4) * t260;
-            let t277 = k(0.2) + (t276 + t275);
-            let t278 = T::fused(k(0.2), t236, T::fused(-k(0.1), t231, k(0.06) * t224));
-            let t279 = t278
-                - (t277 + T::fused(-t252, t251, T::fused(-t245, t257, t244 * t261)));
-            let t280 = t278 - t279 - (t277 - T::fused(k(0.2), t250, -(t276 - t275)));
-            let t281 = T::fused(
+            let t263 = t212 * t219;
+            let t264 = t252 + t263;
+            let t265 = k(2.0) * t264;
+            let t266 = k(0.13333333333333333) * u0;
+            let t267 = k(0.06666666666666667) * u0;
+            let t268 = T::fused(-t261, t266, t265 * t267);
+            let t269 = t268 + T::fused(t255, t251, T::fused(-t261, t257, t265 * t262))
+                - T::fused(t241, t245, -T::fused(t229, t243, t236 * t244));
+            let t270 = t201 * t261;
+            let t271 = T::fused(-t204, t265, t270);
+            let t272 = t201 * t255;
+            let t273 = T::fused(t201, t265, t272);
+            let t274 = t204 * t255;
+            let t275 = t274 + t270;
+            let t276 = t268
+                - T::fused(-k(0.1), t271, T::fused(k(0.1), t273, k(0.2) * t275))
+                - (t269 + T::fused(-k(0.1), T::fused(t229, t209, t236 * t232), t242));
+            let t277 = k(1.3333333333333333) * t254;
+            let t278 = t277
+                - T::fused(-k(1.3333333333333333), t264, k(0.6666666666666666) * t260);
+            let t279 = k(0.2) * t260;
+            let t280 = k(0.4) * t264;
+            let t281 = k(0.2) + (t280 + t279);
+            let t282 = T::fused(k(0.2), t240, T::fused(-k(0.1), t235, k(0.06) * t228));
+            let t283 = t282
+                - (t281 + T::fused(-t256, t255, T::fused(-t249, t261, t248 * t265)));
+            let t284 = t282 - t283 - (t281 - T::fused(k(0.2), t254, -(t280 - t279)));
+            let t285 = T::fused(
                 k(0.6666666666666666),
-                t267,
-                T::fused(k(0.3333333333333333), t269, k(0.6666666666666666) * t271),
+                t271,
+                T::fused(k(0.3333333333333333), t273, k(0.6666666666666666) * t275),
             );
-            let t282 = t218 * t221;
-            let t283 = t222 * t216;
-            let t284 = t283 - t282;
-            let t285 = k(2.0) * t284;
-            let t286 = k(0.5) - T::fused(t216, t216, t235);
-            let t287 = k(2.0) * t286;
-            let t288 = t230 + t229;
+            let t286 = t222 * t225;
+            let t287 = t226 * t220;
+            let t288 = t287 - t286;
             let t289 = k(2.0) * t288;
-            let t290 = T::fused(
+            let t290 = k(0.5) - T::fused(t220, t220, t239);
+            let t291 = k(2.0) * t290;
+            let t292 = t234 + t233;
+            let t293 = k(2.0) * t292;
+            let t294 = T::fused(
                 -k(0.05),
-                T::fused(-t285, t234, t289 * t228),
-                k(0.03) * T::fused(-t287, t234, t289 * t205),
+                T::fused(-t289, t238, t293 * t232),
+                k(0.03) * T::fused(-t291, t238, t293 * t209),
             );
-            let t291 = t255 + t254;
-            let t292 = k(2.0) * t291;
-            let t293 = k(0.5) - T::fused(t215, t215, t249);
-            let t294 = k(2.0) * t293;
-            let t295 = T::fused(t294, t262, t257 * t263);
-            let t296 = t295 + T::fused(-t292, t247, T::fused(t294, t253, t257 * t258))
-                + T::fused(t289, t241, -T::fused(-t285, t239, t287 * t240));
-            let t297 = t197 * t294;
-            let t298 = T::fused(t200, t257, t297);
-            let t299 = t197 * t292;
-            let t300 = t299 - t266;
-            let t301 = T::fused(t200, t292, t297);
-            let t302 = t295
-                + T::fused(-k(0.1), t298, T::fused(k(0.1), t300, k(0.2) * t301))
-                - (t296 - T::fused(-k(0.1), T::fused(-t285, t205, t287 * t228), t290));
-            let t303 = T::fused(
+            let t295 = t259 + t258;
+            let t296 = k(2.0) * t295;
+            let t297 = k(0.5) - T::fused(t219, t219, t253);
+            let t298 = k(2.0) * t297;
+            let t299 = T::fused(t298, t266, t261 * t267);
+            let t300 = t299 + T::fused(-t296, t251, T::fused(t298, t257, t261 * t262))
+                + T::fused(t293, t245, -T::fused(-t289, t243, t291 * t244));
+            let t301 = t201 * t298;
+            let t302 = T::fused(t204, t261, t301);
+            let t303 = t201 * t296;
+            let t304 = t303 - t270;
+            let t305 = T::fused(t204, t296, t301);
+            let t306 = t299
+                + T::fused(-k(0.1), t302, T::fused(k(0.1), t304, k(0.2) * t305))
+                - (t300 - T::fused(-k(0.1), T::fused(-t289, t209, t291 * t232), t294));
+            let t307 = T::fused(
                 -k(1.3333333333333333),
-                t291,
-                T::fused(k(1.3333333333333333), t256, k(0.6666666666666666) * t293),
+                t295,
+                T::fused(k(1.3333333333333333), t260, k(0.6666666666666666) * t297),
             );
-            let t304 = k(0.2) * t293;
-            let t305 = k(0.4) * t256;
-            let t306 = k(0.2) * t291;
-            let t307 = t305 - t304;
-            let t308 = T::fused(-k(0.2), t288, T::fused(k(0.1), t286, k(0.06) * t284));
-            let t309 = t308
-                - (t307 + T::fused(t252, t292, T::fused(t245, t294, t244 * t257)));
-            let t310 = t308 - t309 - (t307 + (t306 + (t305 + t304)));
-            let t311 = T::fused(
+            let t308 = k(0.2) * t297;
+            let t309 = k(0.4) * t260;
+            let t310 = k(0.2) * t295;
+            let t311 = t309 - t308;
+            let t312 = T::fused(-k(0.2), t292, T::fused(k(0.1), t290, k(0.06) * t288));
+            let t313 = t312
+                - (t311 + T::fused(t256, t296, T::fused(t249, t298, t248 * t261)));
+            let t314 = t312 - t313 - (t311 + (t310 + (t309 + t308)));
+            let t315 = T::fused(
                 k(0.6666666666666666),
-                t298,
-                T::fused(k(0.3333333333333333), t300, k(0.6666666666666666) * t301),
+                t302,
+                T::fused(k(0.3333333333333333), t304, k(0.6666666666666666) * t305),
             );
-            let t312 = k(0.5) - T::fused(t222, t222, t235);
-            let t313 = k(2.0) * t312;
-            let t314 = t283 + t282;
-            let t315 = k(2.0) * t314;
-            let t316 = t223 - t219;
+            let t316 = k(0.5) - T::fused(t226, t226, t239);
             let t317 = k(2.0) * t316;
-            let t318 = T::fused(
+            let t318 = t287 + t286;
+            let t319 = k(2.0) * t318;
+            let t320 = t227 - t223;
+            let t321 = k(2.0) * t320;
+            let t322 = T::fused(
                 -k(0.05),
-                T::fused(t313, t234, t317 * t228),
-                k(0.03) * T::fused(t315, t234, t317 * t205),
+                T::fused(t317, t238, t321 * t232),
+                k(0.03) * T::fused(t319, t238, t321 * t209),
             );
-            let t319 = t248 - t259;
-            let t320 = k(2.0) * t319;
-            let t321 = T::fused(t292, t262, t251 * t263);
-            let t322 = t321 + T::fused(t320, t247, T::fused(t292, t253, t251 * t258))
-                - T::fused(t317, t241, T::fused(-t313, t239, t315 * t240));
-            let t323 = t299 + t270;
-            let t324 = T::fused(t197, t320, t268);
-            let t325 = T::fused(t200, t320, -t299);
-            let t326 = t321
-                - T::fused(k(0.1), t323, T::fused(k(0.1), t324, k(0.2) * t325))
-                - (t322 + T::fused(k(0.1), T::fused(-t313, t205, t315 * t228), t318));
-            let t327 = T::fused(
+            let t323 = t252 - t263;
+            let t324 = k(2.0) * t323;
+            let t325 = T::fused(t296, t266, t255 * t267);
+            let t326 = t325 + T::fused(t324, t251, T::fused(t296, t257, t255 * t262))
+                - T::fused(t321, t245, T::fused(-t317, t243, t319 * t244));
+            let t327 = t303 + t274;
+            let t328 = T::fused(t201, t324, t272);
+            let t329 = T::fused(t204, t324, -t303);
+            let t330 = t325
+                - T::fused(k(0.1), t327, T::fused(k(0.1), t328, k(0.2) * t329))
+                - (t326 + T::fused(k(0.1), T::fused(-t317, t209, t319 * t232), t322));
+            let t331 = T::fused(
                 k(1.3333333333333333),
-                t319,
-                T::fused(k(0.6666666666666666), t291, t273),
-            );
-            let t328 = k(0.4) * t250;
-            let t329 = k(0.1) - (t328 - t306);
-            let t330 = T::fused(k(0.2), t316, T::fused(k(0.1), t314, k(0.06) * t312));
-            let t331 = t330
-                + (t329 - T::fused(-t252, t320, T::fused(t245, t292, t244 * t251)));
-            let t332 = t330 - t331 + (t329 + T::fused(k(0.2), t319, -(t328 + t306)));
-            let t333 = T::fused(
-                -k(0.6666666666666666),
                 t323,
-                T::fused(k(0.3333333333333333), t324, k(0.6666666666666666) * t325),
+                T::fused(k(0.6666666666666666), t295, t277),
             );
-            let t334 = T::fused(t327, t326, t333 * t332)
-                - T::fused(-t303, t302, t311 * t310);
-            let t335 = k(1.6) * (t334 + T::fused(t274, t272, t281 * t280));
-            let t336 = t274 * t335;
-            let t337 = k(0.1) * t336;
-            let t338 = k(0.05) * t336;
-            let t339 = T::fused(-t205, t337, T::fused(-t234, t338, t239 * t336));
-            let t340 = t327 * t335;
-            let t341 = k(0.05) * t340;
-            let t342 = k(0.03) * t340;
-            let t343 = T::fused(t228, t341, T::fused(-t205, t342, t241 * t340));
-            let t344 = k(2.0) * (t343 + t339);
-            let t345 = k(0.03) * t336;
-            let t346 = T::fused(-t228, t337, T::fused(-t234, t345, t240 * t336));
-            let t347 = t303 * t335;
-            let t348 = k(0.05) * t347;
-            let t349 = k(0.03) * t347;
-            let t350 = T::fused(t228, t348, T::fused(-t205, t349, t241 * t347));
-            let t351 = k(2.0) * (t350 + t346);
-            let t352 = k(0.1) * t347;
-            let t353 = T::fused(-t205, t352, T::fused(-t234, t348, t239 * t347));
-            let t354 = k(0.1) * t340;
-            let t355 = T::fused(-t228, t354, T::fused(-t234, t342, t240 * t340));
-            let t356 = k(2.0) * (t355 - t353);
-            let t357 = T::fused(-t228, t352, T::fused(-t234, t349, t240 * t347));
-            let t358 = T::fused(
-                t221,
-                t351,
-                T::fused(-t222, t356, k(2.0) * (t216 * (k(2.0) * t357))),
+            let t332 = k(0.4) * t254;
+            let t333 = k(0.1) - (t332 - t310);
+            let t334 = T::fused(k(0.2), t320, T::fused(k(0.1), t318, k(0.06) * t316));
+            let t335 = t334
+                + (t333 - T::fused(-t256, t324, T::fused(t249, t296, t248 * t255)));
+            let t336 = t334 - t335 + (t333 + T::fused(k(0.2), t323, -(t332 + t310)));
+            let t337 = T::fused(
+                -k(0.6666666666666666),
+                t327,
+                T::fused(k(0.3333333333333333), t328, k(0.6666666666666666) * t329),
             );
-            let t359 = T::fused(t218, t344, t358);
-            let t360 = k(2.0) * (t343 - t339);
-            let t361 = T::fused(t228, t338, T::fused(-t205, t345, t241 * t336));
-            let t362 = t221 * (k(2.0) * t361);
-            let t363 = k(2.0) * (t355 + t353);
-            let t364 = T::fused(
+            let t338 = T::fused(t331, t330, t337 * t336)
+                - T::fused(-t307, t306, t315 * t314);
+            let t339 = k(1.6) * (t338 + T::fused(t278, t276, t285 * t284));
+            let t340 = t278 * t339;
+            let t341 = k(0.1) * t340;
+            let t342 = k(0.05) * t340;
+            let t343 = T::fused(-t209, t341, T::fused(-t238, t342, t243 * t340));
+            let t344 = t331 * t339;
+            let t345 = k(0.05) * t344;
+            let t346 = k(0.03) * t344;
+            let t347 = T::fused(t232, t345, T::fused(-t209, t346, t245 * t344));
+            let t348 = k(2.0) * (t347 + t343);
+            let t349 = k(0.03) * t340;
+            let t350 = T::fused(-t232, t341, T::fused(-t238, t349, t244 * t340));
+            let t351 = t307 * t339;
+            let t352 = k(0.05) * t351;
+            let t353 = k(0.03) * t351;
+            let t354 = T::fused(t232, t352, T::fused(-t209, t353, t245 * t351));
+            let t355 = k(2.0) * (t354 + t350);
+            let t356 = k(0.1) * t351;
+            let t357 = T::fused(-t209, t356, T::fused(-t238, t352, t243 * t351));
+            let t358 = k(0.1) * t344;
+            let t359 = T::fused(-t232, t358, T::fused(-t238, t346, t244 * t344));
+            let t360 = k(2.0) * (t359 - t357);
+            let t361 = T::fused(-t232, t356, T::fused(-t238, t353, t244 * t351));
+            let t362 = T::fused(
+                t225,
+                t355,
+                T::fused(-t226, t360, k(2.0) * (t220 * (k(2.0) * t361))),
+            );
+            let t363 = T::fused(t222, t348, t362);
+            let t364 = k(2.0) * (t347 - t343);
+            let t365 = T::fused(t232, t342, T::fused(-t209, t349, t245 * t340));
+            let t366 = t225 * (k(2.0) * t365);
+            let t367 = k(2.0) * (t359 + t357);
+            let t368 = T::fused(
+                -t226,
+                t364,
+                T::fused(t220, t355, t366 - T::fused(t222, t367, -t366)),
+            );
+            let t369 = t368 - t363;
+            let t370 = k(2.0) * (t354 - t350);
+            let t371 = T::fused(-t209, t358, T::fused(-t238, t345, t243 * t344));
+            let t372 = t222 * (k(2.0) * (t371 - t361 - t365));
+            let t373 = T::fused(
+                -t220,
+                t348,
+                T::fused(-t226, t370, t372 + T::fused(t225, t367, t372)),
+            );
+            let t374 = T::fused(
                 -t222,
-                t360,
-                T::fused(t216, t351, t362 - T::fused(t218, t363, -t362)),
+                t370,
+                T::fused(t220, t360, k(2.0) * (t226 * (k(2.0) * t371))),
             );
-            let t365 = t364 - t359;
-            let t366 = k(2.0) * (t350 - t346);
-            let t367 = T::fused(-t205, t354, T::fused(-t234, t341, t239 * t340));
-            let t368 = t218 * (k(2.0) * (t367 - t357 - t361));
-            let t369 = T::fused(
-                -t216,
-                t344,
-                T::fused(-t222, t366, t368 + T::fused(t221, t363, t368)),
-            );
-            let t370 = T::fused(
-                -t218,
-                t366,
-                T::fused(t216, t356, k(2.0) * (t222 * (k(2.0) * t367))),
-            );
-            let t371 = T::fused(t221, t360, t370);
-            let t372 = t280 * t335;
-            let t373 = T::fused(k(0.3333333333333333), t372, -t337);
-            let t374 = t332 * t335;
-            let t375 = T::fused(k(0.3333333333333333), t374, -t354);
-            let t376 = t375 + t373;
-            let t377 = k(0.6666666666666666) * t372;
-            let t378 = T::fused(-k(0.2), t336, t377);
-            let t379 = k(0.6666666666666666) * t374;
-            let t380 = t379 + t354;
-            let t381 = t380 - t378;
-            let t382 = t281 * t335;
-            let t383 = t333 * t335;
-            let t384 = T::fused(
-                -t200,
-                t381,
-                T::fused(-t252, t382, T::fused(-t258, t340, t244 * t383)),
-            );
-            let t385 = t272 * t335;
-            let t386 = t326 * t335;
-            let t387 = k(0.2) * t382;
+            let t375 = T::fused(t225, t364, t374);
+            let t376 = t284 * t339;
+            let t377 = T::fused(k(0.3333333333333333), t376, -t341);
+            let t378 = t336 * t339;
+            let t379 = T::fused(k(0.3333333333333333), t378, -t358);
+            let t380 = t379 + t377;
+            let t381 = k(0.6666666666666666) * t376;
+            let t382 = T::fused(-k(0.2), t340, t381);
+            let t383 = k(0.6666666666666666) * t378;
+            let t384 = t383 + t358;
+            let t385 = t384 - t382;
+            let t386 = t285 * t339;
+            let t387 = t337 * t339;
             let t388 = T::fused(
+                -t204,
+                t385,
+                T::fused(-t256, t386, T::fused(-t262, t344, t248 * t387)),
+            );
+            let t389 = t276 * t339;
+            let t390 = t330 * t339;
+            let t391 = k(0.2) * t386;
+            let t392 = T::fused(
                 -k(2.0),
-                T::fused(-t247, t336, T::fused(t197, t376, t384)),
+                T::fused(-t251, t340, T::fused(t201, t380, t388)),
                 T::fused(
                     -k(1.3333333333333333),
-                    t386 + t385,
-                    T::fused(k(0.4), t383, -t387),
+                    t390 + t389,
+                    T::fused(k(0.4), t387, -t391),
                 ),
             );
-            let t389 = t310 * t335;
-            let t390 = k(0.6666666666666666) * t389;
-            let t391 = t390 + t352;
-            let t392 = T::fused(-k(0.2), t347, t390);
-            let t393 = t392 + t391;
-            let t394 = t311 * t335;
-            let t395 = t302 * t335;
-            let t396 = T::fused(
-                -k(2.0),
-                T::fused(t253, t347, T::fused(t197, t393, t245 * t394)),
-                T::fused(k(0.6666666666666666), t395, k(0.2) * t394),
-            );
-            let t397 = t208 * (t396 - t388);
-            let t398 = t377 + t337;
-            let t399 = T::fused(k(0.3333333333333333), t389, -t352);
+            let t393 = t314 * t339;
+            let t394 = k(0.6666666666666666) * t393;
+            let t395 = t394 + t356;
+            let t396 = T::fused(-k(0.2), t351, t394);
+            let t397 = t396 + t395;
+            let t398 = t315 * t339;
+            let t399 = t306 * t339;
             (
                 t200,
+                t201,
                 t203,
-                t205,
-                t206,
-                t208,
+                t204,
+                t207,
+                t209,
                 t210,
-                t211,
                 t212,
+                t214,
                 t215,
-                t225,
-                t226,
-                t227,
-                t228,
+                t216,
+                t219,
+                t229,
+                t230,
+                t231,
                 t232,
-                t233,
-                t234,
+                t236,
                 t237,
-                t244,
-                t245,
-                t247,
+                t238,
+                t241,
+                t248,
+                t249,
                 t251,
-                t252,
-                t253,
+                t255,
+                t256,
                 t257,
-                t258,
                 t261,
-                t285,
-                t287,
+                t262,
+                t265,
                 t289,
-                t292,
-                t294,
-                t313,
-                t315,
+                t291,
+                t293,
+                t296,
+                t298,
                 t317,
-                t320,
-                t336,
-                t337,
-                t338,
+                t319,
+                t321,
+                t324,
                 t340,
                 t341,
                 t342,
+                t344,
                 t345,
-                t347,
-                t348,
+                t346,
                 t349,
+                t351,
                 t352,
-                t354,
-                t359,
-                t364,
-                t365,
+                t353,
+                t356,
+                t358,
+                t363,
+                t368,
                 t369,
-                t371,
                 t373,
                 t375,
-                t376,
-                t378,
+                t377,
                 t379,
                 t380,
                 t381,
                 t382,
                 t383,
+                t384,
                 t385,
                 t386,
                 t387,
-                t388,
+                t389,
+                t390,
                 t391,
                 t392,
                 t393,
-                t394,
                 t395,
                 t396,
                 t397,
@@ -11449,267 +11275,275 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             )
         };
         let (
-            t424,
-            t425,
-            t426,
             t428,
             t429,
-            t431,
+            t430,
+            t432,
             t433,
-            t439,
+            t435,
+            t437,
             t443,
-            t444,
             t447,
-            t456,
-            t457,
+            t448,
+            t451,
             t460,
-            t463,
+            t461,
+            t464,
+            t467,
         ) = {
-            let t400 = t399 + t378 + t398;
-            let t401 = T::fused(
-                t245,
-                t382,
-                T::fused(t258, t347, T::fused(t200, t391, t244 * t394)),
-            );
-            let t402 = k(1.3333333333333333) * t395;
-            let t403 = T::fused(
+            let t400 = T::fused(
                 -k(2.0),
-                T::fused(-t253, t336, T::fused(-t197, t400, t401)),
+                T::fused(t257, t351, T::fused(t201, t397, t249 * t398)),
+                T::fused(k(0.6666666666666666), t399, k(0.2) * t398),
+            );
+            let t401 = t212 * (t400 - t392);
+            let t402 = t381 + t341;
+            let t403 = T::fused(k(0.3333333333333333), t393, -t356);
+            let t404 = t403 + t382 + t402;
+            let t405 = T::fused(
+                t249,
+                t386,
+                T::fused(t262, t351, T::fused(t204, t395, t248 * t398)),
+            );
+            let t406 = k(1.3333333333333333) * t399;
+            let t407 = T::fused(
+                -k(2.0),
+                T::fused(-t257, t340, T::fused(-t201, t404, t405)),
                 T::fused(
                     -k(0.6666666666666666),
-                    t385,
-                    T::fused(k(0.4), t394, t402) + t387,
+                    t389,
+                    T::fused(k(0.4), t398, t406) + t391,
                 ),
             );
-            let t404 = T::fused(-k(0.2), t340, t379);
-            let t405 = t404 + t380 + t399;
-            let t406 = T::fused(
-                -t200,
-                t392,
-                T::fused(-t252, t394, T::fused(-t253, t340, t245 * t383)),
-            );
-            let t407 = T::fused(
-                k(2.0),
-                T::fused(t247, t347, T::fused(-t197, t405, t406)),
-                T::fused(-k(0.2), t383 - t394, k(0.6666666666666666) * t386) - t402,
-            );
-            let t408 = t407 - t403;
-            let t409 = T::fused(
-                -t258,
-                t336,
-                T::fused(-t200, t398, T::fused(t197, t373, t244 * t382)),
-            );
+            let t408 = T::fused(-k(0.2), t344, t383);
+            let t409 = t408 + t384 + t403;
             let t410 = T::fused(
-                -k(2.0),
-                t409,
-                T::fused(-k(1.3333333333333333), t385, k(0.4) * t382),
+                -t204,
+                t396,
+                T::fused(-t256, t398, T::fused(-t257, t344, t249 * t387)),
             );
             let t411 = T::fused(
-                t247,
+                k(2.0),
+                T::fused(t251, t351, T::fused(-t201, t409, t410)),
+                T::fused(-k(0.2), t387 - t398, k(0.6666666666666666) * t390) - t406,
+            );
+            let t412 = t411 - t407;
+            let t413 = T::fused(
+                -t262,
                 t340,
-                T::fused(-t197, t375, T::fused(-t200, t404, t252 * t383)),
+                T::fused(-t204, t402, T::fused(t201, t377, t248 * t386)),
             );
-            let t412 = T::fused(
-                -k(2.0),
-                t411,
-                T::fused(k(1.3333333333333333), t386, k(0.2) * t383),
-            );
-            let t413 = t412 + t410;
             let t414 = T::fused(
-                -t210,
-                t371,
-                t397 + (T::fused(-t212, t408, t215 * t413) + t397),
+                -k(2.0),
+                t413,
+                T::fused(-k(1.3333333333333333), t389, k(0.4) * t386),
             );
-            let t415 = t369 - t359;
-            let t416 = t359 + (t371 + t364 + t369);
-            let t417 = t371 - t364;
-            let t418 = t212 * (t412 - t410 + t388);
-            let t419 = t407 + t403;
-            let t420 = T::fused(
-                t191,
-                t417,
-                t418 + (T::fused(t208, t408, t215 * t419) + t418),
+            let t415 = T::fused(
+                t251,
+                t344,
+                T::fused(-t201, t379, T::fused(-t204, t408, t256 * t387)),
             );
-            let t421 = t371 - t369;
-            let t422 = T::fused(
-                t210,
-                t364,
-                T::fused(-t212, t419, T::fused(t208, t413, k(2.0) * (t215 * t396))),
+            let t416 = T::fused(
+                -k(2.0),
+                t415,
+                T::fused(k(1.3333333333333333), t390, k(0.2) * t387),
             );
-            let t423 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t210, t415, T::fused(-t206, t416, t420)),
-                k(0.3333333333333333) * T::fused(t191, t359, T::fused(t206, t421, t422)),
+            let t417 = t416 + t414;
+            let t418 = T::fused(
+                -t214,
+                t375,
+                t401 + (T::fused(-t216, t412, t219 * t417) + t401),
             );
+            let t419 = t373 - t363;
+            let t420 = t363 + (t375 + t368 + t373);
+            let t421 = t375 - t368;
+            let t422 = t216 * (t416 - t414 + t392);
+            let t423 = t411 + t407;
             let t424 = T::fused(
-                -t211,
-                T::fused(t206, t365, T::fused(-t191, t369, t414)),
-                t208 * t423,
+                t195,
+                t421,
+                t422 + (T::fused(t212, t412, t219 * t423) + t422),
             );
-            let t425 = T::fused(t251, t336, T::fused(-t292, t347, t320 * t340));
-            let t426 = T::fused(-t257, t336, T::fused(t294, t347, t292 * t340));
-            let t427 = t197 * t426;
+            let t425 = t375 - t373;
+            let t426 = T::fused(
+                t214,
+                t368,
+                T::fused(-t216, t423, T::fused(t212, t417, k(2.0) * (t219 * t400))),
+            );
+            let t427 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(-t214, t419, T::fused(-t210, t420, t424)),
+                k(0.3333333333333333) * T::fused(t195, t363, T::fused(t210, t425, t426)),
+            );
             let t428 = T::fused(
-                t200,
-                t425,
-                T::fused(t261, t382, T::fused(-t257, t394, t251 * t383)) - t427,
+                -t215,
+                T::fused(t210, t369, T::fused(-t195, t373, t418)),
+                t212 * t427,
             );
-            let t429 = T::fused(t261, t336, T::fused(t257, t347, t251 * t340));
-            let t430 = T::fused(
-                -t200,
+            let t429 = T::fused(t255, t340, T::fused(-t296, t351, t324 * t344));
+            let t430 = T::fused(-t261, t340, T::fused(t298, t351, t296 * t344));
+            let t431 = t201 * t430;
+            let t432 = T::fused(
+                t204,
                 t429,
-                T::fused(t251, t382, T::fused(t292, t394, t320 * t383)),
+                T::fused(t265, t386, T::fused(-t261, t398, t255 * t387)) - t431,
             );
-            let t431 = t430 - t427;
-            let t432 = t429 + t425;
-            let t433 = T::fused(
-                t197,
-                t432,
-                T::fused(-t257, t382, T::fused(-t294, t394, t292 * t383)),
+            let t433 = T::fused(t265, t340, T::fused(t261, t351, t255 * t344));
+            let t434 = T::fused(
+                -t204,
+                t433,
+                T::fused(t255, t386, T::fused(t296, t398, t324 * t387)),
             );
-            let t434 = T::fused(t225, t336, T::fused(t285, t347, t313 * t340));
-            let t435 = T::fused(t237, t336, T::fused(-t289, t347, t317 * t340));
-            let t436 = T::fused(
+            let t435 = t434 - t431;
+            let t436 = t433 + t429;
+            let t437 = T::fused(
+                t201,
+                t436,
+                T::fused(-t261, t386, T::fused(-t298, t398, t296 * t387)),
+            );
+            let t438 = T::fused(t229, t340, T::fused(t289, t351, t317 * t344));
+            let t439 = T::fused(t241, t340, T::fused(-t293, t351, t321 * t344));
+            let t440 = T::fused(
                 -k(0.4444444444444444),
                 u0,
                 T::fused(
                     k(0.6666666666666666),
-                    t234,
-                    T::fused(k(0.3333333333333333), t228, k(0.6666666666666666) * t205),
+                    t238,
+                    T::fused(k(0.3333333333333333), t232, k(0.6666666666666666) * t209),
                 ),
             );
-            let t437 = k(0.02666666666666667) * t436;
-            let t438 = T::fused(
-                t285,
-                t352,
-                T::fused(t289, t349, T::fused(t313, t354, T::fused(-t317, t342, t437))),
-            );
-            let t439 = T::fused(
-                t225,
-                t337,
-                T::fused(
-                    -t237,
-                    t345,
-                    T::fused(-k(0.1), t434, T::fused(k(0.03), t435, t438)),
-                ),
-            );
-            let t440 = T::fused(-t232, t336, T::fused(t287, t347, t315 * t340));
-            let t441 = T::fused(
-                -t289,
-                t348,
-                T::fused(
-                    -t315,
-                    t354,
-                    T::fused(t317, t341, k(0.013333333333333334) * t436),
-                ),
-            );
+            let t441 = k(0.02666666666666667) * t440;
             let t442 = T::fused(
-                t237,
-                t338,
+                t289,
+                t356,
+                T::fused(t293, t353, T::fused(t317, t358, T::fused(-t321, t346, t441))),
+            );
+            let t443 = T::fused(
+                t229,
+                t341,
+                T::fused(
+                    -t241,
+                    t349,
+                    T::fused(-k(0.1), t438, T::fused(k(0.03), t439, t442)),
+                ),
+            );
+            let t444 = T::fused(-t236, t340, T::fused(t291, t351, t319 * t344));
+            let t445 = T::fused(
+                -t293,
+                t352,
+                T::fused(
+                    -t319,
+                    t358,
+                    T::fused(t321, t345, k(0.013333333333333334) * t440),
+                ),
+            );
+            let t446 = T::fused(
+                t241,
+                t342,
                 T::fused(
                     k(0.1),
-                    t440,
-                    T::fused(-k(0.05), t435, T::fused(-t287, t352, t441)),
+                    t444,
+                    T::fused(-k(0.05), t439, T::fused(-t291, t356, t445)),
                 ),
             );
-            let t443 = T::fused(t232, t337, t442);
-            let t444 = t443 + t439;
-            let t445 = t197 * t444;
-            let t446 = T::fused(
-                t285,
-                t348,
-                T::fused(-t287, t349, T::fused(t313, t341, T::fused(-t315, t342, t437))),
+            let t447 = T::fused(t236, t341, t446);
+            let t448 = t447 + t443;
+            let t449 = t201 * t448;
+            let t450 = T::fused(
+                t289,
+                t352,
+                T::fused(-t291, t353, T::fused(t317, t345, T::fused(-t319, t346, t441))),
             );
-            let t447 = T::fused(
-                t225,
-                t338,
+            let t451 = T::fused(
+                t229,
+                t342,
                 T::fused(
-                    t232,
-                    t345,
-                    T::fused(-k(0.05), t434, T::fused(k(0.03), t440, t446)),
+                    t236,
+                    t349,
+                    T::fused(-k(0.05), t438, T::fused(k(0.03), t444, t450)),
                 ),
             );
-            let t448 = t197 * t447;
-            let t449 = T::fused(-t200, t443, t448);
-            let t450 = t197 * t439;
-            let t451 = t200 * t447;
-            let t452 = T::fused(
-                k(0.6666666666666666),
-                t449 - t445,
-                k(0.3333333333333333) * (t451 + t450),
-            );
-            let t453 = T::fused(
-                k(0.5555555555555556),
-                T::fused(-t200, t439, t448),
-                T::fused(
-                    k(0.4444444444444444),
-                    t451 - t450,
-                    k(0.8888888888888888) * (t197 * t443),
-                ),
-            );
-            let t454 = T::fused(-k(0.2222222222222222), t449 + t445, t453);
-            let t455 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(t208, t365, T::fused(t212, t416, t215 * t421)),
-                k(0.3333333333333333)
-                    * T::fused(-t212, t415, T::fused(-t215, t364, t208 * t371)),
-            );
+            let t452 = t201 * t451;
+            let t453 = T::fused(-t204, t447, t452);
+            let t454 = t201 * t443;
+            let t455 = t204 * t451;
             let t456 = T::fused(
-                -k(2.0),
-                T::fused(-t191, t452, t189 * t454),
-                T::fused(-t190, t454, t455),
+                k(0.6666666666666666),
+                t453 - t449,
+                k(0.3333333333333333) * (t455 + t454),
             );
             let t457 = T::fused(
-                t190,
-                t452,
-                T::fused(-t215, t359, T::fused(t208, t369, t212 * t417)),
+                k(0.5555555555555556),
+                T::fused(-t204, t443, t452),
+                T::fused(
+                    k(0.4444444444444444),
+                    t455 - t454,
+                    k(0.8888888888888888) * (t201 * t447),
+                ),
             );
-            let t458 = T::fused(
-                t251,
-                t376,
-                T::fused(-t294, t393, T::fused(-t292, t405, t320 * t375)),
-            );
+            let t458 = T::fused(-k(0.2222222222222222), t453 + t449, t457);
             let t459 = T::fused(
-                t252,
-                t426,
-                T::fused(-t244, t426, T::fused(t257, t400, T::fused(t261, t373, t458))),
+                -k(0.6666666666666666),
+                T::fused(t212, t369, T::fused(t216, t420, t219 * t425)),
+                k(0.3333333333333333)
+                    * T::fused(-t216, t419, T::fused(-t219, t368, t212 * t375)),
             );
             let t460 = T::fused(
-                t226,
-                t443,
-                T::fused(t227, t447, T::fused(t199, t447, T::fused(t245, t432, t459))),
+                -k(2.0),
+                T::fused(-t195, t456, t193 * t458),
+                T::fused(-t194, t458, t459),
             );
             let t461 = T::fused(
-                -t251,
-                t381,
-                T::fused(-t257, t391, T::fused(-t292, t392, t320 * t404)),
+                t194,
+                t456,
+                T::fused(-t219, t363, T::fused(t212, t373, t216 * t421)),
             );
             let t462 = T::fused(
-                -t233,
-                t447,
-                T::fused(t244, t425, T::fused(t252, t429, T::fused(-t261, t398, t461))),
+                t255,
+                t380,
+                T::fused(-t298, t397, T::fused(-t296, t409, t324 * t379)),
             );
             let t463 = T::fused(
+                t256,
+                t430,
+                T::fused(-t248, t430, T::fused(t261, t404, T::fused(t265, t377, t462))),
+            );
+            let t464 = T::fused(
+                t230,
+                t447,
+                T::fused(t231, t451, T::fused(t203, t451, T::fused(t249, t436, t463))),
+            );
+            let t465 = T::fused(
+                -t255,
+                t385,
+                T::fused(-t261, t395, T::fused(-t296, t396, t324 * t408)),
+            );
+            let t466 = T::fused(
+                -t237,
+                t451,
+                T::fused(t248, t429, T::fused(t256, t433, T::fused(-t265, t402, t465))),
+            );
+            let t467 = T::fused(
                 -k(0.3333333333333333),
-                T::fused(-t199, t439, T::fused(-t227, t443, t462)),
-                k(0.017777777777777778) * t436,
+                T::fused(-t203, t443, T::fused(-t231, t447, t466)),
+                k(0.017777777777777778) * t440,
             );
             (
-                t424,
-                t425,
-                t426,
                 t428,
                 t429,
-                t431,
+                t430,
+                t432,
                 t433,
-                t439,
+                t435,
+                t437,
                 t443,
-                t444,
                 t447,
-                t456,
-                t457,
+                t448,
+                t451,
                 t460,
-                t463,
+                t461,
+                t464,
+                t467,
             )
         };
         *dfdx = [
@@ -11749,62 +11583,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for CarriedBlock<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            t49,
-            -t102,
-            t117,
-            t140,
-            -t146,
-            -t151,
+            -t51,
+            t107,
+            t122,
+            -t144,
+            t150,
             -t155,
-            t160,
-            k(0.0),
-            -t161,
-            t163,
+            -t159,
             t164,
+            k(0.0),
             -t165,
-            -t166,
-            t167,
-            -t168,
-            -t169,
-            k(0.0),
-            t170,
-            -t171,
+            -t167,
+            t168,
+            t169,
+            -t170,
+            t171,
             -t172,
-            t175,
-            -t176,
-            -t177,
-            -t178,
-            -t179,
+            -t173,
             k(0.0),
+            -t174,
+            -t175,
+            t176,
+            t179,
             -t180,
-            T::fused(t6, t171, t181),
-            T::fused(t6, t172, -t182),
-            -(t184 + t183),
-            -t185,
-            -t186,
-            t187,
+            -t181,
+            -t182,
+            -t183,
+            k(0.0),
+            t184,
+            T::fused(t17, t175, t185),
+            -T::fused(t17, t176, t186),
+            -(t188 + t187),
+            t189,
+            -t190,
+            t191,
             T::fused(
-                t6,
-                t179,
-                -T::fused(-t17, t169, T::fused(t34, t160, k(0.6052047609441195))),
+                t17,
+                t183,
+                -T::fused(-t31, t173, T::fused(t16, t164, k(0.6052047609441195))),
             ),
             k(0.0),
-            k(0.5) * t424,
-            -T::fused(k(0.6666666666666666), t431 + t428, k(0.3333333333333333) * t433),
-            -T::fused(k(0.6666666666666666), t433 - t428, k(0.3333333333333333) * t431),
-            k(0.5) * T::fused(-t191, t456, t189 * t457),
+            k(0.5) * t428,
+            -T::fused(k(0.6666666666666666), t435 + t432, k(0.3333333333333333) * t437),
+            -T::fused(k(0.6666666666666666), t437 - t432, k(0.3333333333333333) * t435),
+            k(0.5) * T::fused(-t195, t460, t193 * t461),
             T::fused(
                 -k(0.6666666666666666),
-                T::fused(t196, t444, T::fused(t203, t439, t460)),
-                t463,
+                T::fused(t200, t448, T::fused(t207, t443, t464)),
+                t467,
             ),
             T::fused(
                 k(0.6666666666666666),
-                t425,
-                T::fused(k(0.3333333333333333), t426, k(0.6666666666666666) * t429),
+                t429,
+                T::fused(k(0.3333333333333333), t430, k(0.6666666666666666) * t433),
             ),
-            T::fused(-k(0.6666666666666666), t429 - t426, k(0.3333333333333333) * t425),
-            -T::fused(k(0.6666666666666666), t447 + t439, k(0.3333333333333333) * t443),
+            T::fused(-k(0.6666666666666666), t433 - t430, k(0.3333333333333333) * t429),
+            -T::fused(k(0.6666666666666666), t451 + t443, k(0.3333333333333333) * t447),
             k(0.0),
         ];
         *dfdt = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
@@ -11821,7 +11655,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 12]
     }
-    /// Writes the outputs: 1074 operations (475 ±, 597 ×, 2 ÷) and 3 functions.
+    /// Writes the outputs: 1058 operations (471 ±, 585 ×, 2 ÷) and 3 functions.
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -11866,105 +11700,101 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
         let block_dwy = accelerations[10];
         let block_dwz = accelerations[11];
         let (
-            t3,
-            t7,
+            t4,
+            t8,
             t10,
-            t14,
-            t15,
-            t18,
-            t19,
-            t22,
+            t16,
+            t20,
             t23,
             t27,
             t28,
             t29,
             t30,
+            t31,
             t32,
+            t37,
             t38,
-            t40,
-            t42,
+            t39,
+            t43,
+            t44,
             t46,
-            t47,
-            t48,
-            t49,
+            t50,
             t51,
             t52,
-            t56,
-            t57,
+            t53,
+            t54,
+            t55,
             t58,
             t59,
-            t61,
+            t60,
+            t62,
+            t63,
             t65,
-            t67,
             t69,
+            t70,
             t71,
             t72,
             t73,
             t74,
-            t76,
             t77,
+            t79,
             t81,
-            t82,
             t83,
             t84,
-            t86,
-            t89,
+            t85,
+            t87,
+            t88,
             t90,
             t91,
-            t92,
             t93,
             t94,
-            t95,
-            t96,
-            t97,
-            t99,
-            t100,
-            t102,
-            t103,
-            t105,
-            t106,
+            t107,
+            t108,
+            t109,
+            t110,
+            t111,
+            t113,
             t114,
             t115,
             t116,
             t117,
-            t119,
             t120,
             t121,
             t122,
             t123,
-            t125,
-            t126,
-            t127,
-            t128,
-            t129,
+            t131,
+            t133,
+            t135,
+            t136,
+            t137,
+            t138,
             t146,
             t147,
-            t148,
             t149,
-            t154,
-            t155,
+            t150,
+            t151,
+            t152,
+            t157,
+            t158,
+            t159,
             t160,
             t161,
             t162,
             t163,
+            t164,
+            t165,
             t168,
             t169,
             t170,
             t171,
             t172,
-            t173,
             t174,
             t175,
-            t176,
-            t179,
+            t180,
             t181,
-            t183,
             t184,
             t185,
-            t186,
-            t189,
             t190,
-            t191,
             t192,
             t193,
             t194,
@@ -11974,48 +11804,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
             t198,
             t199,
         ) = {
-            let t0 = block_e0 * block_e2;
-            let t1 = block_e1 * block_e3;
-            let t2 = t1 - t0;
-            let t3 = k(2.0) * t2;
-            let t4 = block_e0 * block_e1;
-            let t5 = block_e2 * block_e3;
-            let t6 = t5 + t4;
-            let t7 = k(2.0) * t6;
-            let t8 = block_e0 * block_e0;
-            let t9 = k(0.5) - T::fused(block_e3, block_e3, t8);
-            let t10 = k(2.0) * t9;
+            let t0 = k(2.0) * block_e0;
+            let t1 = block_e2 * t0;
+            let t2 = k(2.0) * block_e1;
+            let t3 = block_e3 * t2;
+            let t4 = t3 - t1;
+            let t5 = block_e1 * t0;
+            let t6 = k(2.0) * block_e2;
+            let t7 = block_e3 * t6;
+            let t8 = t7 + t5;
+            let t9 = T::fused(-block_e0, t0, k(1.0));
+            let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
             let t11 = T::fused(
                 -k(0.05),
-                T::fused(t3, block_wz, t10 * block_wx),
-                k(0.03) * T::fused(t7, block_wz, t10 * block_wy),
+                T::fused(block_wz, t4, block_wx * t10),
+                k(0.03) * T::fused(block_wz, t8, block_wy * t10),
             );
-            let t12 = arm_e0 * arm_e2;
-            let t13 = arm_e1 * arm_e3;
-            let t14 = t13 - t12;
-            let t15 = k(2.0) * t14;
-            let t16 = arm_e0 * arm_e1;
-            let t17 = arm_e2 * arm_e3;
-            let t18 = t17 + t16;
-            let t19 = k(2.0) * t18;
-            let t20 = T::fused(-t15, arm_wy, t19 * arm_wx);
-            let t21 = arm_e0 * arm_e0;
-            let t22 = k(0.5) - T::fused(arm_e3, arm_e3, t21);
-            let t23 = k(2.0) * t22;
-            let t24 = T::fused(t15, arm_wz, t23 * arm_wx);
-            let t25 = T::fused(t19, arm_wz, t23 * arm_wy);
+            let t12 = k(2.0) * arm_e0;
+            let t13 = arm_e2 * t12;
+            let t14 = k(2.0) * arm_e1;
+            let t15 = arm_e3 * t14;
+            let t16 = t15 - t13;
+            let t17 = arm_e1 * t12;
+            let t18 = k(2.0) * arm_e2;
+            let t19 = arm_e3 * t18;
+            let t20 = t19 + t17;
+            let t21 = T::fused(-arm_wy, t16, arm_wx * t20);
+            let t22 = T::fused(-arm_e0, t12, k(1.0));
+            let t23 = T::fused(-arm_e3, k(2.0) * arm_e3, t22);
+            let t24 = T::fused(arm_wz, t16, arm_wx * t23);
+            let t25 = T::fused(arm_wz, t20, arm_wy * t23);
             let t26 = arm_sz
-                + T::fused(-k(0.1), t20, T::fused(-k(0.1), t24, k(0.2) * t25))
+                + T::fused(-k(0.1), t21, T::fused(-k(0.1), t24, k(0.2) * t25))
                 - (block_sz
-                    + T::fused(k(0.1), T::fused(-t3, block_wy, t7 * block_wx), t11));
-            let t27 = k(1.3333333333333333) * t22;
-            let t28 = T::fused(k(1.3333333333333333), t14, k(0.6666666666666666) * t18)
+                    + T::fused(k(0.1), T::fused(-block_wy, t4, block_wx * t8), t11));
+            let t27 = k(0.6666666666666666) * t23;
+            let t28 = T::fused(k(0.6666666666666666), t16, k(0.3333333333333333) * t20)
                 + t27;
-            let t29 = k(0.4) * t14;
-            let t30 = k(0.2) * t18;
-            let t31 = k(0.2) * t22;
+            let t29 = k(0.2) * t16;
+            let t30 = k(0.1) * t20;
+            let t31 = k(0.1) * t23;
             let t32 = block_rz
-                + T::fused(k(0.2), t9, T::fused(k(0.06), t2, k(0.1) * t6));
+                + T::fused(k(0.1), t10, T::fused(k(0.03), t4, k(0.05) * t8));
             let t33 = t32 - (arm_rz - (t31 - (t30 + t29)));
             let t34 = T::fused(
                 -t28,
@@ -12023,7 +11853,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t33
                     * T::fused(
                         k(0.6666666666666666),
-                        t20,
+                        t21,
                         T::fused(
                             -k(0.3333333333333333),
                             t24,
@@ -12031,168 +11861,166 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                         ),
                     ),
             );
-            let t35 = block_e0 * block_e3;
-            let t36 = block_e1 * block_e2;
+            let t35 = block_e3 * t0;
+            let t36 = block_e2 * t2;
             let t37 = t36 + t35;
-            let t38 = k(2.0) * t37;
-            let t39 = k(0.5) - T::fused(block_e2, block_e2, t8);
-            let t40 = k(2.0) * t39;
-            let t41 = t5 - t4;
-            let t42 = k(2.0) * t41;
-            let t43 = T::fused(
+            let t38 = T::fused(-block_e2, t6, t9);
+            let t39 = t7 - t5;
+            let t40 = T::fused(
                 -k(0.05),
-                T::fused(-t38, block_wz, t42 * block_wx),
-                k(0.03) * T::fused(t40, block_wz, t42 * block_wy),
+                T::fused(-block_wz, t37, block_wx * t39),
+                k(0.03) * T::fused(block_wz, t38, block_wy * t39),
             );
-            let t44 = arm_e0 * arm_e3;
-            let t45 = arm_e1 * arm_e2;
-            let t46 = t45 + t44;
-            let t47 = k(2.0) * t46;
-            let t48 = k(0.5) - T::fused(arm_e2, arm_e2, t21);
-            let t49 = k(2.0) * t48;
-            let t50 = T::fused(t47, arm_wy, t49 * arm_wx);
-            let t51 = t17 - t16;
-            let t52 = k(2.0) * t51;
-            let t53 = T::fused(-t47, arm_wz, t52 * arm_wx);
-            let t54 = T::fused(t49, arm_wz, t52 * arm_wy);
-            let t55 = arm_sy
-                - T::fused(-k(0.1), t50, T::fused(-k(0.1), t53, k(0.2) * t54))
+            let t41 = arm_e3 * t12;
+            let t42 = arm_e2 * t14;
+            let t43 = t42 + t41;
+            let t44 = T::fused(-arm_e2, t18, t22);
+            let t45 = T::fused(arm_wy, t43, arm_wx * t44);
+            let t46 = t19 - t17;
+            let t47 = T::fused(-arm_wz, t43, arm_wx * t46);
+            let t48 = T::fused(arm_wz, t44, arm_wy * t46);
+            let t49 = arm_sy
+                - T::fused(-k(0.1), t45, T::fused(-k(0.1), t47, k(0.2) * t48))
                 - (block_sy
-                    - T::fused(k(0.1), T::fused(t38, block_wy, t40 * block_wx), t43));
-            let t56 = k(1.3333333333333333) * t51;
-            let t57 = T::fused(-k(1.3333333333333333), t46, k(0.6666666666666666) * t48)
-                + t56;
-            let t58 = k(0.4) * t46;
-            let t59 = k(0.2) * t48;
-            let t60 = k(0.2) * t51;
-            let t61 = block_ry
-                - T::fused(k(0.2), t41, T::fused(-k(0.06), t37, k(0.1) * t39));
-            let t62 = t61 - (arm_ry + (t60 - (t59 - t58)));
-            let t63 = T::fused(
-                -t57,
-                t55,
-                t62
+                    - T::fused(k(0.1), T::fused(block_wy, t37, block_wx * t38), t40));
+            let t50 = k(0.6666666666666666) * t46;
+            let t51 = T::fused(-k(0.6666666666666666), t43, k(0.3333333333333333) * t44)
+                + t50;
+            let t52 = k(0.2) * t43;
+            let t53 = k(0.1) * t44;
+            let t54 = k(0.1) * t46;
+            let t55 = block_ry
+                - T::fused(k(0.1), t39, T::fused(-k(0.03), t37, k(0.05) * t38));
+            let t56 = t55 - (arm_ry + (t54 - (t53 - t52)));
+            let t57 = T::fused(
+                -t51,
+                t49,
+                t56
                     * T::fused(
                         k(0.6666666666666666),
-                        t50,
+                        t45,
                         T::fused(
                             -k(0.3333333333333333),
-                            t53,
-                            k(0.6666666666666666) * t54,
+                            t47,
+                            k(0.6666666666666666) * t48,
                         ),
                     ),
             );
-            let t64 = k(0.5) - T::fused(block_e1, block_e1, t8);
-            let t65 = k(2.0) * t64;
-            let t66 = t36 - t35;
-            let t67 = k(2.0) * t66;
-            let t68 = t1 + t0;
-            let t69 = k(2.0) * t68;
-            let t70 = T::fused(
+            let t58 = T::fused(-block_e1, t2, t9);
+            let t59 = t36 - t35;
+            let t60 = t3 + t1;
+            let t61 = T::fused(
                 -k(0.05),
-                T::fused(t65, block_wz, t69 * block_wx),
-                k(0.03) * T::fused(-t67, block_wz, t69 * block_wy),
+                T::fused(block_wz, t58, block_wx * t60),
+                k(0.03) * T::fused(-block_wz, t59, block_wy * t60),
             );
-            let t71 = k(0.5) - T::fused(arm_e1, arm_e1, t21);
-            let t72 = k(2.0) * t71;
-            let t73 = t45 - t44;
-            let t74 = k(2.0) * t73;
-            let t75 = T::fused(t72, arm_wy, t74 * arm_wx);
-            let t76 = t13 + t12;
-            let t77 = k(2.0) * t76;
-            let t78 = T::fused(t72, arm_wz, t77 * arm_wx);
-            let t79 = T::fused(-t74, arm_wz, t77 * arm_wy);
-            let t80 = arm_sx
-                - T::fused(k(0.1), t75, T::fused(-k(0.1), t78, k(0.2) * t79))
+            let t62 = T::fused(-arm_e1, t14, t22);
+            let t63 = t42 - t41;
+            let t64 = T::fused(arm_wy, t62, arm_wx * t63);
+            let t65 = t15 + t13;
+            let t66 = T::fused(arm_wz, t62, arm_wx * t65);
+            let t67 = T::fused(-arm_wz, t63, arm_wy * t65);
+            let t68 = arm_sx
+                - T::fused(k(0.1), t64, T::fused(-k(0.1), t66, k(0.2) * t67))
                 - (block_sx
-                    - T::fused(-k(0.1), T::fused(t65, block_wy, t67 * block_wx), t70));
-            let t81 = k(1.3333333333333333) * t76;
-            let t82 = T::fused(-k(1.3333333333333333), t71, k(0.6666666666666666) * t73)
-                - t81;
-            let t83 = k(0.4) * t71;
-            let t84 = k(0.2) * t73;
-            let t85 = k(0.2) * t76;
-            let t86 = block_rx
-                - T::fused(k(0.2), t68, -T::fused(-k(0.06), t64, k(0.1) * t66));
-            let t87 = t86 - (arm_rx + (t85 + (t84 - t83)));
-            let t88 = T::fused(
-                t82,
-                t80,
-                t87
+                    - T::fused(-k(0.1), T::fused(block_wy, t58, block_wx * t59), t61));
+            let t69 = k(0.6666666666666666) * t65;
+            let t70 = T::fused(-k(0.6666666666666666), t62, k(0.3333333333333333) * t63)
+                - t69;
+            let t71 = k(0.2) * t62;
+            let t72 = k(0.1) * t63;
+            let t73 = k(0.1) * t65;
+            let t74 = block_rx
+                - T::fused(k(0.1), t60, -T::fused(-k(0.03), t58, k(0.05) * t59));
+            let t75 = t74 - (arm_rx + (t73 + (t72 - t71)));
+            let t76 = T::fused(
+                -t70,
+                t68,
+                t75
                     * T::fused(
-                        -k(0.6666666666666666),
-                        t75,
-                        T::fused(
+                        k(0.6666666666666666),
+                        t64,
+                        -T::fused(
                             -k(0.3333333333333333),
-                            t78,
-                            k(0.6666666666666666) * t79,
+                            t66,
+                            k(0.6666666666666666) * t67,
                         ),
                     ),
             );
-            let t89 = k(0.8) * (t88 + t63 - t34);
-            let t90 = k(0.6666666666666666) * t76;
-            let t91 = T::fused(k(1.3333333333333333), t71 + t73, -t90);
-            let t92 = k(0.6666666666666666) * t51;
-            let t93 = T::fused(k(1.3333333333333333), t46 + t48, t92);
-            let t94 = k(0.6666666666666666) * t22;
-            let t95 = T::fused(k(1.3333333333333333), t14 - t18, -t94);
-            let t96 = k(40.0)
-                * (k(0.05) + T::fused(t33, t95, T::fused(-t87, t91, t62 * t93)));
-            let t97 = k(25.0) * T::fused(t28, t33, -T::fused(-t82, t87, t57 * t62));
-            let t98 = T::fused(t82, t97, -T::fused(t82, t89, t91 * t96));
-            let t99 = T::fused(k(0.6), block_dsx, -(k(0.6) - t98));
-            let t100 = t99 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t98));
-            let t101 = T::fused(t57, t97, -T::fused(t57, t89, t93 * t96));
-            let t102 = T::fused(k(0.6), block_dsy, k(5.4) - t101);
-            let t103 = t102 + T::fused(k(1.5), arm_dsy, k(13.5) + t101);
-            let t104 = T::fused(t28, t97, T::fused(-t28, t89, t95 * t96));
-            let t105 = T::fused(k(0.6), block_dsz, -(k(1.8) - t104));
-            let t106 = t105 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t104));
-            let t107 = T::fused(t10, t28, T::fused(-t69, t82, t42 * t57));
-            let t108 = T::fused(t7, t28, T::fused(t67, t82, t40 * t57));
-            let t109 = T::fused(-k(0.05), t107, k(0.1) * t108);
-            let t110 = T::fused(t10, t95, -T::fused(-t69, t91, t42 * t93));
-            let t111 = T::fused(t7, t95, -T::fused(t67, t91, t40 * t93));
-            let t112 = T::fused(
-                t97,
-                t109,
-                T::fused(-t89, t109, t96 * T::fused(-k(0.05), t110, k(0.1) * t111)),
+            let t77 = k(0.8) * (t76 - t57 + t34);
+            let t78 = k(0.3333333333333333) * t65;
+            let t79 = T::fused(k(0.6666666666666666), t62 + t63, -t78);
+            let t80 = k(0.3333333333333333) * t46;
+            let t81 = T::fused(k(0.6666666666666666), t43 + t44, t80);
+            let t82 = k(0.3333333333333333) * t23;
+            let t83 = T::fused(k(0.6666666666666666), t16 - t20, -t82);
+            let t84 = k(40.0)
+                * (k(0.05) + T::fused(t83, t33, T::fused(-t79, t75, t81 * t56)));
+            let t85 = k(25.0) * T::fused(t28, t33, -T::fused(-t70, t75, t51 * t56));
+            let t86 = T::fused(t70, t85, -T::fused(-t70, t77, t79 * t84));
+            let t87 = T::fused(k(0.6), block_dsx, -(k(0.6) - t86));
+            let t88 = t87 + T::fused(k(1.5), arm_dsx, -(k(1.5) + t86));
+            let t89 = T::fused(t51, t85, -T::fused(-t51, t77, t81 * t84));
+            let t90 = T::fused(k(0.6), block_dsy, k(5.4) - t89);
+            let t91 = t90 + T::fused(k(1.5), arm_dsy, k(13.5) + t89);
+            let t92 = T::fused(t28, t85, T::fused(t28, t77, t83 * t84));
+            let t93 = T::fused(k(0.6), block_dsz, -(k(1.8) - t92));
+            let t94 = t93 + T::fused(k(1.5), arm_dsz, -(k(4.5) + t92));
+            let t95 = k(0.005) * block_wz;
+            let t96 = block_wx * block_wx;
+            let t97 = block_wz * block_wz;
+            let t98 = k(0.003) * block_wx;
+            let t99 = k(0.001) * block_wz;
+            let t100 = T::fused(
+                block_wy,
+                t99 + t98,
+                T::fused(-block_wx, t95, k(0.002) * (t97 - t96)),
             );
-            let t113 = T::fused(t15, t3, T::fused(t72, t65, t47 * t38));
+            let t101 = T::fused(t4, t28, -T::fused(t58, t70, t37 * t51));
+            let t102 = T::fused(t10, t28, T::fused(-t60, t70, t39 * t51));
+            let t103 = T::fused(-k(0.1), t101, k(0.03) * t102);
+            let t104 = T::fused(t4, t83, T::fused(t58, t79, t37 * t81));
+            let t105 = T::fused(t10, t83, -T::fused(-t60, t79, t39 * t81));
+            let t106 = T::fused(
+                t85,
+                t103,
+                T::fused(t77, t103, t84 * T::fused(-k(0.1), t104, k(0.03) * t105)),
+            );
+            let t107 = T::fused(t16, t4, T::fused(t62, t58, t43 * t37));
+            let t108 = k(0.6666666666666666) * t107;
+            let t109 = T::fused(t16, t8, -T::fused(t62, t59, t43 * t38));
+            let t110 = k(0.3333333333333333) * t109;
+            let t111 = T::fused(t16, t10, -T::fused(-t62, t60, t43 * t39));
+            let t112 = T::fused(k(0.6666666666666666), t111, t110 + t108);
+            let t113 = T::fused(t20, t4, -T::fused(t63, t58, t44 * t37));
             let t114 = k(0.6666666666666666) * t113;
-            let t115 = T::fused(t15, t7, -T::fused(t72, t67, t47 * t40));
+            let t115 = T::fused(t20, t8, T::fused(t63, t59, t44 * t38));
             let t116 = k(0.3333333333333333) * t115;
-            let t117 = T::fused(t15, t10, -T::fused(-t72, t69, t47 * t42));
+            let t117 = T::fused(t20, t10, T::fused(-t63, t60, t44 * t39));
             let t118 = T::fused(k(0.6666666666666666), t117, t116 + t114);
-            let t119 = T::fused(t19, t3, -T::fused(t74, t65, t49 * t38));
+            let t119 = T::fused(t23, t4, -T::fused(-t65, t58, t46 * t37));
             let t120 = k(0.6666666666666666) * t119;
-            let t121 = T::fused(t19, t7, T::fused(t49, t40, t74 * t67));
+            let t121 = T::fused(t23, t8, T::fused(-t65, t59, t46 * t38));
             let t122 = k(0.3333333333333333) * t121;
-            let t123 = T::fused(t19, t10, -T::fused(-t49, t42, t74 * t69));
+            let t123 = T::fused(t23, t10, T::fused(t65, t60, t46 * t39));
             let t124 = T::fused(k(0.6666666666666666), t123, t122 + t120);
-            let t125 = T::fused(t23, t3, -T::fused(-t77, t65, t52 * t38));
-            let t126 = k(0.6666666666666666) * t125;
-            let t127 = T::fused(t23, t7, -T::fused(-t52, t40, t77 * t67));
-            let t128 = k(0.3333333333333333) * t127;
-            let t129 = T::fused(t23, t10, T::fused(t52, t42, t77 * t69));
-            let t130 = T::fused(k(0.6666666666666666), t129, t128 + t126);
-            let t131 = T::fused(
+            let t125 = T::fused(
                 k(0.6666666666666666),
-                t130,
-                T::fused(k(0.6666666666666666), t118, k(0.3333333333333333) * t124),
+                t124,
+                T::fused(k(0.6666666666666666), t112, k(0.3333333333333333) * t118),
             );
-            let t132 = turn0.cos();
-            let t133 = T::fused(
+            let t126 = turn0.cos();
+            let t127 = T::fused(
                 k(0.6666666666666666),
-                t124 - t118,
-                k(0.3333333333333333) * t130,
+                t118 - t112,
+                k(0.3333333333333333) * t124,
             );
-            let t134 = turn0.sin();
-            let t135 = T::fused(-t134, t131, t132 * t133)
-                .atan2(T::fused(t132, t131, t134 * t133));
-            let t136 = turn0 + t135;
-            let t137 = k(0.2) * t136;
-            let t138 = T::fused(
+            let t128 = turn0.sin();
+            let t129 = T::fused(-t128, t125, t126 * t127)
+                .atan2(T::fused(t126, t125, t128 * t127));
+            let t130 = turn0 + t129;
+            let t131 = k(0.4) * t130;
+            let t132 = T::fused(
                 k(0.6666666666666666),
                 arm_wz,
                 T::fused(k(0.6666666666666666), arm_wy, k(0.3333333333333333) * arm_wx),
@@ -12206,220 +12034,238 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                         k(0.3333333333333333) * block_wx,
                     ),
                 );
-            let t139 = k(0.006666666666666667) * t138;
-            let t140 = block_wy * block_wy;
-            let t141 = block_wz * block_wz;
-            let t142 = k(0.001) * block_wz;
-            let t143 = k(0.002) * block_wy;
-            let t144 = T::fused(
-                block_wx,
-                t143 - t142,
-                -T::fused(-k(0.003), t141 - t140, k(0.005) * (block_wy * block_wz)),
-            );
-            let t145 = T::fused(
-                k(0.002),
-                block_dwz,
-                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
-            ) + (t144 - (t139 - (t137 + t112)));
-            let t146 = T::fused(k(0.2), t66, k(0.1) * t68);
-            let t147 = T::fused(-k(0.2), t39, k(0.1) * t41);
-            let t148 = T::fused(-k(0.2), t6, k(0.1) * t9);
-            let t149 = T::fused(t148, t105, -T::fused(t146, t99, t147 * t102)) + t145;
-            let t150 = T::fused(t3, t28, -T::fused(t65, t82, t38 * t57));
-            let t151 = T::fused(-k(0.1), t150, k(0.03) * t107);
-            let t152 = T::fused(t3, t95, T::fused(t65, t91, t38 * t93));
-            let t153 = T::fused(
-                t97,
-                t151,
-                T::fused(-t89, t151, t96 * T::fused(-k(0.1), t152, k(0.03) * t110)),
-            );
-            let t154 = k(0.4) * t136;
-            let t155 = k(0.013333333333333334) * t138;
-            let t156 = block_wx * block_wx;
-            let t157 = k(0.003) * block_wx;
-            let t158 = T::fused(
-                block_wy,
-                t142 + t157,
-                -T::fused(-k(0.002), t141 - t156, k(0.005) * (block_wx * block_wz)),
-            );
-            let t159 = T::fused(
+            let t133 = k(0.013333333333333334) * t132;
+            let t134 = T::fused(
                 -k(0.003),
                 block_dwz,
                 T::fused(k(0.03), block_dwy, k(0.001) * block_dwx),
-            ) + (t158 - (t155 - (t154 + t153)));
-            let t160 = T::fused(-k(0.2), t64, k(0.06) * t68);
-            let t161 = T::fused(k(0.2), t37, k(0.06) * t41);
-            let t162 = T::fused(-k(0.2), t2, k(0.06) * t9);
-            let t163 = T::fused(t162, t105, -T::fused(t160, t99, t161 * t102)) - t159;
-            let t164 = T::fused(-k(0.03), t108, k(0.05) * t150);
-            let t165 = T::fused(
-                t97,
-                t164,
-                T::fused(-t89, t164, t96 * T::fused(-k(0.03), t111, k(0.05) * t152)),
+            ) - (t133 - (t131 + t106) - t100);
+            let t135 = T::fused(-k(0.1), t58, k(0.03) * t60);
+            let t136 = T::fused(k(0.1), t37, k(0.03) * t39);
+            let t137 = T::fused(-k(0.1), t4, k(0.03) * t10);
+            let t138 = T::fused(t137, t93, -T::fused(t135, t87, t136 * t90)) - t134;
+            let t139 = block_wy * block_wy;
+            let t140 = k(0.002) * block_wy;
+            let t141 = T::fused(
+                block_wx,
+                t140 - t99,
+                T::fused(-block_wy, t95, k(0.003) * (t97 - t139)),
             );
-            let t166 = T::fused(
+            let t142 = T::fused(t8, t28, T::fused(t59, t70, t38 * t51));
+            let t143 = T::fused(-k(0.05), t102, k(0.1) * t142);
+            let t144 = T::fused(t8, t83, -T::fused(t59, t79, t38 * t81));
+            let t145 = T::fused(
+                t85,
+                t143,
+                T::fused(t77, t143, t84 * T::fused(-k(0.05), t105, k(0.1) * t144)),
+            );
+            let t146 = k(0.2) * t130;
+            let t147 = k(0.006666666666666667) * t132;
+            let t148 = T::fused(
+                k(0.002),
+                block_dwz,
+                T::fused(k(0.001), block_dwy, k(0.02) * block_dwx),
+            ) - (t147 - (t146 + t145) - t141);
+            let t149 = T::fused(k(0.1), t59, k(0.05) * t60);
+            let t150 = T::fused(-k(0.1), t38, k(0.05) * t39);
+            let t151 = T::fused(-k(0.1), t8, k(0.05) * t10);
+            let t152 = T::fused(t151, t93, -T::fused(t149, t87, t150 * t90)) + t148;
+            let t153 = T::fused(-k(0.03), t142, k(0.05) * t101);
+            let t154 = T::fused(
+                t153,
+                t85,
+                T::fused(t153, t77, T::fused(-k(0.03), t144, k(0.05) * t104) * t84),
+            );
+            let t155 = T::fused(
                 block_wz,
-                t143 + t157,
-                -T::fused(-k(0.001), t140 - t156, k(0.01) * (block_wx * block_wy)),
+                t140 + t98,
+                -T::fused(-k(0.001), t139 - t96, k(0.01) * (block_wx * block_wy)),
             );
-            let t167 = T::fused(
+            let t156 = T::fused(
                 k(0.025),
                 block_dwz,
                 T::fused(-k(0.003), block_dwy, k(0.002) * block_dwx),
-            ) - (t166 + (t155 - (t154 - t165)));
-            let t168 = T::fused(k(0.1), t64, k(0.06) * t66);
-            let t169 = T::fused(k(0.1), t37, k(0.06) * t39);
-            let t170 = T::fused(-k(0.1), t2, k(0.06) * t6);
-            let t171 = T::fused(t170, t105, -T::fused(-t168, t99, t169 * t102)) - t167;
-            let t172 = arm_rx - t86;
-            let t173 = arm_ry - t61;
-            let t174 = arm_rz - t32;
-            let t175 = T::fused(t23, t174, -T::fused(t77, t172, t52 * t173));
-            let t176 = T::fused(t19, t174, -T::fused(-t74, t172, t49 * t173));
+            ) - (t155 + (t133 - (t131 - t154)));
+            let t157 = T::fused(k(0.05), t58, k(0.03) * t59);
+            let t158 = T::fused(k(0.05), t37, k(0.03) * t38);
+            let t159 = T::fused(-k(0.05), t4, k(0.03) * t8);
+            let t160 = T::fused(t159, t93, -T::fused(-t157, t87, t158 * t90)) - t156;
+            let t161 = arm_rx - t74;
+            let t162 = arm_ry - t55;
+            let t163 = arm_rz - t32;
+            let t164 = T::fused(t20, t163, -T::fused(-t63, t161, t44 * t162));
+            let t165 = T::fused(t16, t163, T::fused(-t62, t161, t43 * t162));
+            let t166 = T::fused(
+                -t87,
+                T::fused(t62, t164, t63 * t165),
+                t90 * T::fused(t43, t164, t44 * t165),
+            );
+            let t167 = T::fused(t93, T::fused(-t16, t164, t20 * t165), -t166)
+                + T::fused(t123, t160, T::fused(-t121, t138, t119 * t152));
+            let t168 = k(0.05) * arm_wy;
+            let t169 = arm_wx * arm_wx;
+            let t170 = arm_wy * arm_wy;
+            let t171 = k(0.01) * arm_wx;
+            let t172 = k(0.03) * arm_wy;
+            let t173 = T::fused(
+                arm_wz,
+                t172 + t171,
+                -T::fused(arm_wx, t168, k(0.02) * (t170 - t169)),
+            );
+            let t174 = k(0.6666666666666666) * t164;
+            let t175 = k(0.3333333333333333) * t165;
+            let t176 = t175 - t174;
             let t177 = T::fused(
-                t99,
-                T::fused(t74, t175, t77 * t176),
-                t102 * T::fused(-t49, t175, t52 * t176),
+                t85,
+                t176,
+                -T::fused(-t77, t176, t84 * (k(0.6666666666666666) * (t164 + t165))),
             );
-            let t178 = T::fused(t105, T::fused(-t19, t175, t23 * t176), -t177)
-                + T::fused(t117, t171, -T::fused(-t113, t149, t115 * t163));
-            let t179 = k(0.6666666666666666) * t176;
-            let t180 = T::fused(-k(0.3333333333333333), t175, t179);
-            let t181 = k(0.6666666666666666) * t175;
-            let t182 = T::fused(
-                t97,
-                t180,
-                T::fused(-t89, t180, t96 * T::fused(-k(0.3333333333333333), t176, t181)),
-            );
-            let t183 = arm_wy * arm_wy;
-            let t184 = arm_wz * arm_wz;
-            let t185 = k(0.02) * arm_wz;
-            let t186 = k(0.03) * arm_wy;
-            let t187 = T::fused(
-                arm_wx,
-                t186 + t185,
-                T::fused(k(0.01), t184 - t183, k(0.05) * (arm_wy * arm_wz)),
-            );
-            let t188 = T::fused(
-                -k(0.03),
+            let t178 = T::fused(
+                -k(0.2),
                 arm_dwz,
-                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
-            ) - (t187 - (t139 - (t137 + t182)));
-            let t189 = T::fused(t31, t106, -T::fused(t85, t100, t60 * t103));
-            let t190 = t189 + (t188 + t178);
-            let t191 = k(1.3333333333333333) * t18;
-            let t192 = T::fused(k(0.6666666666666666), t14, t191);
-            let t193 = k(1.3333333333333333) * t48;
-            let t194 = T::fused(-k(0.6666666666666666), t46, t193);
-            let t195 = k(1.3333333333333333) * t73;
-            let t196 = T::fused(-k(0.6666666666666666), t71, t195);
-            let t197 = T::fused(
+                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
+            ) - (t133 - (t131 - t177) + t173);
+            let t179 = T::fused(
+                -T::fused(-k(0.1), t62, k(0.2) * t63),
+                t88,
+                T::fused(-k(0.1), t43, k(0.2) * t44) * t91,
+            );
+            let t180 = T::fused(T::fused(k(0.1), t16, k(0.2) * t20), t94, -t179);
+            let t181 = t180 - (t178 + t167);
+            let t182 = t43 - t46;
+            let t183 = t62 + t65;
+            let t184 = T::fused(
+                -k(0.5962847939999439),
+                t182,
+                k(0.29814239699997197) * t183,
+            );
+            let t185 = k(0.6666666666666666) * t184;
+            let t186 = k(0.6666666666666666) * t44;
+            let t187 = t80 - t186;
+            let t188 = k(0.6666666666666666) * t63;
+            let t189 = t78 + t188;
+            let t190 = T::fused(
+                k(0.8944271909999159),
+                t187,
+                k(0.4472135954999579) * t189,
+            );
+            let t191 = k(0.6666666666666666) * t20;
+            let t192 = T::fused(k(0.3333333333333333), t16, t191);
+            let t193 = T::fused(-k(0.3333333333333333), t43, t186);
+            let t194 = T::fused(-k(0.3333333333333333), t62, t188);
+            let t195 = T::fused(
                 -k(0.7453559924999299),
                 t192,
-                T::fused(k(0.29814239699997197), t194, k(0.5962847939999439) * t196),
+                T::fused(k(0.29814239699997197), t193, k(0.5962847939999439) * t194),
             );
-            let t198 = t46 - t51;
-            let t199 = t71 + t76;
+            let t196 = T::fused(
+                k(0.49690399499995325),
+                t16 + t23,
+                T::fused(k(0.1987615979999813), t182, k(0.3975231959999626) * t183),
+            );
+            let t197 = k(0.6666666666666666) * t196;
+            let t198 = T::fused(-k(0.3333333333333333), t195, t197);
+            let t199 = T::fused(
+                k(0.7453559924999299),
+                t82 - t191,
+                T::fused(-k(0.29814239699997197), t187, k(0.5962847939999439) * t189),
+            );
             (
-                t3,
-                t7,
+                t4,
+                t8,
                 t10,
-                t14,
-                t15,
-                t18,
-                t19,
-                t22,
+                t16,
+                t20,
                 t23,
                 t27,
                 t28,
                 t29,
                 t30,
+                t31,
                 t32,
+                t37,
                 t38,
-                t40,
-                t42,
+                t39,
+                t43,
+                t44,
                 t46,
-                t47,
-                t48,
-                t49,
+                t50,
                 t51,
                 t52,
-                t56,
-                t57,
+                t53,
+                t54,
+                t55,
                 t58,
                 t59,
-                t61,
+                t60,
+                t62,
+                t63,
                 t65,
-                t67,
                 t69,
+                t70,
                 t71,
                 t72,
                 t73,
                 t74,
-                t76,
                 t77,
+                t79,
                 t81,
-                t82,
                 t83,
                 t84,
-                t86,
-                t89,
+                t85,
+                t87,
+                t88,
                 t90,
                 t91,
-                t92,
                 t93,
                 t94,
-                t95,
-                t96,
-                t97,
-                t99,
-                t100,
-                t102,
-                t103,
-                t105,
-                t106,
+                t107,
+                t108,
+                t109,
+                t110,
+                t111,
+                t113,
                 t114,
                 t115,
                 t116,
                 t117,
-                t119,
                 t120,
                 t121,
                 t122,
                 t123,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
+                t131,
+                t133,
+                t135,
+                t136,
+                t137,
+                t138,
                 t146,
                 t147,
-                t148,
                 t149,
-                t154,
-                t155,
+                t150,
+                t151,
+                t152,
+                t157,
+                t158,
+                t159,
                 t160,
                 t161,
                 t162,
                 t163,
+                t164,
+                t165,
                 t168,
                 t169,
                 t170,
                 t171,
                 t172,
-                t173,
                 t174,
                 t175,
-                t176,
-                t179,
+                t180,
                 t181,
-                t183,
                 t184,
                 t185,
-                t186,
-                t189,
                 t190,
-                t191,
                 t192,
                 t193,
                 t194,
@@ -12430,254 +12276,224 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for CarriedBlock<T> {
                 t199,
             )
         };
-        let (t242, t244, t245, t246, t247, t248, t250, t251, t252, t285, t287, t288) = {
-            let t200 = T::fused(
-                k(0.9938079899999065),
-                t14 + t22,
-                T::fused(k(0.3975231959999626), t198, k(0.7950463919999252) * t199),
-            );
-            let t201 = k(0.6666666666666666) * t200;
-            let t202 = T::fused(-k(0.3333333333333333), t197, t201);
-            let t203 = t92 - t193;
-            let t204 = t90 + t195;
-            let t205 = T::fused(
-                k(0.8944271909999159),
-                t203,
-                k(0.4472135954999579) * t204,
-            );
-            let t206 = T::fused(
-                k(0.7453559924999299),
-                t94 - t191,
-                T::fused(-k(0.29814239699997197), t203, k(0.5962847939999439) * t204),
-            );
-            let t207 = k(0.6666666666666666) * (t206 + t197);
-            let t208 = T::fused(
-                -k(1.1925695879998879),
-                t198,
-                k(0.5962847939999439) * t199,
-            );
-            let t209 = T::fused(k(0.3333333333333333), t206, t201);
-            let t210 = T::fused(
+        let (t232, t234, t235, t236, t237, t238, t240, t241, t242, t275, t277, t278) = {
+            let t200 = k(0.6666666666666666) * (t199 + t195);
+            let t201 = T::fused(k(0.3333333333333333), t199, t197);
+            let t202 = T::fused(
                 -k(0.8944271909999159),
-                t194,
-                k(0.4472135954999579) * t196,
+                t193,
+                k(0.4472135954999579) * t194,
             );
-            let t211 = k(1.0)
-                / T::fused(t210, t209, -T::fused(-t205, t202, t208 * t207));
-            let t212 = T::fused(t15, t174, T::fused(-t72, t172, t47 * t173));
-            let t213 = T::fused(
-                t99,
-                T::fused(-t72, t175, t77 * t212),
-                t102 * T::fused(t47, t175, t52 * t212),
+            let t203 = k(1.0)
+                / T::fused(t202, t201, -T::fused(-t190, t198, t184 * t200));
+            let t204 = T::fused(t23, t163, -T::fused(t65, t161, t46 * t162));
+            let t205 = T::fused(
+                t87,
+                T::fused(-t62, t204, t65 * t165),
+                t90 * T::fused(t43, t204, t46 * t165),
             );
-            let t214 = T::fused(t105, T::fused(-t15, t175, t23 * t212), -t213)
-                - T::fused(t123, t171, -T::fused(-t119, t149, t121 * t163));
-            let t215 = k(0.6666666666666666) * (t175 - t212);
-            let t216 = k(0.3333333333333333) * t212;
-            let t217 = t154
-                + T::fused(t97, t215, T::fused(-t89, t215, t96 * (t216 + t181)));
-            let t218 = arm_wx * arm_wx;
-            let t219 = k(0.01) * arm_wx;
-            let t220 = T::fused(
+            let t206 = T::fused(t93, T::fused(-t16, t204, t23 * t165), -t205)
+                - T::fused(t117, t160, T::fused(-t115, t138, t113 * t152));
+            let t207 = k(0.6666666666666666) * (t204 - t165);
+            let t208 = k(0.6666666666666666) * t204;
+            let t209 = t131
+                + T::fused(t85, t207, T::fused(t77, t207, t84 * (t175 + t208)));
+            let t210 = arm_wz * arm_wz;
+            let t211 = k(0.02) * arm_wz;
+            let t212 = T::fused(
                 arm_wy,
-                t185 - t219,
-                T::fused(-k(0.03), t184 - t218, k(0.1) * (arm_wx * arm_wz)),
+                t211 - t171,
+                T::fused(-k(0.03), t210 - t169, k(0.1) * (arm_wx * arm_wz)),
             );
-            let t221 = T::fused(
+            let t213 = T::fused(
                 k(0.01),
                 arm_dwz,
                 T::fused(k(0.25), arm_dwy, k(0.02) * arm_dwx),
-            ) + (t220 + (t155 - t217));
-            let t222 = T::fused(
-                k(0.4) * t22,
-                t106,
-                -T::fused(k(0.4) * t76, t100, k(0.4) * t51 * t103),
+            ) + (t212 + (t133 - t209));
+            let t214 = T::fused(
+                k(0.2) * t23,
+                t94,
+                -T::fused(k(0.2) * t65, t88, k(0.2) * t46 * t91),
             );
-            let t223 = t222 + (t221 - t214);
-            let t224 = T::fused(
-                -t99,
-                T::fused(t72, t176, t74 * t212),
-                t102 * T::fused(t47, t176, t49 * t212),
+            let t215 = t214 + (t213 - t206);
+            let t216 = T::fused(
+                t87,
+                T::fused(t63, t204, t65 * t164),
+                t90 * T::fused(-t44, t204, t46 * t164),
             );
-            let t225 = T::fused(t105, T::fused(-t15, t176, t19 * t212), -t224)
-                + T::fused(t129, t171, -T::fused(-t125, t149, t127 * t163));
-            let t226 = t216 - t179;
-            let t227 = T::fused(
-                t97,
-                t226,
-                -T::fused(t89, t226, t96 * (k(0.6666666666666666) * (t176 + t212))),
+            let t217 = T::fused(t93, T::fused(-t20, t204, t23 * t164), -t216)
+                + T::fused(t111, t160, T::fused(-t109, t138, t107 * t152));
+            let t218 = T::fused(
+                arm_wx,
+                t172 + t211,
+                T::fused(arm_wz, t168, k(0.01) * (t210 - t170)),
             );
-            let t228 = T::fused(
-                arm_wz,
-                t186 + t219,
-                -T::fused(k(0.02), t183 - t218, k(0.05) * (arm_wx * arm_wy)),
+            let t219 = T::fused(-k(0.3333333333333333), t204, t174);
+            let t220 = T::fused(
+                t85,
+                t219,
+                T::fused(t77, t219, t84 * T::fused(-k(0.3333333333333333), t164, t208)),
             );
-            let t229 = T::fused(
-                -k(0.2),
+            let t221 = T::fused(
+                -k(0.03),
                 arm_dwz,
-                T::fused(-k(0.01), arm_dwy, k(0.03) * arm_dwx),
-            ) - (t228 + (t155 - (t154 - t227)));
-            let t230 = T::fused(
-                -T::fused(-k(0.2), t71, k(0.4) * t73),
-                t100,
-                T::fused(-k(0.2), t46, k(0.4) * t48) * t103,
+                T::fused(k(0.02), arm_dwy, k(0.3) * arm_dwx),
+            ) + (t147 - (t146 + t220) - t218);
+            let t222 = T::fused(t31, t94, -T::fused(t73, t88, t54 * t91));
+            let t223 = t222 + (t221 + t217);
+            let t224 = T::fused(
+                -(t203 * (k(0.6666666666666666) * (t190 + t202))),
+                t215,
+                t203 * T::fused(-k(0.3333333333333333), t202, t185) * t223,
             );
-            let t231 = T::fused(T::fused(k(0.2), t14, k(0.4) * t18), t106, -t230);
-            let t232 = t231 - (t229 + t225);
-            let t233 = T::fused(
-                t209 * t211,
-                t232,
-                T::fused(-(t202 * t211), t190, t207 * t211 * t223),
+            let t225 = T::fused(
+                -(t203 * T::fused(k(0.3333333333333333), t190, t185)),
+                t181,
+                t224,
             );
-            let t234 = k(0.6666666666666666) * t208;
-            let t235 = T::fused(
-                -(t211 * T::fused(-k(0.3333333333333333), t210, t234)),
-                t190,
-                t211 * (k(0.6666666666666666) * (t205 + t210)) * t223,
+            let t226 = T::fused(
+                -(t201 * t203),
+                t181,
+                T::fused(-(t200 * t203), t215, t198 * t203 * t223),
             );
-            let t236 = T::fused(
-                t211 * T::fused(k(0.3333333333333333), t205, t234),
-                t232,
-                t235,
+            let t227 = T::fused(-t195, t225, T::fused(t202, t226, t180));
+            let t228 = T::fused(t196, t225, T::fused(-t184, t226, t214));
+            let t229 = T::fused(t199, t225, T::fused(-t190, t226, t222));
+            let t230 = arm_rz - (arm_rz + (t30 - t29));
+            let t231 = arm_rx - (arm_rx + (t72 + t71));
+            let t232 = T::fused(-t88, t230, t94 * t231)
+                + T::fused(t46, t227, T::fused(-t44, t228, t43 * t229));
+            let t233 = arm_ry - (arm_ry - (t53 + t52));
+            let t234 = T::fused(-t94, t233, t91 * t230)
+                - T::fused(-t65, t227, T::fused(-t63, t228, t62 * t229));
+            let t235 = T::fused(-t91, t231, t88 * t233)
+                + T::fused(-t23, t227, T::fused(t20, t228, t16 * t229));
+            let t236 = t69 + t194;
+            let t237 = t50 - t193;
+            let t238 = t27 - t192;
+            let t239 = T::fused(t238, t93, -T::fused(t236, t87, t237 * t90));
+            let t240 = t236 * t239;
+            let t241 = t237 * t239;
+            let t242 = t238 * t239;
+            let t243 = t122 - t120;
+            let t244 = t116 - t114;
+            let t245 = t110 - t108;
+            let t246 = T::fused(
+                k(0.6666666666666666),
+                t243,
+                T::fused(k(0.3333333333333333), t244, k(0.6666666666666666) * t245),
             );
-            let t237 = T::fused(t206, t236, -T::fused(t205, t233, t189));
-            let t238 = T::fused(t200, t236, -T::fused(t208, t233, t222));
-            let t239 = T::fused(t197, t236, T::fused(-t210, t233, t231));
-            let t240 = arm_ry - (arm_ry - (t59 + t58));
-            let t241 = arm_rz - (arm_rz + (t30 - t29));
-            let t242 = T::fused(-t106, t240, t103 * t241)
-                + T::fused(t77, t239, -T::fused(-t72, t237, t74 * t238));
-            let t243 = arm_rx - (arm_rx + (t84 + t83));
-            let t244 = T::fused(-t100, t241, t106 * t243)
-                + T::fused(t52, t239, T::fused(-t47, t237, t49 * t238));
-            let t245 = T::fused(-t103, t243, t100 * t240)
-                - T::fused(t23, t239, T::fused(t15, t237, t19 * t238));
-            let t246 = t81 + t196;
-            let t247 = t56 - t194;
-            let t248 = t27 - t192;
-            let t249 = T::fused(t248, t105, -T::fused(t246, t99, t247 * t102));
-            let t250 = t246 * t249;
-            let t251 = t247 * t249;
-            let t252 = t248 * t249;
-            let t253 = t128 - t126;
-            let t254 = t122 - t120;
-            let t255 = t116 - t114;
+            let t247 = t123 + t121;
+            let t248 = t117 + t115;
+            let t249 = t111 + t109;
+            let t250 = T::fused(
+                k(0.4444444444444444),
+                t247,
+                T::fused(k(0.2222222222222222), t248, k(0.4444444444444444) * t249),
+            );
+            let t251 = k(0.6666666666666666) * t250;
+            let t252 = T::fused(
+                -k(0.3333333333333333),
+                t243,
+                k(0.6666666666666666) * (t245 - t244),
+            );
+            let t253 = T::fused(k(0.3333333333333333), t123, t120);
+            let t254 = T::fused(k(0.3333333333333333), t117, t114);
+            let t255 = T::fused(k(0.3333333333333333), t111, t108);
             let t256 = T::fused(
                 -k(0.3333333333333333),
                 t253,
                 k(0.6666666666666666) * (t255 - t254),
             );
-            let t257 = T::fused(k(0.3333333333333333), t129, t126);
-            let t258 = T::fused(k(0.3333333333333333), t123, t120);
-            let t259 = T::fused(k(0.3333333333333333), t117, t114);
-            let t260 = T::fused(
-                -k(0.3333333333333333),
-                t257,
-                k(0.6666666666666666) * (t259 - t258),
-            );
-            let t261 = k(0.6666666666666666) * (t260 - t256);
-            let t262 = t129 + t127;
-            let t263 = t123 + t121;
-            let t264 = t117 + t115;
-            let t265 = T::fused(
-                k(0.4444444444444444),
-                t262,
-                T::fused(k(0.2222222222222222), t263, k(0.4444444444444444) * t264),
-            );
-            let t266 = T::fused(
+            let t257 = k(0.6666666666666666) * (t256 - t252);
+            let t258 = T::fused(
                 -k(0.2222222222222222),
-                t262,
-                k(0.4444444444444444) * (t264 - t263),
+                t247,
+                k(0.4444444444444444) * (t249 - t248),
             );
-            let t267 = k(0.6666666666666666) * t266;
-            let t268 = T::fused(k(0.3333333333333333), t256, t267);
-            let t269 = T::fused(
-                k(0.6666666666666666),
-                t257,
-                T::fused(k(0.3333333333333333), t258, k(0.6666666666666666) * t259),
-            );
-            let t270 = T::fused(k(0.3333333333333333), t260, t267);
-            let t271 = T::fused(
+            let t259 = k(0.6666666666666666) * t258;
+            let t260 = T::fused(k(0.3333333333333333), t252, t259);
+            let t261 = T::fused(
                 k(0.6666666666666666),
                 t253,
                 T::fused(k(0.3333333333333333), t254, k(0.6666666666666666) * t255),
             );
-            let t272 = k(1.0)
-                / T::fused(t271, t270, -T::fused(-t265, t261, t269 * t268));
-            let t273 = T::fused(
-                t171,
-                t270 * t272,
-                -T::fused(-t149, t261 * t272, t163 * (t268 * t272)),
+            let t262 = T::fused(k(0.3333333333333333), t256, t259);
+            let t263 = k(1.0)
+                / T::fused(t246, t262, -T::fused(-t250, t257, t261 * t260));
+            let t264 = T::fused(
+                -(t263 * T::fused(k(0.3333333333333333), t246, t251)),
+                t138,
+                t263 * (k(0.6666666666666666) * (t261 - t246)) * t152,
             );
-            let t274 = T::fused(
-                -t249,
-                T::fused(t148, t248, T::fused(t147, t247, t146 * t246)),
-                t265 * t273,
+            let t265 = T::fused(
+                t263 * T::fused(k(0.3333333333333333), t261, t251),
+                t160,
+                t264,
             );
-            let t275 = k(0.6666666666666666) * t265;
-            let t276 = T::fused(
-                -t149,
-                t272 * (k(0.6666666666666666) * (t269 - t271)),
-                t163 * (t272 * T::fused(k(0.3333333333333333), t271, t275)),
+            let t266 = T::fused(
+                t262 * t263,
+                t160,
+                T::fused(-(t260 * t263), t138, t257 * t263 * t152),
             );
-            let t277 = T::fused(
-                t171,
-                t272 * T::fused(k(0.3333333333333333), t269, t275),
-                -t276,
+            let t267 = T::fused(
+                t246,
+                t266,
+                T::fused(-t238, t159, T::fused(-t237, t158, t236 * t157)) * t239,
             );
-            let t278 = T::fused(t266, t277, -t274);
-            let t279 = T::fused(
-                -t249,
-                T::fused(t162, t248, T::fused(t161, t247, t160 * t246)),
-                t269 * t273,
+            let t268 = T::fused(-t252, t265, t267);
+            let t269 = T::fused(
+                -t261,
+                t266,
+                T::fused(t238, t137, T::fused(t237, t136, t236 * t135)) * t239,
             );
-            let t280 = T::fused(t260, t277, -t279);
-            let t281 = T::fused(
-                t249,
-                T::fused(-t170, t248, T::fused(-t169, t247, t168 * t246)),
-                t271 * t273,
+            let t270 = T::fused(t256, t265, t269);
+            let t271 = T::fused(
+                -t250,
+                t266,
+                T::fused(t238, t151, T::fused(t237, t150, t236 * t149)) * t239,
             );
-            let t282 = T::fused(t256, t277, -t281);
-            let t283 = block_ry - t61;
-            let t284 = block_rz - t32;
-            let t285 = T::fused(t252, t283, t251 * t284)
-                + T::fused(t69, t282, T::fused(t65, t278, t67 * t280));
-            let t286 = block_rx - t86;
-            let t287 = T::fused(t250, t284, t252 * t286)
-                - T::fused(t42, t282, -T::fused(t38, t278, t40 * t280));
-            let t288 = T::fused(-t251, t286, t250 * t283)
-                - T::fused(t10, t282, -T::fused(-t3, t278, t7 * t280));
-            (t242, t244, t245, t246, t247, t248, t250, t251, t252, t285, t287, t288)
+            let t272 = T::fused(t258, t265, t271);
+            let t273 = block_rx - t74;
+            let t274 = block_ry - t55;
+            let t275 = T::fused(-t241, t273, t240 * t274)
+                - T::fused(-t10, t268, T::fused(-t8, t270, t4 * t272));
+            let t276 = block_rz - t32;
+            let t277 = T::fused(t240, t276, t242 * t273)
+                + T::fused(t39, t268, T::fused(t38, t270, t37 * t272));
+            let t278 = T::fused(t242, t274, t241 * t276)
+                + T::fused(-t60, t268, T::fused(t59, t270, t58 * t272));
+            (t232, t234, t235, t236, t237, t238, t240, t241, t242, t275, t277, t278)
         };
         *out = [
-            T::fused(k(0.4472135954999579), t100, k(0.8944271909999159) * t103),
+            T::fused(k(0.4472135954999579), t88, k(0.8944271909999159) * t91),
             T::fused(
                 k(0.7453559924999299),
-                t106,
-                T::fused(-k(0.5962847939999439), t100, k(0.29814239699997197) * t103),
+                t94,
+                T::fused(-k(0.5962847939999439), t88, k(0.29814239699997197) * t91),
             ),
             T::fused(
                 k(0.6666666666666666),
-                t106,
-                -T::fused(-k(0.6666666666666666), t100, k(0.3333333333333333) * t103),
+                t94,
+                -T::fused(-k(0.6666666666666666), t88, k(0.3333333333333333) * t91),
             ),
-            -T::fused(k(0.4472135954999579), t242, k(0.8944271909999159) * t244),
-            -T::fused(
-                k(0.7453559924999299),
-                t245,
-                T::fused(-k(0.5962847939999439), t242, k(0.29814239699997197) * t244),
-            ),
+            -T::fused(k(0.8944271909999159), t232, k(0.4472135954999579) * t234),
             T::fused(
-                -k(0.6666666666666666),
-                t245,
-                T::fused(-k(0.6666666666666666), t242, k(0.3333333333333333) * t244),
+                -k(0.7453559924999299),
+                t235,
+                T::fused(-k(0.29814239699997197), t232, k(0.5962847939999439) * t234),
             ),
-            T::fused(t28, t252, T::fused(-t82, t250, t57 * t251)),
-            T::fused(-t95, t252, T::fused(-t91, t250, t93 * t251)),
-            -T::fused(t248, t252, T::fused(t246, t250, t247 * t251)),
-            T::fused(t28, t288, T::fused(t82, t285, t57 * t287)),
-            T::fused(-t95, t288, T::fused(t91, t285, t93 * t287)),
-            -T::fused(t248, t288, T::fused(-t246, t285, t247 * t287)),
+            -T::fused(
+                k(0.6666666666666666),
+                t235,
+                T::fused(-k(0.3333333333333333), t232, k(0.6666666666666666) * t234),
+            ),
+            T::fused(t28, t242, T::fused(-t70, t240, t51 * t241)),
+            T::fused(-t83, t242, T::fused(-t79, t240, t81 * t241)),
+            -T::fused(t238, t242, T::fused(t236, t240, t237 * t241)),
+            T::fused(t28, t275, T::fused(t51, t277, t70 * t278)),
+            T::fused(-t83, t275, T::fused(t81, t277, t79 * t278)),
+            T::fused(-t238, t275, T::fused(-t237, t277, t236 * t278)),
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -11,8 +11,8 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 145 operations by rotations of the bodies; 145 operations by relative Euler parameters
-//! * project: 112 operations by rotations of the bodies; 112 operations by relative Euler parameters
+//! * accelerations: 141 operations by rotations of the bodies, doubled; 141 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 112 operations by rotations of the bodies; 112 operations by rotations of the bodies, doubled; 2 more compared
 //! * joint_accelerations: 0 operations by recursion; 0 operations by normal form
 //! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 1 more compared
 //! * corrected_accelerations: 69 operations by recursion in the bodies' frames; 69 operations by normal form in the bodies' frames; 5 more compared
@@ -26,24 +26,24 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 20 | 0 | 26 | 0 of 20 | 30 | 26 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 10 | 21 | 0 | 31 | 0 of 12 | 54 | 31 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
-//! | gamma | γ | 25 | 45 | 0 | 70 | 0 of 4 | 146 | 70 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 18 | 33 | 0 | 51 | 0 of 4 | 80 | 51 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 | 4 | 4 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 52 | 91 | 2 | 145 | 0 of 6 | 3356 | 147 |
-//! | multipliers | λ, the accelerations being known | 28 | 59 | 1 | 88 | 0 of 4 | 485 | 88 |
+//! | gamma | γ | 24 | 42 | 0 | 66 | 0 of 4 | 164 | 66 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 30 | 0 | 47 | 0 of 4 | 92 | 47 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 50 | 89 | 2 | 141 | 0 of 6 | 4106 | 143 |
+//! | multipliers | λ, the accelerations being known | 28 | 58 | 1 | 87 | 0 of 4 | 485 | 87 |
 //! | project | (δr, δπ') that changes the rows as given | 37 | 73 | 2 | 112 | 0 of 6 | 5297 | 113 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 15 | 20 | 0 | 35 | 0 of 5 | 40 | 35 |
-//! | outputs | outputs, the accelerations being known | 50 | 90 | 1 | 141 | 1 of 6 | 4665 | 141 |
+//! | outputs | outputs, the accelerations being known | 48 | 84 | 1 | 133 | 1 of 6 | 6050 | 133 |
 //! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 1 of 2 | 0 | 0 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 2 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 17 | 34 | 0 | 51 | 1 of 13 | 138 | 51 |
 //! | to_joints | (x, u) of a maximal state | 18 | 24 | 0 | 42 | 0 of 4 | 65 | 42 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 0 | 0 | 0 | 0 | 1 of 2 | 0 | 0 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 25 | 44 | 0 | 69 | 0 of 6 | 150 | 69 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 24 | 46 | 0 | 70 | 0 of 4 | 165 | 70 |
-//! | corrected_solution | both | 41 | 81 | 0 | 122 | 0 of 10 | 959 | 122 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 24 | 45 | 0 | 69 | 0 of 4 | 165 | 69 |
+//! | corrected_solution | both | 41 | 80 | 0 | 121 | 0 of 10 | 959 | 121 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 18 of 20 | 0 | 0 |
 //!
 //! # Proof
@@ -256,7 +256,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
             T::fused(spindle_e3, spindle_e3, t1 + t5) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 51 operations (18 ±, 33 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 47 operations (17 ±, 30 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -268,30 +268,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = spindle_e0 * spindle_e3;
-        let t1 = spindle_e1 * spindle_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = k(2.0) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
-        let t4 = spindle_e0 * spindle_e0;
-        let t5 = k(2.0) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t4));
-        let t6 = k(2.0) * T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
-        let t7 = k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t4));
-        let t8 = T::fused(
+        let t0 = k(2.0) * spindle_e0;
+        let t1 = spindle_e3 * t0;
+        let t2 = k(2.0) * spindle_e1;
+        let t3 = spindle_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(spindle_e2, t0, spindle_e3 * t2);
+        let t6 = k(2.0) * spindle_e2;
+        let t7 = T::fused(-spindle_e0, t0, k(1.0));
+        let t8 = T::fused(-spindle_e2, t6, t7);
+        let t9 = T::fused(-spindle_e1, t0, spindle_e3 * t6);
+        let t10 = T::fused(-spindle_e1, t2, t7);
+        let t11 = T::fused(
             -k(0.8),
-            T::fused(t7, spindle_wy, t2 * spindle_wx),
-            k(0.6) * T::fused(t7, spindle_wz, t3 * spindle_wx),
+            T::fused(spindle_wy, t10, spindle_wx * t4),
+            k(0.6) * T::fused(spindle_wz, t10, spindle_wx * t5),
         );
-        let t9 = k(2.0) * (t1 + t0);
-        let t10 = T::fused(
+        let t12 = t3 + t1;
+        let t13 = T::fused(
             k(0.8),
-            T::fused(t9, spindle_wy, t5 * spindle_wx),
-            k(0.6) * T::fused(-t9, spindle_wz, t6 * spindle_wx),
+            T::fused(spindle_wy, t12, spindle_wx * t8),
+            k(0.6) * T::fused(-spindle_wz, t12, spindle_wx * t9),
         );
         *out = [
-            T::fused(k(0.15), T::fused(-t2, spindle_wz, t3 * spindle_wy), spindle_sx),
-            T::fused(k(0.15), T::fused(t5, spindle_wz, t6 * spindle_wy), spindle_sy),
-            t8,
-            t10,
+            T::fused(k(0.15), T::fused(-spindle_wz, t4, spindle_wy * t5), spindle_sx),
+            T::fused(k(0.15), T::fused(spindle_wz, t8, spindle_wy * t9), spindle_sy),
+            t11,
+            t13,
         ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
@@ -582,7 +585,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 70 operations (25 ±, 45 ×, 0 ÷).
+    /// Writes γ: 66 operations (24 ±, 42 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -592,57 +595,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = spindle_wy * spindle_wy;
-        let t1 = spindle_wz * spindle_wz;
-        let t2 = t1 + t0;
-        let t3 = spindle_e0 * spindle_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3));
-        let t5 = spindle_wx * spindle_wy;
-        let t6 = spindle_e0 * spindle_e3;
-        let t7 = spindle_e1 * spindle_e2;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = spindle_wx * spindle_wz;
-        let t10 = k(2.0) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
-        let t11 = k(2.0) * (t7 + t6);
-        let t12 = k(2.0) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t3));
-        let t13 = k(2.0) * T::fused(-spindle_e0, spindle_e1, spindle_e2 * spindle_e3);
-        let t14 = spindle_wx * spindle_wx;
-        let t15 = t1 + t14;
-        let t16 = spindle_wy * spindle_wz;
-        let t17 = t0 + t14;
-        let t18 = T::fused(
+        let t0 = k(2.0) * spindle_e1;
+        let t1 = k(2.0) * spindle_e0;
+        let t2 = T::fused(-spindle_e0, t1, k(1.0));
+        let t3 = T::fused(-spindle_e1, t0, t2);
+        let t4 = spindle_wy * spindle_wy;
+        let t5 = spindle_wz * spindle_wz;
+        let t6 = t5 + t4;
+        let t7 = spindle_e3 * t1;
+        let t8 = spindle_e2 * t0;
+        let t9 = t8 - t7;
+        let t10 = spindle_wx * spindle_wy;
+        let t11 = T::fused(spindle_e2, t1, spindle_e3 * t0);
+        let t12 = spindle_wx * spindle_wz;
+        let t13 = t8 + t7;
+        let t14 = k(2.0) * spindle_e2;
+        let t15 = T::fused(-spindle_e2, t14, t2);
+        let t16 = T::fused(-spindle_e1, t1, spindle_e3 * t14);
+        let t17 = spindle_wx * spindle_wx;
+        let t18 = t5 + t17;
+        let t19 = spindle_wy * spindle_wz;
+        let t20 = t4 + t17;
+        let t21 = T::fused(
             -k(0.6),
-            T::fused(t10, t16, -T::fused(t4, t5, t8 * t15)),
-            k(0.8) * T::fused(t10, t17, -T::fused(-t4, t9, t8 * t16)),
+            T::fused(t19, t11, -T::fused(t10, t3, t18 * t9)),
+            k(0.8) * T::fused(t20, t11, -T::fused(-t12, t3, t19 * t9)),
         );
-        let t19 = T::fused(
+        let t22 = T::fused(
             -k(0.6),
-            T::fused(t13, t16, T::fused(t11, t5, t12 * t15)),
-            k(0.8) * T::fused(t13, t17, T::fused(-t11, t9, t12 * t16)),
+            T::fused(t19, t16, T::fused(t10, t13, t18 * t15)),
+            k(0.8) * T::fused(t20, t16, T::fused(-t12, t13, t19 * t15)),
         );
         *out = [
-            k(0.15) * T::fused(t10, t9, T::fused(t4, t2, t8 * t5)),
-            k(0.15) * T::fused(t13, t9, -T::fused(t11, t2, t12 * t5)),
-            t18,
-            t19,
+            k(0.15) * T::fused(t12, t11, T::fused(t6, t3, t10 * t9)),
+            k(0.15) * T::fused(t12, t16, -T::fused(t6, t13, t10 * t15)),
+            t21,
+            t22,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 4 operations (0 ±, 4 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(-7.848),
-            k(0.0),
-            k(0.01) * (spindle_wx * spindle_wz),
-            -(k(0.01) * (spindle_wx * spindle_wy)),
-        ];
+        let t0 = k(0.01) * spindle_wx;
+        *out = [k(0.0), k(0.0), k(-7.848), k(0.0), spindle_wz * t0, -(spindle_wy * t0)];
     }
-    /// Solves eq. (17): 145 operations (52 ±, 91 ×, 2 ÷).
+    /// Solves eq. (17): 141 operations (50 ±, 89 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -652,81 +652,79 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_wx = y[10];
         let spindle_wy = y[11];
         let spindle_wz = y[12];
-        let t0 = spindle_e0 * spindle_e0;
-        let t1 = k(0.5) - T::fused(spindle_e3, spindle_e3, t0);
-        let t2 = k(0.24) * t1;
-        let t3 = k(0.3) * t1;
-        let t4 = spindle_e0 * spindle_e1;
-        let t5 = spindle_e2 * spindle_e3;
-        let t6 = t5 + t4;
-        let t7 = k(0.24) * t6;
-        let t8 = t3 * t7;
-        let t9 = T::fused(-k(0.6), T::fused(-t3, t2, k(0.038)), k(0.8) * t8);
-        let t10 = k(0.3) * t6;
-        let t11 = T::fused(-k(0.6), t8, k(0.8) * T::fused(-t10, t7, k(0.038)));
-        let t12 = k(2.3544) * t1;
-        let t13 = spindle_wx * spindle_wz;
-        let t14 = k(2.3544) * t6;
-        let t15 = spindle_wx * spindle_wy;
-        let t16 = T::fused(
+        let t0 = k(2.0) * spindle_e0;
+        let t1 = spindle_e2 * t0;
+        let t2 = k(2.0) * spindle_e1;
+        let t3 = spindle_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = T::fused(-spindle_e0, t0, k(1.0));
+        let t6 = T::fused(-spindle_e3, k(2.0) * spindle_e3, t5);
+        let t7 = k(0.12) * t6;
+        let t8 = k(0.15) * t6;
+        let t9 = spindle_e1 * t0;
+        let t10 = k(2.0) * spindle_e2;
+        let t11 = spindle_e3 * t10;
+        let t12 = t11 + t9;
+        let t13 = k(0.12) * t12;
+        let t14 = t13 * t8;
+        let t15 = T::fused(-k(0.6), T::fused(-t8, t7, k(0.038)), k(0.8) * t14);
+        let t16 = k(0.15) * t12;
+        let t17 = T::fused(-k(0.6), t14, k(0.8) * T::fused(-t13, t16, k(0.038)));
+        let t18 = k(1.1772) * t6;
+        let t19 = spindle_wx * spindle_wz;
+        let t20 = k(1.1772) * t12;
+        let t21 = spindle_wx * spindle_wy;
+        let t22 = T::fused(
             k(0.6),
-            t12 + T::fused(k(0.01), t13, -t12),
-            k(0.8) * (t14 - T::fused(k(0.01), t15, t14)),
+            t18 + T::fused(k(0.01), t19, -t18),
+            k(0.8) * (t20 - T::fused(k(0.01), t21, t20)),
         );
-        let t17 = T::fused(spindle_wy, spindle_wy, spindle_wz * spindle_wz);
-        let t18 = spindle_e0 * spindle_e3;
-        let t19 = spindle_e1 * spindle_e2;
-        let t20 = t19 - t18;
-        let t21 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t0)),
-            t17,
-            k(2.0) * t20 * t15,
+        let t23 = T::fused(spindle_wy, spindle_wy, spindle_wz * spindle_wz);
+        let t24 = spindle_e3 * t0;
+        let t25 = spindle_e2 * t2;
+        let t26 = t25 - t24;
+        let t27 = T::fused(
+            t19,
+            t4,
+            T::fused(t23, T::fused(-spindle_e1, t2, t5), t21 * t26),
         );
-        let t22 = spindle_e0 * spindle_e2;
-        let t23 = spindle_e1 * spindle_e3;
-        let t24 = t23 + t22;
-        let t25 = k(0.15) * T::fused(k(2.0) * t24, t13, t21);
-        let t26 = k(0.5) - T::fused(spindle_e2, spindle_e2, t0);
-        let t27 = t5 - t4;
-        let t28 = T::fused(
-            k(2.0) * t27,
-            t13,
-            -T::fused(k(2.0) * (t19 + t18), t17, k(2.0) * t26 * t15),
+        let t28 = k(0.15) * t27;
+        let t29 = T::fused(-spindle_e2, t10, t5);
+        let t30 = t11 - t9;
+        let t31 = k(0.15) * T::fused(t19, t30, -T::fused(t23, t25 + t24, t21 * t29));
+        let t32 = T::fused(
+            -T::fused(-k(0.072), t4, k(0.096) * t26),
+            t28,
+            T::fused(k(0.072), t30, k(0.096) * t29) * t31,
         );
-        let t29 = k(0.15) * t28;
-        let t30 = T::fused(
-            -T::fused(-k(0.144), t24, k(0.192) * t20),
-            t25,
-            T::fused(k(0.144), t27, k(0.192) * t26) * t29,
-        );
-        let t31 = t23 - t22;
-        let t32 = k(0.6) * spindle_wx;
-        let t33 = k(0.8) * spindle_wx;
-        let t34 = T::fused(-k(0.6), spindle_wz, k(0.8) * spindle_wy);
-        let t35 = T::fused(t32, t32, T::fused(t33, t33, t34 * t34))
-            / T::fused(-k(1.2), t6, k(1.6) * t1);
-        let t36 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
-        let t37 = T::fused(-t35, k(1.6) * t31, t33 * t36);
-        let t38 = T::fused(-(k(1.2) * t31), t35, t32 * t36);
-        let t39 = (T::fused(t9, t37, t11 * t38) - t30 - t16)
-            / T::fused(-k(0.6), t9, k(0.8) * t11);
-        let t40 = T::fused(k(0.6), t39, t37);
-        let t41 = T::fused(-k(0.8), t39, t38);
-        let t42 = T::fused(
+        let t33 = t3 - t1;
+        let t34 = k(0.6) * spindle_wx;
+        let t35 = k(0.8) * spindle_wx;
+        let t36 = T::fused(-k(0.6), spindle_wz, k(0.8) * spindle_wy);
+        let t37 = T::fused(t34, t34, T::fused(t35, t35, t36 * t36))
+            / T::fused(-k(0.6), t12, k(0.8) * t6);
+        let t38 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
+        let t39 = T::fused(-t37, k(0.8) * t33, t35 * t38);
+        let t40 = T::fused(-(k(0.6) * t33), t37, t34 * t38);
+        let t41 = (T::fused(t15, t39, t17 * t40) - t32 - t22)
+            / T::fused(-k(0.6), t15, k(0.8) * t17);
+        let t42 = T::fused(k(0.6), t41, t39);
+        let t43 = T::fused(-k(0.8), t41, t40);
+        let t44 = T::fused(
             -k(1.25),
-            k(7.848) + T::fused(-t2, t40, t7 * t41),
-            T::fused(-t3, t40, t10 * t41),
+            k(7.848) + T::fused(-t7, t42, t13 * t43),
+            T::fused(-t8, t42, t16 * t43),
         );
         *out = [
-            t25 + T::fused(k(0.3) * t24, t40, k(0.3) * t20 * t41),
-            t29 - T::fused(-(k(0.3) * t27), t40, k(0.3) * t26 * t41),
-            t42,
-            T::fused(-t35, T::fused(k(1.6), t6, k(1.2) * t1), t34 * t36),
-            -t40,
-            t41,
+            t28 + T::fused(t42, k(0.15) * t4, t43 * (k(0.15) * t26)),
+            t31 - T::fused(-t42, k(0.15) * t30, t43 * (k(0.15) * t29)),
+            t44,
+            T::fused(-t37, T::fused(k(0.8), t12, k(0.6) * t6), t36 * t38),
+            -t42,
+            t43,
         ];
     }
-    /// Writes λ: 88 operations (28 ±, 59 ×, 1 ÷).
+    /// Writes λ: 87 operations (28 ±, 58 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -750,42 +748,45 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Cylindrical<T> {
         let spindle_dwz = accelerations[5];
         let t0 = k(0.8) * spindle_dsx;
         let t1 = k(0.8) * spindle_dsy;
-        let t2 = spindle_e0 * spindle_e3;
-        let t3 = spindle_e1 * spindle_e2;
-        let t4 = t3 - t2;
-        let t5 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
-        let t6 = T::fused(-k(1.6), t4, k(1.2) * t5);
-        let t7 = k(2.0) * (t3 + t2);
-        let t8 = spindle_e0 * spindle_e0;
-        let t9 = k(0.5) - T::fused(spindle_e2, spindle_e2, t8);
-        let t10 = spindle_e0 * spindle_e1;
-        let t11 = spindle_e2 * spindle_e3;
-        let t12 = t11 - t10;
-        let t13 = T::fused(k(1.6), t9, k(1.2) * t12);
-        let t14 = k(0.8) * t13;
-        let t15 = k(0.5) - T::fused(spindle_e1, spindle_e1, t8);
-        let t16 = k(0.6) * t13;
-        let t17 = T::fused(k(1.2) * t15, t16, T::fused(t7, t6, k(1.6) * t15 * t14));
-        let t18 = k(1.0) / t17;
-        let t19 = k(0.01) * spindle_dwx;
-        let t20 = T::fused(k(0.8), spindle_dsz, k(7.848));
-        let t21 = T::fused(
-            t20,
-            k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t8)),
-            -T::fused(t0, k(0.3) * t5, t1 * (k(0.3) * t12)),
+        let t2 = k(0.01) * spindle_wx;
+        let t3 = spindle_e0 * spindle_e3;
+        let t4 = spindle_e1 * spindle_e2;
+        let t5 = t4 - t3;
+        let t6 = spindle_e0 * spindle_e0;
+        let t7 = k(0.5) - T::fused(spindle_e2, spindle_e2, t6);
+        let t8 = spindle_e0 * spindle_e1;
+        let t9 = spindle_e2 * spindle_e3;
+        let t10 = T::fused(k(0.8), spindle_dsz, k(7.848));
+        let t11 = T::fused(
+            t10,
+            k(0.3) * (t9 + t8),
+            -T::fused(-t0, k(0.3) * t5, t1 * (k(0.3) * t7)),
         );
-        let t22 = T::fused(-k(0.02), spindle_dwy, k(0.01) * (spindle_wx * spindle_wz))
-            - t21;
+        let t12 = t11 + T::fused(spindle_wy, t2, k(0.02) * spindle_dwz);
+        let t13 = T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3);
+        let t14 = T::fused(-k(1.6), t5, k(1.2) * t13);
+        let t15 = k(2.0) * (t4 + t3);
+        let t16 = t9 - t8;
+        let t17 = T::fused(k(1.6), t7, k(1.2) * t16);
+        let t18 = k(0.8) * t17;
+        let t19 = k(0.5) - T::fused(spindle_e1, spindle_e1, t6);
+        let t20 = k(0.6) * t17;
+        let t21 = T::fused(k(1.2) * t19, t20, T::fused(t15, t14, k(1.6) * t19 * t18));
+        let t22 = k(1.0) / t21;
         let t23 = T::fused(
-            t20,
-            k(0.3) * (t11 + t10),
-            -T::fused(-t0, k(0.3) * t4, t1 * (k(0.3) * t9)),
+            t10,
+            k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t6)),
+            -T::fused(t0, k(0.3) * t13, t1 * (k(0.3) * t16)),
         );
-        let t24 = T::fused(k(0.02), spindle_dwz, k(0.01) * (spindle_wx * spindle_wy))
-            + t23;
-        let t25 = T::fused(t24, t16 * t18, T::fused(t19, t7 * t18, t22 * (t14 * t18)));
-        let t26 = T::fused(-t19, k(2.0) * t15 * t18, t22 * (t18 * (k(0.8) * t6)));
-        *lambda = [-t0, -t1, -t25, T::fused(t24, t18 * (k(0.6) * t6), t26)];
+        let t24 = t23 + T::fused(-spindle_wz, t2, k(0.02) * spindle_dwy);
+        let t25 = k(0.01) * spindle_dwx;
+        let t26 = T::fused(
+            t20 * t22,
+            t12,
+            T::fused(-(t18 * t22), t24, t25 * (t15 * t22)),
+        );
+        let t27 = T::fused(t22 * (k(0.8) * t14), t24, t25 * (k(2.0) * t19 * t22));
+        *lambda = [-t0, -t1, -t26, T::fused(t22 * (k(0.6) * t14), t12, -t27)];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Cylindrical<T> {
@@ -834,11 +835,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Cylindrical<T> {
         let t21 = k(0.3) * t19;
         let t22 = t5 + t4;
         let t23 = k(0.24) * t22;
-        let t24 = t21 * t23;
+        let t24 = t23 * t21;
         let t25 = T::fused(-k(0.6), T::fused(-t21, t20, k(0.038)), k(0.8) * t24);
         let t26 = T::fused(-row2, t15 * t17, row3 * (t17 * (k(0.6) * t10)));
         let t27 = k(0.3) * t22;
-        let t28 = T::fused(-k(0.6), t24, k(0.8) * T::fused(-t27, t23, k(0.038)));
+        let t28 = T::fused(-k(0.6), t24, k(0.8) * T::fused(-t23, t27, k(0.038)));
         let t29 = (T::fused(t25, t18, t28 * t26) + t9)
             / T::fused(-k(0.6), t25, k(0.8) * t28);
         let t30 = T::fused(k(0.6), t29, t18);
@@ -1034,7 +1035,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
             t6,
         ];
     }
-    /// Writes λ: 70 operations (24 ±, 46 ×, 0 ÷).
+    /// Writes λ: 69 operations (24 ±, 45 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1058,38 +1059,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let spindle_dwz = accelerations[5];
         let t0 = k(0.8) * spindle_dsx;
         let t1 = k(0.8) * spindle_dsy;
-        let t2 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
-        let t3 = k(1.8) * t2;
-        let t4 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t3;
-        let t5 = k(0.01) * spindle_dwx;
-        let t6 = spindle_e0 * spindle_e1;
-        let t7 = spindle_e2 * spindle_e3;
-        let t8 = T::fused(
-            t0,
-            k(0.3) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
-            t1 * (k(0.3) * (t7 - t6)),
-        );
-        let t9 = spindle_e0 * spindle_e0;
-        let t10 = T::fused(k(0.8), spindle_dsz, k(7.848));
-        let t11 = T::fused(-k(0.02), spindle_dwy, k(0.01) * (spindle_wx * spindle_wz))
-            - T::fused(
-                t10,
-                k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t9)),
-                -t8,
-            );
-        let t12 = T::fused(-t2, t3, k(1.0));
-        let t13 = T::fused(
+        let t2 = k(0.01) * spindle_wx;
+        let t3 = spindle_e0 * spindle_e0;
+        let t4 = T::fused(
             -t0,
             k(0.3) * T::fused(-spindle_e0, spindle_e3, spindle_e1 * spindle_e2),
-            t1 * (k(0.3) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t9))),
+            t1 * (k(0.3) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t3))),
         );
-        let t14 = T::fused(k(0.02), spindle_dwz, k(0.01) * (spindle_wx * spindle_wy))
-            + T::fused(t10, k(0.3) * (t7 + t6), -t13);
-        let t15 = T::fused(k(0.6) * t12, t14, T::fused(-t5, t4, k(0.8) * t12 * t11));
-        let t16 = T::fused(t14, k(0.6) * t4, T::fused(t5, t12, t11 * (k(0.8) * t4)));
-        *lambda = [-t0, -t1, t15, t16];
+        let t5 = spindle_e0 * spindle_e1;
+        let t6 = spindle_e2 * spindle_e3;
+        let t7 = T::fused(k(0.8), spindle_dsz, k(7.848));
+        let t8 = T::fused(t7, k(0.3) * (t6 + t5), -t4)
+            + T::fused(spindle_wy, t2, k(0.02) * spindle_dwz);
+        let t9 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
+        let t10 = k(1.8) * t9;
+        let t11 = T::fused(-t9, t10, k(1.0));
+        let t12 = T::fused(
+            t0,
+            k(0.3) * T::fused(spindle_e0, spindle_e2, spindle_e1 * spindle_e3),
+            t1 * (k(0.3) * (t6 - t5)),
+        );
+        let t13 = T::fused(
+            t7,
+            k(0.3) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t3)),
+            -t12,
+        ) + T::fused(-spindle_wz, t2, k(0.02) * spindle_dwy);
+        let t14 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t10;
+        let t15 = k(0.01) * spindle_dwx;
+        let t16 = T::fused(-(k(0.6) * t11), t8, T::fused(k(0.8) * t11, t13, t15 * t14));
+        let t17 = T::fused(k(0.6) * t14, t8, T::fused(-(k(0.8) * t14), t13, t15 * t11));
+        *lambda = [-t0, -t1, -t16, t17];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 122 operations (41 ±, 81 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 121 operations (41 ±, 80 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let spindle_e0 = y[3];
@@ -1141,31 +1142,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let t27 = T::fused(-spindle_wy, t12, spindle_wz * t5);
         let t28 = k(0.8) * t18;
         let t29 = k(0.8) * t23;
-        let t30 = T::fused(k(0.8), t26, k(7.848));
-        let t31 = T::fused(
-            -(k(0.3) * t24),
-            t30,
-            T::fused(-(k(0.3) * t19), t29, k(0.3) * t10 * t28),
-        );
-        let t32 = t31 - T::fused(k(0.02), t6, k(0.01) * (spindle_wx * spindle_wy));
-        let t33 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
-        let t34 = k(1.8) * t33;
-        let t35 = T::fused(-t33, t34, k(1.0));
-        let t36 = T::fused(
+        let t30 = k(0.01) * spindle_wx;
+        let t31 = T::fused(k(0.8), t26, k(7.848));
+        let t32 = T::fused(
             k(0.3) * t25,
-            t30,
+            t31,
             T::fused(k(0.3) * t22, t29, k(0.3) * t17 * t28),
         );
-        let t37 = t36 - T::fused(k(0.02), t13, k(0.01) * (spindle_wx * spindle_wz));
-        let t38 = k(0.01) * t27;
-        let t39 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t34;
-        let t40 = T::fused(
-            -(k(0.6) * t35),
-            t32,
-            T::fused(-(k(0.8) * t35), t37, t39 * t38),
+        let t33 = t32 - T::fused(spindle_wz, t30, k(0.02) * t13);
+        let t34 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
+        let t35 = k(1.8) * t34;
+        let t36 = T::fused(-t34, t35, k(1.0));
+        let t37 = k(0.01) * t27;
+        let t38 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t35;
+        let t39 = T::fused(
+            -(k(0.3) * t24),
+            t31,
+            T::fused(-(k(0.3) * t19), t29, k(0.3) * t10 * t28),
         );
-        let t41 = T::fused(k(0.6) * t39, t32, T::fused(k(0.8) * t39, t37, t35 * t38));
-        *out = [-t18, -t23, t26, -t27, -t13, t6, t28, t29, t40, -t41];
+        let t40 = t39 - T::fused(spindle_wy, t30, k(0.02) * t6);
+        let t41 = T::fused(
+            k(0.6) * t36,
+            t40,
+            -T::fused(-(k(0.8) * t36), t33, t38 * t37),
+        );
+        let t42 = T::fused(k(0.6) * t38, t40, T::fused(k(0.8) * t38, t33, t36 * t37));
+        *out = [-t18, -t23, t26, -t27, -t13, t6, t28, t29, -t41, -t42];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Cylindrical<T> {
@@ -1218,7 +1220,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cylindrical<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 141 operations (50 ±, 90 ×, 1 ÷).
+    /// Writes the outputs: 133 operations (48 ±, 84 ×, 1 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -1241,68 +1243,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Cylindrical<T> {
         let spindle_dwz = accelerations[5];
         let t0 = k(0.8) * spindle_dsx;
         let t1 = k(0.8) * spindle_dsy;
-        let t2 = spindle_e0 * spindle_e3;
-        let t3 = spindle_e1 * spindle_e2;
-        let t4 = t3 - t2;
-        let t5 = spindle_e0 * spindle_e2;
-        let t6 = spindle_e1 * spindle_e3;
-        let t7 = t6 + t5;
-        let t8 = T::fused(-k(1.6), t4, k(1.2) * t7);
-        let t9 = t3 + t2;
-        let t10 = k(2.0) * t9;
-        let t11 = spindle_e0 * spindle_e0;
-        let t12 = k(0.5) - T::fused(spindle_e2, spindle_e2, t11);
-        let t13 = spindle_e0 * spindle_e1;
-        let t14 = spindle_e2 * spindle_e3;
-        let t15 = t14 - t13;
-        let t16 = T::fused(k(1.6), t12, k(1.2) * t15);
-        let t17 = k(0.8) * t16;
-        let t18 = k(0.5) - T::fused(spindle_e1, spindle_e1, t11);
-        let t19 = k(1.6) * t18;
-        let t20 = k(0.6) * t16;
-        let t21 = k(1.2) * t18;
-        let t22 = k(1.0) / T::fused(t21, t20, T::fused(t10, t8, t19 * t17));
-        let t23 = k(0.01) * spindle_dwx;
-        let t24 = T::fused(t0, k(0.3) * t7, t1 * (k(0.3) * t15));
-        let t25 = k(0.5) - T::fused(spindle_e3, spindle_e3, t11);
-        let t26 = T::fused(k(0.8), spindle_dsz, k(7.848));
-        let t27 = T::fused(-k(0.02), spindle_dwy, k(0.01) * (spindle_wx * spindle_wz))
-            - T::fused(t26, k(0.3) * t25, -t24);
-        let t28 = T::fused(-t0, k(0.3) * t4, t1 * (k(0.3) * t12));
-        let t29 = t14 + t13;
-        let t30 = T::fused(k(0.02), spindle_dwz, k(0.01) * (spindle_wx * spindle_wy))
-            + T::fused(t26, k(0.3) * t29, -t28);
-        let t31 = T::fused(t30, t20 * t22, T::fused(t23, t10 * t22, t27 * (t17 * t22)));
-        let t32 = k(2.0) * t18;
-        let t33 = T::fused(
-            t30,
-            t22 * (k(0.6) * t8),
-            T::fused(-t23, t32 * t22, t27 * (t22 * (k(0.8) * t8))),
+        let t2 = k(0.01) * spindle_wx;
+        let t3 = k(2.0) * spindle_e0;
+        let t4 = spindle_e3 * t3;
+        let t5 = k(2.0) * spindle_e1;
+        let t6 = spindle_e2 * t5;
+        let t7 = t6 - t4;
+        let t8 = k(2.0) * spindle_e2;
+        let t9 = T::fused(-spindle_e0, t3, k(1.0));
+        let t10 = T::fused(-spindle_e2, t8, t9);
+        let t11 = T::fused(-t0, k(0.15) * t7, t1 * (k(0.15) * t10));
+        let t12 = spindle_e1 * t3;
+        let t13 = spindle_e3 * t8;
+        let t14 = t13 + t12;
+        let t15 = T::fused(k(0.8), spindle_dsz, k(7.848));
+        let t16 = T::fused(t15, k(0.15) * t14, -t11)
+            + T::fused(spindle_wy, t2, k(0.02) * spindle_dwz);
+        let t17 = spindle_e2 * t3;
+        let t18 = spindle_e3 * t5;
+        let t19 = t18 + t17;
+        let t20 = T::fused(-k(0.8), t7, k(0.6) * t19);
+        let t21 = t6 + t4;
+        let t22 = t13 - t12;
+        let t23 = T::fused(k(0.8), t10, k(0.6) * t22);
+        let t24 = k(0.8) * t23;
+        let t25 = T::fused(-spindle_e1, t5, t9);
+        let t26 = k(0.8) * t25;
+        let t27 = k(0.6) * t23;
+        let t28 = k(0.6) * t25;
+        let t29 = k(1.0) / T::fused(t28, t27, T::fused(t21, t20, t26 * t24));
+        let t30 = T::fused(t0, k(0.15) * t19, t1 * (k(0.15) * t22));
+        let t31 = T::fused(-spindle_e3, k(2.0) * spindle_e3, t9);
+        let t32 = T::fused(t15, k(0.15) * t31, -t30)
+            + T::fused(-spindle_wz, t2, k(0.02) * spindle_dwy);
+        let t33 = k(0.01) * spindle_dwx;
+        let t34 = T::fused(
+            -(t29 * (k(0.6) * t20)),
+            t16,
+            T::fused(t29 * (k(0.8) * t20), t32, t33 * (t25 * t29)),
         );
-        let t34 = T::fused(-t8, t31, t16 * t33);
-        let t35 = T::fused(k(1.6) * t9, t33, -T::fused(-t19, t31, t24));
-        let t36 = T::fused(k(1.2) * t9, t33, T::fused(t21, t31, t28));
-        let t37 = T::fused(k(2.0) * t7, t36, -T::fused(-t32, t34, k(2.0) * t4 * t35));
-        let t38 = t6 - t5;
-        let t39 = spindle_rz - T::fused(-k(0.3), t38, spindle_rz);
-        let t40 = T::fused(k(2.0) * t15, t36, T::fused(-t10, t34, k(2.0) * t12 * t35));
-        let t41 = T::fused(
-            k(2.0) * t25,
-            t36,
-            T::fused(k(2.0) * t38, t34, k(2.0) * t29 * t35),
+        let t35 = T::fused(
+            t27 * t29,
+            t16,
+            T::fused(-(t24 * t29), t32, t33 * (t21 * t29)),
         );
-        let t42 = T::fused(
+        let t36 = T::fused(-(k(0.6) * t21), t34, T::fused(t28, t35, t11));
+        let t37 = T::fused(k(0.8) * t21, t34, T::fused(-t26, t35, t30));
+        let t38 = T::fused(t23, t34, t20 * t35);
+        let t39 = t18 - t17;
+        let t40 = spindle_rz - T::fused(-k(0.15), t39, spindle_rz);
+        let t41 = T::fused(t1, t40, T::fused(-t19, t36, T::fused(-t7, t37, t25 * t38)));
+        let t42 = T::fused(t0, t40, T::fused(t22, t36, T::fused(-t10, t37, t21 * t38)));
+        let t43 = T::fused(
             -t1,
-            spindle_rx - T::fused(k(0.3), t18, spindle_rx),
-            t0 * (spindle_ry - T::fused(-k(0.3), t9, spindle_ry)),
+            spindle_rx - T::fused(k(0.15), t25, spindle_rx),
+            t0 * (spindle_ry - T::fused(-k(0.15), t21, spindle_ry)),
         );
         *out = [
             t0,
             t1,
             k(0.0),
-            T::fused(-t1, t39, t37),
-            T::fused(t0, t39, t40),
-            -(t42 + t41),
+            -t41,
+            t42,
+            T::fused(-t31, t36, T::fused(t14, t37, t39 * t38)) - t43,
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -11,27 +11,27 @@
 //! * left out: joint coordinates (for trees without couplers and drivers)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 1334 operations by rotations of the bodies; 1334 operations by relative Euler parameters
-//! * project: 1118 operations by rotations of the bodies; 1118 operations by relative Euler parameters
+//! * accelerations: 1319 operations by rotations of the bodies, doubled; 1319 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 1108 operations by rotations of the bodies, doubled; 1108 operations by relative Euler parameters, doubled; 2 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 64 | 59 | 0 | 123 | 0 of 21 | 205 | 123 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 26 | 88 | 1 | 115 | 0 of 118 | 358 | 115 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 46 | 90 | 1 | 137 | 0 of 68 | 403 | 137 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 25 | 80 | 1 | 106 | 0 of 118 | 400 | 106 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 40 | 80 | 1 | 121 | 0 of 68 | 523 | 121 |
 //! | nu | ν | 1 | 2 | 0 | 3 | 17 of 18 | 3 | 3 |
-//! | gamma | γ | 111 | 183 | 1 | 295 | 0 of 18 | 1125 | 295 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 87 | 113 | 1 | 201 | 0 of 18 | 493 | 202 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 550 | 773 | 11 | 1334 | 0 of 22 | 7.4e10 | 1335 |
-//! | multipliers | λ, the accelerations being known | 107 | 170 | 4 | 281 | 0 of 18 | 1698 | 282 |
-//! | project | (δr, δπ') that changes the rows as given | 465 | 642 | 11 | 1118 | 0 of 18 | 6.7e10 | 1119 |
+//! | gamma | γ | 105 | 168 | 1 | 274 | 0 of 18 | 1291 | 274 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 81 | 99 | 1 | 181 | 0 of 18 | 571 | 182 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 544 | 764 | 11 | 1319 | 0 of 22 | 8.8e10 | 1320 |
+//! | multipliers | λ, the accelerations being known | 101 | 159 | 4 | 264 | 0 of 18 | 2042 | 265 |
+//! | project | (δr, δπ') that changes the rows as given | 459 | 638 | 11 | 1108 | 0 of 18 | 8.0e10 | 1109 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 25 | 51 | 0 | 76 | 0 of 23 | 76 | 76 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
-//! | outputs | outputs, the accelerations being known | 118 | 171 | 1 | 290 | 1 of 15 | 8788 | 290 |
+//! | outputs | outputs, the accelerations being known | 112 | 159 | 1 | 272 | 1 of 15 | 10561 | 272 |
 //!
 //! # Proof
 //!
@@ -362,7 +362,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
             T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t11)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 201 operations (87 ±, 113 ×, 1 ÷) and 1 functions.
+    /// Writes Φ_r s + Φ_π' w' − ν: 181 operations (81 ±, 99 ×, 1 ÷) and 1 functions.
     fn velocity_residual(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -395,104 +395,107 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for DrivenFourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_e0 * crank_e3;
-        let t1 = crank_e1 * crank_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = crank_e0 * crank_e2;
-        let t4 = crank_e1 * crank_e3;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = T::fused(-t2, crank_wz, t5 * crank_wy);
-        let t7 = k(0.1) * t6;
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
-        let t10 = crank_e0 * crank_e1;
-        let t11 = crank_e2 * crank_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = T::fused(t9, crank_wz, t12 * crank_wy);
-        let t14 = k(0.1) * t13;
-        let t15 = k(2.0) * (t11 + t10);
-        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t8));
-        let t17 = k(0.1) * T::fused(t15, crank_wz, t16 * crank_wy);
-        let t18 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
-        let t19 = k(2.0) * (t1 + t0);
-        let t20 = rocker_e0 * rocker_e3;
-        let t21 = rocker_e1 * rocker_e2;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = T::fused(
-            -t22,
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e3 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = crank_e2 * t0;
+        let t6 = crank_e3 * t2;
+        let t7 = t6 + t5;
+        let t8 = T::fused(-crank_wz, t4, crank_wy * t7);
+        let t9 = k(0.1) * t8;
+        let t10 = k(2.0) * crank_e2;
+        let t11 = T::fused(-crank_e0, t0, k(1.0));
+        let t12 = T::fused(-crank_e2, t10, t11);
+        let t13 = crank_e1 * t0;
+        let t14 = crank_e3 * t10;
+        let t15 = t14 - t13;
+        let t16 = T::fused(crank_wz, t12, crank_wy * t15);
+        let t17 = k(0.1) * t16;
+        let t18 = t14 + t13;
+        let t19 = T::fused(-crank_e3, k(2.0) * crank_e3, t11);
+        let t20 = k(0.1) * T::fused(crank_wz, t18, crank_wy * t19);
+        let t21 = T::fused(-crank_e1, t2, t11);
+        let t22 = t3 + t1;
+        let t23 = k(2.0) * rocker_e0;
+        let t24 = rocker_e3 * t23;
+        let t25 = k(2.0) * rocker_e1;
+        let t26 = rocker_e2 * t25;
+        let t27 = t26 - t24;
+        let t28 = k(0.2)
+            * T::fused(
+                -rocker_wz,
+                t27,
+                rocker_wy * T::fused(rocker_e2, t23, rocker_e3 * t25),
+            );
+        let t29 = k(2.0) * rocker_e2;
+        let t30 = T::fused(-rocker_e0, t23, k(1.0));
+        let t31 = T::fused(-rocker_e2, t29, t30);
+        let t32 = rocker_e1 * t23;
+        let t33 = rocker_e3 * t29;
+        let t34 = k(0.2) * T::fused(rocker_wz, t31, rocker_wy * (t33 - t32));
+        let t35 = T::fused(
             rocker_wz,
-            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+            t33 + t32,
+            rocker_wy * T::fused(-rocker_e3, k(2.0) * rocker_e3, t30),
         );
-        let t24 = k(0.2) * t23;
-        let t25 = rocker_e0 * rocker_e0;
-        let t26 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t25));
-        let t27 = rocker_e0 * rocker_e1;
-        let t28 = rocker_e2 * rocker_e3;
-        let t29 = k(0.2) * T::fused(t26, rocker_wz, k(2.0) * (t28 - t27) * rocker_wy);
-        let t30 = T::fused(
-            k(2.0) * (t28 + t27),
-            rocker_wz,
-            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t25)) * rocker_wy,
+        let t36 = k(0.2) * t35;
+        let t37 = k(2.0) * coupler_e0;
+        let t38 = coupler_e3 * t37;
+        let t39 = k(2.0) * coupler_e1;
+        let t40 = coupler_e2 * t39;
+        let t41 = t40 - t38;
+        let t42 = coupler_e2 * t37;
+        let t43 = coupler_e3 * t39;
+        let t44 = t43 + t42;
+        let t45 = k(0.25) * T::fused(-coupler_wz, t41, coupler_wy * t44);
+        let t46 = k(2.0) * coupler_e2;
+        let t47 = T::fused(-coupler_e0, t37, k(1.0));
+        let t48 = T::fused(-coupler_e2, t46, t47);
+        let t49 = coupler_e1 * t37;
+        let t50 = coupler_e3 * t46;
+        let t51 = t50 - t49;
+        let t52 = k(0.25) * T::fused(coupler_wz, t48, coupler_wy * t51);
+        let t53 = t50 + t49;
+        let t54 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t47);
+        let t55 = k(0.25) * T::fused(coupler_wz, t53, coupler_wy * t54);
+        let t56 = T::fused(
+            t19,
+            t43 - t42,
+            -T::fused(-t7, T::fused(-coupler_e1, t39, t47), t15 * (t40 + t38)),
         );
-        let t31 = k(0.2) * t30;
-        let t32 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t25)),
-            rocker_wy,
-            t22 * rocker_wx,
-        );
-        let t33 = coupler_e0 * coupler_e3;
-        let t34 = coupler_e1 * coupler_e2;
-        let t35 = k(2.0) * (t34 - t33);
-        let t36 = coupler_e0 * coupler_e2;
-        let t37 = coupler_e1 * coupler_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = k(0.25) * T::fused(-t35, coupler_wz, t38 * coupler_wy);
-        let t40 = coupler_e0 * coupler_e0;
-        let t41 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t40));
-        let t42 = coupler_e0 * coupler_e1;
-        let t43 = coupler_e2 * coupler_e3;
-        let t44 = k(2.0) * (t43 - t42);
-        let t45 = k(0.25) * T::fused(t41, coupler_wz, t44 * coupler_wy);
-        let t46 = k(2.0) * (t43 + t42);
-        let t47 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t40));
-        let t48 = k(0.25) * T::fused(t46, coupler_wz, t47 * coupler_wy);
-        let t49 = T::fused(
-            -t5,
-            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t40)),
-            t12 * (k(2.0) * (t34 + t33)),
-        );
-        let t50 = T::fused(
+        let t57 = T::fused(
             coupler_wz,
-            T::fused(t16, k(2.0) * (t37 - t36), -t49),
-            coupler_wx * T::fused(t16, t47, T::fused(t12, t44, t5 * t38)),
+            t56,
+            coupler_wx * T::fused(t19, t54, T::fused(t7, t44, t15 * t51)),
         );
-        let t51 = T::fused(k(2.0) * (t4 - t3), t46, -T::fused(t18, t35, t19 * t41));
-        let t52 = T::fused(
+        let t58 = T::fused(
             -crank_wy,
-            t51,
-            crank_wx * T::fused(t15, t46, T::fused(t9, t41, t2 * t35)),
+            T::fused(t6 - t5, t53, -T::fused(t21, t41, t22 * t48)),
+            crank_wx * T::fused(t18, t53, T::fused(t4, t41, t12 * t48)),
         );
-        let t53 = T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0))
-            - T::fused(t18, t13, t19 * t6) / T::fused(t18, t18, t19 * t19);
+        let t59 = T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0))
+            - T::fused(t21, t16, t22 * t8) / T::fused(t21, t21, t22 * t22);
         *out = [
-            crank_sx + t7,
-            crank_sy + t14,
-            crank_sz - t17,
-            -T::fused(t18, crank_wy, t2 * crank_wx),
-            T::fused(t19, crank_wy, t9 * crank_wx),
-            rocker_sx + t24,
-            rocker_sy + t29,
-            rocker_sz - t31,
-            -t32,
-            T::fused(k(2.0) * (t21 + t20), rocker_wy, t26 * rocker_wx),
-            coupler_sx + t39 - (crank_sx - t7),
-            coupler_sy + t45 - (crank_sy - t14),
-            coupler_sz - t48 - (crank_sz + t17),
-            t50 - t52,
-            rocker_sx - t24 - (coupler_sx - t39),
-            rocker_sy - t29 - (coupler_sy - t45),
-            rocker_sz + t31 - (coupler_sz + t48),
-            -t53,
+            crank_sx + t9,
+            crank_sy + t17,
+            crank_sz - t20,
+            -T::fused(crank_wy, t21, crank_wx * t4),
+            T::fused(crank_wy, t22, crank_wx * t12),
+            rocker_sx + t28,
+            rocker_sy + t34,
+            rocker_sz - t36,
+            -T::fused(rocker_wy, T::fused(-rocker_e1, t25, t30), rocker_wx * t27),
+            T::fused(rocker_wy, t26 + t24, rocker_wx * t31),
+            coupler_sx + t45 - (crank_sx - t9),
+            coupler_sy + t52 - (crank_sy - t17),
+            coupler_sz - t55 - (crank_sz + t20),
+            t57 - t58,
+            rocker_sx - t28 - (coupler_sx - t45),
+            rocker_sy - t34 - (coupler_sy - t52),
+            rocker_sz + t36 - (coupler_sz + t55),
+            -t59,
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -1129,7 +1132,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             (17, 5),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 115 operations (26 ±, 88 ×, 1 ÷).
+    /// Writes the non-zeros of Φ_q: 106 operations (25 ±, 80 ×, 1 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1168,21 +1171,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t21 = k(0.5) * coupler_e2;
         let t22 = k(0.5) * coupler_e1;
         let t23 = k(0.5) * coupler_e0;
-        let t24 = k(4.0) * crank_e0;
-        let t25 = k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
-        let t26 = k(2.0)
-            * (k(0.5) - T::fused(coupler_e2, coupler_e2, coupler_e0 * coupler_e0));
-        let t27 = k(2.0) * T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
-        let t28 = k(2.0) * coupler_e1;
-        let t29 = crank_e0 * crank_e0;
-        let t30 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t29));
-        let t31 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
-        let t32 = k(2.0) * coupler_e3;
-        let t33 = k(2.0) * T::fused(crank_e0, crank_e2, crank_e1 * crank_e3);
-        let t34 = k(2.0) * coupler_e0;
-        let t35 = k(2.0) * coupler_e2;
-        let t36 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t29));
-        let t37 = k(2.0) * T::fused(crank_e0, crank_e3, crank_e1 * crank_e2);
+        let t24 = k(2.0) * coupler_e0;
+        let t25 = k(2.0) * coupler_e2;
+        let t26 = T::fused(coupler_e1, t24, coupler_e3 * t25);
+        let t27 = k(4.0) * crank_e0;
+        let t28 = T::fused(-coupler_e2, t25, T::fused(-coupler_e0, t24, k(1.0)));
+        let t29 = k(2.0) * coupler_e1;
+        let t30 = T::fused(-coupler_e3, t24, coupler_e2 * t29);
+        let t31 = T::fused(-crank_e0, t8, k(1.0));
+        let t32 = T::fused(-crank_e3, t7, t31);
+        let t33 = T::fused(-crank_e1, t8, crank_e3 * t6);
+        let t34 = T::fused(crank_e2, t8, crank_e3 * t9);
+        let t35 = k(2.0) * coupler_e3;
+        let t36 = T::fused(-crank_e1, t9, t31);
+        let t37 = T::fused(crank_e3, t8, crank_e2 * t9);
         let t38 = k(1.0) / T::fused(t36, t36, t37 * t37);
         *out = [
             k(1.0),
@@ -1253,14 +1255,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             -t20,
             t23,
             -t22,
-            T::fused(t25, t24, T::fused(t26, t9, t27 * t6)),
-            T::fused(t26, t8, t27 * t7),
-            T::fused(-t26, t7, t27 * t8),
-            T::fused(t25, k(4.0) * crank_e3, T::fused(-t26, t6, t27 * t9)),
-            -T::fused(t30, t28, T::fused(-t31, k(4.0) * coupler_e0, t33 * t32)),
-            T::fused(-t30, t34, t33 * t35),
-            T::fused(-t30, t32, T::fused(t31, k(4.0) * coupler_e2, t33 * t28)),
-            -T::fused(t30, t35, t33 * t34),
+            T::fused(t27, t26, T::fused(t9, t28, t6 * t30)),
+            T::fused(t8, t28, t7 * t30),
+            T::fused(-t7, t28, t8 * t30),
+            T::fused(k(4.0) * crank_e3, t26, T::fused(-t6, t28, t9 * t30)),
+            -T::fused(t29, t32, T::fused(-(k(4.0) * coupler_e0), t33, t35 * t34)),
+            T::fused(-t24, t32, t25 * t34),
+            T::fused(-t35, t32, T::fused(k(4.0) * coupler_e2, t33, t29 * t34)),
+            -T::fused(t25, t32, t24 * t34),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1287,25 +1289,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t12,
             -t15,
             t14,
-            -(t38 * T::fused(t36, t7, t37 * t24)),
-            -(t38 * T::fused(t36, t6, t37 * (k(4.0) * crank_e1))),
-            -(t38 * (t36 * t9)),
-            -(t38 * (t36 * t8)),
+            -(t38 * T::fused(t7, t36, t27 * t37)),
+            -(t38 * T::fused(t6, t36, k(4.0) * crank_e1 * t37)),
+            -(t38 * (t9 * t36)),
+            -(t38 * (t8 * t36)),
             t8,
             t9,
             t6,
             t7,
-            t34,
-            t28,
+            t24,
+            t29,
+            t25,
             t35,
-            t32,
             t18,
             t19,
             t16,
             t17,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 137 operations (46 ±, 90 ×, 1 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 121 operations (40 ±, 80 ×, 1 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1320,148 +1322,143 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let rocker_e1 = y[18];
         let rocker_e2 = y[19];
         let rocker_e3 = y[20];
-        let t0 = crank_e0 * crank_e2;
-        let t1 = crank_e1 * crank_e3;
-        let t2 = t1 + t0;
-        let t3 = k(0.2) * t2;
-        let t4 = crank_e0 * crank_e3;
-        let t5 = crank_e1 * crank_e2;
-        let t6 = t5 - t4;
-        let t7 = k(0.2) * t6;
-        let t8 = crank_e0 * crank_e1;
-        let t9 = crank_e2 * crank_e3;
-        let t10 = t9 - t8;
-        let t11 = k(0.2) * t10;
-        let t12 = crank_e0 * crank_e0;
-        let t13 = k(0.5) - T::fused(crank_e2, crank_e2, t12);
-        let t14 = k(0.2) * t13;
-        let t15 = k(0.5) - T::fused(crank_e3, crank_e3, t12);
-        let t16 = k(0.2) * t15;
-        let t17 = t9 + t8;
-        let t18 = k(0.2) * t17;
-        let t19 = k(2.0) * t6;
-        let t20 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t12));
-        let t21 = k(2.0) * t13;
-        let t22 = k(2.0) * (t5 + t4);
-        let t23 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t24 = rocker_e0 * rocker_e3;
-        let t25 = rocker_e1 * rocker_e2;
-        let t26 = t25 - t24;
-        let t27 = k(0.4) * t26;
-        let t28 = rocker_e0 * rocker_e1;
-        let t29 = rocker_e2 * rocker_e3;
-        let t30 = k(0.4) * (t29 - t28);
-        let t31 = rocker_e0 * rocker_e0;
-        let t32 = k(0.5) - T::fused(rocker_e2, rocker_e2, t31);
-        let t33 = k(0.4) * t32;
-        let t34 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t31));
-        let t35 = k(0.4) * (t29 + t28);
-        let t36 = coupler_e0 * coupler_e2;
-        let t37 = coupler_e1 * coupler_e3;
-        let t38 = t37 + t36;
-        let t39 = k(0.5) * t38;
-        let t40 = coupler_e0 * coupler_e3;
-        let t41 = coupler_e1 * coupler_e2;
-        let t42 = t41 - t40;
-        let t43 = k(0.5) * t42;
-        let t44 = coupler_e0 * coupler_e1;
-        let t45 = coupler_e2 * coupler_e3;
-        let t46 = t45 - t44;
-        let t47 = k(0.5) * t46;
-        let t48 = coupler_e0 * coupler_e0;
-        let t49 = k(0.5) - T::fused(coupler_e2, coupler_e2, t48);
-        let t50 = k(0.5) * t49;
-        let t51 = k(0.5) - T::fused(coupler_e3, coupler_e3, t48);
-        let t52 = k(0.5) * t51;
-        let t53 = t45 + t44;
-        let t54 = k(0.5) * t53;
-        let t55 = k(2.0) * t49;
-        let t56 = k(2.0) * t42;
-        let t57 = k(2.0) * t53;
-        let t58 = T::fused(k(2.0) * (t1 - t0), t57, -T::fused(t20, t56, t22 * t55));
-        let t59 = k(2.0) * t15;
-        let t60 = k(2.0) * t10;
-        let t61 = k(2.0) * t2;
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e2 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = k(0.1) * t4;
+        let t6 = crank_e3 * t0;
+        let t7 = crank_e2 * t2;
+        let t8 = t7 - t6;
+        let t9 = k(0.1) * t8;
+        let t10 = crank_e1 * t0;
+        let t11 = k(2.0) * crank_e2;
+        let t12 = crank_e3 * t11;
+        let t13 = t12 - t10;
+        let t14 = k(0.1) * t13;
+        let t15 = T::fused(-crank_e0, t0, k(1.0));
+        let t16 = T::fused(-crank_e2, t11, t15);
+        let t17 = k(0.1) * t16;
+        let t18 = T::fused(-crank_e3, k(2.0) * crank_e3, t15);
+        let t19 = k(0.1) * t18;
+        let t20 = t12 + t10;
+        let t21 = k(0.1) * t20;
+        let t22 = T::fused(-crank_e1, t2, t15);
+        let t23 = t7 + t6;
+        let t24 = k(2.0) * rocker_e0;
+        let t25 = k(2.0) * rocker_e1;
+        let t26 = k(0.2) * T::fused(rocker_e2, t24, rocker_e3 * t25);
+        let t27 = rocker_e3 * t24;
+        let t28 = rocker_e2 * t25;
+        let t29 = t28 - t27;
+        let t30 = k(0.2) * t29;
+        let t31 = rocker_e1 * t24;
+        let t32 = k(2.0) * rocker_e2;
+        let t33 = rocker_e3 * t32;
+        let t34 = k(0.2) * (t33 - t31);
+        let t35 = T::fused(-rocker_e0, t24, k(1.0));
+        let t36 = T::fused(-rocker_e2, t32, t35);
+        let t37 = k(0.2) * t36;
+        let t38 = k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t35);
+        let t39 = k(0.2) * (t33 + t31);
+        let t40 = k(2.0) * coupler_e0;
+        let t41 = coupler_e2 * t40;
+        let t42 = k(2.0) * coupler_e1;
+        let t43 = coupler_e3 * t42;
+        let t44 = t43 + t41;
+        let t45 = k(0.25) * t44;
+        let t46 = coupler_e3 * t40;
+        let t47 = coupler_e2 * t42;
+        let t48 = t47 - t46;
+        let t49 = k(0.25) * t48;
+        let t50 = coupler_e1 * t40;
+        let t51 = k(2.0) * coupler_e2;
+        let t52 = coupler_e3 * t51;
+        let t53 = t52 - t50;
+        let t54 = k(0.25) * t53;
+        let t55 = T::fused(-coupler_e0, t40, k(1.0));
+        let t56 = T::fused(-coupler_e2, t51, t55);
+        let t57 = k(0.25) * t56;
+        let t58 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t55);
+        let t59 = k(0.25) * t58;
+        let t60 = t52 + t50;
+        let t61 = k(0.25) * t60;
         let t62 = T::fused(
-            t59,
-            k(2.0) * t51,
-            T::fused(t60, k(2.0) * t46, t61 * (k(2.0) * t38)),
+            t18,
+            t43 - t41,
+            -T::fused(-t4, T::fused(-coupler_e1, t42, t55), t13 * (t47 + t46)),
         );
-        let t63 = T::fused(
-            -t61,
-            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t48)),
-            t60 * (k(2.0) * (t41 + t40)),
-        );
-        let t64 = k(1.0) / T::fused(t20, t20, t22 * t22);
+        let t63 = k(1.0) / T::fused(t22, t22, t23 * t23);
         *out = [
             k(1.0),
-            t3,
-            -t7,
+            t5,
+            -t9,
             k(1.0),
-            t11,
             t14,
+            t17,
             k(1.0),
-            -t16,
-            -t18,
             -t19,
-            -t20,
-            t21,
-            t22,
-            k(1.0),
+            -t21,
+            -t8,
+            -t22,
+            t16,
             t23,
-            -t27,
             k(1.0),
-            t30,
-            t33,
-            k(1.0),
-            -t34,
-            -t35,
-            -(k(2.0) * t26),
-            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t31))),
-            k(2.0) * t32,
-            k(2.0) * (t25 + t24),
-            k(-1.0),
-            t3,
-            -t7,
-            k(1.0),
-            t39,
-            -t43,
-            k(-1.0),
-            t11,
-            t14,
-            k(1.0),
-            t47,
-            t50,
-            k(-1.0),
-            -t16,
-            -t18,
-            k(1.0),
-            -t52,
-            -t54,
-            -T::fused(k(2.0) * t17, t57, T::fused(t21, t55, t19 * t56)),
-            t58,
-            t62,
-            T::fused(t59, k(2.0) * (t37 - t36), -t63),
-            k(-1.0),
-            t39,
-            -t43,
-            k(1.0),
-            -t23,
-            t27,
-            k(-1.0),
-            t47,
-            t50,
-            k(1.0),
+            t26,
             -t30,
-            -t33,
-            k(-1.0),
-            -t52,
-            -t54,
             k(1.0),
             t34,
-            t35,
-            T::fused(t20, t60, t61 * t22) * t64,
-            -(t64 * T::fused(-t20, t21, t19 * t22)),
+            t37,
+            k(1.0),
+            -t38,
+            -t39,
+            -t29,
+            T::fused(rocker_e1, t25, -t35),
+            t36,
+            t28 + t27,
+            k(-1.0),
+            t5,
+            -t9,
+            k(1.0),
+            t45,
+            -t49,
+            k(-1.0),
+            t14,
+            t17,
+            k(1.0),
+            t54,
+            t57,
+            k(-1.0),
+            -t19,
+            -t21,
+            k(1.0),
+            -t59,
+            -t61,
+            -T::fused(t20, t60, T::fused(t8, t48, t16 * t56)),
+            T::fused(t3 - t1, t60, -T::fused(t22, t48, t23 * t56)),
+            T::fused(t18, t58, T::fused(t4, t44, t13 * t53)),
+            t62,
+            k(-1.0),
+            t45,
+            -t49,
+            k(1.0),
+            -t26,
+            t30,
+            k(-1.0),
+            t54,
+            t57,
+            k(1.0),
+            -t34,
+            -t37,
+            k(-1.0),
+            -t59,
+            -t61,
+            k(1.0),
+            t38,
+            t39,
+            t63 * T::fused(t22, t13, t4 * t23),
+            -(T::fused(-t22, t16, t8 * t23) * t63),
         ];
     }
     /// Writes ν: 3 operations (1 ±, 2 ×, 0 ÷) and 1 functions.
@@ -1488,7 +1485,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0)),
         ];
     }
-    /// Writes γ: 295 operations (111 ±, 183 ×, 1 ÷) and 1 functions.
+    /// Writes γ: 274 operations (105 ±, 168 ×, 1 ÷) and 1 functions.
     fn gamma(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1512,143 +1509,151 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_wy * crank_wy;
-        let t1 = T::fused(crank_wz, crank_wz, t0);
-        let t2 = crank_e0 * crank_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
-        let t4 = crank_wx * crank_wy;
-        let t5 = crank_e0 * crank_e3;
-        let t6 = crank_e1 * crank_e2;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = crank_wx * crank_wz;
-        let t9 = crank_e0 * crank_e2;
-        let t10 = crank_e1 * crank_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
-        let t13 = k(0.1) * t12;
-        let t14 = k(2.0) * (t6 + t5);
-        let t15 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t2));
-        let t16 = crank_e0 * crank_e1;
-        let t17 = crank_e2 * crank_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = T::fused(t18, t8, -T::fused(t14, t1, t15 * t4));
-        let t20 = k(0.1) * t19;
-        let t21 = k(2.0) * (t10 - t9);
-        let t22 = k(2.0) * (t17 + t16);
-        let t23 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t2));
-        let t24 = k(0.1) * T::fused(t23, t8, -T::fused(-t21, t1, t22 * t4));
-        let t25 = crank_wy * crank_wz;
-        let t26 = T::fused(crank_wx, crank_wx, t0);
-        let t27 = rocker_wy * rocker_wy;
-        let t28 = T::fused(rocker_wz, rocker_wz, t27);
-        let t29 = rocker_e0 * rocker_e0;
-        let t30 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t29));
-        let t31 = rocker_wx * rocker_wy;
-        let t32 = rocker_e0 * rocker_e3;
-        let t33 = rocker_e1 * rocker_e2;
-        let t34 = k(2.0) * (t33 - t32);
-        let t35 = rocker_wx * rocker_wz;
-        let t36 = rocker_e0 * rocker_e2;
-        let t37 = rocker_e1 * rocker_e3;
-        let t38 = k(2.0) * (t37 + t36);
-        let t39 = k(0.2) * T::fused(t38, t35, T::fused(t30, t28, t34 * t31));
-        let t40 = k(2.0) * (t33 + t32);
-        let t41 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t29));
-        let t42 = rocker_e0 * rocker_e1;
-        let t43 = rocker_e2 * rocker_e3;
-        let t44 = k(2.0) * (t43 - t42);
-        let t45 = k(0.2) * T::fused(t44, t35, -T::fused(t40, t28, t41 * t31));
-        let t46 = T::fused(-(k(2.0) * (t37 - t36)), t28, k(2.0) * (t43 + t42) * t31);
-        let t47 = k(0.2)
-            * T::fused(
-                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t29)),
-                t35,
-                -t46,
-            );
-        let t48 = rocker_wy * rocker_wz;
-        let t49 = T::fused(rocker_wx, rocker_wx, t27);
-        let t50 = coupler_wz * coupler_wz;
-        let t51 = T::fused(coupler_wy, coupler_wy, t50);
-        let t52 = coupler_e0 * coupler_e0;
-        let t53 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t52));
-        let t54 = coupler_wx * coupler_wy;
-        let t55 = coupler_e0 * coupler_e3;
-        let t56 = coupler_e1 * coupler_e2;
-        let t57 = k(2.0) * (t56 - t55);
-        let t58 = coupler_wx * coupler_wz;
-        let t59 = coupler_e0 * coupler_e2;
-        let t60 = coupler_e1 * coupler_e3;
-        let t61 = k(2.0) * (t60 + t59);
-        let t62 = k(0.25) * T::fused(t61, t58, T::fused(t53, t51, t57 * t54));
-        let t63 = k(2.0) * (t56 + t55);
-        let t64 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t52));
-        let t65 = coupler_e0 * coupler_e1;
-        let t66 = coupler_e2 * coupler_e3;
-        let t67 = k(2.0) * (t66 - t65);
-        let t68 = k(0.25) * T::fused(t67, t58, -T::fused(t63, t51, t64 * t54));
-        let t69 = k(2.0) * (t60 - t59);
-        let t70 = k(2.0) * (t66 + t65);
-        let t71 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t52));
-        let t72 = k(0.25) * T::fused(t71, t58, -T::fused(-t69, t51, t70 * t54));
-        let t73 = T::fused(
-            t8,
-            T::fused(t21, t70, -T::fused(t3, t57, t14 * t64)),
-            t25 * T::fused(t22, t70, T::fused(t15, t64, t7 * t57)),
+        let t0 = k(2.0) * crank_e1;
+        let t1 = k(2.0) * crank_e0;
+        let t2 = T::fused(-crank_e0, t1, k(1.0));
+        let t3 = T::fused(-crank_e1, t0, t2);
+        let t4 = crank_wy * crank_wy;
+        let t5 = T::fused(crank_wz, crank_wz, t4);
+        let t6 = crank_e3 * t1;
+        let t7 = crank_e2 * t0;
+        let t8 = t7 - t6;
+        let t9 = crank_wx * crank_wy;
+        let t10 = crank_e2 * t1;
+        let t11 = crank_e3 * t0;
+        let t12 = t11 + t10;
+        let t13 = crank_wx * crank_wz;
+        let t14 = T::fused(t13, t12, T::fused(t5, t3, t9 * t8));
+        let t15 = k(0.1) * t14;
+        let t16 = t7 + t6;
+        let t17 = k(2.0) * crank_e2;
+        let t18 = T::fused(-crank_e2, t17, t2);
+        let t19 = crank_e1 * t1;
+        let t20 = crank_e3 * t17;
+        let t21 = t20 - t19;
+        let t22 = T::fused(t13, t21, -T::fused(t5, t16, t9 * t18));
+        let t23 = k(0.1) * t22;
+        let t24 = t11 - t10;
+        let t25 = t20 + t19;
+        let t26 = T::fused(-crank_e3, k(2.0) * crank_e3, t2);
+        let t27 = k(0.1) * T::fused(t13, t26, -T::fused(-t5, t24, t9 * t25));
+        let t28 = crank_wy * crank_wz;
+        let t29 = T::fused(crank_wx, crank_wx, t4);
+        let t30 = k(2.0) * rocker_e1;
+        let t31 = k(2.0) * rocker_e0;
+        let t32 = T::fused(-rocker_e0, t31, k(1.0));
+        let t33 = T::fused(-rocker_e1, t30, t32);
+        let t34 = rocker_wy * rocker_wy;
+        let t35 = T::fused(rocker_wz, rocker_wz, t34);
+        let t36 = rocker_e3 * t31;
+        let t37 = rocker_e2 * t30;
+        let t38 = t37 - t36;
+        let t39 = rocker_wx * rocker_wy;
+        let t40 = rocker_e2 * t31;
+        let t41 = rocker_e3 * t30;
+        let t42 = t41 + t40;
+        let t43 = rocker_wx * rocker_wz;
+        let t44 = k(0.2) * T::fused(t43, t42, T::fused(t35, t33, t39 * t38));
+        let t45 = t37 + t36;
+        let t46 = k(2.0) * rocker_e2;
+        let t47 = T::fused(-rocker_e2, t46, t32);
+        let t48 = rocker_e1 * t31;
+        let t49 = rocker_e3 * t46;
+        let t50 = t49 - t48;
+        let t51 = k(0.2) * T::fused(t43, t50, -T::fused(t35, t45, t39 * t47));
+        let t52 = T::fused(
+            t43,
+            T::fused(-rocker_e3, k(2.0) * rocker_e3, t32),
+            -T::fused(-t35, t41 - t40, t39 * (t49 + t48)),
         );
-        let t74 = T::fused(t23, t70, -T::fused(-t18, t64, t11 * t57));
-        let t75 = T::fused(
-            coupler_wz,
-            T::fused(t21, t69, T::fused(t3, t53, t14 * t63)),
-            coupler_wx * T::fused(t21, t71, -T::fused(-t3, t61, t14 * t67)),
+        let t53 = k(0.2) * t52;
+        let t54 = rocker_wy * rocker_wz;
+        let t55 = T::fused(rocker_wx, rocker_wx, t34);
+        let t56 = k(2.0) * coupler_e1;
+        let t57 = k(2.0) * coupler_e0;
+        let t58 = T::fused(-coupler_e0, t57, k(1.0));
+        let t59 = T::fused(-coupler_e1, t56, t58);
+        let t60 = coupler_wz * coupler_wz;
+        let t61 = T::fused(coupler_wy, coupler_wy, t60);
+        let t62 = coupler_e3 * t57;
+        let t63 = coupler_e2 * t56;
+        let t64 = t63 - t62;
+        let t65 = coupler_wx * coupler_wy;
+        let t66 = coupler_e2 * t57;
+        let t67 = coupler_e3 * t56;
+        let t68 = t67 + t66;
+        let t69 = coupler_wx * coupler_wz;
+        let t70 = k(0.25) * T::fused(t69, t68, T::fused(t61, t59, t65 * t64));
+        let t71 = t63 + t62;
+        let t72 = k(2.0) * coupler_e2;
+        let t73 = T::fused(-coupler_e2, t72, t58);
+        let t74 = coupler_e1 * t57;
+        let t75 = coupler_e3 * t72;
+        let t76 = t75 - t74;
+        let t77 = k(0.25) * T::fused(t69, t76, -T::fused(t61, t71, t65 * t73));
+        let t78 = t67 - t66;
+        let t79 = t75 + t74;
+        let t80 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t58);
+        let t81 = k(0.25) * T::fused(t69, t80, -T::fused(-t61, t78, t65 * t79));
+        let t82 = T::fused(
+            t13,
+            T::fused(t24, t79, -T::fused(t3, t64, t16 * t73)),
+            t28 * T::fused(t25, t79, T::fused(t8, t64, t18 * t73)),
         );
-        let t76 = T::fused(
-            coupler_wz,
-            T::fused(t22, t69, -T::fused(t7, t53, t15 * t63)),
-            coupler_wx * T::fused(t22, t71, -T::fused(-t15, t67, t7 * t61)),
-        );
-        let t77 = T::fused(
-            -t54,
-            T::fused(t23, t69, -T::fused(-t11, t53, t18 * t63)),
-            T::fused(coupler_wx, coupler_wx, t50) * t74,
-        );
-        let t78 = T::fused(
-            coupler_wy * coupler_wz,
-            T::fused(t23, t71, T::fused(t18, t67, t11 * t61)),
-            t77,
-        );
-        let t79 = T::fused(k(2.0), T::fused(-crank_wy, t75, crank_wx * t76), t78)
-            + T::fused(t26, t74, t73);
-        let t80 = T::fused(t15, crank_wz, t18 * crank_wy);
-        let t81 = T::fused(-t7, crank_wz, t11 * crank_wy);
-        let t82 = k(1.0) / T::fused(t3, t3, t14 * t14);
-        let t83 = t80 * t81;
+        let t83 = T::fused(t26, t79, T::fused(-t12, t64, t21 * t73));
         let t84 = T::fused(
-            t82 * t82 * (k(2.0) * T::fused(-t14, t80, t3 * t81)),
-            T::fused(t3, t80, t14 * t81),
-            t82 * (T::fused(t3, t19, -t83) + T::fused(t14, t12, t83)),
+            coupler_wz,
+            T::fused(t24, t78, T::fused(t3, t59, t16 * t71)),
+            coupler_wx * T::fused(t24, t80, -T::fused(-t3, t68, t16 * t76)),
+        );
+        let t85 = T::fused(
+            coupler_wz,
+            T::fused(t25, t78, -T::fused(t8, t59, t18 * t71)),
+            coupler_wx * T::fused(t25, t80, T::fused(-t8, t68, t18 * t76)),
+        );
+        let t86 = T::fused(
+            -t65,
+            T::fused(t26, t78, -T::fused(-t12, t59, t21 * t71)),
+            T::fused(coupler_wx, coupler_wx, t60) * t83,
+        );
+        let t87 = T::fused(
+            coupler_wy * coupler_wz,
+            T::fused(t26, t80, T::fused(t12, t68, t21 * t76)),
+            t86,
+        );
+        let t88 = T::fused(k(2.0), T::fused(-crank_wy, t84, crank_wx * t85), t87)
+            + T::fused(t29, t83, t82);
+        let t89 = T::fused(crank_wz, t18, crank_wy * t21);
+        let t90 = T::fused(-crank_wz, t8, crank_wy * t12);
+        let t91 = k(1.0) / T::fused(t3, t3, t16 * t16);
+        let t92 = t89 * t90;
+        let t93 = T::fused(
+            t91 * t91 * (k(2.0) * T::fused(-t16, t89, t3 * t90)),
+            T::fused(t3, t89, t16 * t90),
+            t91 * (T::fused(t3, t22, -t92) + T::fused(t16, t14, t92)),
         );
         *out = [
-            t13,
-            t20,
-            -t24,
-            T::fused(t11, t26, -T::fused(-t3, t8, t7 * t25)),
-            T::fused(t18, t26, T::fused(-t14, t8, t15 * t25)),
-            t39,
-            t45,
-            -t47,
-            T::fused(t38, t49, -T::fused(-t30, t35, t34 * t48)),
-            T::fused(t44, t49, T::fused(-t40, t35, t41 * t48)),
-            t13 + t62,
-            t20 + t68,
-            -(t24 + t72),
-            -t79,
-            t62 - t39,
-            t68 - t45,
-            t47 - t72,
-            T::fused(-k(1.8), (k(3.0) * t).sin(), t84),
+            t15,
+            t23,
+            -t27,
+            T::fused(t29, t12, -T::fused(-t13, t3, t28 * t8)),
+            T::fused(t29, t21, T::fused(-t13, t16, t28 * t18)),
+            t44,
+            t51,
+            -t53,
+            T::fused(t55, t42, -T::fused(-t43, t33, t54 * t38)),
+            T::fused(t55, t50, T::fused(-t43, t45, t54 * t47)),
+            t15 + t70,
+            t23 + t77,
+            -(t27 + t81),
+            -t88,
+            t70 - t44,
+            t77 - t51,
+            t53 - t81,
+            T::fused(-k(1.8), (k(3.0) * t).sin(), t93),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let crank_wx = y[24];
@@ -1660,28 +1665,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
+        let t0 = k(0.00133) * crank_wx;
+        let t1 = k(0.02095) * coupler_wx;
+        let t2 = k(0.01076) * rocker_wx;
         *out = [
             k(0.0),
             k(-3.924),
             k(0.0),
             k(0.0),
-            k(0.00133) * (crank_wx * crank_wz),
-            -(k(0.00133) * (crank_wx * crank_wy)),
+            crank_wz * t0,
+            -(crank_wy * t0),
             k(0.0),
             k(-9.81),
             k(0.0),
             k(0.0),
-            k(0.02095) * (coupler_wx * coupler_wz),
-            -(k(0.02095) * (coupler_wx * coupler_wy)),
+            coupler_wz * t1,
+            -(coupler_wy * t1),
             k(0.0),
             k(-7.848),
             k(0.0),
             k(0.0),
-            k(0.01076) * (rocker_wx * rocker_wz),
-            -(k(0.01076) * (rocker_wx * rocker_wy)),
+            rocker_wz * t2,
+            -(rocker_wy * t2),
         ];
     }
-    /// Solves eq. (17): 1334 operations (550 ±, 773 ×, 11 ÷) and 1 functions.
+    /// Solves eq. (17): 1319 operations (544 ±, 764 ×, 11 ÷) and 1 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1706,10 +1714,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t7,
+            t8,
             t12,
             t14,
-            t15,
             t16,
             t17,
             t18,
@@ -1724,333 +1731,328 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             t27,
             t28,
             t29,
-            t32,
+            t33,
             t37,
-            t43,
+            t41,
             t46,
             t47,
             t48,
-            t53,
-            t55,
+            t52,
+            t54,
             t59,
             t61,
-            t63,
+            t62,
+            t64,
+            t66,
             t67,
-            t69,
+            t68,
+            t71,
             t72,
             t73,
-            t76,
+            t74,
+            t75,
             t77,
-            t78,
             t79,
-            t80,
             t82,
-            t84,
-            t87,
+            t85,
+            t88,
+            t89,
             t90,
-            t93,
-            t94,
+            t92,
             t95,
-            t97,
+            t96,
+            t99,
             t100,
             t101,
-            t102,
             t103,
-            t104,
-            t105,
             t106,
-            t108,
             t111,
+            t112,
+            t113,
             t115,
-            t116,
-            t117,
-            t118,
-            t119,
             t121,
-            t126,
-            t127,
-            t128,
-            t129,
-            t133,
-            t136,
-            t137,
-            t151,
-            t155,
-            t159,
-            t172,
-            t178,
+            t123,
+            t130,
+            t131,
+            t145,
+            t149,
+            t153,
+            t166,
+            t188,
+            t189,
+            t191,
+            t192,
             t194,
             t195,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = coupler_wz * coupler_wz;
-            let t1 = T::fused(coupler_wy, coupler_wy, t0);
-            let t2 = coupler_e0 * coupler_e0;
-            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
-            let t4 = coupler_wx * coupler_wy;
-            let t5 = coupler_e0 * coupler_e3;
-            let t6 = coupler_e1 * coupler_e2;
-            let t7 = t6 - t5;
-            let t8 = k(2.0) * t7;
-            let t9 = coupler_wx * coupler_wz;
-            let t10 = coupler_e0 * coupler_e2;
-            let t11 = coupler_e1 * coupler_e3;
+            let t0 = k(2.0) * coupler_e1;
+            let t1 = k(2.0) * coupler_e0;
+            let t2 = T::fused(-coupler_e0, t1, k(1.0));
+            let t3 = T::fused(-coupler_e1, t0, t2);
+            let t4 = coupler_wz * coupler_wz;
+            let t5 = T::fused(coupler_wy, coupler_wy, t4);
+            let t6 = coupler_e3 * t1;
+            let t7 = coupler_e2 * t0;
+            let t8 = t7 - t6;
+            let t9 = coupler_wx * coupler_wy;
+            let t10 = coupler_e2 * t1;
+            let t11 = coupler_e3 * t0;
             let t12 = t11 + t10;
-            let t13 = k(2.0) * t12;
-            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
-            let t15 = rocker_wy * rocker_wy;
-            let t16 = T::fused(rocker_wz, rocker_wz, t15);
-            let t17 = rocker_e0 * rocker_e0;
-            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
-            let t19 = rocker_wx * rocker_wy;
-            let t20 = rocker_e0 * rocker_e3;
-            let t21 = rocker_e1 * rocker_e2;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = rocker_wx * rocker_wz;
-            let t25 = rocker_e0 * rocker_e2;
-            let t26 = rocker_e1 * rocker_e3;
+            let t13 = coupler_wx * coupler_wz;
+            let t14 = k(0.25) * T::fused(t13, t12, T::fused(t5, t3, t9 * t8));
+            let t15 = k(2.0) * rocker_e1;
+            let t16 = k(2.0) * rocker_e0;
+            let t17 = T::fused(-rocker_e0, t16, k(1.0));
+            let t18 = T::fused(-rocker_e1, t15, t17);
+            let t19 = rocker_wy * rocker_wy;
+            let t20 = T::fused(rocker_wz, rocker_wz, t19);
+            let t21 = rocker_e3 * t16;
+            let t22 = rocker_e2 * t15;
+            let t23 = t22 - t21;
+            let t24 = rocker_wx * rocker_wy;
+            let t25 = rocker_e2 * t16;
+            let t26 = rocker_e3 * t15;
             let t27 = t26 + t25;
-            let t28 = k(2.0) * t27;
-            let t29 = k(0.2) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
-            let t30 = crank_wx * crank_wz;
-            let t31 = crank_e0 * crank_e0;
-            let t32 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t31));
-            let t33 = crank_wy * crank_wz;
-            let t34 = crank_e0 * crank_e3;
-            let t35 = crank_e1 * crank_e2;
-            let t36 = t35 - t34;
-            let t37 = k(2.0) * t36;
-            let t38 = crank_wy * crank_wy;
-            let t39 = T::fused(crank_wx, crank_wx, t38);
-            let t40 = crank_e0 * crank_e2;
-            let t41 = crank_e1 * crank_e3;
-            let t42 = t41 + t40;
-            let t43 = k(2.0) * t42;
-            let t44 = T::fused(t43, t39, -T::fused(-t32, t30, t37 * t33));
-            let t45 = k(0.5) - T::fused(crank_e2, crank_e2, t31);
-            let t46 = k(2.0) * t45;
-            let t47 = k(2.0) * (t35 + t34);
-            let t48 = T::fused(-t32, t46, t37 * t47);
+            let t28 = rocker_wx * rocker_wz;
+            let t29 = k(0.2) * T::fused(t28, t27, T::fused(t20, t18, t24 * t23));
+            let t30 = k(2.0) * crank_e1;
+            let t31 = k(2.0) * crank_e0;
+            let t32 = T::fused(-crank_e0, t31, k(1.0));
+            let t33 = T::fused(-crank_e1, t30, t32);
+            let t34 = crank_wx * crank_wz;
+            let t35 = crank_e3 * t31;
+            let t36 = crank_e2 * t30;
+            let t37 = t36 - t35;
+            let t38 = crank_wy * crank_wz;
+            let t39 = crank_e2 * t31;
+            let t40 = crank_e3 * t30;
+            let t41 = t40 + t39;
+            let t42 = crank_wy * crank_wy;
+            let t43 = T::fused(crank_wx, crank_wx, t42);
+            let t44 = T::fused(t43, t41, -T::fused(-t34, t33, t38 * t37));
+            let t45 = k(2.0) * crank_e2;
+            let t46 = T::fused(-crank_e2, t45, t32);
+            let t47 = t36 + t35;
+            let t48 = T::fused(-t33, t46, t37 * t47);
             let t49 = k(1.0) / t48;
-            let t50 = crank_e0 * crank_e1;
-            let t51 = crank_e2 * crank_e3;
+            let t50 = crank_e1 * t31;
+            let t51 = crank_e3 * t45;
             let t52 = t51 - t50;
-            let t53 = k(2.0) * t52;
-            let t54 = T::fused(t53, t39, T::fused(-t47, t30, t46 * t33));
-            let t55 = T::fused(t46 * t49, t44, t37 * t49 * t54);
-            let t56 = k(0.2) * t42;
-            let t57 = coupler_e0 * coupler_e1;
-            let t58 = coupler_e2 * coupler_e3;
-            let t59 = t58 - t57;
-            let t60 = T::fused(k(4.905), t59, k(0.02095) * t9);
-            let t61 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
-            let t62 = k(2.0) * t61;
-            let t63 = t58 + t57;
-            let t64 = k(2.0) * t63;
-            let t65 = k(0.5) - T::fused(crank_e3, crank_e3, t31);
-            let t66 = k(2.0) * t65;
-            let t67 = T::fused(t66, t64, -T::fused(-t53, t62, t43 * t8));
-            let t68 = T::fused(-k(4.905), t61, k(0.02095) * t4);
-            let t69 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
-            let t70 = k(2.0) * t69;
-            let t71 = k(2.0) * t59;
-            let t72 = T::fused(t66, t70, T::fused(t53, t71, t43 * t13));
-            let t73 = T::fused(t67, t60, t72 * t68);
-            let t74 = k(2.0) * (t6 + t5);
-            let t75 = k(2.0) * (t11 - t10);
-            let t76 = T::fused(t66, t75, -T::fused(-t43, t3, t53 * t74));
-            let t77 = k(5e-5) * t76;
-            let t78 = k(0.0835) * t67;
-            let t79 = k(0.0835) * t72;
-            let t80 = k(1.0) / T::fused(t72, t79, T::fused(t76, t77, t67 * t78));
-            let t81 = t80 * t73;
-            let t82 = T::fused(-t78, t81, t60);
-            let t83 = t78 * t80;
-            let t84 = k(1.0) / T::fused(-t78, t83, k(0.0835));
-            let t85 = t84 * t82;
-            let t86 = t77 * t80;
-            let t87 = t78 * t86;
-            let t88 = T::fused(crank_wz, crank_wz, t38);
-            let t89 = crank_wx * crank_wy;
-            let t90 = T::fused(t43, t30, T::fused(t32, t88, t37 * t89));
-            let t91 = k(0.1) * t90;
-            let t92 = t91 + t14;
-            let t93 = k(0.5) * t12;
-            let t94 = k(0.5) * t7;
-            let t95 = T::fused(t93, t67, t94 * t72);
-            let t96 = t80 * t95;
-            let t97 = T::fused(-t78, t96, t93);
-            let t98 = t84 * t97;
-            let t99 = T::fused(-t77, t96, t87 * t98);
-            let t100 = k(0.25) * T::fused(t71, t9, -T::fused(t74, t1, t62 * t4));
-            let t101 = T::fused(t53, t30, -T::fused(t47, t88, t46 * t89));
-            let t102 = k(0.1) * t101;
-            let t103 = t102 + t100;
-            let t104 = k(0.5) * t59;
-            let t105 = k(0.5) * t61;
-            let t106 = T::fused(-t104, t67, t105 * t72);
-            let t107 = t80 * t106;
-            let t108 = T::fused(t78, t107, t104);
-            let t109 = t84 * t108;
-            let t110 = T::fused(t77, t107, t87 * t109);
-            let t111 = k(0.25) * T::fused(t70, t9, -T::fused(-t75, t1, t64 * t4));
-            let t112 = k(2.0) * (t41 - t40);
-            let t113 = t51 + t50;
-            let t114 = k(2.0) * t113;
-            let t115 = k(0.1) * T::fused(t66, t30, -T::fused(-t112, t88, t114 * t89));
-            let t116 = t115 + t111;
-            let t117 = k(0.5) * t69;
-            let t118 = k(0.5) * t63;
-            let t119 = T::fused(-t117, t67, t118 * t72);
-            let t120 = t80 * t119;
-            let t121 = T::fused(t78, t120, t117);
-            let t122 = t84 * t121;
-            let t123 = T::fused(t77, t120, t87 * t122);
-            let t124 = k(1.0) / T::fused(t72, t72, t76 * t76);
-            let t125 = T::fused(
-                t30,
-                T::fused(t112, t64, -T::fused(t32, t8, t47 * t62)),
-                t33 * T::fused(t114, t64, T::fused(t46, t62, t37 * t8)),
+            let t53 = T::fused(t43, t52, T::fused(-t34, t47, t38 * t46));
+            let t54 = T::fused(t46 * t49, t44, t37 * t49 * t53);
+            let t55 = k(0.1) * t41;
+            let t56 = coupler_e1 * t1;
+            let t57 = k(2.0) * coupler_e2;
+            let t58 = coupler_e3 * t57;
+            let t59 = t58 - t56;
+            let t60 = T::fused(k(2.4525), t59, k(0.02095) * t13);
+            let t61 = T::fused(-coupler_e2, t57, t2);
+            let t62 = t58 + t56;
+            let t63 = T::fused(-crank_e3, k(2.0) * crank_e3, t32);
+            let t64 = T::fused(t63, t62, T::fused(-t41, t8, t52 * t61));
+            let t65 = T::fused(-k(2.4525), t61, k(0.02095) * t9);
+            let t66 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t2);
+            let t67 = T::fused(t63, t66, T::fused(t41, t12, t52 * t59));
+            let t68 = T::fused(t64, t60, t67 * t65);
+            let t69 = t7 + t6;
+            let t70 = t11 - t10;
+            let t71 = T::fused(t63, t70, -T::fused(-t41, t3, t52 * t69));
+            let t72 = k(5e-5) * t71;
+            let t73 = k(0.0835) * t64;
+            let t74 = k(0.0835) * t67;
+            let t75 = k(1.0) / T::fused(t67, t74, T::fused(t71, t72, t64 * t73));
+            let t76 = t75 * t68;
+            let t77 = T::fused(-t73, t76, t60);
+            let t78 = t73 * t75;
+            let t79 = k(1.0) / T::fused(-t73, t78, k(0.0835));
+            let t80 = t79 * t77;
+            let t81 = t72 * t75;
+            let t82 = t73 * t81;
+            let t83 = T::fused(crank_wz, crank_wz, t42);
+            let t84 = crank_wx * crank_wy;
+            let t85 = T::fused(t34, t41, T::fused(t83, t33, t84 * t37));
+            let t86 = k(0.1) * t85;
+            let t87 = t86 + t14;
+            let t88 = k(0.25) * t12;
+            let t89 = k(0.25) * t8;
+            let t90 = T::fused(t64, t88, t67 * t89);
+            let t91 = t75 * t90;
+            let t92 = T::fused(-t73, t91, t88);
+            let t93 = t79 * t92;
+            let t94 = T::fused(-t72, t91, t82 * t93);
+            let t95 = k(0.25) * T::fused(t13, t59, -T::fused(t5, t69, t9 * t61));
+            let t96 = T::fused(t34, t52, -T::fused(t83, t47, t84 * t46));
+            let t97 = k(0.1) * t96;
+            let t98 = t97 + t95;
+            let t99 = k(0.25) * t59;
+            let t100 = k(0.25) * t61;
+            let t101 = T::fused(-t64, t99, t67 * t100);
+            let t102 = t75 * t101;
+            let t103 = T::fused(t73, t102, t99);
+            let t104 = t79 * t103;
+            let t105 = T::fused(t72, t102, t82 * t104);
+            let t106 = k(0.25) * T::fused(t13, t66, -T::fused(-t5, t70, t9 * t62));
+            let t107 = t40 - t39;
+            let t108 = t51 + t50;
+            let t109 = k(0.1) * T::fused(t34, t63, -T::fused(-t83, t107, t84 * t108));
+            let t110 = t109 + t106;
+            let t111 = k(0.25) * t66;
+            let t112 = k(0.25) * t62;
+            let t113 = T::fused(-t64, t111, t67 * t112);
+            let t114 = t75 * t113;
+            let t115 = T::fused(t73, t114, t111);
+            let t116 = t79 * t115;
+            let t117 = T::fused(t72, t114, t82 * t116);
+            let t118 = k(1.0) / T::fused(t67, t67, t71 * t71);
+            let t119 = T::fused(
+                t34,
+                T::fused(t107, t62, -T::fused(t33, t8, t47 * t61)),
+                t38 * T::fused(t108, t62, T::fused(t37, t8, t46 * t61)),
             );
-            let t126 = T::fused(t112, t75, T::fused(t32, t3, t47 * t74));
-            let t127 = T::fused(t112, t70, -T::fused(-t32, t13, t47 * t71));
-            let t128 = T::fused(t114, t75, -T::fused(t37, t3, t46 * t74));
-            let t129 = T::fused(t114, t70, -T::fused(-t46, t71, t37 * t13));
-            let t130 = T::fused(
+            let t120 = T::fused(t107, t70, T::fused(t33, t3, t47 * t69));
+            let t121 = T::fused(t107, t66, -T::fused(-t33, t12, t47 * t59));
+            let t122 = T::fused(t108, t70, -T::fused(t37, t3, t46 * t69));
+            let t123 = T::fused(t108, t66, T::fused(-t37, t12, t46 * t59));
+            let t124 = T::fused(
                 -crank_wy,
-                T::fused(coupler_wz, t126, coupler_wx * t127),
-                crank_wx * T::fused(coupler_wz, t128, coupler_wx * t129),
+                T::fused(coupler_wz, t120, coupler_wx * t121),
+                crank_wx * T::fused(coupler_wz, t122, coupler_wx * t123),
             );
-            let t131 = T::fused(
+            let t125 = T::fused(
                 coupler_wy * coupler_wz,
-                t72,
-                T::fused(-t4, t76, T::fused(coupler_wx, coupler_wx, t0) * t67),
+                t67,
+                T::fused(-t9, t71, T::fused(coupler_wx, coupler_wx, t4) * t64),
             );
-            let t132 = T::fused(k(2.0), t130, t131) + T::fused(t39, t67, t125);
-            let t133 = t132 * (t72 * t124);
-            let t134 = t84 * t87;
-            let t135 = T::fused(t87, t134, -T::fused(-t77, t86, k(5e-5)));
-            let t136 = t76 * t124 * t132;
-            let t137 = t79 * t83;
-            let t138 = T::fused(t79, t86, t137 * t134);
-            let t139 = T::fused(-t135, t133, t138 * t136)
-                + T::fused(t123, t116, T::fused(t99, t92, t110 * t103));
-            let t140 = T::fused(t137, t98, T::fused(-t79, t96, t94));
-            let t141 = T::fused(t137, t109, -T::fused(-t79, t107, t105));
-            let t142 = T::fused(t137, t122, -T::fused(-t79, t120, t118));
-            let t143 = T::fused(t137, t84 * t137, -T::fused(-t79, t79 * t80, k(0.0835)));
-            let t144 = T::fused(-t138, t133, t143 * t136)
-                + T::fused(t142, t116, T::fused(t140, t92, t141 * t103));
-            let t145 = T::fused(
-                t76,
-                t139 + T::fused(-t77, t81, t87 * t85),
-                t72 * (t144 + T::fused(t137, t85, T::fused(-t79, t81, t68))),
+            let t126 = T::fused(k(2.0), t124, t125) + T::fused(t43, t64, t119);
+            let t127 = t126 * (t67 * t118);
+            let t128 = t79 * t82;
+            let t129 = T::fused(t82, t128, -T::fused(-t72, t81, k(5e-5)));
+            let t130 = t71 * t118 * t126;
+            let t131 = t74 * t78;
+            let t132 = T::fused(t74, t81, t131 * t128);
+            let t133 = T::fused(-t129, t127, t132 * t130)
+                + T::fused(t117, t110, T::fused(t94, t87, t105 * t98));
+            let t134 = T::fused(t131, t93, T::fused(-t74, t91, t89));
+            let t135 = T::fused(t131, t104, -T::fused(-t74, t102, t100));
+            let t136 = T::fused(t131, t116, -T::fused(-t74, t114, t112));
+            let t137 = T::fused(t131, t79 * t131, -T::fused(-t74, t74 * t75, k(0.0835)));
+            let t138 = T::fused(-t132, t127, t137 * t130)
+                + T::fused(t136, t110, T::fused(t134, t87, t135 * t98));
+            let t139 = T::fused(
+                t71,
+                t133 + T::fused(-t72, t76, t82 * t80),
+                t67 * (t138 + T::fused(t131, t80, T::fused(-t74, t76, t65))),
             );
-            let t146 = T::fused(-t106, t96, t108 * t98);
-            let t147 = T::fused(t106, t107, t108 * t109);
-            let t148 = T::fused(t119, t107, t121 * t109);
-            let t149 = T::fused(-t110, t133, t141 * t136)
-                - (t103 - T::fused(t148, t116, T::fused(t146, t92, t147 * t103)));
-            let t150 = t149 + T::fused(t108, t85, -T::fused(t106, t81, k(9.81)));
-            let t151 = k(0.2) * t45;
-            let t152 = T::fused(t95, t96, t97 * t98);
-            let t153 = T::fused(-t119, t96, t121 * t98);
-            let t154 = T::fused(-t99, t133, t140 * t136)
-                - (t92 - T::fused(t153, t116, T::fused(t152, t92, t146 * t103)));
-            let t155 = k(0.2) * t36;
-            let t156 = t155 * (t154 + T::fused(t95, t81, t97 * t85));
-            let t157 = T::fused(t119, t120, t121 * t122);
-            let t158 = T::fused(-t123, t133, t142 * t136)
-                - (t116 - T::fused(t157, t116, T::fused(t153, t92, t148 * t103)));
-            let t159 = k(0.2) * t113;
-            let t160 = t159 * (t158 + T::fused(-t119, t81, t121 * t85));
-            let t161 = T::fused(t151, k(3.924) - t150, t156) - t160
-                - T::fused(k(0.00133), t89, t160 - T::fused(-t151, t150, t156) + t145);
-            let t162 = T::fused(t159, t153, T::fused(-t155, t152, t151 * t146));
-            let t163 = T::fused(t76, t99, t72 * t140);
-            let t164 = t155 + t162 + t163;
-            let t165 = T::fused(t159, t148, T::fused(-t155, t146, t151 * t147));
-            let t166 = T::fused(t76, t110, t72 * t141);
-            let t167 = t151 - t165 - t166;
+            let t140 = T::fused(-t101, t91, t103 * t93);
+            let t141 = T::fused(t101, t102, t103 * t104);
+            let t142 = T::fused(t113, t102, t115 * t104);
+            let t143 = T::fused(-t105, t127, t135 * t130)
+                - (t98 - T::fused(t142, t110, T::fused(t140, t87, t141 * t98)));
+            let t144 = t143 + T::fused(t103, t80, -T::fused(t101, t76, k(9.81)));
+            let t145 = k(0.1) * t46;
+            let t146 = T::fused(t90, t91, t92 * t93);
+            let t147 = T::fused(-t113, t91, t115 * t93);
+            let t148 = T::fused(-t94, t127, t134 * t130)
+                - (t87 - T::fused(t147, t110, T::fused(t146, t87, t140 * t98)));
+            let t149 = k(0.1) * t37;
+            let t150 = t149 * (t148 + T::fused(t90, t76, t92 * t80));
+            let t151 = T::fused(t113, t114, t115 * t116);
+            let t152 = T::fused(-t117, t127, t136 * t130)
+                - (t110 - T::fused(t151, t110, T::fused(t147, t87, t142 * t98)));
+            let t153 = k(0.1) * t108;
+            let t154 = t153 * (t152 + T::fused(-t113, t76, t115 * t80));
+            let t155 = T::fused(t145, k(3.924) - t144, t150) - t154
+                - T::fused(k(0.00133), t84, t154 - T::fused(-t145, t144, t150) + t139);
+            let t156 = T::fused(t153, t147, T::fused(-t149, t146, t145 * t140));
+            let t157 = T::fused(t71, t94, t67 * t134);
+            let t158 = t149 + t156 + t157;
+            let t159 = T::fused(t153, t142, T::fused(-t149, t140, t145 * t141));
+            let t160 = T::fused(t71, t105, t67 * t135);
+            let t161 = t145 - t159 - t160;
+            let t162 = T::fused(
+                -(t158 + T::fused(k(0.14), t37, t156)),
+                t86,
+                (t161 - T::fused(-k(0.14), t46, t159)) * t97,
+            );
+            let t163 = T::fused(t153, t151, T::fused(-t149, t147, t145 * t142));
+            let t164 = T::fused(t71, t117, t67 * t136);
+            let t165 = t153 - t163 - t164;
+            let t166 = T::fused(t44, t47 * t49, t53 * (t33 * t49));
+            let t167 = T::fused(
+                t71,
+                T::fused(t129, t120, t132 * t121),
+                t67 * T::fused(t132, t120, t137 * t121),
+            );
             let t168 = T::fused(
-                -(t164 + T::fused(k(0.28), t36, t162)),
-                t91,
-                (t167 - T::fused(-k(0.28), t45, t165)) * t102,
+                -t149,
+                T::fused(t94, t120, t134 * t121),
+                t145 * T::fused(t105, t120, t135 * t121),
             );
-            let t169 = T::fused(t159, t157, T::fused(-t155, t153, t151 * t148));
-            let t170 = T::fused(t76, t123, t72 * t142);
-            let t171 = t159 - t169 - t170;
-            let t172 = T::fused(t44, t47 * t49, t54 * (t32 * t49));
-            let t173 = T::fused(
-                t76,
-                T::fused(t135, t126, t138 * t127),
-                t72 * T::fused(t138, t126, t143 * t127),
+            let t169 = T::fused(t153, T::fused(t117, t120, t136 * t121), t168);
+            let t170 = T::fused(
+                t71,
+                T::fused(t129, t122, t132 * t123),
+                t67 * T::fused(t132, t122, t137 * t123),
             );
-            let t174 = T::fused(
-                -t155,
-                T::fused(t99, t126, t140 * t127),
-                t151 * T::fused(t110, t126, t141 * t127),
+            let t171 = k(0.1) * t52;
+            let t172 = k(0.1) * t63;
+            let t173 = T::fused(t94, t122, t134 * t123);
+            let t174 = T::fused(t105, t122, t135 * t123);
+            let t175 = T::fused(t117, t122, t136 * t123);
+            let t176 = T::fused(t153, t175, T::fused(-t149, t173, t145 * t174))
+                - T::fused(t164, t172, T::fused(t157, t55, t160 * t171));
+            let t177 = T::fused(t163, t172, T::fused(t156, t55, t159 * t171));
+            let t178 = t55 - T::fused(t147, t172, T::fused(t146, t55, t140 * t171))
+                + t173;
+            let t179 = t171 - T::fused(t142, t172, T::fused(t140, t55, t141 * t171))
+                + t174;
+            let t180 = t172 - T::fused(t151, t172, T::fused(t147, t55, t142 * t171))
+                + t175;
+            let t181 = T::fused(t153, t180, T::fused(-t149, t178, t145 * t179))
+                + T::fused(t165, t172, T::fused(-t158, t55, t161 * t171));
+            let t182 = T::fused(
+                -(t169 + (t169 + t167)),
+                t166,
+                (t181 - t177 - (t177 - t176 - t170)) * t54,
             );
-            let t175 = T::fused(t159, T::fused(t123, t126, t142 * t127), t174);
-            let t176 = T::fused(
-                t76,
-                T::fused(t135, t128, t138 * t129),
-                t72 * T::fused(t138, t128, t143 * t129),
+            let t183 = t182 - T::fused(t165 - T::fused(-k(0.14), t108, t163), t109, t162)
+                - t155;
+            let t184 = T::fused(
+                t71,
+                T::fused(t71, t129, t67 * t132),
+                t67 * T::fused(t71, t132, t67 * t137),
             );
-            let t177 = k(0.2) * t52;
-            let t178 = k(0.2) * t65;
-            let t179 = T::fused(t99, t128, t140 * t129);
-            let t180 = T::fused(t110, t128, t141 * t129);
-            let t181 = T::fused(t123, t128, t142 * t129);
-            let t182 = T::fused(t159, t181, T::fused(-t155, t179, t151 * t180))
-                - T::fused(t178, t170, T::fused(t56, t163, t177 * t166));
-            let t183 = T::fused(t178, t169, T::fused(t56, t162, t177 * t165));
-            let t184 = t56 - T::fused(t178, t153, T::fused(t56, t152, t177 * t146))
-                + t179;
-            let t185 = t177 - T::fused(t178, t148, T::fused(t56, t146, t177 * t147))
-                + t180;
-            let t186 = t178 - T::fused(t178, t157, T::fused(t56, t153, t177 * t148))
-                + t181;
-            let t187 = T::fused(t159, t186, T::fused(-t155, t184, t151 * t185))
-                + T::fused(t178, t171, T::fused(-t56, t164, t177 * t167));
-            let t188 = T::fused(
-                -(t175 + (t175 + t173)),
-                t172,
-                (t187 - t183 - (t183 - t182 - t176)) * t55,
-            );
-            let t189 = t188 - T::fused(t171 - T::fused(-k(0.28), t113, t169), t115, t168)
-                - t161;
-            let t190 = T::fused(
-                t76,
-                T::fused(t76, t135, t72 * t138),
-                t72 * T::fused(t76, t138, t72 * t143),
-            );
-            let t191 = T::fused(t159, t169, T::fused(-t155, t162, t151 * t165));
-            let t192 = T::fused(
+            let t185 = T::fused(t153, t163, T::fused(-t149, t156, t145 * t159));
+            let t186 = T::fused(
                 k(2.0),
-                T::fused(t159, t170, T::fused(-t155, t163, t151 * t166)),
-                t191,
+                T::fused(t153, t164, T::fused(-t149, t157, t145 * t160)),
+                t185,
             );
-            let t193 = T::fused(
+            let t187 = T::fused(
                 k(2.0),
-                T::fused(t159, t171, T::fused(t155, t164, t151 * t167)),
-                -t191,
+                T::fused(t153, t165, T::fused(t149, t158, t145 * t161)),
+                -t185,
             );
-            let t194 = k(1.0)
-                / (t193 + (k(0.014) + (k(0.00135) - (t192 - (k(0.01) - t190)))));
-            let t195 = t194 * t189;
-            let t196 = T::fused(t56, t55, t155 * t195);
-            let t197 = t91 - t196;
-            let t198 = t92 - (t196 - t197);
-            let t199 = T::fused(-t177, t55, t151 * t195);
+            let t188 = k(1.0)
+                / (t187 + (k(0.014) + (k(0.00135) - (t186 - (k(0.01) - t184)))));
+            let t189 = t188 * t183;
+            let t190 = T::fused(t55, t54, t149 * t189);
+            let t191 = t86 - t190;
+            let t192 = t87 - (t190 - t191);
+            let t193 = T::fused(-t171, t54, t145 * t189);
+            let t194 = t97 + t193;
+            let t195 = t98 + (t193 + t194);
+            let t196 = T::fused(-t172, t54, t153 * t189);
+            let t197 = t109 + t196;
+            let t198 = t110 + (t196 + t197);
+            let t199 = t127 - T::fused(t71, t189, T::fused(-t120, t166, t122 * t54));
             (
-                t7,
+                t8,
                 t12,
                 t14,
-                t15,
                 t16,
                 t17,
                 t18,
@@ -2065,61 +2067,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
                 t27,
                 t28,
                 t29,
-                t32,
+                t33,
                 t37,
-                t43,
+                t41,
                 t46,
                 t47,
                 t48,
-                t53,
-                t55,
+                t52,
+                t54,
                 t59,
                 t61,
-                t63,
+                t62,
+                t64,
+                t66,
                 t67,
-                t69,
+                t68,
+                t71,
                 t72,
                 t73,
-                t76,
+                t74,
+                t75,
                 t77,
-                t78,
                 t79,
-                t80,
                 t82,
-                t84,
-                t87,
+                t85,
+                t88,
+                t89,
                 t90,
-                t93,
-                t94,
+                t92,
                 t95,
-                t97,
+                t96,
+                t99,
                 t100,
                 t101,
-                t102,
                 t103,
-                t104,
-                t105,
                 t106,
-                t108,
                 t111,
+                t112,
+                t113,
                 t115,
-                t116,
-                t117,
-                t118,
-                t119,
                 t121,
-                t126,
-                t127,
-                t128,
-                t129,
-                t133,
-                t136,
-                t137,
-                t151,
-                t155,
-                t159,
-                t172,
-                t178,
+                t123,
+                t130,
+                t131,
+                t145,
+                t149,
+                t153,
+                t166,
+                t188,
+                t189,
+                t191,
+                t192,
                 t194,
                 t195,
                 t197,
@@ -2128,429 +2126,424 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
             )
         };
         let (
-            t217,
-            t218,
-            t221,
+            t211,
+            t212,
+            t215,
+            t219,
+            t220,
             t226,
-            t227,
-            t234,
-            t263,
-            t301,
-            t308,
-            t311,
-            t317,
-            t345,
-            t346,
+            t257,
+            t297,
+            t304,
+            t307,
+            t313,
+            t343,
+            t344,
+            t363,
+            t364,
             t365,
             t366,
-            t367,
             t368,
             t370,
             t372,
-            t374,
-            t375,
-            t378,
+            t373,
+            t376,
+            t384,
+            t385,
             t386,
             t387,
             t388,
-            t389,
             t390,
+            t391,
             t392,
             t393,
             t394,
-            t395,
-            t396,
         ) = {
-            let t200 = t102 + t199;
-            let t201 = t103 + (t199 + t200);
-            let t202 = T::fused(-t178, t55, t159 * t195);
-            let t203 = t115 + t202;
-            let t204 = t116 + (t202 + t203);
-            let t205 = t133 - T::fused(t76, t195, T::fused(-t126, t172, t128 * t55));
-            let t206 = t136 + T::fused(t72, t195, T::fused(-t127, t172, t129 * t55));
-            let t207 = T::fused(-t87, t205, t137 * t206)
-                + T::fused(t121, t204, T::fused(t97, t198, t108 * t201));
-            let t208 = t84 * (t82 + t207);
-            let t209 = T::fused(t79, t206, T::fused(-t77, t205, t78 * t208))
-                + T::fused(t119, t204, T::fused(-t95, t198, t106 * t201));
-            let t210 = t80 * (t73 - t209);
-            let t211 = T::fused(t67, t210, t208);
-            let t212 = T::fused(t72, t210, t206);
-            let t213 = T::fused(t93, t211, t94 * t212);
-            let t214 = t198 - t213;
-            let t215 = rocker_wy * rocker_wz;
-            let t216 = T::fused(rocker_wx, rocker_wx, t15);
-            let t217 = T::fused(t28, t216, -T::fused(-t18, t24, t23 * t215));
-            let t218 = k(2.0) * (t21 + t20);
-            let t219 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
-            let t220 = k(2.0) * t219;
-            let t221 = k(1.0) / T::fused(-t23, t218, t18 * t220);
-            let t222 = rocker_e0 * rocker_e1;
-            let t223 = rocker_e2 * rocker_e3;
-            let t224 = t223 - t222;
-            let t225 = k(2.0) * t224;
-            let t226 = T::fused(t225, t216, T::fused(-t218, t24, t220 * t215));
-            let t227 = T::fused(t220 * t221, t217, t23 * t221 * t226);
-            let t228 = k(0.2) * T::fused(t225, t24, -T::fused(t218, t16, t220 * t19));
-            let t229 = t223 + t222;
-            let t230 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
-            let t231 = T::fused(
-                k(2.0) * t230,
-                t24,
-                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t229 * t19),
+            let t200 = t130 + T::fused(t67, t189, T::fused(-t121, t166, t123 * t54));
+            let t201 = T::fused(-t82, t199, t131 * t200)
+                + T::fused(t115, t198, T::fused(t92, t192, t103 * t195));
+            let t202 = t79 * (t77 + t201);
+            let t203 = T::fused(t74, t200, T::fused(-t72, t199, t73 * t202))
+                + T::fused(t113, t198, T::fused(-t90, t192, t101 * t195));
+            let t204 = t75 * (t68 - t203);
+            let t205 = T::fused(t64, t204, t202);
+            let t206 = T::fused(t67, t204, t200);
+            let t207 = T::fused(t88, t205, t89 * t206);
+            let t208 = t192 - t207;
+            let t209 = rocker_wy * rocker_wz;
+            let t210 = T::fused(rocker_wx, rocker_wx, t19);
+            let t211 = T::fused(t210, t27, -T::fused(-t28, t18, t209 * t23));
+            let t212 = t22 + t21;
+            let t213 = k(2.0) * rocker_e2;
+            let t214 = T::fused(-rocker_e2, t213, t17);
+            let t215 = k(1.0) / T::fused(-t23, t212, t18 * t214);
+            let t216 = rocker_e1 * t16;
+            let t217 = rocker_e3 * t213;
+            let t218 = t217 - t216;
+            let t219 = T::fused(t210, t218, T::fused(-t28, t212, t209 * t214));
+            let t220 = T::fused(t214 * t215, t211, t23 * t215 * t219);
+            let t221 = k(0.2) * T::fused(t28, t218, -T::fused(t20, t212, t24 * t214));
+            let t222 = t217 + t216;
+            let t223 = T::fused(-rocker_e3, k(2.0) * rocker_e3, t17);
+            let t224 = k(0.2)
+                * T::fused(t28, t223, -T::fused(-t20, t26 - t25, t24 * t222));
+            let t225 = T::fused(
+                k(0.16) * t222,
+                t224,
+                T::fused(-(k(0.16) * t23), t29, k(0.16) * t214 * t221),
             );
-            let t232 = k(0.2) * t231;
-            let t233 = T::fused(
-                k(0.32) * t229,
-                t232,
-                T::fused(-(k(0.32) * t22), t29, k(0.32) * t219 * t228),
+            let t226 = k(23.364485981308412)
+                * (t225 - T::fused(-k(1.5696), t214, k(0.01076) * t24));
+            let t227 = k(0.2) * t23;
+            let t228 = T::fused(t220, k(0.2) * t27, t227 * t226);
+            let t229 = t29 + t228;
+            let t230 = t228 + t229 + (t207 - t208) + (t29 - t14);
+            let t231 = k(0.5) * t12;
+            let t232 = k(0.5) * t8;
+            let t233 = T::fused(t231, t64, t232 * t67);
+            let t234 = t233 * t75;
+            let t235 = T::fused(-t73, t234, t231);
+            let t236 = t235 * t79;
+            let t237 = T::fused(
+                t71,
+                T::fused(-t72, t234, t236 * t82),
+                t67 * T::fused(t236, t131, T::fused(-t74, t234, t232)),
             );
-            let t234 = k(23.364485981308412)
-                * (t233 - T::fused(-k(3.1392), t219, k(0.01076) * t19));
-            let t235 = k(0.4) * t22;
-            let t236 = T::fused(k(0.4) * t27, t227, t235 * t234);
-            let t237 = t29 + t236;
-            let t238 = t236 + t237 + (t213 - t214) + (t29 - t14);
-            let t239 = T::fused(t12, t67, t7 * t72);
-            let t240 = t239 * t80;
-            let t241 = T::fused(-t78, t240, t12);
-            let t242 = t241 * t84;
-            let t243 = T::fused(
-                t76,
-                T::fused(-t77, t240, t242 * t87),
-                t72 * T::fused(t242, t137, T::fused(-t79, t240, t7)),
+            let t238 = T::fused(
+                -T::fused(t236, t92, -T::fused(-t234, t90, k(1.0))),
+                t149,
+                T::fused(-t234, t101, t236 * t103) * t145,
             );
-            let t244 = T::fused(
-                -t155,
-                T::fused(t242, t97, -T::fused(-t240, t95, k(1.0))),
-                t151 * T::fused(-t240, t106, t242 * t108),
+            let t239 = T::fused(T::fused(-t234, t113, t236 * t115), t153, t238);
+            let t240 = (t239 + (t239 + t237)) * t188;
+            let t241 = t149 * t240;
+            let t242 = k(2.0) * t241;
+            let t243 = t145 * t240;
+            let t244 = k(2.0) * t243;
+            let t245 = t153 * t240;
+            let t246 = k(2.0) * t245;
+            let t247 = t71 * t240;
+            let t248 = t67 * t240;
+            let t249 = T::fused(t82, t247, t131 * t248)
+                + T::fused(t115, t246, T::fused(-t92, t242, t103 * t244));
+            let t250 = t79 * (t235 + t249);
+            let t251 = T::fused(t74, t248, T::fused(t72, t247, t73 * t250))
+                + T::fused(t113, t246, T::fused(t90, t242, t101 * t244));
+            let t252 = t75 * (t233 - t251);
+            let t253 = T::fused(t64, t252, t250);
+            let t254 = T::fused(t67, t252, t248);
+            let t255 = T::fused(t88, t253, t89 * t254);
+            let t256 = t242 + t255;
+            let t257 = k(9.345794392523365) * t23;
+            let t258 = t257 * t227;
+            let t259 = k(1.0) / T::fused(k(2.0), t258, t255 + t256);
+            let t260 = T::fused(-t99, t205, t100 * t206);
+            let t261 = t195 + t260;
+            let t262 = k(0.2) * t214;
+            let t263 = T::fused(-t220, k(0.2) * t218, t262 * t226);
+            let t264 = t221 - t263;
+            let t265 = T::fused(-t99, t253, t100 * t254);
+            let t266 = t244 + t265;
+            let t267 = t257 * t262;
+            let t268 = T::fused(k(2.0), t267, t265 + t266);
+            let t269 = t259 * t268;
+            let t270 = T::fused(
+                t269,
+                t230,
+                -(t263 - t264 + (t260 + t261) - (t221 - t95)),
             );
-            let t245 = T::fused(t159, T::fused(-t240, t119, t242 * t121), t244);
-            let t246 = (t245 + (t245 + t243)) * t194;
-            let t247 = t155 * t246;
-            let t248 = k(2.0) * t247;
-            let t249 = t151 * t246;
-            let t250 = k(2.0) * t249;
-            let t251 = t159 * t246;
-            let t252 = k(2.0) * t251;
-            let t253 = t76 * t246;
-            let t254 = t72 * t246;
-            let t255 = T::fused(t87, t253, t137 * t254)
-                + T::fused(t121, t252, T::fused(-t97, t248, t108 * t250));
-            let t256 = t84 * (t241 + t255);
-            let t257 = T::fused(t79, t254, T::fused(t77, t253, t78 * t256))
-                + T::fused(t119, t252, T::fused(t95, t248, t106 * t250));
-            let t258 = t80 * (t239 - t257);
-            let t259 = T::fused(t67, t258, t256);
-            let t260 = T::fused(t72, t258, t254);
-            let t261 = T::fused(t93, t259, t94 * t260);
-            let t262 = t248 + t261;
-            let t263 = k(18.69158878504673) * t22;
-            let t264 = t235 * t263;
-            let t265 = k(1.0) / T::fused(k(2.0), t264, t261 + t262);
-            let t266 = T::fused(-t104, t211, t105 * t212);
-            let t267 = t201 + t266;
-            let t268 = k(0.4) * t219;
-            let t269 = T::fused(-(k(0.4) * t224), t227, t268 * t234);
-            let t270 = t228 - t269;
-            let t271 = T::fused(-t104, t259, t105 * t260);
-            let t272 = t250 + t271;
-            let t273 = t268 * t263;
-            let t274 = T::fused(k(2.0), t273, t271 + t272);
-            let t275 = t265 * t274;
-            let t276 = T::fused(
-                t275,
-                t238,
-                -(t269 - t270 + (t266 + t267) - (t228 - t100)),
+            let t271 = k(0.5) * t59;
+            let t272 = k(0.5) * t61;
+            let t273 = T::fused(-t64, t271, t67 * t272);
+            let t274 = t75 * t273;
+            let t275 = T::fused(t73, t274, t271);
+            let t276 = t79 * t275;
+            let t277 = T::fused(
+                t71,
+                T::fused(t72, t274, t82 * t276),
+                t67 * T::fused(t131, t276, -T::fused(-t74, t274, t272)),
             );
-            let t277 = T::fused(-t59, t67, t61 * t72);
-            let t278 = t80 * t277;
-            let t279 = T::fused(t78, t278, t59);
-            let t280 = t84 * t279;
-            let t281 = T::fused(
-                t76,
-                T::fused(t77, t278, t87 * t280),
-                t72 * T::fused(t137, t280, -T::fused(-t79, t278, t61)),
+            let t278 = T::fused(
+                -t149,
+                T::fused(-t90, t274, t92 * t276),
+                t145 * T::fused(t103, t276, -T::fused(-t101, t274, k(1.0))),
             );
-            let t282 = T::fused(
-                -t155,
-                T::fused(-t95, t278, t97 * t280),
-                t151 * T::fused(t108, t280, -T::fused(-t106, t278, k(1.0))),
-            );
-            let t283 = T::fused(t159, T::fused(t119, t278, t121 * t280), t282);
-            let t284 = t194 * (t283 + (t283 + t281));
-            let t285 = t155 * t284;
+            let t279 = T::fused(t153, T::fused(t113, t274, t115 * t276), t278);
+            let t280 = t188 * (t279 + (t279 + t277));
+            let t281 = t149 * t280;
+            let t282 = k(2.0) * t281;
+            let t283 = t145 * t280;
+            let t284 = k(2.0) * t283;
+            let t285 = t153 * t280;
             let t286 = k(2.0) * t285;
-            let t287 = t151 * t284;
-            let t288 = k(2.0) * t287;
-            let t289 = t159 * t284;
-            let t290 = k(2.0) * t289;
-            let t291 = t76 * t284;
-            let t292 = t72 * t284;
-            let t293 = T::fused(t87, t291, t137 * t292)
-                + T::fused(t121, t290, T::fused(-t97, t286, t108 * t288));
-            let t294 = t84 * (t279 + t293);
-            let t295 = T::fused(t79, t292, T::fused(t77, t291, t78 * t294))
-                + T::fused(t119, t290, T::fused(t95, t286, t106 * t288));
-            let t296 = t80 * (t277 + t295);
-            let t297 = T::fused(-t67, t296, t294);
-            let t298 = T::fused(-t72, t296, t292);
-            let t299 = T::fused(-t104, t297, t105 * t298);
-            let t300 = t288 + t299;
-            let t301 = k(18.69158878504673) * t219;
-            let t302 = t268 * t301;
-            let t303 = k(1.0)
-                / T::fused(t274, t275, -T::fused(k(2.0), t302, -(t299 + t300)));
-            let t304 = T::fused(-t117, t211, t118 * t212);
-            let t305 = t204 + t304;
-            let t306 = k(0.4) * t229;
-            let t307 = T::fused(-(k(0.4) * t230), t227, t306 * t234);
-            let t308 = t232 - t307;
-            let t309 = T::fused(-t117, t259, t118 * t260);
-            let t310 = t252 + t309;
-            let t311 = t306 * t263;
-            let t312 = T::fused(k(2.0), t311, t309 + t310);
-            let t313 = t265 * t312;
-            let t314 = T::fused(
-                t313,
-                t238,
-                -(t307 - t308 + (t304 + t305) - (t232 - t111)),
+            let t287 = t71 * t280;
+            let t288 = t67 * t280;
+            let t289 = T::fused(t82, t287, t131 * t288)
+                + T::fused(t115, t286, T::fused(-t92, t282, t103 * t284));
+            let t290 = t79 * (t275 + t289);
+            let t291 = T::fused(t74, t288, T::fused(t72, t287, t73 * t290))
+                + T::fused(t113, t286, T::fused(t90, t282, t101 * t284));
+            let t292 = t75 * (t273 + t291);
+            let t293 = T::fused(-t64, t292, t290);
+            let t294 = T::fused(-t67, t292, t288);
+            let t295 = T::fused(-t99, t293, t100 * t294);
+            let t296 = t284 + t295;
+            let t297 = k(9.345794392523365) * t214;
+            let t298 = t262 * t297;
+            let t299 = k(1.0)
+                / T::fused(t268, t269, -T::fused(k(2.0), t298, -(t295 + t296)));
+            let t300 = T::fused(-t111, t205, t112 * t206);
+            let t301 = t198 + t300;
+            let t302 = k(0.2) * t222;
+            let t303 = T::fused(-t220, k(0.2) * t223, t302 * t226);
+            let t304 = t224 - t303;
+            let t305 = T::fused(-t111, t253, t112 * t254);
+            let t306 = t246 + t305;
+            let t307 = t257 * t302;
+            let t308 = T::fused(k(2.0), t307, t305 + t306);
+            let t309 = t259 * t308;
+            let t310 = T::fused(
+                t309,
+                t230,
+                -(t303 - t304 + (t300 + t301) - (t224 - t106)),
             );
-            let t315 = T::fused(-t117, t297, t118 * t298);
-            let t316 = t290 + t315;
-            let t317 = t306 * t301;
-            let t318 = T::fused(t274, t313, -T::fused(k(2.0), t317, -(t315 + t316)));
-            let t319 = t303 * t318;
-            let t320 = T::fused(t319, t276, -t314);
-            let t321 = T::fused(-t69, t67, t63 * t72);
-            let t322 = t80 * t321;
-            let t323 = T::fused(t78, t322, t69);
-            let t324 = t84 * t323;
+            let t311 = T::fused(-t111, t293, t112 * t294);
+            let t312 = t286 + t311;
+            let t313 = t297 * t302;
+            let t314 = T::fused(t268, t309, -T::fused(k(2.0), t313, -(t311 + t312)));
+            let t315 = t299 * t314;
+            let t316 = T::fused(t315, t270, -t310);
+            let t317 = k(0.5) * t66;
+            let t318 = k(0.5) * t62;
+            let t319 = T::fused(-t64, t317, t67 * t318);
+            let t320 = t75 * t319;
+            let t321 = T::fused(t73, t320, t317);
+            let t322 = t79 * t321;
+            let t323 = T::fused(
+                t71,
+                T::fused(t72, t320, t82 * t322),
+                t67 * T::fused(t131, t322, -T::fused(-t74, t320, t318)),
+            );
+            let t324 = T::fused(
+                -t149,
+                T::fused(-t90, t320, t92 * t322),
+                t145 * T::fused(t101, t320, t103 * t322),
+            );
             let t325 = T::fused(
-                t76,
-                T::fused(t77, t322, t87 * t324),
-                t72 * T::fused(t137, t324, -T::fused(-t79, t322, t63)),
+                t153,
+                T::fused(t115, t322, -T::fused(-t113, t320, k(1.0))),
+                t324,
             );
-            let t326 = T::fused(
-                -t155,
-                T::fused(-t95, t322, t97 * t324),
-                t151 * T::fused(t106, t322, t108 * t324),
-            );
-            let t327 = T::fused(
-                t159,
-                T::fused(t121, t324, -T::fused(-t119, t322, k(1.0))),
-                t326,
-            );
-            let t328 = t194 * (t327 + (t327 + t325));
-            let t329 = t155 * t328;
+            let t326 = t188 * (t325 + (t325 + t323));
+            let t327 = t149 * t326;
+            let t328 = k(2.0) * t327;
+            let t329 = t145 * t326;
             let t330 = k(2.0) * t329;
-            let t331 = t151 * t328;
+            let t331 = t153 * t326;
             let t332 = k(2.0) * t331;
-            let t333 = t159 * t328;
-            let t334 = k(2.0) * t333;
-            let t335 = t76 * t328;
-            let t336 = t72 * t328;
-            let t337 = T::fused(t87, t335, t137 * t336)
-                + T::fused(t121, t334, T::fused(-t97, t330, t108 * t332));
-            let t338 = t84 * (t323 + t337);
-            let t339 = T::fused(t79, t336, T::fused(t77, t335, t78 * t338))
-                + T::fused(t119, t334, T::fused(t95, t330, t106 * t332));
-            let t340 = t80 * (t321 + t339);
-            let t341 = T::fused(-t67, t340, t338);
-            let t342 = T::fused(-t72, t340, t336);
-            let t343 = T::fused(-t117, t341, t118 * t342);
-            let t344 = t334 + t343;
-            let t345 = k(18.69158878504673) * t229;
-            let t346 = t306 * t345;
-            let t347 = T::fused(
-                t318,
-                t319,
-                -T::fused(t312, t313, -T::fused(k(2.0), t346, -(t343 + t344))),
+            let t333 = t71 * t326;
+            let t334 = t67 * t326;
+            let t335 = T::fused(t82, t333, t131 * t334)
+                + T::fused(t115, t332, T::fused(-t92, t328, t103 * t330));
+            let t336 = t79 * (t321 + t335);
+            let t337 = T::fused(t74, t334, T::fused(t72, t333, t73 * t336))
+                + T::fused(t113, t332, T::fused(t90, t328, t101 * t330));
+            let t338 = t75 * (t319 + t337);
+            let t339 = T::fused(-t64, t338, t336);
+            let t340 = T::fused(-t67, t338, t334);
+            let t341 = T::fused(-t111, t339, t112 * t340);
+            let t342 = t332 + t341;
+            let t343 = k(9.345794392523365) * t222;
+            let t344 = t302 * t343;
+            let t345 = T::fused(
+                t314,
+                t315,
+                -T::fused(t308, t309, -T::fused(k(2.0), t344, -(t341 + t342))),
             );
-            let t348 = k(1.0) / t347;
-            let t349 = T::fused(t46, crank_wz, t53 * crank_wy);
-            let t350 = T::fused(-t37, crank_wz, t43 * crank_wy);
-            let t351 = k(1.0) / T::fused(t32, t32, t47 * t47);
-            let t352 = t349 * t350;
-            let t353 = T::fused(
-                t351 * t351 * (k(2.0) * T::fused(-t47, t349, t32 * t350)),
-                T::fused(t32, t349, t47 * t350),
-                t351 * (T::fused(t32, t101, -t352) + T::fused(t47, t90, t352)),
+            let t346 = k(1.0) / t345;
+            let t347 = T::fused(crank_wz, t46, crank_wy * t52);
+            let t348 = T::fused(-crank_wz, t37, crank_wy * t41);
+            let t349 = k(1.0) / T::fused(t33, t33, t47 * t47);
+            let t350 = t347 * t348;
+            let t351 = T::fused(
+                t349 * t349 * (k(2.0) * T::fused(-t47, t347, t33 * t348)),
+                T::fused(t33, t347, t47 * t348),
+                t349 * (T::fused(t33, t96, -t350) + T::fused(t47, t85, t350)),
             );
-            let t354 = t351 * t48;
-            let t355 = T::fused(T::fused(t32, t53, t43 * t47) * t351, t55, t354 * t195);
-            let t356 = t354 * t246;
-            let t357 = t265 * t356;
-            let t358 = T::fused(
-                t357,
-                t238,
-                -(t355 + T::fused(k(1.8), (k(3.0) * t).sin(), -t353)),
+            let t352 = t48 * t349;
+            let t353 = T::fused(t54, t349 * T::fused(t33, t52, t41 * t47), t352 * t189);
+            let t354 = t240 * t352;
+            let t355 = t259 * t354;
+            let t356 = T::fused(
+                t355,
+                t230,
+                -(t353 + T::fused(k(1.8), (k(3.0) * t).sin(), -t351)),
             );
-            let t359 = T::fused(t354, t284, t274 * t357);
-            let t360 = t303 * t359;
-            let t361 = T::fused(t318, t360, -T::fused(t354, t328, t312 * t357));
-            let t362 = t348 * t361;
-            let t363 = t354 * t194;
-            let t364 = T::fused(
-                t361,
-                t362,
-                -T::fused(t359, t360, -T::fused(-t354, t363, t356 * t357)),
+            let t357 = T::fused(t280, t352, t268 * t355);
+            let t358 = t299 * t357;
+            let t359 = T::fused(t314, t358, -T::fused(t326, t352, t308 * t355));
+            let t360 = t346 * t359;
+            let t361 = t188 * t352;
+            let t362 = T::fused(
+                t359,
+                t360,
+                -T::fused(t357, t358, -T::fused(-t352, t361, t354 * t355)),
             );
-            let t365 = T::fused(t362, t320, -T::fused(t360, t276, -t358)) / t364;
-            let t366 = T::fused(-t348, t320, t362 * t365);
-            let t367 = T::fused(t360, t365, -T::fused(t303, t276, t319 * t366));
+            let t363 = T::fused(t360, t316, -T::fused(t358, t270, -t356)) / t362;
+            let t364 = T::fused(-t346, t316, t360 * t363);
+            let t365 = T::fused(t358, t363, -T::fused(t299, t270, t315 * t364));
+            let t366 = T::fused(
+                t355,
+                t363,
+                -T::fused(t309, t364, T::fused(t259, t230, t269 * t365)),
+            );
+            let t367 = t149 * t361;
             let t368 = T::fused(
-                t357,
-                t365,
-                -T::fused(t313, t366, T::fused(t265, t238, t275 * t367)),
+                t363,
+                t367,
+                T::fused(t327, t364, T::fused(t281, t365, T::fused(-t241, t366, t191))),
             );
-            let t369 = t155 * t363;
+            let t369 = t145 * t361;
             let t370 = T::fused(
-                t365,
+                t363,
                 t369,
-                T::fused(t329, t366, T::fused(t285, t367, T::fused(-t247, t368, t197))),
+                T::fused(t329, t364, T::fused(t283, t365, -T::fused(t243, t366, t194))),
             );
-            let t371 = t151 * t363;
+            let t371 = t153 * t361;
             let t372 = T::fused(
-                t365,
+                t363,
                 t371,
-                T::fused(t331, t366, T::fused(t287, t367, -T::fused(t249, t368, t200))),
+                T::fused(t331, t364, T::fused(t285, t365, -T::fused(t245, t366, t197))),
             );
-            let t373 = t159 * t363;
+            let t373 = T::fused(
+                t361,
+                t363,
+                T::fused(t326, t364, T::fused(t280, t365, -T::fused(t240, t366, t189))),
+            );
             let t374 = T::fused(
                 t365,
-                t373,
-                T::fused(t333, t366, T::fused(t289, t367, -T::fused(t251, t368, t203))),
+                t282 + T::fused(t88, t293, t89 * t294),
+                T::fused(-t256, t366, t208),
             );
-            let t375 = T::fused(
+            let t375 = k(2.0) * t367;
+            let t376 = k(2.0) * t369;
+            let t377 = k(2.0) * t371;
+            let t378 = t71 * t361;
+            let t379 = t67 * t361;
+            let t380 = T::fused(t82, t378, t131 * t379)
+                + T::fused(t115, t377, T::fused(-t92, t375, t103 * t376));
+            let t381 = t79 * t380;
+            let t382 = T::fused(t74, t379, T::fused(t72, t378, t73 * t381))
+                + T::fused(t113, t377, T::fused(t90, t375, t101 * t376));
+            let t383 = t75 * t382;
+            let t384 = T::fused(-t64, t383, t381);
+            let t385 = T::fused(-t67, t383, t379);
+            let t386 = T::fused(
                 t363,
-                t365,
-                T::fused(t328, t366, T::fused(t284, t367, -T::fused(t246, t368, t195))),
+                t375 + T::fused(t88, t384, t89 * t385),
+                T::fused(t364, t328 + T::fused(t88, t339, t89 * t340), t374),
             );
-            let t376 = T::fused(
-                t367,
-                t286 + T::fused(t93, t297, t94 * t298),
-                T::fused(-t262, t368, t214),
+            let t387 = T::fused(
+                t364,
+                t330 + T::fused(-t99, t339, t100 * t340),
+                T::fused(t296, t365, -T::fused(t266, t366, t261)),
             );
-            let t377 = k(2.0) * t369;
-            let t378 = k(2.0) * t371;
-            let t379 = k(2.0) * t373;
-            let t380 = t76 * t363;
-            let t381 = t72 * t363;
-            let t382 = T::fused(t87, t380, t137 * t381)
-                + T::fused(t121, t379, T::fused(-t97, t377, t108 * t378));
-            let t383 = t84 * t382;
-            let t384 = T::fused(t79, t381, T::fused(t77, t380, t78 * t383))
-                + T::fused(t119, t379, T::fused(t95, t377, t106 * t378));
-            let t385 = t80 * t384;
-            let t386 = T::fused(-t67, t385, t383);
-            let t387 = T::fused(-t72, t385, t381);
             let t388 = T::fused(
-                t365,
-                t377 + T::fused(t93, t386, t94 * t387),
-                T::fused(t366, t330 + T::fused(t93, t341, t94 * t342), t376),
+                t363,
+                t377 + T::fused(-t111, t384, t112 * t385),
+                T::fused(t342, t364, T::fused(t312, t365, -T::fused(t306, t366, t301))),
             );
             let t389 = T::fused(
-                t366,
-                t332 + T::fused(-t104, t341, t105 * t342),
-                T::fused(t300, t367, -T::fused(t272, t368, t267)),
+                t365,
+                T::fused(-t71, t292, t287),
+                -T::fused(t366, T::fused(t71, t252, t247), -T::fused(-t71, t204, t199)),
             );
             let t390 = T::fused(
-                t365,
-                t379 + T::fused(-t117, t386, t118 * t387),
-                T::fused(t344, t366, T::fused(t316, t367, -T::fused(t310, t368, t305))),
+                t363,
+                T::fused(-t71, t383, t378),
+                T::fused(t364, T::fused(-t71, t338, t333), t389),
             );
             let t391 = T::fused(
-                t367,
-                T::fused(-t76, t296, t291),
-                -T::fused(t368, T::fused(t76, t258, t253), -T::fused(-t76, t210, t205)),
+                t363,
+                t384,
+                T::fused(t339, t364, T::fused(t293, t365, -T::fused(t253, t366, t205))),
             );
             let t392 = T::fused(
-                t365,
-                T::fused(-t76, t385, t380),
-                T::fused(t366, T::fused(-t76, t340, t335), t391),
+                t363,
+                t385,
+                T::fused(t340, t364, T::fused(t294, t365, -T::fused(t254, t366, t206))),
             );
             let t393 = T::fused(
-                t365,
-                t386,
-                T::fused(t341, t366, T::fused(t297, t367, -T::fused(t259, t368, t211))),
+                t364,
+                t227 * t343,
+                T::fused(t365, t227 * t297, T::fused(t258, t366, t229)),
             );
             let t394 = T::fused(
-                t365,
-                t387,
-                T::fused(t342, t366, T::fused(t298, t367, -T::fused(t260, t368, t212))),
-            );
-            let t395 = T::fused(
-                t366,
-                t235 * t345,
-                T::fused(t367, t235 * t301, T::fused(t264, t368, t237)),
-            );
-            let t396 = T::fused(
-                t366,
-                t268 * t345,
-                T::fused(t302, t367, -T::fused(-t273, t368, t270)),
+                t364,
+                t262 * t343,
+                T::fused(t298, t365, -T::fused(-t267, t366, t264)),
             );
             (
-                t217,
-                t218,
-                t221,
+                t211,
+                t212,
+                t215,
+                t219,
+                t220,
                 t226,
-                t227,
-                t234,
-                t263,
-                t301,
-                t308,
-                t311,
-                t317,
-                t345,
-                t346,
+                t257,
+                t297,
+                t304,
+                t307,
+                t313,
+                t343,
+                t344,
+                t363,
+                t364,
                 t365,
                 t366,
-                t367,
                 t368,
                 t370,
                 t372,
-                t374,
-                t375,
-                t378,
+                t373,
+                t376,
+                t384,
+                t385,
                 t386,
                 t387,
                 t388,
-                t389,
                 t390,
+                t391,
                 t392,
                 t393,
                 t394,
-                t395,
-                t396,
             )
         };
         *out = [
-            t370,
-            -t372,
-            t374,
-            -t172,
-            t55,
-            t375,
+            t368,
+            -t370,
+            t372,
+            -t166,
+            t54,
+            t373,
+            t386,
+            -T::fused(t363, t376 + T::fused(-t99, t384, t100 * t385), t387),
             t388,
-            -T::fused(t365, t378 + T::fused(-t104, t386, t105 * t387), t389),
-            t390,
-            -t392,
-            -t393,
-            t394,
-            t395,
-            -t396,
-            T::fused(t346, t366, T::fused(t317, t367, -T::fused(-t311, t368, t308))),
-            T::fused(t217, t218 * t221, t226 * (t18 * t221)),
-            -t227,
-            T::fused(t345, t366, T::fused(t301, t367, T::fused(t263, t368, t234))),
-            -t368,
-            t367,
+            -t390,
+            -t391,
+            t392,
+            t393,
+            -t394,
+            T::fused(t344, t364, T::fused(t313, t365, -T::fused(-t307, t366, t304))),
+            T::fused(t211, t212 * t215, t219 * (t18 * t215)),
+            -t220,
+            T::fused(t343, t364, T::fused(t297, t365, T::fused(t257, t366, t226))),
             -t366,
             t365,
+            -t364,
+            t363,
         ];
     }
-    /// Writes λ: 281 operations (107 ±, 170 ×, 4 ÷).
+    /// Writes λ: 264 operations (101 ±, 159 ×, 4 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2604,153 +2597,145 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
         let t3 = T::fused(k(0.4), crank_dsy, k(3.924)) + t2;
         let t4 = coupler_dsz - closing2;
         let t5 = T::fused(k(0.4), crank_dsz, t4);
-        let t6 = coupler_e0 * coupler_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t6));
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
-        let t10 = coupler_e0 * coupler_e3;
-        let t11 = coupler_e1 * coupler_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = crank_e0 * crank_e3;
-        let t14 = crank_e1 * crank_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = coupler_e0 * coupler_e2;
-        let t17 = coupler_e1 * coupler_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = crank_e0 * crank_e2;
-        let t20 = crank_e1 * crank_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t17 + t16;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = T::fused(
+        let t6 = k(0.02095) * coupler_wx;
+        let t7 = k(2.0) * coupler_e0;
+        let t8 = coupler_e3 * t7;
+        let t9 = k(2.0) * coupler_e1;
+        let t10 = coupler_e2 * t9;
+        let t11 = t10 - t8;
+        let t12 = k(0.25) * t11;
+        let t13 = k(2.0) * coupler_e2;
+        let t14 = T::fused(-coupler_e0, t7, k(1.0));
+        let t15 = T::fused(-coupler_e2, t13, t14);
+        let t16 = k(0.25) * t15;
+        let t17 = T::fused(
             closing1,
-            t28,
-            -T::fused(
-                -closing0,
-                t24,
-                T::fused(-k(0.021), coupler_dwy, k(0.02095) * (coupler_wx * coupler_wz)),
-            ),
+            t16,
+            -T::fused(closing0, t12, -T::fused(coupler_wy, t6, k(0.021) * coupler_dwz)),
         );
-        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t6);
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(t4, t31, -T::fused(t0, t24, t2 * t28))
-            - T::fused(closing2, t31, -t29);
-        let t33 = t11 - t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t6);
-        let t36 = k(2.0) * t35;
-        let t37 = t26 + t25;
-        let t38 = k(2.0) * t37;
-        let t39 = T::fused(
-            t22,
-            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
-            T::fused(t21, t38, -T::fused(t9, t34, t15 * t36)) * t32,
-        );
-        let t40 = k(0.5) * t33;
-        let t41 = k(0.5) * t35;
-        let t42 = T::fused(
+        let t18 = coupler_e1 * t7;
+        let t19 = coupler_e3 * t13;
+        let t20 = t19 + t18;
+        let t21 = k(0.25) * t20;
+        let t22 = T::fused(t4, t21, -T::fused(-t0, t12, t2 * t16))
+            - T::fused(closing2, t21, -t17);
+        let t23 = coupler_e2 * t7;
+        let t24 = coupler_e3 * t9;
+        let t25 = t24 + t23;
+        let t26 = k(2.0) * crank_e0;
+        let t27 = crank_e3 * t26;
+        let t28 = k(2.0) * crank_e1;
+        let t29 = crank_e2 * t28;
+        let t30 = t29 - t27;
+        let t31 = t19 - t18;
+        let t32 = k(2.0) * crank_e2;
+        let t33 = T::fused(-crank_e0, t26, k(1.0));
+        let t34 = T::fused(-crank_e2, t32, t33);
+        let t35 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t14);
+        let t36 = crank_e1 * t26;
+        let t37 = crank_e3 * t32;
+        let t38 = t37 + t36;
+        let t39 = k(0.25) * t25;
+        let t40 = k(0.25) * t31;
+        let t41 = T::fused(
             closing1,
-            t41,
-            T::fused(
-                -closing0,
-                t40,
-                T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
-            ),
+            t40,
+            T::fused(closing0, t39, T::fused(-coupler_wz, t6, k(0.021) * coupler_dwy)),
         );
-        let t43 = k(0.5) * t37;
-        let t44 = T::fused(t4, t43, -T::fused(-t0, t40, t2 * t41))
-            - T::fused(closing2, t43, -t42);
-        let t45 = k(2.0) * t23;
-        let t46 = k(2.0) * t27;
-        let t47 = k(2.0) * t30;
+        let t42 = k(0.25) * t35;
+        let t43 = T::fused(t4, t42, -T::fused(t0, t39, t2 * t40))
+            - T::fused(closing2, t42, -t41);
+        let t44 = T::fused(-coupler_e1, t9, t14);
+        let t45 = t10 + t8;
+        let t46 = t24 - t23;
+        let t47 = k(5e-5) * coupler_dwx;
         let t48 = T::fused(
-            T::fused(t21, t47, -T::fused(-t9, t45, t15 * t46)),
-            t44,
-            -t39,
+            T::fused(t38, t20, T::fused(t30, t11, t34 * t15)),
+            t43,
+            t47 * T::fused(t38, t46, -T::fused(t30, t44, t34 * t45)),
         );
-        let t49 = T::fused(k(2e-5), crank_dwx, -t48);
-        let t50 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
-        let t51 = k(2.0) * (t14 - t13);
-        let t52 = k(1.0) / T::fused(-t9, t50, t51 * t15);
-        let t53 = crank_e0 * crank_e1;
-        let t54 = crank_e2 * crank_e3;
-        let t55 = t54 - t53;
-        let t56 = k(2.0) * t55;
-        let t57 = t20 + t19;
-        let t58 = k(2.0) * t57;
-        let t59 = T::fused(t9, t56, t58 * t15) / T::fused(t9, t9, t15 * t15);
-        let t60 = k(2.0) * (t54 + t53);
-        let t61 = T::fused(
+        let t49 = T::fused(
+            -T::fused(t38, t35, T::fused(-t30, t25, t34 * t31)),
             t22,
-            T::fused(t60, t18, -T::fused(t51, t7, t50 * t12)),
-            T::fused(t60, t38, T::fused(t50, t36, t51 * t34)) * t32,
+            t48,
         );
-        let t62 = T::fused(
-            T::fused(t60, t47, -T::fused(-t50, t46, t51 * t45)),
-            t44,
-            -t61,
+        let t50 = crank_e2 * t26;
+        let t51 = crank_e3 * t28;
+        let t52 = t51 + t50;
+        let t53 = k(0.1) * t52;
+        let t54 = t37 - t36;
+        let t55 = k(0.1) * t54;
+        let t56 = T::fused(-crank_e3, k(2.0) * crank_e3, t33);
+        let t57 = k(0.1) * t56;
+        let t58 = T::fused(-crank_e1, t28, t33);
+        let t59 = t29 + t27;
+        let t60 = T::fused(t58, t54, t52 * t59) / T::fused(t58, t58, t59 * t59);
+        let t61 = T::fused(
+            -closing3,
+            t60,
+            T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz)),
+        ) - (T::fused(t4, t57, -T::fused(t0, t53, t2 * t55)) + t49);
+        let t62 = T::fused(t5, t57, -T::fused(t1, t53, t3 * t55)) - t61;
+        let t63 = k(1.0) / T::fused(-t58, t34, t30 * t59);
+        let t64 = t51 - t50;
+        let t65 = T::fused(
+            T::fused(t64, t20, -T::fused(t58, t11, t59 * t15)),
+            t43,
+            t47 * T::fused(t64, t46, T::fused(t58, t44, t59 * t45)),
         );
-        let t63 = k(0.2) * t57;
-        let t64 = k(0.2) * t55;
-        let t65 = k(0.5) - T::fused(crank_e3, crank_e3, t8);
-        let t66 = k(0.2) * t65;
-        let t67 = T::fused(t4, t66, -T::fused(t0, t63, t2 * t64)) - t62
-            - T::fused(
-                -closing3,
-                t59,
-                T::fused(-k(0.00135), crank_dwy, k(0.00133) * (crank_wx * crank_wz)),
-            );
-        let t68 = T::fused(t5, t66, -T::fused(t1, t63, t3 * t64)) + t67;
-        let t69 = T::fused(k(0.8), rocker_dsx, closing0);
-        let t70 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
-        let t71 = T::fused(k(0.8), rocker_dsz, closing2);
-        let t72 = rocker_e0 * rocker_e3;
-        let t73 = rocker_e1 * rocker_e2;
-        let t74 = k(2.0) * (t73 + t72);
-        let t75 = k(2.0) * (t73 - t72);
-        let t76 = rocker_e0 * rocker_e0;
-        let t77 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t76));
-        let t78 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t76));
-        let t79 = k(1.0) / T::fused(-t75, t74, t78 * t77);
-        let t80 = k(4e-5) * rocker_dwx;
-        let t81 = k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t82 = k(0.4) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
-        let t83 = T::fused(
+        let t66 = T::fused(
+            -T::fused(t64, t35, -T::fused(-t58, t25, t59 * t31)),
+            t22,
+            t65,
+        );
+        let t67 = T::fused(k(2e-5), crank_dwx, t66);
+        let t68 = T::fused(k(0.8), rocker_dsx, closing0);
+        let t69 = T::fused(k(0.8), rocker_dsy, k(7.848)) + closing1;
+        let t70 = T::fused(k(0.8), rocker_dsz, closing2);
+        let t71 = k(2.0) * rocker_e0;
+        let t72 = rocker_e3 * t71;
+        let t73 = k(2.0) * rocker_e1;
+        let t74 = rocker_e2 * t73;
+        let t75 = t74 + t72;
+        let t76 = t74 - t72;
+        let t77 = k(2.0) * rocker_e2;
+        let t78 = T::fused(-rocker_e0, t71, k(1.0));
+        let t79 = T::fused(-rocker_e2, t77, t78);
+        let t80 = T::fused(-rocker_e1, t73, t78);
+        let t81 = k(1.0) / T::fused(-t76, t75, t80 * t79);
+        let t82 = k(4e-5) * rocker_dwx;
+        let t83 = k(0.2) * T::fused(rocker_e2, t71, rocker_e3 * t73);
+        let t84 = k(0.2) * T::fused(-rocker_e1, t71, rocker_e3 * t77);
+        let t85 = T::fused(
             closing1,
-            t82,
+            t84,
             T::fused(
                 closing0,
-                t81,
+                t83,
                 T::fused(-k(0.0108), rocker_dwy, k(0.01076) * (rocker_wx * rocker_wz)),
             ),
         );
-        let t84 = k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t76));
-        let t85 = T::fused(t71, t84, -T::fused(t69, t81, t70 * t82))
-            + T::fused(closing2, t84, -t83);
-        let t86 = k(2.0) * t65;
-        let t87 = T::fused(t86, t47, T::fused(t56, t46, t58 * t45));
-        let t88 = T::fused(t86, t18, -T::fused(-t58, t7, t56 * t12));
-        let t89 = k(1.0) / T::fused(t87, t87, t88 * t88);
+        let t86 = k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t78);
+        let t87 = T::fused(t70, t86, -T::fused(t68, t83, t69 * t84))
+            + T::fused(closing2, t86, -t85);
+        let t88 = T::fused(t56, t35, T::fused(t52, t25, t54 * t31));
+        let t89 = T::fused(t56, t46, -T::fused(-t52, t44, t54 * t45));
+        let t90 = k(1.0) / T::fused(t88, t88, t89 * t89);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            T::fused(-(t50 * t52), t68, t15 * t52 * t49),
-            T::fused(-(t51 * t52), t68, t9 * t52 * t49),
+            T::fused(-(t34 * t63), t62, t59 * t63 * t67),
+            T::fused(-(t30 * t63), t62, t58 * t63 * t67),
+            -t68,
             -t69,
             -t70,
-            -t71,
-            T::fused(-t80, t74 * t79, t77 * t79 * t85),
-            T::fused(-t80, t78 * t79, t75 * t79 * t85),
+            T::fused(-t82, t75 * t81, t79 * t81 * t87),
+            T::fused(-t82, t80 * t81, t76 * t81 * t87),
             -t0,
             -t2,
             -t4,
-            -T::fused(t22, t87 * t89, t88 * t89 * t44),
+            -T::fused(t89 * t90, t22, t47 * (t88 * t90)),
             closing0,
             closing1,
             closing2,
@@ -2759,7 +2744,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for DrivenFourBar<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenFourBar<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 1118 operations (465 ±, 642 ×, 11 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 1108 operations (459 ±, 638 ×, 11 ÷).
     fn project(
         &self,
         _t: T,
@@ -2799,68 +2784,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenFourBar<T> {
         let row16 = rows[16];
         let row17 = rows[17];
         let (
-            t3,
-            t6,
-            t9,
-            t11,
-            t17,
-            t21,
-            t25,
+            t5,
+            t8,
+            t10,
+            t12,
+            t15,
+            t22,
             t28,
             t31,
-            t35,
+            t34,
             t36,
+            t37,
             t38,
+            t39,
+            t40,
             t41,
-            t42,
-            t43,
+            t45,
+            t46,
             t47,
             t48,
             t49,
-            t50,
             t51,
             t53,
-            t55,
+            t56,
             t58,
+            t59,
             t60,
-            t61,
             t62,
-            t64,
+            t65,
+            t66,
             t67,
-            t68,
             t69,
-            t71,
-            t79,
-            t91,
-            t95,
-            t99,
-            t111,
+            t77,
+            t89,
+            t93,
+            t97,
+            t109,
+            t136,
+            t137,
             t139,
-            t140,
             t142,
+            t143,
             t145,
             t146,
-            t148,
-            t149,
-            t150,
-            t155,
+            t147,
+            t152,
+            t153,
+            t154,
             t156,
-            t157,
-            t159,
+            t161,
             t162,
-            t163,
+            t164,
             t165,
             t166,
+            t167,
             t168,
             t169,
             t170,
             t171,
-            t172,
             t173,
-            t175,
+            t174,
             t176,
-            t178,
-            t179,
+            t177,
             t187,
             t188,
             t189,
@@ -2873,334 +2858,330 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenFourBar<T> {
             t197,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - T::fused(crank_e2, crank_e2, t0);
-            let t2 = k(2.0) * t1;
-            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t0));
-            let t4 = crank_e0 * crank_e3;
-            let t5 = crank_e1 * crank_e2;
-            let t6 = k(2.0) * (t5 + t4);
-            let t7 = t5 - t4;
-            let t8 = k(2.0) * t7;
-            let t9 = T::fused(-t3, t2, t8 * t6);
-            let t10 = k(1.0) / t9;
-            let t11 = T::fused(t2 * t10, row3, t8 * t10 * row4);
-            let t12 = crank_e0 * crank_e2;
-            let t13 = crank_e1 * crank_e3;
-            let t14 = t13 + t12;
-            let t15 = k(0.2) * t14;
-            let t16 = coupler_e0 * coupler_e0;
-            let t17 = k(0.5) - T::fused(coupler_e2, coupler_e2, t16);
-            let t18 = crank_e0 * crank_e1;
-            let t19 = crank_e2 * crank_e3;
-            let t20 = t19 - t18;
-            let t21 = k(2.0) * t20;
-            let t22 = coupler_e0 * coupler_e3;
-            let t23 = coupler_e1 * coupler_e2;
-            let t24 = t23 - t22;
-            let t25 = k(2.0) * t14;
-            let t26 = coupler_e0 * coupler_e1;
-            let t27 = coupler_e2 * coupler_e3;
-            let t28 = t27 + t26;
-            let t29 = k(0.5) - T::fused(crank_e3, crank_e3, t0);
-            let t30 = k(2.0) * t29;
-            let t31 = T::fused(
-                t30,
-                k(2.0) * t28,
-                -T::fused(-t21, k(2.0) * t17, t25 * (k(2.0) * t24)),
-            );
-            let t32 = coupler_e0 * coupler_e2;
-            let t33 = coupler_e1 * coupler_e3;
+            let t0 = k(2.0) * crank_e2;
+            let t1 = k(2.0) * crank_e0;
+            let t2 = T::fused(-crank_e0, t1, k(1.0));
+            let t3 = T::fused(-crank_e2, t0, t2);
+            let t4 = k(2.0) * crank_e1;
+            let t5 = T::fused(-crank_e1, t4, t2);
+            let t6 = crank_e3 * t1;
+            let t7 = crank_e2 * t4;
+            let t8 = t7 + t6;
+            let t9 = t7 - t6;
+            let t10 = T::fused(-t5, t3, t9 * t8);
+            let t11 = k(1.0) / t10;
+            let t12 = T::fused(t3 * t11, row3, t9 * t11 * row4);
+            let t13 = crank_e2 * t1;
+            let t14 = crank_e3 * t4;
+            let t15 = t14 + t13;
+            let t16 = k(0.1) * t15;
+            let t17 = k(2.0) * coupler_e0;
+            let t18 = coupler_e2 * t17;
+            let t19 = k(2.0) * coupler_e1;
+            let t20 = coupler_e3 * t19;
+            let t21 = t20 + t18;
+            let t22 = k(0.25) * t21;
+            let t23 = coupler_e3 * t17;
+            let t24 = coupler_e2 * t19;
+            let t25 = t24 - t23;
+            let t26 = k(2.0) * coupler_e2;
+            let t27 = T::fused(-coupler_e0, t17, k(1.0));
+            let t28 = T::fused(-coupler_e2, t26, t27);
+            let t29 = crank_e1 * t1;
+            let t30 = crank_e3 * t0;
+            let t31 = t30 - t29;
+            let t32 = coupler_e1 * t17;
+            let t33 = coupler_e3 * t26;
             let t34 = t33 + t32;
-            let t35 = k(0.5) * t34;
-            let t36 = k(0.5) - T::fused(coupler_e3, coupler_e3, t16);
-            let t37 = k(2.0) * t36;
-            let t38 = t27 - t26;
-            let t39 = k(2.0) * t38;
-            let t40 = k(2.0) * t34;
-            let t41 = T::fused(t30, t37, T::fused(t21, t39, t25 * t40));
-            let t42 = k(0.5) * t24;
-            let t43 = T::fused(t35, t31, t42 * t41);
-            let t44 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t16));
-            let t45 = k(2.0) * (t23 + t22);
-            let t46 = k(2.0) * (t33 - t32);
-            let t47 = T::fused(t30, t46, -T::fused(-t25, t44, t21 * t45));
-            let t48 = k(5e-5) * t47;
-            let t49 = k(0.0835) * t31;
-            let t50 = k(0.0835) * t41;
-            let t51 = k(1.0) / T::fused(t41, t50, T::fused(t47, t48, t31 * t49));
-            let t52 = t51 * t43;
-            let t53 = T::fused(-t49, t52, t35);
-            let t54 = t49 * t51;
-            let t55 = k(1.0) / T::fused(-t49, t54, k(0.0835));
-            let t56 = t55 * t53;
-            let t57 = t48 * t51;
-            let t58 = t49 * t57;
-            let t59 = T::fused(-t48, t52, t58 * t56);
-            let t60 = k(0.5) * t38;
-            let t61 = k(0.5) * t17;
-            let t62 = T::fused(-t60, t31, t61 * t41);
-            let t63 = t51 * t62;
-            let t64 = T::fused(t49, t63, t60);
-            let t65 = t55 * t64;
-            let t66 = T::fused(t48, t63, t58 * t65);
-            let t67 = k(0.5) * t36;
-            let t68 = k(0.5) * t28;
-            let t69 = T::fused(-t67, t31, t68 * t41);
-            let t70 = t51 * t69;
-            let t71 = T::fused(t49, t70, t67);
-            let t72 = t55 * t71;
-            let t73 = T::fused(t48, t70, t58 * t72);
-            let t74 = k(1.0) / T::fused(t41, t41, t47 * t47);
-            let t75 = t41 * t74 * row13;
-            let t76 = t55 * t58;
-            let t77 = T::fused(t58, t76, -T::fused(-t48, t57, k(5e-5)));
-            let t78 = t47 * t74 * row13;
-            let t79 = t50 * t54;
-            let t80 = T::fused(t50, t57, t79 * t76);
-            let t81 = T::fused(-t77, t75, t80 * t78)
-                + T::fused(t73, row12, -T::fused(t59, row10, t66 * row11));
-            let t82 = T::fused(t79, t56, T::fused(-t50, t52, t42));
-            let t83 = T::fused(t79, t65, -T::fused(-t50, t63, t61));
-            let t84 = T::fused(t79, t72, -T::fused(-t50, t70, t68));
-            let t85 = T::fused(t79, t55 * t79, -T::fused(-t50, t50 * t51, k(0.0835)));
-            let t86 = T::fused(-t80, t75, t85 * t78)
-                + T::fused(t84, row12, -T::fused(t82, row10, t83 * row11));
-            let t87 = T::fused(t43, t52, t53 * t56);
-            let t88 = T::fused(-t62, t52, t64 * t56);
-            let t89 = T::fused(-t69, t52, t71 * t56);
-            let t90 = T::fused(-t59, t75, t82 * t78)
-                + (row10 + T::fused(t89, row12, -T::fused(t87, row10, t88 * row11)));
-            let t91 = k(0.2) * t7;
-            let t92 = T::fused(t62, t63, t64 * t65);
-            let t93 = T::fused(t69, t63, t71 * t65);
-            let t94 = T::fused(-t66, t75, t83 * t78)
-                + (row11 + T::fused(t93, row12, -T::fused(t88, row10, t92 * row11)));
-            let t95 = k(0.2) * t1;
-            let t96 = T::fused(t69, t70, t71 * t72);
-            let t97 = T::fused(-t73, t75, t84 * t78)
-                - (row12 - T::fused(t96, row12, -T::fused(t89, row10, t93 * row11)));
-            let t98 = t19 + t18;
-            let t99 = k(0.2) * t98;
-            let t100 = T::fused(t99, t97, T::fused(-t91, t90, t95 * t94));
-            let t101 = T::fused(t99, t89, T::fused(-t91, t87, t95 * t88));
-            let t102 = T::fused(t47, t59, t41 * t82);
-            let t103 = t91 + t101 + t102;
-            let t104 = T::fused(t99, t93, T::fused(-t91, t88, t95 * t92));
-            let t105 = T::fused(t47, t66, t41 * t83);
-            let t106 = t95 - t104 - t105;
-            let t107 = T::fused(
-                -(t103 + T::fused(k(0.28), t7, t101)),
+            let t35 = T::fused(-crank_e3, k(2.0) * crank_e3, t2);
+            let t36 = T::fused(t35, t34, T::fused(-t15, t25, t31 * t28));
+            let t37 = k(0.25) * t25;
+            let t38 = t33 - t32;
+            let t39 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t27);
+            let t40 = T::fused(t35, t39, T::fused(t15, t21, t31 * t38));
+            let t41 = T::fused(t36, t22, t40 * t37);
+            let t42 = T::fused(-coupler_e1, t19, t27);
+            let t43 = t24 + t23;
+            let t44 = t20 - t18;
+            let t45 = T::fused(t35, t44, -T::fused(-t15, t42, t31 * t43));
+            let t46 = k(5e-5) * t45;
+            let t47 = k(0.0835) * t36;
+            let t48 = k(0.0835) * t40;
+            let t49 = k(1.0) / T::fused(t40, t48, T::fused(t45, t46, t36 * t47));
+            let t50 = t49 * t41;
+            let t51 = T::fused(-t47, t50, t22);
+            let t52 = t47 * t49;
+            let t53 = k(1.0) / T::fused(-t47, t52, k(0.0835));
+            let t54 = t53 * t51;
+            let t55 = t46 * t49;
+            let t56 = t47 * t55;
+            let t57 = T::fused(-t46, t50, t56 * t54);
+            let t58 = k(0.25) * t38;
+            let t59 = k(0.25) * t28;
+            let t60 = T::fused(-t36, t58, t40 * t59);
+            let t61 = t49 * t60;
+            let t62 = T::fused(t47, t61, t58);
+            let t63 = t53 * t62;
+            let t64 = T::fused(t46, t61, t56 * t63);
+            let t65 = k(0.25) * t39;
+            let t66 = k(0.25) * t34;
+            let t67 = T::fused(-t36, t65, t40 * t66);
+            let t68 = t49 * t67;
+            let t69 = T::fused(t47, t68, t65);
+            let t70 = t53 * t69;
+            let t71 = T::fused(t46, t68, t56 * t70);
+            let t72 = k(1.0) / T::fused(t40, t40, t45 * t45);
+            let t73 = t40 * t72 * row13;
+            let t74 = t53 * t56;
+            let t75 = T::fused(t56, t74, -T::fused(-t46, t55, k(5e-5)));
+            let t76 = t45 * t72 * row13;
+            let t77 = t48 * t52;
+            let t78 = T::fused(t48, t55, t77 * t74);
+            let t79 = T::fused(-t75, t73, t78 * t76)
+                + T::fused(t71, row12, -T::fused(t57, row10, t64 * row11));
+            let t80 = T::fused(t77, t54, T::fused(-t48, t50, t37));
+            let t81 = T::fused(t77, t63, -T::fused(-t48, t61, t59));
+            let t82 = T::fused(t77, t70, -T::fused(-t48, t68, t66));
+            let t83 = T::fused(t77, t53 * t77, -T::fused(-t48, t48 * t49, k(0.0835)));
+            let t84 = T::fused(-t78, t73, t83 * t76)
+                + T::fused(t82, row12, -T::fused(t80, row10, t81 * row11));
+            let t85 = T::fused(t41, t50, t51 * t54);
+            let t86 = T::fused(-t60, t50, t62 * t54);
+            let t87 = T::fused(-t67, t50, t69 * t54);
+            let t88 = T::fused(-t57, t73, t80 * t76)
+                + (row10 + T::fused(t87, row12, -T::fused(t85, row10, t86 * row11)));
+            let t89 = k(0.1) * t9;
+            let t90 = T::fused(t60, t61, t62 * t63);
+            let t91 = T::fused(t67, t61, t69 * t63);
+            let t92 = T::fused(-t64, t73, t81 * t76)
+                + (row11 + T::fused(t91, row12, -T::fused(t86, row10, t90 * row11)));
+            let t93 = k(0.1) * t3;
+            let t94 = T::fused(t67, t68, t69 * t70);
+            let t95 = T::fused(-t71, t73, t82 * t76)
+                - (row12 - T::fused(t94, row12, -T::fused(t87, row10, t91 * row11)));
+            let t96 = t30 + t29;
+            let t97 = k(0.1) * t96;
+            let t98 = T::fused(t97, t95, T::fused(-t89, t88, t93 * t92));
+            let t99 = T::fused(t97, t87, T::fused(-t89, t85, t93 * t86));
+            let t100 = T::fused(t45, t57, t40 * t80);
+            let t101 = t89 + t99 + t100;
+            let t102 = T::fused(t97, t91, T::fused(-t89, t86, t93 * t90));
+            let t103 = T::fused(t45, t64, t40 * t81);
+            let t104 = t93 - t102 - t103;
+            let t105 = T::fused(
+                -(t101 + T::fused(k(0.14), t9, t99)),
                 row0,
-                (t106 - T::fused(-k(0.28), t1, t104)) * row1,
+                (t104 - T::fused(-k(0.14), t3, t102)) * row1,
             );
-            let t108 = T::fused(t99, t96, T::fused(-t91, t89, t95 * t93));
-            let t109 = T::fused(t47, t73, t41 * t84);
-            let t110 = t99 - t108 - t109;
-            let t111 = T::fused(t6 * t10, row3, t3 * t10 * row4);
-            let t112 = k(2.0) * (t13 - t12);
-            let t113 = T::fused(t112, t46, T::fused(t3, t44, t6 * t45));
-            let t114 = T::fused(t112, t37, -T::fused(-t3, t40, t6 * t39));
-            let t115 = T::fused(
-                t47,
-                T::fused(t77, t113, t80 * t114),
-                t41 * T::fused(t80, t113, t85 * t114),
+            let t106 = T::fused(t97, t94, T::fused(-t89, t87, t93 * t91));
+            let t107 = T::fused(t45, t71, t40 * t82);
+            let t108 = t97 - t106 - t107;
+            let t109 = T::fused(t8 * t11, row3, t5 * t11 * row4);
+            let t110 = t14 - t13;
+            let t111 = T::fused(t110, t44, T::fused(t5, t42, t8 * t43));
+            let t112 = T::fused(t110, t39, -T::fused(-t5, t21, t8 * t38));
+            let t113 = T::fused(
+                t45,
+                T::fused(t75, t111, t78 * t112),
+                t40 * T::fused(t78, t111, t83 * t112),
             );
-            let t116 = T::fused(
-                -t91,
-                T::fused(t59, t113, t82 * t114),
-                t95 * T::fused(t66, t113, t83 * t114),
+            let t114 = T::fused(
+                -t89,
+                T::fused(t57, t111, t80 * t112),
+                t93 * T::fused(t64, t111, t81 * t112),
             );
-            let t117 = T::fused(t99, T::fused(t73, t113, t84 * t114), t116);
-            let t118 = k(2.0) * t98;
-            let t119 = T::fused(t118, t46, -T::fused(t8, t44, t2 * t45));
-            let t120 = T::fused(t118, t37, -T::fused(-t2, t39, t8 * t40));
-            let t121 = T::fused(
-                t47,
-                T::fused(t77, t119, t80 * t120),
-                t41 * T::fused(t80, t119, t85 * t120),
+            let t115 = T::fused(t97, T::fused(t71, t111, t82 * t112), t114);
+            let t116 = T::fused(t96, t44, -T::fused(t9, t42, t3 * t43));
+            let t117 = T::fused(t96, t39, T::fused(-t9, t21, t3 * t38));
+            let t118 = T::fused(
+                t45,
+                T::fused(t75, t116, t78 * t117),
+                t40 * T::fused(t78, t116, t83 * t117),
             );
-            let t122 = k(0.2) * t20;
-            let t123 = k(0.2) * t29;
-            let t124 = T::fused(t59, t119, t82 * t120);
-            let t125 = T::fused(t66, t119, t83 * t120);
-            let t126 = T::fused(t73, t119, t84 * t120);
-            let t127 = T::fused(t99, t126, T::fused(-t91, t124, t95 * t125))
-                - T::fused(t123, t109, T::fused(t15, t102, t122 * t105));
-            let t128 = T::fused(t123, t108, T::fused(t15, t101, t122 * t104));
-            let t129 = t15 - T::fused(t123, t89, T::fused(t15, t87, t122 * t88)) + t124;
-            let t130 = t122 - T::fused(t123, t93, T::fused(t15, t88, t122 * t92)) + t125;
-            let t131 = t123 - T::fused(t123, t96, T::fused(t15, t89, t122 * t93)) + t126;
-            let t132 = T::fused(t99, t131, T::fused(-t91, t129, t95 * t130))
-                + T::fused(t123, t110, T::fused(-t15, t103, t122 * t106));
-            let t133 = T::fused(
-                -(t117 + (t117 + t115)),
-                t111,
-                (t132 - t128 - (t128 - t127 - t121)) * t11,
+            let t119 = k(0.1) * t31;
+            let t120 = k(0.1) * t35;
+            let t121 = T::fused(t57, t116, t80 * t117);
+            let t122 = T::fused(t64, t116, t81 * t117);
+            let t123 = T::fused(t71, t116, t82 * t117);
+            let t124 = T::fused(t97, t123, T::fused(-t89, t121, t93 * t122))
+                - T::fused(t107, t120, T::fused(t100, t16, t103 * t119));
+            let t125 = T::fused(t106, t120, T::fused(t99, t16, t102 * t119));
+            let t126 = t16 - T::fused(t87, t120, T::fused(t85, t16, t86 * t119)) + t121;
+            let t127 = t119 - T::fused(t91, t120, T::fused(t86, t16, t90 * t119)) + t122;
+            let t128 = t120 - T::fused(t94, t120, T::fused(t87, t16, t91 * t119)) + t123;
+            let t129 = T::fused(t97, t128, T::fused(-t89, t126, t93 * t127))
+                + T::fused(t108, t120, T::fused(-t101, t16, t104 * t119));
+            let t130 = T::fused(
+                -(t115 + (t115 + t113)),
+                t109,
+                (t129 - t125 - (t125 - t124 - t118)) * t12,
             );
-            let t134 = t133 + T::fused(t110 - T::fused(-k(0.28), t98, t108), row2, -t107)
-                - (t100 + (t100 + T::fused(t47, t81, t41 * t86)));
+            let t131 = t130 + T::fused(t108 - T::fused(-k(0.14), t96, t106), row2, -t105)
+                - (t98 + (t98 + T::fused(t45, t79, t40 * t84)));
+            let t132 = T::fused(
+                t45,
+                T::fused(t45, t75, t40 * t78),
+                t40 * T::fused(t45, t78, t40 * t83),
+            );
+            let t133 = T::fused(t97, t106, T::fused(-t89, t99, t93 * t102));
+            let t134 = T::fused(
+                k(2.0),
+                T::fused(t97, t107, T::fused(-t89, t100, t93 * t103)),
+                t133,
+            );
             let t135 = T::fused(
-                t47,
-                T::fused(t47, t77, t41 * t80),
-                t41 * T::fused(t47, t80, t41 * t85),
-            );
-            let t136 = T::fused(t99, t108, T::fused(-t91, t101, t95 * t104));
-            let t137 = T::fused(
                 k(2.0),
-                T::fused(t99, t109, T::fused(-t91, t102, t95 * t105)),
-                t136,
+                T::fused(t97, t108, T::fused(t89, t101, t93 * t104)),
+                -t133,
             );
-            let t138 = T::fused(
-                k(2.0),
-                T::fused(t99, t110, T::fused(t91, t103, t95 * t106)),
-                -t136,
-            );
-            let t139 = k(1.0)
-                / (t138 + (k(0.014) + (k(0.00135) - (t137 - (k(0.01) - t135)))));
-            let t140 = t139 * t134;
-            let t141 = T::fused(t15, t11, t91 * t140);
-            let t142 = row0 - t141;
-            let t143 = row10 - (t141 - t142);
-            let t144 = T::fused(-t122, t11, t95 * t140);
-            let t145 = row1 + t144;
-            let t146 = row11 + (t144 + t145);
-            let t147 = T::fused(-t123, t11, t99 * t140);
-            let t148 = row2 - t147;
-            let t149 = row12 - (t147 - t148);
-            let t150 = t75 + T::fused(t47, t140, T::fused(-t113, t111, t119 * t11));
-            let t151 = t78 - T::fused(t41, t140, T::fused(-t114, t111, t120 * t11));
-            let t152 = T::fused(-t58, t150, t79 * t151)
-                + T::fused(t71, t149, -T::fused(t53, t143, t64 * t146));
-            let t153 = t55 * t152;
-            let t154 = T::fused(t50, t151, T::fused(-t48, t150, t49 * t153))
-                + T::fused(t69, t149, -T::fused(-t43, t143, t62 * t146));
-            let t155 = t51 * t154;
-            let t156 = T::fused(-t31, t155, t153);
-            let t157 = T::fused(-t41, t155, t151);
-            let t158 = T::fused(t35, t156, t42 * t157);
-            let t159 = t143 + t158;
-            let t160 = rocker_e0 * rocker_e3;
-            let t161 = rocker_e1 * rocker_e2;
-            let t162 = k(2.0) * (t161 + t160);
-            let t163 = t161 - t160;
-            let t164 = k(2.0) * t163;
-            let t165 = rocker_e0 * rocker_e0;
-            let t166 = k(0.5) - T::fused(rocker_e2, rocker_e2, t165);
-            let t167 = k(2.0) * t166;
-            let t168 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t165));
-            let t169 = k(1.0) / T::fused(-t164, t162, t168 * t167);
-            let t170 = T::fused(t167 * t169, row8, t164 * t169 * row9);
-            let t171 = rocker_e0 * rocker_e1;
-            let t172 = rocker_e2 * rocker_e3;
-            let t173 = t172 + t171;
-            let t174 = T::fused(
-                k(0.32) * t173,
+            let t136 = k(1.0)
+                / (t135 + (k(0.014) + (k(0.00135) - (t134 - (k(0.01) - t132)))));
+            let t137 = t136 * t131;
+            let t138 = T::fused(t16, t12, t89 * t137);
+            let t139 = row0 - t138;
+            let t140 = row10 - (t138 - t139);
+            let t141 = T::fused(-t119, t12, t93 * t137);
+            let t142 = row1 + t141;
+            let t143 = row11 + (t141 + t142);
+            let t144 = T::fused(-t120, t12, t97 * t137);
+            let t145 = row2 - t144;
+            let t146 = row12 - (t144 - t145);
+            let t147 = t73 + T::fused(t45, t137, T::fused(-t111, t109, t116 * t12));
+            let t148 = t76 - T::fused(t40, t137, T::fused(-t112, t109, t117 * t12));
+            let t149 = T::fused(-t56, t147, t77 * t148)
+                + T::fused(t69, t146, -T::fused(t51, t140, t62 * t143));
+            let t150 = t53 * t149;
+            let t151 = T::fused(t48, t148, T::fused(-t46, t147, t47 * t150))
+                + T::fused(t67, t146, -T::fused(-t41, t140, t60 * t143));
+            let t152 = t49 * t151;
+            let t153 = T::fused(-t36, t152, t150);
+            let t154 = T::fused(-t40, t152, t148);
+            let t155 = T::fused(t22, t153, t37 * t154);
+            let t156 = t140 + t155;
+            let t157 = k(2.0) * rocker_e0;
+            let t158 = rocker_e3 * t157;
+            let t159 = k(2.0) * rocker_e1;
+            let t160 = rocker_e2 * t159;
+            let t161 = t160 + t158;
+            let t162 = t160 - t158;
+            let t163 = k(2.0) * rocker_e2;
+            let t164 = T::fused(-rocker_e0, t157, k(1.0));
+            let t165 = T::fused(-rocker_e2, t163, t164);
+            let t166 = T::fused(-rocker_e1, t159, t164);
+            let t167 = k(1.0) / T::fused(-t162, t161, t166 * t165);
+            let t168 = T::fused(t165 * t167, row8, t162 * t167 * row9);
+            let t169 = rocker_e1 * t157;
+            let t170 = rocker_e3 * t163;
+            let t171 = t170 + t169;
+            let t172 = T::fused(
+                k(0.16) * t171,
                 row7,
-                -T::fused(-(k(0.32) * t163), row5, k(0.32) * t166 * row6),
+                -T::fused(-(k(0.16) * t162), row5, k(0.16) * t165 * row6),
             );
-            let t175 = k(23.364485981308412) * t174;
-            let t176 = k(0.4) * t163;
-            let t177 = T::fused(
-                -(k(0.4) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3)),
-                t170,
-                t176 * t175,
+            let t173 = k(23.364485981308412) * t172;
+            let t174 = k(0.2) * t162;
+            let t175 = T::fused(
+                -(k(0.2) * T::fused(rocker_e2, t157, rocker_e3 * t159)),
+                t168,
+                t174 * t173,
             );
-            let t178 = row5 - t177;
-            let t179 = row14 + (t177 - t178 + (t158 + t159));
-            let t180 = T::fused(t34, t31, t24 * t41);
-            let t181 = t180 * t51;
-            let t182 = T::fused(-t49, t181, t34);
-            let t183 = t182 * t55;
+            let t176 = row5 - t175;
+            let t177 = row14 + (t175 - t176 + (t155 + t156));
+            let t178 = k(0.5) * t21;
+            let t179 = k(0.5) * t25;
+            let t180 = T::fused(t178, t36, t179 * t40);
+            let t181 = t180 * t49;
+            let t182 = T::fused(-t47, t181, t178);
+            let t183 = t182 * t53;
             let t184 = T::fused(
-                t47,
-                T::fused(-t48, t181, t183 * t58),
-                t41 * T::fused(t183, t79, T::fused(-t50, t181, t24)),
+                t45,
+                T::fused(-t46, t181, t183 * t56),
+                t40 * T::fused(t183, t77, T::fused(-t48, t181, t179)),
             );
             let t185 = T::fused(
-                -t91,
-                T::fused(t183, t53, -T::fused(-t181, t43, k(1.0))),
-                t95 * T::fused(-t181, t62, t183 * t64),
+                -T::fused(t183, t51, -T::fused(-t181, t41, k(1.0))),
+                t89,
+                T::fused(-t181, t60, t183 * t62) * t93,
             );
-            let t186 = T::fused(t99, T::fused(-t181, t69, t183 * t71), t185);
-            let t187 = (t186 + (t186 + t184)) * t139;
-            let t188 = t91 * t187;
+            let t186 = T::fused(T::fused(-t181, t67, t183 * t69), t97, t185);
+            let t187 = (t186 + (t186 + t184)) * t136;
+            let t188 = t89 * t187;
             let t189 = k(2.0) * t188;
-            let t190 = t95 * t187;
+            let t190 = t93 * t187;
             let t191 = k(2.0) * t190;
-            let t192 = t99 * t187;
+            let t192 = t97 * t187;
             let t193 = k(2.0) * t192;
-            let t194 = t47 * t187;
-            let t195 = t41 * t187;
-            let t196 = T::fused(t58, t194, t79 * t195)
-                + T::fused(t71, t193, T::fused(-t53, t189, t64 * t191));
-            let t197 = t55 * (t182 + t196);
-            let t198 = T::fused(t50, t195, T::fused(t48, t194, t49 * t197))
-                + T::fused(t69, t193, T::fused(t43, t189, t62 * t191));
-            let t199 = t51 * (t180 - t198);
+            let t194 = t45 * t187;
+            let t195 = t40 * t187;
+            let t196 = T::fused(t56, t194, t77 * t195)
+                + T::fused(t69, t193, T::fused(-t51, t189, t62 * t191));
+            let t197 = t53 * (t182 + t196);
+            let t198 = T::fused(t48, t195, T::fused(t46, t194, t47 * t197))
+                + T::fused(t67, t193, T::fused(t41, t189, t60 * t191));
+            let t199 = t49 * (t180 - t198);
             (
-                t3,
-                t6,
-                t9,
-                t11,
-                t17,
-                t21,
-                t25,
+                t5,
+                t8,
+                t10,
+                t12,
+                t15,
+                t22,
                 t28,
                 t31,
-                t35,
+                t34,
                 t36,
+                t37,
                 t38,
+                t39,
+                t40,
                 t41,
-                t42,
-                t43,
+                t45,
+                t46,
                 t47,
                 t48,
                 t49,
-                t50,
                 t51,
                 t53,
-                t55,
+                t56,
                 t58,
+                t59,
                 t60,
-                t61,
                 t62,
-                t64,
+                t65,
+                t66,
                 t67,
-                t68,
                 t69,
-                t71,
-                t79,
-                t91,
-                t95,
-                t99,
-                t111,
+                t77,
+                t89,
+                t93,
+                t97,
+                t109,
+                t136,
+                t137,
                 t139,
-                t140,
                 t142,
+                t143,
                 t145,
                 t146,
-                t148,
-                t149,
-                t150,
-                t155,
+                t147,
+                t152,
+                t153,
+                t154,
                 t156,
-                t157,
-                t159,
+                t161,
                 t162,
-                t163,
+                t164,
                 t165,
                 t166,
+                t167,
                 t168,
                 t169,
                 t170,
                 t171,
-                t172,
                 t173,
-                t175,
+                t174,
                 t176,
-                t178,
-                t179,
+                t177,
                 t187,
                 t188,
                 t189,
@@ -3216,320 +3197,324 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for DrivenFourBar<T> {
         };
         let (
             t204,
-            t242,
-            t249,
-            t252,
-            t257,
-            t285,
-            t286,
-            t301,
-            t302,
-            t303,
-            t304,
+            t244,
+            t251,
+            t254,
+            t259,
+            t289,
+            t290,
+            t305,
             t306,
+            t307,
             t308,
             t310,
-            t311,
+            t312,
             t314,
-            t322,
-            t323,
-            t324,
-            t325,
+            t315,
+            t318,
             t326,
+            t327,
             t328,
             t329,
             t330,
-            t331,
             t332,
+            t333,
+            t334,
+            t335,
+            t336,
         ) = {
-            let t200 = T::fused(t31, t199, t197);
-            let t201 = T::fused(t41, t199, t195);
-            let t202 = T::fused(t35, t200, t42 * t201);
+            let t200 = T::fused(t36, t199, t197);
+            let t201 = T::fused(t40, t199, t195);
+            let t202 = T::fused(t22, t200, t37 * t201);
             let t203 = t189 + t202;
-            let t204 = k(18.69158878504673) * t163;
-            let t205 = t176 * t204;
+            let t204 = k(9.345794392523365) * t162;
+            let t205 = t204 * t174;
             let t206 = k(1.0) / T::fused(k(2.0), t205, t202 + t203);
-            let t207 = T::fused(-t60, t156, t61 * t157);
-            let t208 = t146 - t207;
-            let t209 = k(0.4) * t166;
-            let t210 = T::fused(k(0.4) * (t172 - t171), t170, t209 * t175);
+            let t207 = T::fused(-t58, t153, t59 * t154);
+            let t208 = t143 - t207;
+            let t209 = k(0.2) * t165;
+            let t210 = T::fused(k(0.2) * (t170 - t169), t168, t209 * t173);
             let t211 = row6 + t210;
-            let t212 = T::fused(-t60, t200, t61 * t201);
+            let t212 = T::fused(-t58, t200, t59 * t201);
             let t213 = t191 + t212;
-            let t214 = t209 * t204;
+            let t214 = t204 * t209;
             let t215 = T::fused(k(2.0), t214, t212 + t213);
             let t216 = t206 * t215;
-            let t217 = T::fused(t216, t179, row15 - (t210 + t211 + (t207 - t208)));
-            let t218 = T::fused(-t38, t31, t17 * t41);
-            let t219 = t51 * t218;
-            let t220 = T::fused(t49, t219, t38);
-            let t221 = t55 * t220;
-            let t222 = T::fused(
-                t47,
-                T::fused(t48, t219, t58 * t221),
-                t41 * T::fused(t79, t221, -T::fused(-t50, t219, t17)),
+            let t217 = T::fused(t216, t177, row15 - (t210 + t211 + (t207 - t208)));
+            let t218 = k(0.5) * t38;
+            let t219 = k(0.5) * t28;
+            let t220 = T::fused(-t36, t218, t40 * t219);
+            let t221 = t49 * t220;
+            let t222 = T::fused(t47, t221, t218);
+            let t223 = t53 * t222;
+            let t224 = T::fused(
+                t45,
+                T::fused(t46, t221, t56 * t223),
+                t40 * T::fused(t77, t223, -T::fused(-t48, t221, t219)),
             );
-            let t223 = T::fused(
-                -t91,
-                T::fused(-t43, t219, t53 * t221),
-                t95 * T::fused(t64, t221, -T::fused(-t62, t219, k(1.0))),
+            let t225 = T::fused(
+                -t89,
+                T::fused(-t41, t221, t51 * t223),
+                t93 * T::fused(t62, t223, -T::fused(-t60, t221, k(1.0))),
             );
-            let t224 = T::fused(t99, T::fused(t69, t219, t71 * t221), t223);
-            let t225 = t139 * (t224 + (t224 + t222));
-            let t226 = t91 * t225;
-            let t227 = k(2.0) * t226;
-            let t228 = t95 * t225;
+            let t226 = T::fused(t97, T::fused(t67, t221, t69 * t223), t225);
+            let t227 = t136 * (t226 + (t226 + t224));
+            let t228 = t89 * t227;
             let t229 = k(2.0) * t228;
-            let t230 = t99 * t225;
+            let t230 = t93 * t227;
             let t231 = k(2.0) * t230;
-            let t232 = t47 * t225;
-            let t233 = t41 * t225;
-            let t234 = T::fused(t58, t232, t79 * t233)
-                + T::fused(t71, t231, T::fused(-t53, t227, t64 * t229));
-            let t235 = t55 * (t220 + t234);
-            let t236 = T::fused(t50, t233, T::fused(t48, t232, t49 * t235))
-                + T::fused(t69, t231, T::fused(t43, t227, t62 * t229));
-            let t237 = t51 * (t218 + t236);
-            let t238 = T::fused(-t31, t237, t235);
-            let t239 = T::fused(-t41, t237, t233);
-            let t240 = T::fused(-t60, t238, t61 * t239);
-            let t241 = t229 + t240;
-            let t242 = k(18.69158878504673) * t166;
-            let t243 = t209 * t242;
-            let t244 = k(1.0)
-                / T::fused(t215, t216, -T::fused(k(2.0), t243, -(t240 + t241)));
-            let t245 = T::fused(-t67, t156, t68 * t157);
-            let t246 = t149 + t245;
-            let t247 = k(0.4) * t173;
-            let t248 = T::fused(
-                k(0.4) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t165)),
-                t170,
-                t247 * t175,
+            let t232 = t97 * t227;
+            let t233 = k(2.0) * t232;
+            let t234 = t45 * t227;
+            let t235 = t40 * t227;
+            let t236 = T::fused(t56, t234, t77 * t235)
+                + T::fused(t69, t233, T::fused(-t51, t229, t62 * t231));
+            let t237 = t53 * (t222 + t236);
+            let t238 = T::fused(t48, t235, T::fused(t46, t234, t47 * t237))
+                + T::fused(t67, t233, T::fused(t41, t229, t60 * t231));
+            let t239 = t49 * (t220 + t238);
+            let t240 = T::fused(-t36, t239, t237);
+            let t241 = T::fused(-t40, t239, t235);
+            let t242 = T::fused(-t58, t240, t59 * t241);
+            let t243 = t231 + t242;
+            let t244 = k(9.345794392523365) * t165;
+            let t245 = t209 * t244;
+            let t246 = k(1.0)
+                / T::fused(t215, t216, -T::fused(k(2.0), t245, -(t242 + t243)));
+            let t247 = T::fused(-t65, t153, t66 * t154);
+            let t248 = t146 + t247;
+            let t249 = k(0.2) * t171;
+            let t250 = T::fused(
+                k(0.2) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t164),
+                t168,
+                t249 * t173,
             );
-            let t249 = row7 - t248;
-            let t250 = T::fused(-t67, t200, t68 * t201);
-            let t251 = t193 + t250;
-            let t252 = t247 * t204;
-            let t253 = T::fused(k(2.0), t252, t250 + t251);
-            let t254 = t206 * t253;
-            let t255 = T::fused(-t67, t238, t68 * t239);
-            let t256 = t231 + t255;
-            let t257 = t247 * t242;
-            let t258 = T::fused(t215, t254, -T::fused(k(2.0), t257, -(t255 + t256)));
-            let t259 = t244 * t258;
-            let t260 = T::fused(
-                t259,
+            let t251 = row7 - t250;
+            let t252 = T::fused(-t65, t200, t66 * t201);
+            let t253 = t193 + t252;
+            let t254 = t204 * t249;
+            let t255 = T::fused(k(2.0), t254, t252 + t253);
+            let t256 = t206 * t255;
+            let t257 = T::fused(-t65, t240, t66 * t241);
+            let t258 = t233 + t257;
+            let t259 = t244 * t249;
+            let t260 = T::fused(t215, t256, -T::fused(k(2.0), t259, -(t257 + t258)));
+            let t261 = t246 * t260;
+            let t262 = T::fused(
+                t261,
                 t217,
-                -T::fused(t254, t179, -(row16 + (t248 - t249 + (t245 + t246)))),
+                -T::fused(t256, t177, -(row16 + (t250 - t251 + (t247 + t248)))),
             );
-            let t261 = T::fused(-t36, t31, t28 * t41);
-            let t262 = t51 * t261;
-            let t263 = T::fused(t49, t262, t36);
-            let t264 = t55 * t263;
-            let t265 = T::fused(
-                t47,
-                T::fused(t48, t262, t58 * t264),
-                t41 * T::fused(t79, t264, -T::fused(-t50, t262, t28)),
+            let t263 = k(0.5) * t39;
+            let t264 = k(0.5) * t34;
+            let t265 = T::fused(-t36, t263, t40 * t264);
+            let t266 = t49 * t265;
+            let t267 = T::fused(t47, t266, t263);
+            let t268 = t53 * t267;
+            let t269 = T::fused(
+                t45,
+                T::fused(t46, t266, t56 * t268),
+                t40 * T::fused(t77, t268, -T::fused(-t48, t266, t264)),
             );
-            let t266 = T::fused(
-                -t91,
-                T::fused(-t43, t262, t53 * t264),
-                t95 * T::fused(t62, t262, t64 * t264),
+            let t270 = T::fused(
+                -t89,
+                T::fused(-t41, t266, t51 * t268),
+                t93 * T::fused(t60, t266, t62 * t268),
             );
-            let t267 = T::fused(
-                t99,
-                T::fused(t71, t264, -T::fused(-t69, t262, k(1.0))),
-                t266,
+            let t271 = T::fused(
+                t97,
+                T::fused(t69, t268, -T::fused(-t67, t266, k(1.0))),
+                t270,
             );
-            let t268 = t139 * (t267 + (t267 + t265));
-            let t269 = t91 * t268;
-            let t270 = k(2.0) * t269;
-            let t271 = t95 * t268;
-            let t272 = k(2.0) * t271;
-            let t273 = t99 * t268;
+            let t272 = t136 * (t271 + (t271 + t269));
+            let t273 = t89 * t272;
             let t274 = k(2.0) * t273;
-            let t275 = t47 * t268;
-            let t276 = t41 * t268;
-            let t277 = T::fused(t58, t275, t79 * t276)
-                + T::fused(t71, t274, T::fused(-t53, t270, t64 * t272));
-            let t278 = t55 * (t263 + t277);
-            let t279 = T::fused(t50, t276, T::fused(t48, t275, t49 * t278))
-                + T::fused(t69, t274, T::fused(t43, t270, t62 * t272));
-            let t280 = t51 * (t261 + t279);
-            let t281 = T::fused(-t31, t280, t278);
-            let t282 = T::fused(-t41, t280, t276);
-            let t283 = T::fused(-t67, t281, t68 * t282);
-            let t284 = t274 + t283;
-            let t285 = k(18.69158878504673) * t173;
-            let t286 = t247 * t285;
-            let t287 = T::fused(
-                t258,
-                t259,
-                -T::fused(t253, t254, -T::fused(k(2.0), t286, -(t283 + t284))),
-            );
-            let t288 = k(1.0) / t287;
-            let t289 = k(1.0) / T::fused(t3, t3, t6 * t6);
-            let t290 = t289 * t9;
-            let t291 = T::fused(T::fused(t3, t21, t25 * t6) * t289, t11, t290 * t140);
-            let t292 = t290 * t187;
-            let t293 = t206 * t292;
-            let t294 = T::fused(t290, t225, t215 * t293);
-            let t295 = t244 * t294;
-            let t296 = T::fused(t258, t295, -T::fused(t290, t268, t253 * t293));
-            let t297 = t288 * t296;
-            let t298 = T::fused(
-                t297,
+            let t275 = t93 * t272;
+            let t276 = k(2.0) * t275;
+            let t277 = t97 * t272;
+            let t278 = k(2.0) * t277;
+            let t279 = t45 * t272;
+            let t280 = t40 * t272;
+            let t281 = T::fused(t56, t279, t77 * t280)
+                + T::fused(t69, t278, T::fused(-t51, t274, t62 * t276));
+            let t282 = t53 * (t267 + t281);
+            let t283 = T::fused(t48, t280, T::fused(t46, t279, t47 * t282))
+                + T::fused(t67, t278, T::fused(t41, t274, t60 * t276));
+            let t284 = t49 * (t265 + t283);
+            let t285 = T::fused(-t36, t284, t282);
+            let t286 = T::fused(-t40, t284, t280);
+            let t287 = T::fused(-t65, t285, t66 * t286);
+            let t288 = t278 + t287;
+            let t289 = k(9.345794392523365) * t171;
+            let t290 = t249 * t289;
+            let t291 = T::fused(
                 t260,
-                -T::fused(t295, t217, -T::fused(t293, t179, -(row17 - t291))),
+                t261,
+                -T::fused(t255, t256, -T::fused(k(2.0), t290, -(t287 + t288))),
             );
-            let t299 = t290 * t139;
-            let t300 = T::fused(
-                t296,
-                t297,
-                -T::fused(t294, t295, -T::fused(-t290, t299, t292 * t293)),
+            let t292 = k(1.0) / t291;
+            let t293 = k(1.0) / T::fused(t5, t5, t8 * t8);
+            let t294 = t10 * t293;
+            let t295 = T::fused(t293 * T::fused(t5, t31, t15 * t8), t12, t294 * t137);
+            let t296 = t187 * t294;
+            let t297 = t206 * t296;
+            let t298 = T::fused(t227, t294, t215 * t297);
+            let t299 = t246 * t298;
+            let t300 = T::fused(t260, t299, -T::fused(t272, t294, t255 * t297));
+            let t301 = t292 * t300;
+            let t302 = T::fused(
+                t301,
+                t262,
+                -T::fused(t299, t217, -T::fused(t297, t177, -(row17 - t295))),
             );
-            let t301 = t298 / t300;
-            let t302 = T::fused(-t288, t260, t297 * t301);
-            let t303 = T::fused(t295, t301, -T::fused(t244, t217, t259 * t302));
+            let t303 = t136 * t294;
             let t304 = T::fused(
-                t293,
+                t300,
                 t301,
-                -T::fused(t254, t302, T::fused(t206, t179, t216 * t303)),
+                -T::fused(t298, t299, -T::fused(-t294, t303, t296 * t297)),
             );
-            let t305 = t91 * t299;
-            let t306 = T::fused(
-                t305,
-                t301,
-                T::fused(t269, t302, T::fused(t226, t303, -T::fused(t188, t304, t142))),
-            );
-            let t307 = t95 * t299;
+            let t305 = t302 / t304;
+            let t306 = T::fused(-t292, t262, t301 * t305);
+            let t307 = T::fused(t299, t305, -T::fused(t246, t217, t261 * t306));
             let t308 = T::fused(
-                t307,
-                t301,
-                T::fused(t271, t302, T::fused(t228, t303, T::fused(-t190, t304, t145))),
+                t297,
+                t305,
+                -T::fused(t256, t306, T::fused(t206, t177, t216 * t307)),
             );
-            let t309 = t99 * t299;
+            let t309 = t89 * t303;
             let t310 = T::fused(
                 t309,
-                t301,
-                T::fused(t273, t302, T::fused(t230, t303, -T::fused(t192, t304, t148))),
+                t305,
+                T::fused(t273, t306, T::fused(t228, t307, -T::fused(t188, t308, t139))),
             );
-            let t311 = T::fused(
-                t299,
-                t301,
-                T::fused(t268, t302, T::fused(t225, t303, T::fused(-t187, t304, t140))),
-            );
+            let t311 = t93 * t303;
             let t312 = T::fused(
-                t227 + T::fused(t35, t238, t42 * t239),
+                t311,
+                t305,
+                T::fused(t275, t306, T::fused(t230, t307, T::fused(-t190, t308, t142))),
+            );
+            let t313 = t97 * t303;
+            let t314 = T::fused(
+                t313,
+                t305,
+                T::fused(t277, t306, T::fused(t232, t307, -T::fused(t192, t308, t145))),
+            );
+            let t315 = T::fused(
                 t303,
-                -T::fused(t203, t304, t159),
+                t305,
+                T::fused(t272, t306, T::fused(t227, t307, T::fused(-t187, t308, t137))),
             );
-            let t313 = k(2.0) * t305;
-            let t314 = k(2.0) * t307;
-            let t315 = k(2.0) * t309;
-            let t316 = t47 * t299;
-            let t317 = t41 * t299;
-            let t318 = T::fused(t58, t316, t79 * t317)
-                + T::fused(t71, t315, T::fused(-t53, t313, t64 * t314));
-            let t319 = t55 * t318;
-            let t320 = T::fused(t50, t317, T::fused(t48, t316, t49 * t319))
-                + T::fused(t69, t315, T::fused(t43, t313, t62 * t314));
-            let t321 = t51 * t320;
-            let t322 = T::fused(-t31, t321, t319);
-            let t323 = T::fused(-t41, t321, t317);
-            let t324 = T::fused(
-                t313 + T::fused(t35, t322, t42 * t323),
-                t301,
-                T::fused(t270 + T::fused(t35, t281, t42 * t282), t302, t312),
+            let t316 = T::fused(
+                t229 + T::fused(t22, t240, t37 * t241),
+                t307,
+                -T::fused(t203, t308, t156),
             );
-            let t325 = T::fused(
-                t272 + T::fused(-t60, t281, t61 * t282),
-                t302,
-                T::fused(t241, t303, T::fused(-t213, t304, t208)),
-            );
-            let t326 = T::fused(
-                t315 + T::fused(-t67, t322, t68 * t323),
-                t301,
-                T::fused(t284, t302, T::fused(t256, t303, -T::fused(t251, t304, t246))),
-            );
-            let t327 = T::fused(
-                T::fused(-t47, t237, t232),
-                t303,
-                -T::fused(T::fused(t47, t199, t194), t304, -T::fused(t47, t155, t150)),
-            );
+            let t317 = k(2.0) * t309;
+            let t318 = k(2.0) * t311;
+            let t319 = k(2.0) * t313;
+            let t320 = t45 * t303;
+            let t321 = t40 * t303;
+            let t322 = T::fused(t56, t320, t77 * t321)
+                + T::fused(t69, t319, T::fused(-t51, t317, t62 * t318));
+            let t323 = t53 * t322;
+            let t324 = T::fused(t48, t321, T::fused(t46, t320, t47 * t323))
+                + T::fused(t67, t319, T::fused(t41, t317, t60 * t318));
+            let t325 = t49 * t324;
+            let t326 = T::fused(-t36, t325, t323);
+            let t327 = T::fused(-t40, t325, t321);
             let t328 = T::fused(
-                T::fused(-t47, t321, t316),
-                t301,
-                T::fused(T::fused(-t47, t280, t275), t302, t327),
+                t317 + T::fused(t22, t326, t37 * t327),
+                t305,
+                T::fused(t274 + T::fused(t22, t285, t37 * t286), t306, t316),
             );
             let t329 = T::fused(
-                t322,
-                t301,
-                T::fused(t281, t302, T::fused(t238, t303, -T::fused(t200, t304, t156))),
+                t276 + T::fused(-t58, t285, t59 * t286),
+                t306,
+                T::fused(t243, t307, T::fused(-t213, t308, t208)),
             );
             let t330 = T::fused(
-                t323,
-                t301,
-                T::fused(t282, t302, T::fused(t239, t303, -T::fused(t201, t304, t157))),
+                t319 + T::fused(-t65, t326, t66 * t327),
+                t305,
+                T::fused(t288, t306, T::fused(t258, t307, -T::fused(t253, t308, t248))),
             );
             let t331 = T::fused(
-                t176 * t285,
-                t302,
-                T::fused(t176 * t242, t303, -T::fused(-t205, t304, t178)),
+                T::fused(-t45, t239, t234),
+                t307,
+                -T::fused(T::fused(t45, t199, t194), t308, -T::fused(t45, t152, t147)),
             );
             let t332 = T::fused(
-                t209 * t285,
-                t302,
-                T::fused(t243, t303, T::fused(t214, t304, t211)),
+                T::fused(-t45, t325, t320),
+                t305,
+                T::fused(T::fused(-t45, t284, t279), t306, t331),
+            );
+            let t333 = T::fused(
+                t326,
+                t305,
+                T::fused(t285, t306, T::fused(t240, t307, -T::fused(t200, t308, t153))),
+            );
+            let t334 = T::fused(
+                t327,
+                t305,
+                T::fused(t286, t306, T::fused(t241, t307, -T::fused(t201, t308, t154))),
+            );
+            let t335 = T::fused(
+                t174 * t289,
+                t306,
+                T::fused(t174 * t244, t307, -T::fused(-t205, t308, t176)),
+            );
+            let t336 = T::fused(
+                t209 * t289,
+                t306,
+                T::fused(t245, t307, T::fused(t214, t308, t211)),
             );
             (
                 t204,
-                t242,
-                t249,
-                t252,
-                t257,
-                t285,
-                t286,
-                t301,
-                t302,
-                t303,
-                t304,
+                t244,
+                t251,
+                t254,
+                t259,
+                t289,
+                t290,
+                t305,
                 t306,
+                t307,
                 t308,
                 t310,
-                t311,
+                t312,
                 t314,
-                t322,
-                t323,
-                t324,
-                t325,
+                t315,
+                t318,
                 t326,
+                t327,
                 t328,
                 t329,
                 t330,
-                t331,
                 t332,
+                t333,
+                t334,
+                t335,
+                t336,
             )
         };
         *out = [
-            -t306,
-            t308,
             -t310,
-            -t111,
-            t11,
-            -t311,
-            -t324,
-            T::fused(t314 + T::fused(-t60, t322, t61 * t323), t301, t325),
-            -t326,
-            t328,
-            t329,
+            t312,
+            -t314,
+            -t109,
+            t12,
+            -t315,
+            -t328,
+            T::fused(t318 + T::fused(-t58, t326, t59 * t327), t305, t329),
             -t330,
-            -t331,
             t332,
-            -T::fused(t286, t302, T::fused(t257, t303, -T::fused(-t252, t304, t249))),
-            T::fused(t162 * t169, row8, t168 * t169 * row9),
-            -t170,
-            -T::fused(t285, t302, T::fused(t242, t303, T::fused(t204, t304, t175))),
+            t333,
+            -t334,
+            -t335,
+            t336,
+            -T::fused(t290, t306, T::fused(t259, t307, -T::fused(-t254, t308, t251))),
+            T::fused(t161 * t167, row8, t166 * t167 * row9),
+            -t168,
+            -T::fused(t289, t306, T::fused(t244, t307, T::fused(t204, t308, t173))),
         ];
     }
 }
@@ -3538,7 +3523,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenFourBar<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 15]
     }
-    /// Writes the outputs: 290 operations (118 ±, 171 ×, 1 ÷) and 1 functions.
+    /// Writes the outputs: 272 operations (112 ±, 159 ×, 1 ÷) and 1 functions.
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -3572,51 +3557,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenFourBar<T> {
         let closing1 = accelerations[19];
         let closing2 = accelerations[20];
         let closing3 = accelerations[21];
-        let t0 = coupler_dsx - closing0;
-        let t1 = crank_e0 * crank_e3;
-        let t2 = crank_e1 * crank_e2;
-        let t3 = k(2.0) * (t2 - t1);
-        let t4 = k(9.81) + coupler_dsy - closing1;
-        let t5 = crank_e0 * crank_e0;
-        let t6 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t5));
-        let t7 = coupler_dsz - closing2;
-        let t8 = crank_e0 * crank_e1;
-        let t9 = crank_e2 * crank_e3;
-        let t10 = k(2.0) * (t9 + t8);
-        let t11 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t5));
-        let t12 = k(2.0) * (t2 + t1);
-        let t13 = crank_e0 * crank_e2;
-        let t14 = crank_e1 * crank_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(2.0) * (t14 + t13);
-        let t17 = k(2.0) * (t9 - t8);
-        let t18 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t5));
-        let t19 = coupler_e0 * coupler_e0;
-        let t20 = k(0.5) - T::fused(coupler_e3, coupler_e3, t19);
-        let t21 = k(2.0) * t20;
-        let t22 = coupler_e0 * coupler_e1;
-        let t23 = coupler_e2 * coupler_e3;
-        let t24 = t23 - t22;
-        let t25 = k(2.0) * t24;
-        let t26 = coupler_e0 * coupler_e2;
-        let t27 = coupler_e1 * coupler_e3;
-        let t28 = t27 + t26;
-        let t29 = k(2.0) * t28;
-        let t30 = T::fused(t18, t21, T::fused(t17, t25, t16 * t29));
-        let t31 = k(0.5) - T::fused(coupler_e1, coupler_e1, t19);
-        let t32 = k(2.0) * t31;
-        let t33 = coupler_e0 * coupler_e3;
-        let t34 = coupler_e1 * coupler_e2;
-        let t35 = t34 + t33;
-        let t36 = k(2.0) * t35;
-        let t37 = t27 - t26;
-        let t38 = k(2.0) * t37;
-        let t39 = T::fused(t18, t38, -T::fused(-t16, t32, t17 * t36));
-        let t40 = k(1.0) / T::fused(t30, t30, t39 * t39);
-        let t41 = t34 - t33;
-        let t42 = k(0.5) * t41;
-        let t43 = k(0.5) - T::fused(coupler_e2, coupler_e2, t19);
-        let t44 = k(0.5) * t43;
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e3 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = coupler_dsx - closing0;
+        let t6 = k(2.0) * crank_e2;
+        let t7 = T::fused(-crank_e0, t0, k(1.0));
+        let t8 = T::fused(-crank_e2, t6, t7);
+        let t9 = k(9.81) + coupler_dsy - closing1;
+        let t10 = crank_e1 * t0;
+        let t11 = crank_e3 * t6;
+        let t12 = t11 + t10;
+        let t13 = coupler_dsz - closing2;
+        let t14 = T::fused(-crank_e1, t2, t7);
+        let t15 = t3 + t1;
+        let t16 = crank_e2 * t0;
+        let t17 = crank_e3 * t2;
+        let t18 = t17 - t16;
+        let t19 = t17 + t16;
+        let t20 = t11 - t10;
+        let t21 = T::fused(-crank_e3, k(2.0) * crank_e3, t7);
+        let t22 = k(2.0) * coupler_e0;
+        let t23 = coupler_e2 * t22;
+        let t24 = k(2.0) * coupler_e1;
+        let t25 = coupler_e3 * t24;
+        let t26 = t25 + t23;
+        let t27 = coupler_e1 * t22;
+        let t28 = k(2.0) * coupler_e2;
+        let t29 = coupler_e3 * t28;
+        let t30 = t29 - t27;
+        let t31 = T::fused(-coupler_e0, t22, k(1.0));
+        let t32 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t31);
+        let t33 = T::fused(t21, t32, T::fused(t19, t26, t20 * t30));
+        let t34 = T::fused(-coupler_e1, t24, t31);
+        let t35 = coupler_e3 * t22;
+        let t36 = coupler_e2 * t24;
+        let t37 = t36 + t35;
+        let t38 = t25 - t23;
+        let t39 = T::fused(t21, t38, -T::fused(-t19, t34, t20 * t37));
+        let t40 = k(1.0) / T::fused(t33, t33, t39 * t39);
+        let t41 = t36 - t35;
+        let t42 = k(0.25) * t41;
+        let t43 = T::fused(-coupler_e2, t28, t31);
+        let t44 = k(0.25) * t43;
         let t45 = T::fused(
             closing1,
             t44,
@@ -3626,82 +3611,82 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for DrivenFourBar<T> {
                 T::fused(k(0.021), coupler_dwz, k(0.02095) * (coupler_wx * coupler_wy)),
             ),
         );
-        let t46 = t23 + t22;
-        let t47 = k(0.5) * t46;
-        let t48 = T::fused(t7, t47, -T::fused(-t0, t42, t4 * t44));
+        let t46 = t29 + t27;
+        let t47 = k(0.25) * t46;
+        let t48 = T::fused(t13, t47, -T::fused(-t5, t42, t9 * t44));
         let t49 = T::fused(
             k(5e-5) * coupler_dwx,
-            t30 * t40,
+            t33 * t40,
             t39 * t40 * (t48 - T::fused(closing2, t47, -t45)),
         );
-        let t50 = t30 * t49;
+        let t50 = t33 * t49;
         let t51 = T::fused(
-            t7,
-            k(0.5) * t20,
-            -T::fused(t0, k(0.5) * t28, t4 * (k(0.5) * t24)),
+            t13,
+            k(0.25) * t32,
+            -T::fused(t5, k(0.25) * t26, t9 * (k(0.25) * t30)),
         );
-        let t52 = k(2.0) * t41;
-        let t53 = T::fused(-t39, t49, t48);
-        let t54 = coupler_ry - T::fused(-k(0.5), t35, coupler_ry);
-        let t55 = coupler_rz - T::fused(-k(0.5), t37, coupler_rz);
-        let t56 = T::fused(-t7, t54, t4 * t55)
-            + T::fused(t29, t53, T::fused(t32, t50, t52 * t51));
-        let t57 = k(2.0) * t43;
-        let t58 = coupler_rx - T::fused(k(0.5), t31, coupler_rx);
-        let t59 = T::fused(-t0, t55, t7 * t58)
-            + T::fused(t25, t53, -T::fused(t36, t50, t57 * t51));
-        let t60 = k(2.0) * t46;
-        let t61 = T::fused(-t4, t58, t0 * t54)
-            - T::fused(t21, t53, -T::fused(-t38, t50, t60 * t51));
-        let t62 = rocker_e0 * rocker_e2;
-        let t63 = rocker_e1 * rocker_e3;
-        let t64 = t63 + t62;
-        let t65 = rocker_e0 * rocker_e1;
-        let t66 = rocker_e2 * rocker_e3;
-        let t67 = t66 - t65;
-        let t68 = rocker_e0 * rocker_e0;
-        let t69 = k(0.5) - T::fused(rocker_e3, rocker_e3, t68);
+        let t52 = T::fused(-t39, t49, t48);
+        let t53 = coupler_ry - T::fused(-k(0.25), t37, coupler_ry);
+        let t54 = coupler_rz - T::fused(-k(0.25), t38, coupler_rz);
+        let t55 = T::fused(-t13, t53, t9 * t54)
+            + T::fused(t26, t52, T::fused(t34, t50, t41 * t51));
+        let t56 = coupler_rx - T::fused(k(0.25), t34, coupler_rx);
+        let t57 = T::fused(-t5, t54, t13 * t56)
+            + T::fused(t30, t52, -T::fused(t37, t50, t43 * t51));
+        let t58 = T::fused(-t9, t56, t5 * t53)
+            - T::fused(t32, t52, -T::fused(-t38, t50, t46 * t51));
+        let t59 = k(2.0) * rocker_e0;
+        let t60 = rocker_e2 * t59;
+        let t61 = k(2.0) * rocker_e1;
+        let t62 = rocker_e3 * t61;
+        let t63 = t62 + t60;
+        let t64 = rocker_e1 * t59;
+        let t65 = k(2.0) * rocker_e2;
+        let t66 = rocker_e3 * t65;
+        let t67 = t66 - t64;
+        let t68 = T::fused(-rocker_e0, t59, k(1.0));
+        let t69 = T::fused(-rocker_e3, k(2.0) * rocker_e3, t68);
         let t70 = T::fused(
             closing2,
-            k(0.4) * t69,
-            -T::fused(closing0, k(0.4) * t64, closing1 * (k(0.4) * t67)),
+            k(0.2) * t69,
+            -T::fused(closing0, k(0.2) * t63, closing1 * (k(0.2) * t67)),
         );
-        let t71 = rocker_e0 * rocker_e3;
-        let t72 = rocker_e1 * rocker_e2;
+        let t71 = rocker_e3 * t59;
+        let t72 = rocker_e2 * t61;
         let t73 = t72 - t71;
-        let t74 = t66 + t65;
-        let t75 = k(0.5) - T::fused(rocker_e2, rocker_e2, t68);
+        let t74 = t66 + t64;
+        let t75 = T::fused(-rocker_e2, t65, t68);
         let t76 = T::fused(
             -closing2,
-            k(0.4) * t74,
-            T::fused(-closing0, k(0.4) * t73, closing1 * (k(0.4) * t75)),
+            k(0.2) * t74,
+            T::fused(-closing0, k(0.2) * t73, closing1 * (k(0.2) * t75)),
         );
-        let t77 = rocker_ry - T::fused(k(0.4), t72 + t71, rocker_ry);
-        let t78 = rocker_rz - T::fused(k(0.4), t63 - t62, rocker_rz);
+        let t77 = rocker_ry - T::fused(k(0.2), t72 + t71, rocker_ry);
+        let t78 = rocker_rz - T::fused(k(0.2), t62 - t60, rocker_rz);
         let t79 = T::fused(-closing2, t77, closing1 * t78)
-            + T::fused(-(k(2.0) * t73), t70, k(2.0) * t64 * t76);
+            + T::fused(-t73, t70, t63 * t76);
         let t80 = rocker_rx
-            - T::fused(-k(0.4), k(0.5) - T::fused(rocker_e1, rocker_e1, t68), rocker_rx);
+            - T::fused(-k(0.2), T::fused(-rocker_e1, t61, t68), rocker_rx);
         let t81 = T::fused(-closing0, t78, closing2 * t80)
-            + T::fused(k(2.0) * t75, t70, k(2.0) * t67 * t76);
+            + T::fused(t75, t70, t67 * t76);
         let t82 = T::fused(-closing1, t80, closing0 * t77)
-            - T::fused(k(2.0) * t74, t70, k(2.0) * t69 * t76);
+            - T::fused(t74, t70, t69 * t76);
         *out = [
             -closing3,
             k(0.0),
             -(T::fused(k(0.6), (k(3.0) * t).cos(), k(6.0)) * closing3),
-            T::fused(t10, t7, -T::fused(-t3, t0, t6 * t4)),
-            -T::fused(t15, t7, T::fused(-t11, t0, t12 * t4)),
-            T::fused(-t18, t7, T::fused(t16, t0, t17 * t4)),
-            T::fused(-t10, t61, T::fused(-t3, t56, t6 * t59)),
-            T::fused(t15, t61, T::fused(-t11, t56, t12 * t59)),
-            T::fused(t18, t61, -T::fused(t16, t56, t17 * t59)),
-            -T::fused(t38, closing2, T::fused(-t32, closing0, t36 * closing1)),
-            T::fused(-t60, closing2, T::fused(-t52, closing0, t57 * closing1)),
-            T::fused(t21, closing2, -T::fused(t29, closing0, t25 * closing1)),
-            T::fused(t38, t82, T::fused(-t32, t79, t36 * t81)),
-            T::fused(t60, t82, -T::fused(-t52, t79, t57 * t81)),
-            T::fused(-t21, t82, T::fused(t29, t79, t25 * t81)),
+            T::fused(t13, t12, -T::fused(-t5, t4, t9 * t8)),
+            -T::fused(t13, t18, T::fused(-t5, t14, t9 * t15)),
+            T::fused(-t13, t21, T::fused(t5, t19, t9 * t20)),
+            T::fused(-t12, t58, T::fused(-t4, t55, t8 * t57)),
+            T::fused(t18, t58, T::fused(-t14, t55, t15 * t57)),
+            T::fused(t21, t58, -T::fused(t19, t55, t20 * t57)),
+            -T::fused(closing2, t38, T::fused(-closing0, t34, closing1 * t37)),
+            T::fused(-closing2, t46, T::fused(-closing0, t41, closing1 * t43)),
+            T::fused(closing2, t32, -T::fused(closing0, t26, closing1 * t30)),
+            T::fused(t38, t82, T::fused(-t34, t79, t37 * t81)),
+            T::fused(t46, t82, -T::fused(-t41, t79, t43 * t81)),
+            T::fused(-t32, t82, T::fused(t26, t79, t30 * t81)),
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -13,23 +13,23 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 227 operations by rotations of the bodies; 227 operations by relative Euler parameters
-//! * project: 106 operations by rotations of the bodies; 106 operations by relative Euler parameters
+//! * accelerations: 220 operations by rotations of the bodies, doubled; 220 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 99 operations by rotations of the bodies, doubled; 99 operations by relative Euler parameters, doubled; 2 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 26 | 37 | 0 | 63 | 0 of 13 | 86 | 63 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 12 | 52 | 2 | 66 | 0 of 38 | 296 | 66 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 22 | 48 | 2 | 72 | 0 of 18 | 212 | 72 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 12 | 44 | 2 | 58 | 0 of 38 | 340 | 59 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 20 | 41 | 2 | 63 | 0 of 18 | 252 | 64 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 11 of 11 | 0 | 0 |
-//! | gamma | γ | 55 | 103 | 2 | 160 | 6 of 11 | 594 | 160 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 29 | 55 | 2 | 86 | 0 of 11 | 166 | 88 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 0 | 26 | 6 of 12 | 35 | 26 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 74 | 148 | 5 | 227 | 6 of 13 | 3849 | 228 |
-//! | multipliers | λ, the accelerations being known | 32 | 75 | 4 | 111 | 0 of 11 | 444 | 113 |
-//! | project | (δr, δπ') that changes the rows as given | 29 | 72 | 5 | 106 | 0 of 12 | 1106 | 107 |
+//! | gamma | γ | 53 | 98 | 2 | 153 | 6 of 11 | 686 | 153 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 27 | 50 | 2 | 79 | 0 of 11 | 194 | 81 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 17 | 0 | 24 | 6 of 12 | 35 | 24 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 72 | 143 | 5 | 220 | 6 of 13 | 4473 | 221 |
+//! | multipliers | λ, the accelerations being known | 30 | 70 | 4 | 104 | 0 of 11 | 516 | 106 |
+//! | project | (δr, δπ') that changes the rows as given | 27 | 67 | 5 | 99 | 0 of 12 | 1298 | 100 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 16 | 33 | 0 | 49 | 0 of 17 | 49 | 49 |
 //! | energy | T and V | 18 | 34 | 0 | 52 | 0 of 2 | 87 | 52 |
 //! | read_joints | joint coordinates and rates | 15 | 16 | 0 | 31 | 0 of 6 | 36 | 31 |
@@ -264,7 +264,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
             T::fused(wheel_e3, wheel_e3, T::fused(wheel_e1, wheel_e1, t8) + t7) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 86 operations (29 ±, 55 ×, 2 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 79 operations (27 ±, 50 ×, 2 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -287,58 +287,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gear<T> {
         let wheel_wx = y[23];
         let wheel_wy = y[24];
         let wheel_wz = y[25];
-        let t0 = pinion_e0 * pinion_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
-        let t2 = pinion_e0 * pinion_e3;
-        let t3 = pinion_e1 * pinion_e2;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = k(2.0) * (t3 + t2);
-        let t6 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
-        let t7 = wheel_e0 * wheel_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t7));
-        let t9 = wheel_e0 * wheel_e1;
-        let t10 = wheel_e2 * wheel_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = k(2.0) * (t10 + t9);
-        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t7));
-        let t14 = T::fused(
-            t6,
-            pinion_wz,
-            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3) * pinion_wy,
-        );
-        let t15 = T::fused(
-            -t4,
-            pinion_wz,
-            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * pinion_wy,
-        );
-        let t16 = T::fused(t1, t14, t5 * t15) / T::fused(t1, t1, t5 * t5);
-        let t17 = T::fused(
-            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
-            wheel_wz,
-            t13 * wheel_wx,
-        );
-        let t18 = T::fused(
-            -(k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2)),
-            wheel_wz,
-            t11 * wheel_wx,
-        );
+        let t0 = k(2.0) * pinion_e1;
+        let t1 = k(2.0) * pinion_e0;
+        let t2 = T::fused(-pinion_e0, t1, k(1.0));
+        let t3 = T::fused(-pinion_e1, t0, t2);
+        let t4 = pinion_e3 * t1;
+        let t5 = pinion_e2 * t0;
+        let t6 = t5 - t4;
+        let t7 = t5 + t4;
+        let t8 = k(2.0) * pinion_e2;
+        let t9 = T::fused(-pinion_e2, t8, t2);
+        let t10 = k(2.0) * wheel_e2;
+        let t11 = k(2.0) * wheel_e0;
+        let t12 = T::fused(-wheel_e0, t11, k(1.0));
+        let t13 = T::fused(-wheel_e2, t10, t12);
+        let t14 = wheel_e1 * t11;
+        let t15 = wheel_e3 * t10;
+        let t16 = t15 - t14;
+        let t17 = t15 + t14;
+        let t18 = T::fused(-wheel_e3, k(2.0) * wheel_e3, t12);
         let t19 = T::fused(
+            t3,
+            T::fused(
+                pinion_wz,
+                t9,
+                pinion_wy * T::fused(-pinion_e1, t1, pinion_e3 * t8),
+            ),
+            t7
+                * T::fused(
+                    -pinion_wz,
+                    t6,
+                    pinion_wy * T::fused(pinion_e2, t1, pinion_e3 * t0),
+                ),
+        );
+        let t20 = k(2.0) * wheel_e1;
+        let t21 = T::fused(
+            -t13,
+            T::fused(wheel_wz, T::fused(-wheel_e2, t11, wheel_e3 * t20), wheel_wx * t18),
+            t17
+                * T::fused(
+                    -wheel_wz,
+                    T::fused(wheel_e3, t11, wheel_e2 * t20),
+                    wheel_wx * t16,
+                ),
+        );
+        let t22 = T::fused(
             -k(2.5),
-            t16,
-            T::fused(-t8, t17, t12 * t18) / T::fused(t8, t8, t12 * t12),
+            t19 / T::fused(t3, t3, t7 * t7),
+            t21 / T::fused(t13, t13, t17 * t17),
         );
         *out = [
             pinion_sx,
             pinion_sy,
             pinion_sz,
-            -T::fused(t1, pinion_wy, t4 * pinion_wx),
-            T::fused(t5, pinion_wy, t6 * pinion_wx),
+            -T::fused(pinion_wy, t3, pinion_wx * t6),
+            T::fused(pinion_wy, t7, pinion_wx * t9),
             wheel_sx,
             wheel_sy,
             wheel_sz,
-            -T::fused(t8, wheel_wz, t11 * wheel_wy),
-            T::fused(t12, wheel_wz, t13 * wheel_wy),
-            -t19,
+            -T::fused(wheel_wz, t13, wheel_wy * t16),
+            T::fused(wheel_wz, t17, wheel_wy * t18),
+            -t22,
         ];
     }
     /// Kinetic and potential energy: 52 operations (18 ±, 34 ×, 0 ÷) and 3 functions.
@@ -642,7 +651,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             (10, 11),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 66 operations (12 ±, 52 ×, 2 ÷).
+    /// Writes the non-zeros of Φ_q: 58 operations (12 ±, 44 ×, 2 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -661,12 +670,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let t5 = k(2.0) * wheel_e2;
         let t6 = k(2.0) * wheel_e1;
         let t7 = k(2.0) * wheel_e0;
-        let t8 = k(2.0)
-            * (k(0.5) - T::fused(pinion_e1, pinion_e1, pinion_e0 * pinion_e0));
-        let t9 = k(2.0) * T::fused(pinion_e0, pinion_e3, pinion_e1 * pinion_e2);
-        let t10 = k(1.0) / T::fused(t8, t8, t9 * t9);
-        let t11 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, wheel_e0 * wheel_e0));
-        let t12 = k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3);
+        let t8 = T::fused(-pinion_e1, t3, T::fused(-pinion_e0, t2, k(1.0)));
+        let t9 = T::fused(pinion_e3, t2, pinion_e2 * t3);
+        let t10 = k(2.5) / T::fused(t8, t8, t9 * t9);
+        let t11 = T::fused(-wheel_e2, t5, T::fused(-wheel_e0, t7, k(1.0)));
+        let t12 = T::fused(wheel_e1, t7, wheel_e3 * t5);
         let t13 = k(1.0) / T::fused(t11, t11, t12 * t12);
         *out = [
             k(1.0),
@@ -691,14 +699,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             t4,
             -t7,
             t6,
-            -(k(2.5) * (t10 * T::fused(t8, t1, t9 * (k(4.0) * pinion_e0)))),
-            -(k(2.5) * (t10 * T::fused(t8, t0, t9 * (k(4.0) * pinion_e1)))),
-            -(k(2.5) * (t10 * (t8 * t3))),
-            -(k(2.5) * (t10 * (t8 * t2))),
-            -(t13 * T::fused(t11, t6, t12 * (k(4.0) * wheel_e0))),
-            -(t13 * (t11 * t7)),
-            -(t13 * T::fused(t11, t4, t12 * (k(4.0) * wheel_e2))),
-            -(t13 * (t11 * t5)),
+            -(T::fused(t1, t8, k(4.0) * pinion_e0 * t9) * t10),
+            -(T::fused(t0, t8, k(4.0) * pinion_e1 * t9) * t10),
+            -(t3 * t8 * t10),
+            -(t2 * t8 * t10),
+            -(t13 * T::fused(t6, t11, k(4.0) * wheel_e0 * t12)),
+            -(t13 * (t7 * t11)),
+            -(t13 * T::fused(t4, t11, k(4.0) * wheel_e2 * t12)),
+            -(t13 * (t5 * t11)),
             t2,
             t3,
             t0,
@@ -709,7 +717,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             t4,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 72 operations (22 ±, 48 ×, 2 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 63 operations (20 ±, 41 ×, 2 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -720,51 +728,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_e1 = y[11];
         let wheel_e2 = y[12];
         let wheel_e3 = y[13];
-        let t0 = pinion_e0 * pinion_e3;
-        let t1 = pinion_e1 * pinion_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = pinion_e0 * pinion_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t3));
-        let t5 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t3));
-        let t6 = k(2.0) * (t1 + t0);
-        let t7 = wheel_e0 * wheel_e1;
-        let t8 = wheel_e2 * wheel_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = wheel_e0 * wheel_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t10));
-        let t12 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t10));
-        let t13 = k(2.0) * (t8 + t7);
-        let t14 = k(1.0) / T::fused(t4, t4, t6 * t6);
-        let t15 = T::fused(
-            t4,
-            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3),
-            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * t6,
+        let t0 = k(2.0) * pinion_e0;
+        let t1 = pinion_e3 * t0;
+        let t2 = k(2.0) * pinion_e1;
+        let t3 = pinion_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-pinion_e0, t0, k(1.0));
+        let t6 = T::fused(-pinion_e1, t2, t5);
+        let t7 = k(2.0) * pinion_e2;
+        let t8 = T::fused(-pinion_e2, t7, t5);
+        let t9 = t3 + t1;
+        let t10 = k(2.0) * wheel_e0;
+        let t11 = wheel_e1 * t10;
+        let t12 = k(2.0) * wheel_e2;
+        let t13 = wheel_e3 * t12;
+        let t14 = t13 - t11;
+        let t15 = T::fused(-wheel_e0, t10, k(1.0));
+        let t16 = T::fused(-wheel_e2, t12, t15);
+        let t17 = T::fused(-wheel_e3, k(2.0) * wheel_e3, t15);
+        let t18 = t13 + t11;
+        let t19 = k(2.5) / T::fused(t6, t6, t9 * t9);
+        let t20 = T::fused(
+            t6,
+            T::fused(-pinion_e1, t0, pinion_e3 * t7),
+            T::fused(pinion_e2, t0, pinion_e3 * t2) * t9,
         );
-        let t16 = k(1.0) / T::fused(t11, t11, t13 * t13);
-        let t17 = T::fused(
-            t11,
-            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
-            k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2) * t13,
+        let t21 = k(1.0) / T::fused(t16, t16, t18 * t18);
+        let t22 = k(2.0) * wheel_e1;
+        let t23 = T::fused(
+            t16,
+            T::fused(-wheel_e2, t10, wheel_e3 * t22),
+            T::fused(wheel_e3, t10, wheel_e2 * t22) * t18,
         );
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -t2,
             -t4,
-            t5,
-            t6,
+            -t6,
+            t8,
+            t9,
             k(1.0),
             k(1.0),
             k(1.0),
-            -t9,
-            -t11,
-            t12,
-            t13,
-            k(2.5) * (t15 * t14),
-            -(k(2.5) * (t14 * T::fused(-t4, t5, t2 * t6))),
-            -(T::fused(-t11, t12, t9 * t13) * t16),
-            t16 * t17,
+            -t14,
+            -t16,
+            t17,
+            t18,
+            t20 * t19,
+            -(T::fused(-t6, t8, t4 * t9) * t19),
+            -(T::fused(-t16, t17, t14 * t18) * t21),
+            t21 * t23,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -784,7 +798,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 160 operations (55 ±, 103 ×, 2 ÷).
+    /// Writes γ: 153 operations (53 ±, 98 ×, 2 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -801,77 +815,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wx = y[23];
         let wheel_wy = y[24];
         let wheel_wz = y[25];
-        let t0 = pinion_wx * pinion_wz;
-        let t1 = pinion_e0 * pinion_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t1));
-        let t3 = pinion_wy * pinion_wz;
-        let t4 = pinion_e0 * pinion_e3;
-        let t5 = pinion_e1 * pinion_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = pinion_wy * pinion_wy;
-        let t8 = T::fused(pinion_wx, pinion_wx, t7);
-        let t9 = k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3);
-        let t10 = k(2.0) * (t5 + t4);
-        let t11 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t1));
-        let t12 = k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3);
-        let t13 = wheel_wz * wheel_wz;
-        let t14 = T::fused(wheel_wy, wheel_wy, t13);
-        let t15 = k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2);
-        let t16 = wheel_wx * wheel_wy;
-        let t17 = wheel_e0 * wheel_e0;
-        let t18 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t17));
-        let t19 = wheel_wx * wheel_wz;
-        let t20 = wheel_e0 * wheel_e1;
-        let t21 = wheel_e2 * wheel_e3;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3);
-        let t24 = k(2.0) * (t21 + t20);
-        let t25 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t17));
-        let t26 = T::fused(t23, wheel_wz, t25 * wheel_wx);
-        let t27 = T::fused(-t15, wheel_wz, t22 * wheel_wx);
-        let t28 = k(1.0) / T::fused(t18, t18, t24 * t24);
-        let t29 = T::fused(wheel_wx, wheel_wx, t13);
-        let t30 = wheel_wy * wheel_wz;
-        let t31 = t26 * t27;
-        let t32 = T::fused(-t24, T::fused(t22, t30, T::fused(t15, t16, t18 * t29)), t31);
-        let t33 = T::fused(
-            t18,
-            T::fused(t25, t30, T::fused(-t23, t16, t24 * t29)),
-            -t31,
+        let t0 = k(2.0) * pinion_e1;
+        let t1 = k(2.0) * pinion_e0;
+        let t2 = T::fused(-pinion_e0, t1, k(1.0));
+        let t3 = T::fused(-pinion_e1, t0, t2);
+        let t4 = pinion_wx * pinion_wz;
+        let t5 = pinion_e3 * t1;
+        let t6 = pinion_e2 * t0;
+        let t7 = t6 - t5;
+        let t8 = pinion_wy * pinion_wz;
+        let t9 = T::fused(pinion_e2, t1, pinion_e3 * t0);
+        let t10 = pinion_wy * pinion_wy;
+        let t11 = T::fused(pinion_wx, pinion_wx, t10);
+        let t12 = t6 + t5;
+        let t13 = k(2.0) * pinion_e2;
+        let t14 = T::fused(-pinion_e2, t13, t2);
+        let t15 = T::fused(-pinion_e1, t1, pinion_e3 * t13);
+        let t16 = k(2.0) * wheel_e0;
+        let t17 = k(2.0) * wheel_e1;
+        let t18 = T::fused(wheel_e3, t16, wheel_e2 * t17);
+        let t19 = wheel_wz * wheel_wz;
+        let t20 = T::fused(wheel_wy, wheel_wy, t19);
+        let t21 = k(2.0) * wheel_e2;
+        let t22 = T::fused(-wheel_e0, t16, k(1.0));
+        let t23 = T::fused(-wheel_e2, t21, t22);
+        let t24 = wheel_wx * wheel_wy;
+        let t25 = wheel_e1 * t16;
+        let t26 = wheel_e3 * t21;
+        let t27 = t26 - t25;
+        let t28 = wheel_wx * wheel_wz;
+        let t29 = T::fused(-wheel_e2, t16, wheel_e3 * t17);
+        let t30 = t26 + t25;
+        let t31 = T::fused(-wheel_e3, k(2.0) * wheel_e3, t22);
+        let t32 = T::fused(wheel_wz, t29, wheel_wx * t31);
+        let t33 = T::fused(-wheel_wz, t18, wheel_wx * t27);
+        let t34 = k(1.0) / T::fused(t23, t23, t30 * t30);
+        let t35 = T::fused(wheel_wx, wheel_wx, t19);
+        let t36 = wheel_wy * wheel_wz;
+        let t37 = t32 * t33;
+        let t38 = T::fused(-t30, T::fused(t36, t27, T::fused(t24, t18, t35 * t23)), t37);
+        let t39 = T::fused(
+            t23,
+            T::fused(t36, t31, T::fused(-t24, t29, t35 * t30)),
+            -t37,
         );
-        let t34 = T::fused(
-            -(t28 * t28 * (k(2.0) * T::fused(t24, t26, t18 * t27))),
-            T::fused(-t18, t26, t24 * t27),
-            t28 * (t33 + t32),
+        let t40 = T::fused(
+            -(t34 * t34 * (k(2.0) * T::fused(t30, t32, t23 * t33))),
+            T::fused(-t23, t32, t30 * t33),
+            t34 * (t39 + t38),
         );
-        let t35 = T::fused(t11, pinion_wz, t12 * pinion_wy);
-        let t36 = T::fused(-t6, pinion_wz, t9 * pinion_wy);
-        let t37 = k(1.0) / T::fused(t2, t2, t10 * t10);
-        let t38 = T::fused(pinion_wz, pinion_wz, t7);
-        let t39 = pinion_wx * pinion_wy;
-        let t40 = t35 * t36;
-        let t41 = T::fused(t10, T::fused(t9, t0, T::fused(t2, t38, t6 * t39)), t40);
-        let t42 = T::fused(t2, T::fused(t12, t0, -T::fused(t10, t38, t11 * t39)), -t40);
-        let t43 = T::fused(
-            t37 * t37 * (k(2.0) * T::fused(-t10, t35, t2 * t36)),
-            T::fused(t2, t35, t10 * t36),
-            t37 * (t42 + t41),
+        let t41 = T::fused(pinion_wz, t14, pinion_wy * t15);
+        let t42 = T::fused(-pinion_wz, t7, pinion_wy * t9);
+        let t43 = k(1.0) / T::fused(t3, t3, t12 * t12);
+        let t44 = T::fused(pinion_wz, pinion_wz, t10);
+        let t45 = pinion_wx * pinion_wy;
+        let t46 = t41 * t42;
+        let t47 = T::fused(t12, T::fused(t4, t9, T::fused(t44, t3, t45 * t7)), t46);
+        let t48 = T::fused(t3, T::fused(t4, t15, -T::fused(t44, t12, t45 * t14)), -t46);
+        let t49 = T::fused(
+            t43 * t43 * (k(2.0) * T::fused(-t12, t41, t3 * t42)),
+            T::fused(t3, t41, t12 * t42),
+            t43 * (t48 + t47),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3)),
-            T::fused(t12, t8, T::fused(-t10, t0, t11 * t3)),
+            T::fused(t11, t9, -T::fused(-t4, t3, t8 * t7)),
+            T::fused(t11, t15, T::fused(-t4, t12, t8 * t14)),
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t22, t19, T::fused(t15, t14, t18 * t16)),
-            T::fused(t25, t19, -T::fused(-t23, t14, t24 * t16)),
-            T::fused(k(2.5), t43, -t34),
+            T::fused(-t28, t27, T::fused(t20, t18, t24 * t23)),
+            T::fused(t28, t31, -T::fused(-t20, t29, t24 * t30)),
+            T::fused(k(2.5), t49, -t40),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 26 operations (7 ±, 19 ×, 0 ÷) and 3 functions.
+    /// Writes (f, n' − w̃'J'w'): 24 operations (7 ±, 17 ×, 0 ÷) and 3 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let wheel_e0 = y[10];
@@ -885,27 +905,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wy = y[24];
         let wheel_wz = y[25];
         let turn1 = y[28];
-        let t0 = turn1.cos();
-        let t1 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, wheel_e0 * wheel_e0));
-        let t2 = turn1.sin();
-        let t3 = k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3);
-        let t4 = T::fused(t1, t2, t3 * t0).atan2(T::fused(-t1, t0, t3 * t2));
+        let t0 = k(0.01) * pinion_wz;
+        let t1 = turn1.cos();
+        let t2 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, wheel_e0 * wheel_e0));
+        let t3 = turn1.sin();
+        let t4 = k(2.0) * T::fused(wheel_e0, wheel_e1, wheel_e2 * wheel_e3);
+        let t5 = T::fused(t2, t3, t4 * t1).atan2(T::fused(-t2, t1, t4 * t3));
+        let t6 = k(0.025) * wheel_wx;
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -(k(0.01) * (pinion_wy * pinion_wz)),
-            k(0.01) * (pinion_wx * pinion_wz),
+            -(pinion_wy * t0),
+            pinion_wx * t0,
             k(0.7),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(k(0.4) * (k(0.2) + (turn1 + t4))),
-            -(k(0.025) * (wheel_wx * wheel_wz)),
-            k(0.025) * (wheel_wx * wheel_wy),
+            -(k(0.4) * (k(0.2) + (turn1 + t5))),
+            -(wheel_wz * t6),
+            wheel_wy * t6,
         ];
     }
-    /// Solves eq. (17): 227 operations (74 ±, 148 ×, 5 ÷) and 3 functions.
+    /// Solves eq. (17): 220 operations (72 ±, 143 ×, 5 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let pinion_e0 = y[3];
@@ -923,105 +945,111 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_wy = y[24];
         let wheel_wz = y[25];
         let turn1 = y[28];
-        let t0 = pinion_wx * pinion_wz;
-        let t1 = pinion_e0 * pinion_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t1));
-        let t3 = pinion_wy * pinion_wz;
-        let t4 = pinion_e0 * pinion_e3;
-        let t5 = pinion_e1 * pinion_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = pinion_wy * pinion_wy;
-        let t8 = T::fused(pinion_wx, pinion_wx, t7);
-        let t9 = k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3);
-        let t10 = T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3));
-        let t11 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t1));
-        let t12 = k(2.0) * (t5 + t4);
-        let t13 = T::fused(-t2, t11, t6 * t12);
-        let t14 = k(1.0) / t13;
-        let t15 = k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3);
-        let t16 = T::fused(t15, t8, T::fused(-t12, t0, t11 * t3));
-        let t17 = T::fused(t10, t11 * t14, t16 * (t6 * t14));
-        let t18 = k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3);
-        let t19 = wheel_e0 * wheel_e0;
-        let t20 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t19));
-        let t21 = T::fused(t18, wheel_wz, t20 * wheel_wx);
-        let t22 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t19));
-        let t23 = k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2);
-        let t24 = wheel_e0 * wheel_e1;
-        let t25 = wheel_e2 * wheel_e3;
-        let t26 = k(2.0) * (t25 - t24);
-        let t27 = T::fused(-t23, wheel_wz, t26 * wheel_wx);
-        let t28 = k(2.0) * (t25 + t24);
-        let t29 = k(1.0) / T::fused(t22, t22, t28 * t28);
-        let t30 = wheel_wx * wheel_wy;
-        let t31 = wheel_wz * wheel_wz;
-        let t32 = T::fused(wheel_wx, wheel_wx, t31);
-        let t33 = wheel_wy * wheel_wz;
-        let t34 = t21 * t27;
-        let t35 = T::fused(-t28, T::fused(t26, t33, T::fused(t23, t30, t22 * t32)), t34);
-        let t36 = T::fused(
-            t22,
-            T::fused(t20, t33, T::fused(-t18, t30, t28 * t32)),
-            -t34,
+        let t0 = k(2.0) * pinion_e1;
+        let t1 = k(2.0) * pinion_e0;
+        let t2 = T::fused(-pinion_e0, t1, k(1.0));
+        let t3 = T::fused(-pinion_e1, t0, t2);
+        let t4 = pinion_wx * pinion_wz;
+        let t5 = pinion_e3 * t1;
+        let t6 = pinion_e2 * t0;
+        let t7 = t6 - t5;
+        let t8 = pinion_wy * pinion_wz;
+        let t9 = T::fused(pinion_e2, t1, pinion_e3 * t0);
+        let t10 = pinion_wy * pinion_wy;
+        let t11 = T::fused(pinion_wx, pinion_wx, t10);
+        let t12 = T::fused(t11, t9, -T::fused(-t4, t3, t8 * t7));
+        let t13 = k(2.0) * pinion_e2;
+        let t14 = T::fused(-pinion_e2, t13, t2);
+        let t15 = t6 + t5;
+        let t16 = T::fused(-t3, t14, t7 * t15);
+        let t17 = k(1.0) / t16;
+        let t18 = T::fused(-pinion_e1, t1, pinion_e3 * t13);
+        let t19 = T::fused(t11, t18, T::fused(-t4, t15, t8 * t14));
+        let t20 = T::fused(t12, t14 * t17, t19 * (t7 * t17));
+        let t21 = k(2.0) * wheel_e0;
+        let t22 = k(2.0) * wheel_e1;
+        let t23 = T::fused(-wheel_e2, t21, wheel_e3 * t22);
+        let t24 = T::fused(-wheel_e0, t21, k(1.0));
+        let t25 = T::fused(-wheel_e3, k(2.0) * wheel_e3, t24);
+        let t26 = T::fused(wheel_wz, t23, wheel_wx * t25);
+        let t27 = k(2.0) * wheel_e2;
+        let t28 = T::fused(-wheel_e2, t27, t24);
+        let t29 = T::fused(wheel_e3, t21, wheel_e2 * t22);
+        let t30 = wheel_e1 * t21;
+        let t31 = wheel_e3 * t27;
+        let t32 = t31 - t30;
+        let t33 = T::fused(-wheel_wz, t29, wheel_wx * t32);
+        let t34 = t31 + t30;
+        let t35 = k(1.0) / T::fused(t28, t28, t34 * t34);
+        let t36 = wheel_wx * wheel_wy;
+        let t37 = wheel_wz * wheel_wz;
+        let t38 = T::fused(wheel_wx, wheel_wx, t37);
+        let t39 = wheel_wy * wheel_wz;
+        let t40 = t26 * t33;
+        let t41 = T::fused(-t34, T::fused(t39, t32, T::fused(t36, t29, t38 * t28)), t40);
+        let t42 = T::fused(
+            t28,
+            T::fused(t39, t25, T::fused(-t36, t23, t38 * t34)),
+            -t40,
         );
-        let t37 = T::fused(
-            -(t29 * t29 * (k(2.0) * T::fused(t28, t21, t22 * t27))),
-            T::fused(-t22, t21, t28 * t27),
-            t29 * (t36 + t35),
+        let t43 = T::fused(
+            -(t35 * t35 * (k(2.0) * T::fused(t34, t26, t28 * t33))),
+            T::fused(-t28, t26, t34 * t33),
+            t35 * (t42 + t41),
         );
-        let t38 = T::fused(t11, pinion_wz, t15 * pinion_wy);
-        let t39 = T::fused(-t6, pinion_wz, t9 * pinion_wy);
-        let t40 = k(1.0) / T::fused(t2, t2, t12 * t12);
-        let t41 = T::fused(pinion_wz, pinion_wz, t7);
-        let t42 = pinion_wx * pinion_wy;
-        let t43 = t38 * t39;
-        let t44 = T::fused(t12, T::fused(t9, t0, T::fused(t2, t41, t6 * t42)), t43);
-        let t45 = T::fused(t2, T::fused(t15, t0, -T::fused(t12, t41, t11 * t42)), -t43);
-        let t46 = T::fused(
-            t40 * t40 * (k(2.0) * T::fused(-t12, t38, t2 * t39)),
-            T::fused(t2, t38, t12 * t39),
-            t40 * (t45 + t44),
+        let t44 = T::fused(pinion_wz, t14, pinion_wy * t18);
+        let t45 = T::fused(-pinion_wz, t7, pinion_wy * t9);
+        let t46 = k(1.0) / T::fused(t3, t3, t15 * t15);
+        let t47 = T::fused(pinion_wz, pinion_wz, t10);
+        let t48 = pinion_wx * pinion_wy;
+        let t49 = t44 * t45;
+        let t50 = T::fused(t15, T::fused(t4, t9, T::fused(t47, t3, t48 * t7)), t49);
+        let t51 = T::fused(t3, T::fused(t4, t18, -T::fused(t47, t15, t48 * t14)), -t49);
+        let t52 = T::fused(
+            t46 * t46 * (k(2.0) * T::fused(-t15, t44, t3 * t45)),
+            T::fused(t3, t44, t15 * t45),
+            t46 * (t51 + t50),
         );
-        let t47 = t40 * t13;
-        let t48 = T::fused(
-            -(k(2.5) * (T::fused(t2, t15, t9 * t12) * t40)),
-            t17,
-            k(87.5) * t47,
+        let t53 = t16 * t46;
+        let t54 = T::fused(
+            -t20,
+            k(2.5) * (t46 * T::fused(t3, t18, t9 * t15)),
+            k(87.5) * t53,
         );
-        let t49 = turn1.cos();
-        let t50 = turn1.sin();
-        let t51 = T::fused(t22, t50, t28 * t49).atan2(T::fused(-t22, t49, t28 * t50));
-        let t52 = k(8.0) * (k(0.2) + (turn1 + t51));
-        let t53 = T::fused(-t22, t20, t26 * t28);
-        let t54 = t53 * t29;
-        let t55 = T::fused(wheel_wy, wheel_wy, t31);
-        let t56 = wheel_wx * wheel_wz;
-        let t57 = T::fused(t26, t56, -T::fused(t23, t55, t22 * t30));
-        let t58 = k(1.0) / t53;
-        let t59 = T::fused(t20, t56, -T::fused(-t18, t55, t28 * t30));
-        let t60 = T::fused(-(t20 * t58), t57, t26 * t58 * t59);
-        let t61 = T::fused(t54, t52, t29 * T::fused(t22, t18, t23 * t28) * t60);
-        let t62 = k(125.0) * t47;
-        let t63 = k(20.0) * t54;
-        let t64 = (t61 - t48 - T::fused(k(2.5), t46, -t37))
-            / T::fused(k(2.5) * t47, t62, t54 * t63);
+        let t55 = turn1.cos();
+        let t56 = turn1.sin();
+        let t57 = T::fused(t56, t28, t55 * t34).atan2(T::fused(-t55, t28, t56 * t34));
+        let t58 = k(8.0) * (k(0.2) + (turn1 + t57));
+        let t59 = T::fused(-t28, t25, t32 * t34);
+        let t60 = t59 * t35;
+        let t61 = T::fused(wheel_wy, wheel_wy, t37);
+        let t62 = wheel_wx * wheel_wz;
+        let t63 = T::fused(t62, t32, -T::fused(t61, t29, t36 * t28));
+        let t64 = k(1.0) / t59;
+        let t65 = T::fused(t62, t25, -T::fused(-t61, t23, t36 * t34));
+        let t66 = T::fused(-(t25 * t64), t63, t32 * t64 * t65);
+        let t67 = T::fused(t60, t58, t66 * (t35 * T::fused(t28, t23, t29 * t34)));
+        let t68 = k(125.0) * t53;
+        let t69 = k(20.0) * t60;
+        let t70 = (t67 - t54 - T::fused(k(2.5), t52, -t43))
+            / T::fused(t68, k(2.5) * t53, t60 * t69);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -T::fused(t12 * t14, t10, t2 * t14 * t16),
-            t17,
-            T::fused(t62, t64, k(35.0)),
+            -T::fused(t15 * t17, t12, t3 * t17 * t19),
+            t20,
+            T::fused(t68, t70, k(35.0)),
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(t63, t64, -t52),
-            T::fused(-t59, t22 * t58, t57 * (t28 * t58)),
-            t60,
-            t64,
+            T::fused(t69, t70, -t58),
+            T::fused(-t65, t28 * t64, t63 * (t34 * t64)),
+            t66,
+            t70,
         ];
     }
-    /// Writes λ: 111 operations (32 ±, 75 ×, 4 ÷).
+    /// Writes λ: 104 operations (30 ±, 70 ×, 4 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1055,61 +1083,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Gear<T> {
         let wheel_dwy = accelerations[10];
         let wheel_dwz = accelerations[11];
         let closing0 = accelerations[12];
-        let t0 = pinion_e0 * pinion_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
-        let t3 = pinion_e0 * pinion_e3;
-        let t4 = pinion_e1 * pinion_e2;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(2.0) * (t4 - t3);
-        let t7 = k(1.0) / T::fused(-t2, t1, t6 * t5);
-        let t8 = k(0.01) * T::fused(pinion_wy, pinion_wz, pinion_dwx);
-        let t9 = T::fused(
-            t2,
-            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3),
-            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * t5,
+        let t0 = k(2.0) * pinion_e2;
+        let t1 = k(2.0) * pinion_e0;
+        let t2 = T::fused(-pinion_e0, t1, k(1.0));
+        let t3 = T::fused(-pinion_e2, t0, t2);
+        let t4 = k(2.0) * pinion_e1;
+        let t5 = T::fused(-pinion_e1, t4, t2);
+        let t6 = pinion_e3 * t1;
+        let t7 = pinion_e2 * t4;
+        let t8 = t7 + t6;
+        let t9 = t7 - t6;
+        let t10 = k(1.0) / T::fused(-t5, t3, t9 * t8);
+        let t11 = k(0.01) * T::fused(pinion_wy, pinion_wz, pinion_dwx);
+        let t12 = T::fused(
+            t5,
+            T::fused(-pinion_e1, t1, pinion_e3 * t0),
+            T::fused(pinion_e2, t1, pinion_e3 * t4) * t8,
         );
-        let t10 = T::fused(
+        let t13 = T::fused(
             -closing0,
-            k(2.5) * (t9 / T::fused(t2, t2, t5 * t5)),
+            k(2.5) * (t12 / T::fused(t5, t5, t8 * t8)),
             k(0.01) * T::fused(pinion_wx, pinion_wz, -pinion_dwy),
         );
-        let t11 = wheel_e0 * wheel_e0;
-        let t12 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t11));
-        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t11));
-        let t14 = wheel_e0 * wheel_e1;
-        let t15 = wheel_e2 * wheel_e3;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = k(2.0) * (t15 - t14);
-        let t18 = k(1.0) / T::fused(-t13, t12, t17 * t16);
-        let t19 = k(0.025) * T::fused(wheel_wx, wheel_wz, wheel_dwy);
-        let t20 = T::fused(
-            t13,
-            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
-            k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2) * t16,
+        let t14 = k(2.0) * wheel_e0;
+        let t15 = T::fused(-wheel_e0, t14, k(1.0));
+        let t16 = T::fused(-wheel_e3, k(2.0) * wheel_e3, t15);
+        let t17 = k(2.0) * wheel_e2;
+        let t18 = T::fused(-wheel_e2, t17, t15);
+        let t19 = wheel_e1 * t14;
+        let t20 = wheel_e3 * t17;
+        let t21 = t20 + t19;
+        let t22 = t20 - t19;
+        let t23 = k(1.0) / T::fused(-t18, t16, t22 * t21);
+        let t24 = k(0.025) * T::fused(wheel_wx, wheel_wz, wheel_dwy);
+        let t25 = k(2.0) * wheel_e1;
+        let t26 = T::fused(
+            t18,
+            T::fused(-wheel_e2, t14, wheel_e3 * t25),
+            T::fused(wheel_e3, t14, wheel_e2 * t25) * t21,
         );
-        let t21 = T::fused(
+        let t27 = T::fused(
             -closing0,
-            t20 / T::fused(t13, t13, t16 * t16),
+            t26 / T::fused(t18, t18, t21 * t21),
             k(0.025) * T::fused(wheel_wx, wheel_wy, -wheel_dwz),
         );
         *lambda = [
             -(k(2.0) * pinion_dsx),
             -(k(2.0) * pinion_dsy),
             -(k(2.0) * pinion_dsz),
-            T::fused(t8, t5 * t7, t1 * t7 * t10),
-            T::fused(t8, t2 * t7, t6 * t7 * t10),
+            T::fused(t11, t8 * t10, t3 * t10 * t13),
+            T::fused(t11, t5 * t10, t9 * t10 * t13),
             -(k(4.0) * wheel_dsx),
             -(k(4.0) * wheel_dsy),
             -(k(4.0) * wheel_dsz),
-            T::fused(t19, t16 * t18, t12 * t18 * t21),
-            T::fused(t19, t13 * t18, t17 * t18 * t21),
+            T::fused(t24, t21 * t23, t16 * t23 * t27),
+            T::fused(t24, t18 * t23, t22 * t23 * t27),
             closing0,
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gear<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 106 operations (29 ±, 72 ×, 5 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 99 operations (27 ±, 67 ×, 5 ÷).
     fn project(
         &self,
         _t: T,
@@ -1137,57 +1171,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Gear<T> {
         let row8 = rows[8];
         let row9 = rows[9];
         let row10 = rows[10];
-        let t0 = pinion_e0 * pinion_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(pinion_e2, pinion_e2, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(pinion_e1, pinion_e1, t0));
-        let t3 = pinion_e0 * pinion_e3;
-        let t4 = pinion_e1 * pinion_e2;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(2.0) * (t4 - t3);
-        let t7 = T::fused(-t2, t1, t6 * t5);
-        let t8 = k(1.0) / t7;
-        let t9 = T::fused(t1 * t8, row3, t6 * t8 * row4);
-        let t10 = k(1.0) / T::fused(t2, t2, t5 * t5);
-        let t11 = T::fused(
-            t2,
-            k(2.0) * T::fused(-pinion_e0, pinion_e1, pinion_e2 * pinion_e3),
-            k(2.0) * T::fused(pinion_e0, pinion_e2, pinion_e1 * pinion_e3) * t5,
+        let t0 = k(2.0) * pinion_e2;
+        let t1 = k(2.0) * pinion_e0;
+        let t2 = T::fused(-pinion_e0, t1, k(1.0));
+        let t3 = T::fused(-pinion_e2, t0, t2);
+        let t4 = k(2.0) * pinion_e1;
+        let t5 = T::fused(-pinion_e1, t4, t2);
+        let t6 = pinion_e3 * t1;
+        let t7 = pinion_e2 * t4;
+        let t8 = t7 + t6;
+        let t9 = t7 - t6;
+        let t10 = T::fused(-t5, t3, t9 * t8);
+        let t11 = k(1.0) / t10;
+        let t12 = T::fused(t3 * t11, row3, t9 * t11 * row4);
+        let t13 = T::fused(
+            t5,
+            T::fused(-pinion_e1, t1, pinion_e3 * t0),
+            T::fused(pinion_e2, t1, pinion_e3 * t4) * t8,
         );
-        let t12 = wheel_e0 * wheel_e0;
-        let t13 = k(2.0) * (k(0.5) - T::fused(wheel_e3, wheel_e3, t12));
-        let t14 = k(2.0) * (k(0.5) - T::fused(wheel_e2, wheel_e2, t12));
-        let t15 = wheel_e0 * wheel_e1;
-        let t16 = wheel_e2 * wheel_e3;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = k(2.0) * (t16 - t15);
-        let t19 = T::fused(-t14, t13, t18 * t17);
-        let t20 = k(1.0) / t19;
-        let t21 = T::fused(t13 * t20, row8, t18 * t20 * row9);
-        let t22 = T::fused(
-            t14,
-            k(2.0) * T::fused(-wheel_e0, wheel_e2, wheel_e1 * wheel_e3),
-            k(2.0) * T::fused(wheel_e0, wheel_e3, wheel_e1 * wheel_e2) * t17,
+        let t14 = k(1.0) / T::fused(t5, t5, t8 * t8);
+        let t15 = k(2.0) * wheel_e0;
+        let t16 = T::fused(-wheel_e0, t15, k(1.0));
+        let t17 = T::fused(-wheel_e3, k(2.0) * wheel_e3, t16);
+        let t18 = k(2.0) * wheel_e2;
+        let t19 = T::fused(-wheel_e2, t18, t16);
+        let t20 = wheel_e1 * t15;
+        let t21 = wheel_e3 * t18;
+        let t22 = t21 + t20;
+        let t23 = t21 - t20;
+        let t24 = T::fused(-t19, t17, t23 * t22);
+        let t25 = k(1.0) / t24;
+        let t26 = T::fused(t17 * t25, row8, t23 * t25 * row9);
+        let t27 = k(2.0) * wheel_e1;
+        let t28 = T::fused(
+            t19,
+            T::fused(-wheel_e2, t15, wheel_e3 * t27),
+            T::fused(wheel_e3, t15, wheel_e2 * t27) * t22,
         );
-        let t23 = k(1.0) / T::fused(t14, t14, t17 * t17);
-        let t24 = row10 - T::fused(k(2.5) * (t11 * t10), t9, t23 * t22 * t21);
-        let t25 = t10 * t7;
-        let t26 = k(125.0) * t25;
-        let t27 = t19 * t23;
-        let t28 = k(20.0) * t27;
-        let t29 = t24 / T::fused(k(2.5) * t25, t26, t27 * t28);
+        let t29 = k(1.0) / T::fused(t19, t19, t22 * t22);
+        let t30 = row10 - T::fused(k(2.5) * (t14 * t13), t12, t29 * t28 * t26);
+        let t31 = t10 * t14;
+        let t32 = k(125.0) * t31;
+        let t33 = t24 * t29;
+        let t34 = k(20.0) * t33;
+        let t35 = t30 / T::fused(t32, k(2.5) * t31, t33 * t34);
         *out = [
             row0,
             row1,
             row2,
-            -T::fused(t5 * t8, row3, t2 * t8 * row4),
-            t9,
-            -(t26 * t29),
+            -T::fused(t8 * t11, row3, t5 * t11 * row4),
+            t12,
+            -(t32 * t35),
             row5,
             row6,
             row7,
-            -(t28 * t29),
-            -T::fused(t17 * t20, row8, t14 * t20 * row9),
-            t21,
+            -(t34 * t35),
+            -T::fused(t22 * t25, row8, t19 * t25 * row9),
+            t26,
         ];
     }
 }

@@ -12,8 +12,8 @@
 //! * left out: gravity
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 209 operations by rotations of the bodies; 209 operations by relative Euler parameters
-//! * project: 124 operations by rotations of the bodies; 124 operations by relative Euler parameters
+//! * accelerations: 200 operations by rotations of the bodies, doubled; 200 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 124 operations by rotations of the bodies; 124 operations by rotations of the bodies, doubled; 2 more compared
 //! * joint_accelerations: 14 operations by normal form; 18 operations by recursion
 //! * joint_accelerations_at: 43 operations by normal form; 51 operations by recursion; 1 more compared
 //! * corrected_accelerations: 61 operations by normal form in the global frame; 66 operations by normal form in the bodies' frames; 5 more compared
@@ -27,13 +27,13 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 13 | 26 | 0 | 39 | 0 of 34 | 62 | 39 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 26 | 35 | 0 | 61 | 0 of 18 | 98 | 61 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 10 of 10 | 0 | 0 |
-//! | gamma | γ | 49 | 84 | 0 | 133 | 5 of 10 | 245 | 133 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 34 | 60 | 0 | 94 | 0 of 10 | 136 | 94 |
-//! | applied_force | (f, n' − w̃'J'w') | 32 | 54 | 0 | 86 | 1 of 12 | 139 | 86 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 69 | 138 | 2 | 209 | 4 of 12 | 2103 | 210 |
-//! | multipliers | λ, the accelerations being known | 69 | 122 | 2 | 193 | 0 of 10 | 1813 | 193 |
+//! | gamma | γ | 46 | 76 | 0 | 122 | 5 of 10 | 275 | 122 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 31 | 54 | 0 | 85 | 0 of 10 | 156 | 85 |
+//! | applied_force | (f, n' − w̃'J'w') | 30 | 50 | 0 | 80 | 1 of 12 | 177 | 80 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 66 | 132 | 2 | 200 | 4 of 12 | 2702 | 201 |
+//! | multipliers | λ, the accelerations being known | 65 | 117 | 2 | 184 | 0 of 10 | 2402 | 184 |
 //! | project | (δr, δπ') that changes the rows as given | 41 | 81 | 2 | 124 | 1 of 12 | 1551 | 124 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 54 | 93 | 0 | 147 | 0 of 15 | 180 | 147 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 52 | 91 | 0 | 143 | 0 of 15 | 208 | 143 |
 //! | energy | T and V | 11 | 21 | 0 | 32 | 1 of 2 | 32 | 32 |
 //! | read_joints | joint coordinates and rates | 10 | 12 | 0 | 22 | 0 of 5 | 25 | 22 |
 //! | joint_accelerations | u̇ in joint coordinates | 5 | 9 | 0 | 14 | 0 of 2 | 31 | 14 |
@@ -122,7 +122,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Loads<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 147 operations (54 ±, 93 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 143 operations (52 ±, 91 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -147,53 +147,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(0.2) * disc_wz;
-        let t1 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t2 = k(0.2) * disc_wy;
-        let t3 = disc_e0 * disc_e2;
-        let t4 = disc_e1 * disc_e3;
-        let t5 = disc_sx - T::fused(-(k(2.0) * t1), t0, k(2.0) * (t4 + t3) * t2);
-        let t6 = disc_e0 * disc_e0;
-        let t7 = k(0.5) - T::fused(disc_e2, disc_e2, t6);
-        let t8 = disc_e0 * disc_e1;
-        let t9 = disc_e2 * disc_e3;
-        let t10 = disc_sy - T::fused(k(2.0) * t7, t0, k(2.0) * (t9 - t8) * t2);
-        let t11 = t9 + t8;
-        let t12 = k(0.5) - T::fused(disc_e3, disc_e3, t6);
-        let t13 = T::fused(
-            k(0.6) * t11,
-            disc_sz + T::fused(k(2.0) * t11, t0, k(2.0) * t12 * t2),
-            -T::fused(-(k(0.6) * t1), t5, k(0.6) * t7 * t10),
+        let t0 = k(2.0) * disc_e0;
+        let t1 = k(2.0) * disc_e1;
+        let t2 = T::fused(-disc_e3, t0, disc_e2 * t1);
+        let t3 = k(0.2) * disc_wz;
+        let t4 = disc_e2 * t0;
+        let t5 = disc_e3 * t1;
+        let t6 = k(0.2) * disc_wy;
+        let t7 = k(2.0) * disc_e2;
+        let t8 = T::fused(-disc_e0, t0, k(1.0));
+        let t9 = T::fused(-disc_e2, t7, t8);
+        let t10 = disc_e1 * t0;
+        let t11 = disc_e3 * t7;
+        let t12 = T::fused(
+            -(k(0.3) * t2),
+            disc_sx - T::fused(-t3, t2, t6 * (t5 + t4)),
+            k(0.3) * t9 * (disc_sy - T::fused(t3, t9, t6 * (t11 - t10))),
         );
-        let t14 = T::fused(
+        let t13 = t11 + t10;
+        let t14 = T::fused(-disc_e3, k(2.0) * disc_e3, t8);
+        let t15 = T::fused(k(0.3) * t13, disc_sz + T::fused(t3, t13, t6 * t14), -t12);
+        let t16 = T::fused(
             disc_wz,
-            k(0.02) * t12,
-            -T::fused(disc_wx, k(0.02) * (t4 - t3), disc_wy * (k(0.02) * t11)),
+            k(0.01) * t14,
+            -T::fused(disc_wx, k(0.01) * (t5 - t4), disc_wy * (k(0.01) * t13)),
         );
-        let t15 = k(0.1) * carriage_wz;
-        let t16 = carriage_e0 * carriage_e2;
-        let t17 = carriage_e1 * carriage_e3;
-        let t18 = k(0.1) * carriage_wx;
-        let t19 = carriage_e0 * carriage_e0;
-        let t20 = T::fused(
-            k(2.0) * (t17 - t16),
-            t15,
-            k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t19)) * t18,
-        );
-        let t21 = carriage_e0 * carriage_e3;
-        let t22 = carriage_e1 * carriage_e2;
-        let t23 = T::fused(
-            -(k(2.0) * (t22 + t21)),
-            t15,
-            k(2.0) * T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3) * t18,
-        );
+        let t17 = k(2.0) * carriage_e0;
+        let t18 = carriage_e2 * t17;
+        let t19 = k(2.0) * carriage_e1;
+        let t20 = carriage_e3 * t19;
+        let t21 = k(0.1) * carriage_wz;
+        let t22 = T::fused(-carriage_e0, t17, k(1.0));
+        let t23 = k(0.1) * carriage_wx;
         let t24 = T::fused(
-            -carriage_wx,
-            k(0.2) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t19)),
-            carriage_wy * (k(0.2) * (t22 - t21)),
+            t21,
+            t20 - t18,
+            t23 * T::fused(-carriage_e3, k(2.0) * carriage_e3, t22),
         );
-        let t25 = T::fused(carriage_wz, k(0.2) * (t17 + t16), t24)
-            + T::fused(k(5.0), carriage_sy + t23, carriage_sz - t20);
+        let t25 = carriage_e3 * t17;
+        let t26 = carriage_e2 * t19;
+        let t27 = T::fused(
+            -t21,
+            t26 + t25,
+            t23 * T::fused(-carriage_e1, t17, carriage_e3 * (k(2.0) * carriage_e2)),
+        );
+        let t28 = T::fused(
+            -carriage_wx,
+            k(0.1) * T::fused(-carriage_e1, t19, t22),
+            carriage_wy * (k(0.1) * (t26 - t25)),
+        );
+        let t29 = T::fused(carriage_wz, k(0.1) * (t20 + t18), t28)
+            + T::fused(k(5.0), carriage_sy + t27, carriage_sz - t24);
         *dy = [
             disc_sx,
             disc_sy,
@@ -261,7 +265,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Loads<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            t25 + (t14 + t13),
+            t29 + (t16 + t15),
         ];
     }
 }
@@ -278,7 +282,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 5]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 147 operations (54 ±, 93 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 143 operations (52 ±, 91 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -303,53 +307,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = k(0.2) * disc_wz;
-        let t1 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t2 = k(0.2) * disc_wy;
-        let t3 = disc_e0 * disc_e2;
-        let t4 = disc_e1 * disc_e3;
-        let t5 = disc_sx - T::fused(-(k(2.0) * t1), t0, k(2.0) * (t4 + t3) * t2);
-        let t6 = disc_e0 * disc_e0;
-        let t7 = k(0.5) - T::fused(disc_e2, disc_e2, t6);
-        let t8 = disc_e0 * disc_e1;
-        let t9 = disc_e2 * disc_e3;
-        let t10 = disc_sy - T::fused(k(2.0) * t7, t0, k(2.0) * (t9 - t8) * t2);
-        let t11 = t9 + t8;
-        let t12 = k(0.5) - T::fused(disc_e3, disc_e3, t6);
-        let t13 = T::fused(
-            k(0.6) * t11,
-            disc_sz + T::fused(k(2.0) * t11, t0, k(2.0) * t12 * t2),
-            -T::fused(-(k(0.6) * t1), t5, k(0.6) * t7 * t10),
+        let t0 = k(2.0) * disc_e0;
+        let t1 = k(2.0) * disc_e1;
+        let t2 = T::fused(-disc_e3, t0, disc_e2 * t1);
+        let t3 = k(0.2) * disc_wz;
+        let t4 = disc_e2 * t0;
+        let t5 = disc_e3 * t1;
+        let t6 = k(0.2) * disc_wy;
+        let t7 = k(2.0) * disc_e2;
+        let t8 = T::fused(-disc_e0, t0, k(1.0));
+        let t9 = T::fused(-disc_e2, t7, t8);
+        let t10 = disc_e1 * t0;
+        let t11 = disc_e3 * t7;
+        let t12 = T::fused(
+            -(k(0.3) * t2),
+            disc_sx - T::fused(-t3, t2, t6 * (t5 + t4)),
+            k(0.3) * t9 * (disc_sy - T::fused(t3, t9, t6 * (t11 - t10))),
         );
-        let t14 = T::fused(
+        let t13 = t11 + t10;
+        let t14 = T::fused(-disc_e3, k(2.0) * disc_e3, t8);
+        let t15 = T::fused(k(0.3) * t13, disc_sz + T::fused(t3, t13, t6 * t14), -t12);
+        let t16 = T::fused(
             disc_wz,
-            k(0.02) * t12,
-            -T::fused(disc_wx, k(0.02) * (t4 - t3), disc_wy * (k(0.02) * t11)),
+            k(0.01) * t14,
+            -T::fused(disc_wx, k(0.01) * (t5 - t4), disc_wy * (k(0.01) * t13)),
         );
-        let t15 = k(0.1) * carriage_wz;
-        let t16 = carriage_e0 * carriage_e2;
-        let t17 = carriage_e1 * carriage_e3;
-        let t18 = k(0.1) * carriage_wx;
-        let t19 = carriage_e0 * carriage_e0;
-        let t20 = T::fused(
-            k(2.0) * (t17 - t16),
-            t15,
-            k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t19)) * t18,
-        );
-        let t21 = carriage_e0 * carriage_e3;
-        let t22 = carriage_e1 * carriage_e2;
-        let t23 = T::fused(
-            -(k(2.0) * (t22 + t21)),
-            t15,
-            k(2.0) * T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3) * t18,
-        );
+        let t17 = k(2.0) * carriage_e0;
+        let t18 = carriage_e2 * t17;
+        let t19 = k(2.0) * carriage_e1;
+        let t20 = carriage_e3 * t19;
+        let t21 = k(0.1) * carriage_wz;
+        let t22 = T::fused(-carriage_e0, t17, k(1.0));
+        let t23 = k(0.1) * carriage_wx;
         let t24 = T::fused(
-            -carriage_wx,
-            k(0.2) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t19)),
-            carriage_wy * (k(0.2) * (t22 - t21)),
+            t21,
+            t20 - t18,
+            t23 * T::fused(-carriage_e3, k(2.0) * carriage_e3, t22),
         );
-        let t25 = T::fused(carriage_wz, k(0.2) * (t17 + t16), t24)
-            + T::fused(k(5.0), carriage_sy + t23, carriage_sz - t20);
+        let t25 = carriage_e3 * t17;
+        let t26 = carriage_e2 * t19;
+        let t27 = T::fused(
+            -t21,
+            t26 + t25,
+            t23 * T::fused(-carriage_e1, t17, carriage_e3 * (k(2.0) * carriage_e2)),
+        );
+        let t28 = T::fused(
+            -carriage_wx,
+            k(0.1) * T::fused(-carriage_e1, t19, t22),
+            carriage_wy * (k(0.1) * (t26 - t25)),
+        );
+        let t29 = T::fused(carriage_wz, k(0.1) * (t20 + t18), t28)
+            + T::fused(k(5.0), carriage_sy + t27, carriage_sz - t24);
         *dy = [
             disc_sx,
             disc_sy,
@@ -417,7 +425,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
             accelerations[9],
             accelerations[10],
             accelerations[11],
-            t25 + (t14 + t13),
+            t29 + (t16 + t15),
         ];
     }
     /// Writes Φ: 58 operations (26 ±, 32 ×, 0 ÷).
@@ -443,9 +451,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
         let t3 = carriage_e1 * carriage_e2;
         let t4 = carriage_e2 * carriage_e2;
         let t5 = T::fused(
-            k(0.6),
+            -k(0.6),
             T::fused(-k(1.6), k(0.5) - t1, k(1.2) * (t3 - t2)),
-            k(0.8) * T::fused(-k(1.6), t3 + t2, k(1.2) * (k(0.5) - (t0 + t4))),
+            k(0.8) * T::fused(-k(1.2), k(0.5) - (t0 + t4), k(1.6) * (t3 + t2)),
         );
         let t6 = carriage_e0 * carriage_e2;
         let t7 = carriage_e1 * carriage_e3;
@@ -464,14 +472,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
             k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3),
             T::fused(k(0.8), carriage_ry, k(0.6) * (k(1.0) - carriage_rx)),
             carriage_rz,
-            -t5,
+            t5,
             T::fused(k(1.6), t7 - t6, k(1.2) * (t9 + t8)),
             T::fused(-k(1.2), t7 + t6, k(1.6) * (t9 - t8)),
             t10 - k(1.0),
             T::fused(carriage_e3, carriage_e3, t1 + t4) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 94 operations (34 ±, 60 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 85 operations (31 ±, 54 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -493,64 +501,64 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = disc_e0 * disc_e0;
-        let t1 = disc_e0 * disc_e3;
-        let t2 = disc_e1 * disc_e2;
-        let t3 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t0)),
+        let t0 = k(2.0) * disc_e1;
+        let t1 = k(2.0) * disc_e0;
+        let t2 = T::fused(-disc_e0, t1, k(1.0));
+        let t3 = disc_e3 * t1;
+        let t4 = disc_e2 * t0;
+        let t5 = T::fused(
             disc_wy,
-            k(2.0) * (t2 - t1) * disc_wx,
+            t4 + t3,
+            disc_wx * T::fused(-disc_e2, k(2.0) * disc_e2, t2),
         );
-        let t4 = T::fused(
-            k(2.0) * (t2 + t1),
-            disc_wy,
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t0)) * disc_wx,
-        );
-        let t5 = carriage_e0 * carriage_e3;
-        let t6 = carriage_e1 * carriage_e2;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = carriage_e0 * carriage_e1;
-        let t9 = carriage_e2 * carriage_e3;
-        let t10 = k(2.0) * (t9 - t8);
-        let t11 = carriage_e0 * carriage_e0;
-        let t12 = k(2.0) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t11));
-        let t13 = T::fused(
+        let t6 = k(2.0) * carriage_e0;
+        let t7 = carriage_e3 * t6;
+        let t8 = k(2.0) * carriage_e1;
+        let t9 = carriage_e2 * t8;
+        let t10 = t9 + t7;
+        let t11 = carriage_e1 * t6;
+        let t12 = k(2.0) * carriage_e2;
+        let t13 = carriage_e3 * t12;
+        let t14 = t13 - t11;
+        let t15 = T::fused(-carriage_e0, t6, k(1.0));
+        let t16 = T::fused(-carriage_e2, t12, t15);
+        let t17 = T::fused(
             -k(0.6),
-            T::fused(-t7, carriage_wz, t10 * carriage_wx),
-            k(0.8) * T::fused(t12, carriage_wz, t10 * carriage_wy),
+            T::fused(-carriage_wz, t10, carriage_wx * t14),
+            k(0.8) * T::fused(carriage_wz, t16, carriage_wy * t14),
         );
-        let t14 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t11));
-        let t15 = carriage_e0 * carriage_e2;
-        let t16 = carriage_e1 * carriage_e3;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = k(2.0) * (t6 - t5);
-        let t19 = T::fused(
+        let t18 = T::fused(-carriage_e1, t8, t15);
+        let t19 = carriage_e2 * t6;
+        let t20 = carriage_e3 * t8;
+        let t21 = t20 + t19;
+        let t22 = t9 - t7;
+        let t23 = T::fused(
             -k(0.6),
-            T::fused(t14, carriage_wz, t17 * carriage_wx),
-            k(0.8) * T::fused(-t18, carriage_wz, t17 * carriage_wy),
+            T::fused(carriage_wz, t18, carriage_wx * t21),
+            k(0.8) * T::fused(-carriage_wz, t22, carriage_wy * t21),
         );
-        let t20 = k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t11));
-        let t21 = T::fused(
+        let t24 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t15);
+        let t25 = T::fused(
             -k(0.6),
-            T::fused(k(2.0) * (t16 - t15), carriage_wz, t20 * carriage_wx),
-            k(0.8) * T::fused(k(2.0) * (t9 + t8), carriage_wz, t20 * carriage_wy),
+            T::fused(carriage_wz, t20 - t19, carriage_wx * t24),
+            k(0.8) * T::fused(carriage_wz, t13 + t11, carriage_wy * t24),
         );
-        let t22 = T::fused(
+        let t26 = T::fused(
             k(0.8),
-            T::fused(t7, carriage_wy, t12 * carriage_wx),
-            k(0.6) * T::fused(t14, carriage_wy, t18 * carriage_wx),
+            T::fused(carriage_wy, t10, carriage_wx * t16),
+            k(0.6) * T::fused(carriage_wy, t18, carriage_wx * t22),
         );
         *out = [
             disc_sx,
             disc_sy,
             disc_sz,
-            -t3,
-            t4,
+            -T::fused(disc_wy, T::fused(-disc_e1, t0, t2), disc_wx * (t4 - t3)),
+            t5,
             T::fused(-k(0.6), carriage_sx, k(0.8) * carriage_sy),
             carriage_sz,
-            T::fused(-k(0.8), t13, k(0.6) * t19),
-            t21,
-            t22,
+            T::fused(-k(0.8), t17, k(0.6) * t23),
+            t25,
+            t26,
         ];
     }
     /// Kinetic and potential energy: 32 operations (11 ±, 21 ×, 0 ÷).
@@ -960,7 +968,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 133 operations (49 ±, 84 ×, 0 ÷).
+    /// Writes γ: 122 operations (46 ±, 76 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -977,81 +985,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = disc_wx * disc_wz;
-        let t1 = disc_e0 * disc_e0;
-        let t2 = disc_wy * disc_wz;
-        let t3 = disc_e0 * disc_e3;
-        let t4 = disc_e1 * disc_e2;
-        let t5 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t1))),
-            t0,
-            k(2.0) * (t4 - t3) * t2,
+        let t0 = k(2.0) * disc_e1;
+        let t1 = k(2.0) * disc_e0;
+        let t2 = T::fused(-disc_e0, t1, k(1.0));
+        let t3 = disc_wx * disc_wz;
+        let t4 = disc_e3 * t1;
+        let t5 = disc_e2 * t0;
+        let t6 = disc_wy * disc_wz;
+        let t7 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t8 = T::fused(
+            t7,
+            T::fused(disc_e2, t1, disc_e3 * t0),
+            -T::fused(-t3, T::fused(-disc_e1, t0, t2), t6 * (t5 - t4)),
         );
-        let t6 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
-        let t7 = T::fused(
-            -(k(2.0) * (t4 + t3)),
-            t0,
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t1)) * t2,
+        let t9 = k(2.0) * disc_e2;
+        let t10 = T::fused(
+            t7,
+            T::fused(-disc_e1, t1, disc_e3 * t9),
+            T::fused(-t3, t5 + t4, t6 * T::fused(-disc_e2, t9, t2)),
         );
-        let t8 = carriage_wy * carriage_wy;
-        let t9 = carriage_wz * carriage_wz;
-        let t10 = t9 + t8;
-        let t11 = carriage_e0 * carriage_e0;
-        let t12 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t11));
-        let t13 = carriage_wx * carriage_wy;
-        let t14 = carriage_e0 * carriage_e3;
-        let t15 = carriage_e1 * carriage_e2;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = carriage_wx * carriage_wz;
-        let t18 = carriage_e0 * carriage_e2;
-        let t19 = carriage_e1 * carriage_e3;
-        let t20 = k(2.0) * (t19 + t18);
-        let t21 = carriage_wx * carriage_wx;
-        let t22 = t9 + t21;
-        let t23 = carriage_wy * carriage_wz;
-        let t24 = T::fused(
+        let t11 = k(2.0) * carriage_e1;
+        let t12 = k(2.0) * carriage_e0;
+        let t13 = T::fused(-carriage_e0, t12, k(1.0));
+        let t14 = T::fused(-carriage_e1, t11, t13);
+        let t15 = carriage_wy * carriage_wy;
+        let t16 = carriage_wz * carriage_wz;
+        let t17 = t16 + t15;
+        let t18 = carriage_e3 * t12;
+        let t19 = carriage_e2 * t11;
+        let t20 = t19 - t18;
+        let t21 = carriage_wx * carriage_wy;
+        let t22 = carriage_e2 * t12;
+        let t23 = carriage_e3 * t11;
+        let t24 = t23 + t22;
+        let t25 = carriage_wx * carriage_wz;
+        let t26 = carriage_wx * carriage_wx;
+        let t27 = t16 + t26;
+        let t28 = carriage_wy * carriage_wz;
+        let t29 = T::fused(
             k(0.8),
-            T::fused(t20, t17, T::fused(t12, t10, t16 * t13)),
-            k(0.6) * T::fused(t20, t23, -T::fused(t12, t13, t16 * t22)),
+            T::fused(t25, t24, T::fused(t17, t14, t21 * t20)),
+            k(0.6) * T::fused(t28, t24, -T::fused(t21, t14, t27 * t20)),
         );
-        let t25 = k(2.0) * (t15 + t14);
-        let t26 = k(2.0) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t11));
-        let t27 = carriage_e0 * carriage_e1;
-        let t28 = carriage_e2 * carriage_e3;
-        let t29 = k(2.0) * (t28 - t27);
-        let t30 = T::fused(
-            k(0.8),
-            T::fused(t29, t17, -T::fused(t25, t10, t26 * t13)),
-            k(0.6) * T::fused(t29, t23, T::fused(t25, t13, t26 * t22)),
-        );
-        let t31 = k(2.0) * (t19 - t18);
-        let t32 = k(2.0) * (t28 + t27);
-        let t33 = k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t11));
-        let t34 = T::fused(
-            k(0.8),
-            T::fused(t33, t17, -T::fused(-t31, t10, t32 * t13)),
-            k(0.6) * T::fused(t33, t23, T::fused(-t31, t13, t32 * t22)),
-        );
-        let t35 = t8 + t21;
+        let t30 = t19 + t18;
+        let t31 = k(2.0) * carriage_e2;
+        let t32 = T::fused(-carriage_e2, t31, t13);
+        let t33 = carriage_e1 * t12;
+        let t34 = carriage_e3 * t31;
+        let t35 = t34 - t33;
         let t36 = T::fused(
+            k(0.8),
+            T::fused(t25, t35, -T::fused(t17, t30, t21 * t32)),
+            k(0.6) * T::fused(t28, t35, T::fused(t21, t30, t27 * t32)),
+        );
+        let t37 = t23 - t22;
+        let t38 = t34 + t33;
+        let t39 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t13);
+        let t40 = T::fused(
+            k(0.8),
+            T::fused(t25, t39, -T::fused(-t17, t37, t21 * t38)),
+            k(0.6) * T::fused(t28, t39, T::fused(-t21, t37, t27 * t38)),
+        );
+        let t41 = t15 + t26;
+        let t42 = T::fused(
             -k(0.6),
-            T::fused(t20, t35, -T::fused(-t12, t17, t16 * t23)),
-            k(0.8) * T::fused(t29, t35, T::fused(-t25, t17, t26 * t23)),
+            T::fused(t41, t24, -T::fused(-t25, t14, t28 * t20)),
+            k(0.8) * T::fused(t41, t35, T::fused(-t25, t30, t28 * t32)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3), t6, -t5),
-            T::fused(k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3), t6, t7),
+            t8,
+            t10,
             k(0.0),
             k(0.0),
-            T::fused(-k(0.8), t30, k(0.6) * t24),
-            t34,
-            t36,
+            T::fused(-k(0.8), t36, k(0.6) * t29),
+            t40,
+            t42,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 86 operations (32 ±, 54 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 80 operations (30 ±, 50 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1068,61 +1082,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t1 = k(0.6) * t0;
-        let t2 = disc_e0 * disc_e0;
-        let t3 = k(0.5) - T::fused(disc_e2, disc_e2, t2);
-        let t4 = k(0.6) * t3;
-        let t5 = disc_e0 * disc_e1;
-        let t6 = disc_e2 * disc_e3;
-        let t7 = t6 + t5;
-        let t8 = k(0.6) * t7;
-        let t9 = disc_e0 * disc_e2;
-        let t10 = disc_e1 * disc_e3;
-        let t11 = T::fused(-(k(2.0) * (t10 + t9)), t1, k(2.0) * (t6 - t5) * t4);
-        let t12 = k(0.5) - T::fused(disc_e3, disc_e3, t2);
-        let t13 = T::fused(
-            k(0.01),
-            disc_wx * disc_wz,
-            -T::fused(-k(0.2), T::fused(k(2.0) * t12, t8, t11), k(0.02) * t7),
-        );
-        let t14 = T::fused(k(2.0) * t7, t8, T::fused(k(2.0) * t0, t1, k(2.0) * t3 * t4));
-        let t15 = carriage_e0 * carriage_e0;
+        let t0 = k(2.0) * disc_e0;
+        let t1 = k(2.0) * disc_e1;
+        let t2 = T::fused(-disc_e3, t0, disc_e2 * t1);
+        let t3 = k(0.3) * t2;
+        let t4 = k(2.0) * disc_e2;
+        let t5 = T::fused(-disc_e0, t0, k(1.0));
+        let t6 = T::fused(-disc_e2, t4, t5);
+        let t7 = k(0.3) * t6;
+        let t8 = disc_e1 * t0;
+        let t9 = disc_e3 * t4;
+        let t10 = t9 + t8;
+        let t11 = k(0.3) * t10;
+        let t12 = disc_e2 * t0;
+        let t13 = disc_e3 * t1;
+        let t14 = T::fused(-disc_e3, k(2.0) * disc_e3, t5);
+        let t15 = T::fused(t14, t11, T::fused(-(t13 + t12), t3, (t9 - t8) * t7));
         let t16 = T::fused(
-            -k(10.0),
-            T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3),
-            k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t15)),
+            k(0.2),
+            T::fused(t10, t11, T::fused(t2, t3, t6 * t7)),
+            k(0.01) * t14,
         );
-        let t17 = carriage_e0 * carriage_e3;
-        let t18 = carriage_e1 * carriage_e2;
-        let t19 = carriage_e0 * carriage_e2;
-        let t20 = carriage_e1 * carriage_e3;
-        let t21 = T::fused(
-            k(2.0),
-            t20 + t19,
-            -T::fused(k(10.0), t18 + t17, k(2.0) * (t20 - t19)),
+        let t17 = k(2.0) * carriage_e0;
+        let t18 = T::fused(-carriage_e0, t17, k(1.0));
+        let t19 = T::fused(
+            -k(5.0),
+            T::fused(-carriage_e1, t17, carriage_e3 * (k(2.0) * carriage_e2)),
+            T::fused(-carriage_e3, k(2.0) * carriage_e3, t18),
+        );
+        let t20 = k(2.0) * carriage_e1;
+        let t21 = carriage_e3 * t17;
+        let t22 = carriage_e2 * t20;
+        let t23 = carriage_e2 * t17;
+        let t24 = carriage_e3 * t20;
+        let t25 = T::fused(
+            carriage_wx,
+            carriage_wy,
+            -(t24 + t23 - T::fused(k(5.0), t22 + t21, t24 - t23)),
         );
         *out = [
-            t1,
-            -t4,
-            t8,
-            -(k(0.01) * T::fused(disc_wy, disc_wz, k(2.0) * (t10 - t9))),
-            t13,
-            T::fused(k(0.2), t14, k(0.02) * t12),
+            t3,
+            -t7,
+            t11,
+            -(k(0.01) * T::fused(disc_wy, disc_wz, t13 - t12)),
+            T::fused(k(0.01), disc_wx * disc_wz, -T::fused(-k(0.2), t15, k(0.01) * t10)),
+            t16,
             k(0.0),
             k(5.0),
             k(1.0),
-            -(k(0.1)
-                * T::fused(
-                    k(2.0),
-                    k(0.5) - T::fused(carriage_e1, carriage_e1, t15),
-                    t16,
-                )),
-            k(0.1) * T::fused(carriage_wx, carriage_wz, k(2.0) * (t18 - t17)),
-            -(k(0.1) * T::fused(carriage_wx, carriage_wy, -t21)),
+            -(k(0.1) * (T::fused(-carriage_e1, t20, t18) + t19)),
+            k(0.1) * T::fused(carriage_wx, carriage_wz, t22 - t21),
+            -(k(0.1) * t25),
         ];
     }
-    /// Solves eq. (17): 209 operations (69 ±, 138 ×, 2 ÷).
+    /// Solves eq. (17): 200 operations (66 ±, 132 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let disc_e0 = y[3];
@@ -1139,115 +1152,109 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_wx = y[23];
         let carriage_wy = y[24];
         let carriage_wz = y[25];
-        let t0 = disc_e0 * disc_e0;
-        let t1 = k(0.5) - T::fused(disc_e3, disc_e3, t0);
-        let t2 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy) * (k(0.5) / t1);
-        let t3 = T::fused(disc_e0, disc_e1, disc_e2 * disc_e3);
-        let t4 = k(2.0) * t3;
-        let t5 = T::fused(
-            -(k(2.0) * T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3)),
-            t2,
-            disc_wx * disc_wz,
+        let t0 = k(2.0) * disc_e0;
+        let t1 = T::fused(-disc_e0, t0, k(1.0));
+        let t2 = T::fused(-disc_e3, k(2.0) * disc_e3, t1);
+        let t3 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy) / t2;
+        let t4 = k(2.0) * disc_e2;
+        let t5 = T::fused(disc_e1, t0, disc_e3 * t4);
+        let t6 = k(2.0) * disc_e1;
+        let t7 = T::fused(-disc_e3, t0, disc_e2 * t6);
+        let t8 = T::fused(-disc_e2, t4, t1);
+        let t9 = T::fused(
+            t5,
+            k(0.3) * t5,
+            T::fused(t7, k(0.3) * t7, t8 * (k(0.3) * t8)),
         );
-        let t6 = T::fused(-disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t7 = k(0.5) - T::fused(disc_e2, disc_e2, t0);
-        let t8 = T::fused(k(2.0) * t6, k(0.6) * t6, k(2.0) * t7 * (k(0.6) * t7));
-        let t9 = k(50.0) * T::fused(k(0.2), T::fused(t4, k(0.6) * t3, t8), k(0.02) * t1);
-        let t10 = carriage_wx * carriage_wz;
-        let t11 = carriage_e0 * carriage_e0;
-        let t12 = k(0.5) - T::fused(carriage_e1, carriage_e1, t11);
-        let t13 = k(2.0) * t12;
-        let t14 = carriage_wy * carriage_wz;
-        let t15 = carriage_e0 * carriage_e3;
-        let t16 = carriage_e1 * carriage_e2;
+        let t10 = k(2.0) * carriage_e1;
+        let t11 = k(2.0) * carriage_e0;
+        let t12 = T::fused(-carriage_e0, t11, k(1.0));
+        let t13 = T::fused(-carriage_e1, t10, t12);
+        let t14 = carriage_wx * carriage_wz;
+        let t15 = carriage_e3 * t11;
+        let t16 = carriage_e2 * t10;
         let t17 = t16 - t15;
-        let t18 = k(2.0) * t17;
-        let t19 = carriage_wx * carriage_wx;
-        let t20 = carriage_wy * carriage_wy;
+        let t18 = carriage_wy * carriage_wz;
+        let t19 = carriage_e2 * t11;
+        let t20 = carriage_e3 * t10;
         let t21 = t20 + t19;
-        let t22 = carriage_e0 * carriage_e2;
-        let t23 = carriage_e1 * carriage_e3;
+        let t22 = carriage_wx * carriage_wx;
+        let t23 = carriage_wy * carriage_wy;
         let t24 = t23 + t22;
-        let t25 = k(2.0) * t24;
-        let t26 = t16 + t15;
-        let t27 = k(2.0) * t26;
-        let t28 = k(0.5) - T::fused(carriage_e2, carriage_e2, t11);
-        let t29 = k(2.0) * t28;
-        let t30 = carriage_e0 * carriage_e1;
-        let t31 = carriage_e2 * carriage_e3;
-        let t32 = t31 - t30;
-        let t33 = k(2.0) * t32;
-        let t34 = T::fused(
+        let t25 = t16 + t15;
+        let t26 = k(2.0) * carriage_e2;
+        let t27 = T::fused(-carriage_e2, t26, t12);
+        let t28 = carriage_e1 * t11;
+        let t29 = carriage_e3 * t26;
+        let t30 = t29 - t28;
+        let t31 = T::fused(
             -k(0.6),
-            T::fused(t25, t21, -T::fused(-t13, t10, t18 * t14)),
-            k(0.8) * T::fused(t33, t21, T::fused(-t27, t10, t29 * t14)),
+            T::fused(t24, t21, -T::fused(-t14, t13, t18 * t17)),
+            k(0.8) * T::fused(t24, t30, T::fused(-t14, t25, t18 * t27)),
         );
-        let t35 = k(1.6) * t28;
-        let t36 = T::fused(k(1.2), t17, t35);
-        let t37 = T::fused(-k(1.28), t32, k(0.96) * t24);
-        let t38 = t23 - t22;
-        let t39 = t31 + t30;
-        let t40 = T::fused(-k(1.2), t38, k(1.6) * t39);
-        let t41 = k(0.5) - T::fused(carriage_e3, carriage_e3, t11);
-        let t42 = k(1.6) * t41;
-        let t43 = k(1.2) * t12;
-        let t44 = T::fused(
+        let t32 = k(0.8) * t27;
+        let t33 = T::fused(k(0.6), t17, t32);
+        let t34 = T::fused(-k(0.64), t30, k(0.48) * t21);
+        let t35 = t20 - t19;
+        let t36 = t29 + t28;
+        let t37 = T::fused(-k(0.6), t35, k(0.8) * t36);
+        let t38 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t12);
+        let t39 = k(0.8) * t38;
+        let t40 = k(0.6) * t13;
+        let t41 = T::fused(
             k(0.8),
-            T::fused(k(1.2), t26, t35),
-            k(0.6) * T::fused(k(1.6), t17, t43),
+            T::fused(k(0.6), t25, t32),
+            k(0.6) * T::fused(k(0.8), t17, t40),
         );
-        let t45 = T::fused(t40, t37, t44 * t42);
-        let t46 = T::fused(k(1.6), t26, t43);
-        let t47 = k(1.2) * t41;
-        let t48 = T::fused(-k(0.96), t32, k(0.72) * t24);
-        let t49 = T::fused(t44, t47, t40 * t48);
-        let t50 = k(1.0) / T::fused(t45, t36, t49 * t46);
-        let t51 = carriage_wz * carriage_wz;
-        let t52 = t51 + t20;
-        let t53 = carriage_wx * carriage_wy;
-        let t54 = t51 + t19;
+        let t42 = T::fused(t37, t34, t41 * t39);
+        let t43 = T::fused(k(0.8), t25, t40);
+        let t44 = k(0.6) * t38;
+        let t45 = T::fused(-k(0.48), t30, k(0.36) * t21);
+        let t46 = T::fused(t41, t44, t37 * t45);
+        let t47 = k(1.0) / T::fused(t42, t33, t46 * t43);
+        let t48 = carriage_wz * carriage_wz;
+        let t49 = t48 + t23;
+        let t50 = carriage_wx * carriage_wy;
+        let t51 = t48 + t22;
+        let t52 = T::fused(
+            k(0.8),
+            T::fused(t14, t21, T::fused(t49, t13, t50 * t17)),
+            k(0.6) * T::fused(t18, t21, -T::fused(t50, t13, t51 * t17)),
+        );
+        let t53 = T::fused(
+            k(0.8),
+            T::fused(t14, t30, -T::fused(t49, t25, t50 * t27)),
+            k(0.6) * T::fused(t18, t30, T::fused(t50, t25, t51 * t27)),
+        );
+        let t54 = T::fused(-k(0.6), t52, k(0.8) * t53);
         let t55 = T::fused(
             k(0.8),
-            T::fused(t25, t10, T::fused(t13, t52, t18 * t53)),
-            k(0.6) * T::fused(t25, t14, -T::fused(t13, t53, t18 * t54)),
+            T::fused(t14, t38, -T::fused(-t49, t35, t50 * t36)),
+            k(0.6) * T::fused(t18, t38, T::fused(-t50, t35, t51 * t36)),
         );
-        let t56 = T::fused(
-            k(0.8),
-            T::fused(t33, t10, -T::fused(t27, t52, t29 * t53)),
-            k(0.6) * T::fused(t33, t14, T::fused(t27, t53, t29 * t54)),
-        );
-        let t57 = T::fused(-k(0.6), t55, k(0.8) * t56);
-        let t58 = k(2.0) * t38;
-        let t59 = k(2.0) * t39;
-        let t60 = k(2.0) * t41;
-        let t61 = T::fused(
-            k(0.8),
-            T::fused(t60, t10, -T::fused(-t58, t52, t59 * t53)),
-            k(0.6) * T::fused(t60, t14, T::fused(-t58, t53, t59 * t54)),
-        );
-        let t62 = T::fused(-(t50 * (t40 * t46)), t57, t50 * (t44 * t46) * t61);
-        let t63 = T::fused(-t57, t50 * (t40 * t36), t61 * (t50 * (t44 * t36)));
-        let t64 = T::fused(
-            t57,
-            t50 * T::fused(t47, t46, t42 * t36),
-            t61 * (t50 * T::fused(t37, t36, t48 * t46)),
+        let t56 = T::fused(-(t47 * (t37 * t43)), t54, t47 * (t41 * t43) * t55);
+        let t57 = T::fused(-t54, t47 * (t37 * t33), t55 * (t47 * (t41 * t33)));
+        let t58 = T::fused(
+            t54,
+            t47 * T::fused(t44, t43, t39 * t33),
+            t55 * (t47 * T::fused(t34, t33, t45 * t43)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(-t4, t2, disc_wy * disc_wz),
-            -t5,
-            t9,
+            T::fused(-t5, t3, disc_wy * disc_wz),
+            T::fused(-disc_wx, disc_wz, T::fused(-disc_e2, t0, disc_e3 * t6) * t3),
+            k(50.0) * T::fused(k(0.2), t9, k(0.01) * t2),
             k(1.2),
             k(0.9),
             k(0.0),
-            T::fused(t45 * t50, t34, -t62),
-            T::fused(t34, t49 * t50, t63),
-            T::fused(t34, t50 * T::fused(-t48, t42, t47 * t37), t64),
+            T::fused(t42 * t47, t31, -t56),
+            T::fused(t31, t46 * t47, t57),
+            T::fused(t31, t47 * T::fused(-t45, t39, t44 * t34), t58),
         ];
     }
-    /// Writes λ: 193 operations (69 ±, 122 ×, 2 ÷).
+    /// Writes λ: 184 operations (65 ±, 117 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1281,104 +1288,103 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Loads<T> {
         let carriage_dwx = accelerations[9];
         let carriage_dwy = accelerations[10];
         let carriage_dwz = accelerations[11];
-        let t0 = disc_e0 * disc_e3;
-        let t1 = disc_e1 * disc_e2;
-        let t2 = t1 - t0;
-        let t3 = k(0.6) * t2;
-        let t4 = disc_e0 * disc_e0;
-        let t5 = k(0.5) - T::fused(disc_e2, disc_e2, t4);
-        let t6 = k(0.6) * t5;
-        let t7 = disc_e0 * disc_e1;
-        let t8 = disc_e2 * disc_e3;
-        let t9 = t8 + t7;
-        let t10 = k(0.6) * t9;
-        let t11 = k(2.0) * (t1 + t0);
-        let t12 = k(2.0) * t2;
-        let t13 = k(2.0) * t5;
-        let t14 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
-        let t15 = k(1.0) / T::fused(-t12, t11, t14 * t13);
-        let t16 = disc_e0 * disc_e2;
-        let t17 = disc_e1 * disc_e3;
-        let t18 = k(0.01)
-            * (disc_dwx + T::fused(disc_wy, disc_wz, k(2.0) * (t17 - t16)));
-        let t19 = T::fused(-(k(2.0) * (t17 + t16)), t3, k(2.0) * (t8 - t7) * t6);
+        let t0 = k(2.0) * disc_e0;
+        let t1 = disc_e3 * t0;
+        let t2 = k(2.0) * disc_e1;
+        let t3 = disc_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = k(0.3) * t4;
+        let t6 = k(2.0) * disc_e2;
+        let t7 = T::fused(-disc_e0, t0, k(1.0));
+        let t8 = T::fused(-disc_e2, t6, t7);
+        let t9 = k(0.3) * t8;
+        let t10 = disc_e1 * t0;
+        let t11 = disc_e3 * t6;
+        let t12 = t11 + t10;
+        let t13 = k(0.3) * t12;
+        let t14 = disc_e2 * t0;
+        let t15 = disc_e3 * t2;
+        let t16 = k(0.01) * (disc_dwx + T::fused(disc_wy, disc_wz, t15 - t14));
+        let t17 = t3 + t1;
+        let t18 = T::fused(-disc_e1, t2, t7);
+        let t19 = k(1.0) / T::fused(-t4, t17, t18 * t8);
         let t20 = T::fused(
-            -k(0.2),
-            T::fused(k(2.0) * (k(0.5) - T::fused(disc_e3, disc_e3, t4)), t10, t19),
-            k(0.02) * t9,
+            T::fused(-disc_e3, k(2.0) * disc_e3, t7),
+            t13,
+            T::fused(-(t15 + t14), t5, (t11 - t10) * t9),
         );
         let t21 = T::fused(
             k(0.01),
             disc_dwy,
-            -T::fused(k(0.01), disc_wx * disc_wz, -t20),
+            -T::fused(k(0.01), disc_wx * disc_wz, -T::fused(-k(0.2), t20, k(0.01) * t12)),
         );
-        let t22 = carriage_e0 * carriage_e1;
-        let t23 = carriage_e2 * carriage_e3;
-        let t24 = t23 - t22;
-        let t25 = carriage_e0 * carriage_e0;
-        let t26 = k(0.5) - T::fused(carriage_e3, carriage_e3, t25);
-        let t27 = k(0.5) - T::fused(carriage_e1, carriage_e1, t25);
-        let t28 = k(0.1)
-            * (carriage_dwx
-                + T::fused(k(2.0), t27, T::fused(-k(10.0), t24, k(2.0) * t26)));
-        let t29 = k(1.2) * t27;
-        let t30 = carriage_e0 * carriage_e3;
-        let t31 = carriage_e1 * carriage_e2;
-        let t32 = t31 + t30;
-        let t33 = T::fused(k(1.6), t32, t29);
-        let t34 = carriage_e0 * carriage_e2;
-        let t35 = carriage_e1 * carriage_e3;
-        let t36 = t35 - t34;
-        let t37 = T::fused(-k(1.2), t36, k(1.6) * (t23 + t22));
-        let t38 = k(1.6) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t25));
-        let t39 = t31 - t30;
-        let t40 = T::fused(k(1.2), t39, t38);
-        let t41 = t35 + t34;
-        let t42 = T::fused(-k(1.28), t24, k(0.96) * t41);
-        let t43 = k(1.6) * t26;
-        let t44 = T::fused(
+        let t22 = k(2.0) * carriage_e0;
+        let t23 = carriage_e1 * t22;
+        let t24 = k(2.0) * carriage_e2;
+        let t25 = carriage_e3 * t24;
+        let t26 = t25 - t23;
+        let t27 = T::fused(-carriage_e0, t22, k(1.0));
+        let t28 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t27);
+        let t29 = k(2.0) * carriage_e1;
+        let t30 = T::fused(-carriage_e1, t29, t27);
+        let t31 = k(0.1) * (carriage_dwx + (t30 + T::fused(-k(5.0), t26, t28)));
+        let t32 = carriage_e3 * t22;
+        let t33 = carriage_e2 * t29;
+        let t34 = t33 + t32;
+        let t35 = k(0.6) * t30;
+        let t36 = T::fused(k(0.8), t34, t35);
+        let t37 = carriage_e2 * t22;
+        let t38 = carriage_e3 * t29;
+        let t39 = t38 - t37;
+        let t40 = T::fused(-k(0.6), t39, k(0.8) * (t25 + t23));
+        let t41 = t33 - t32;
+        let t42 = k(0.8) * T::fused(-carriage_e2, t24, t27);
+        let t43 = T::fused(k(0.6), t41, t42);
+        let t44 = t38 + t37;
+        let t45 = T::fused(-k(0.64), t26, k(0.48) * t44);
+        let t46 = k(0.8) * t28;
+        let t47 = T::fused(
             k(0.8),
-            T::fused(k(1.2), t32, t38),
-            k(0.6) * T::fused(k(1.6), t39, t29),
+            T::fused(k(0.6), t34, t42),
+            k(0.6) * T::fused(k(0.8), t41, t35),
         );
-        let t45 = T::fused(t37, t42, t44 * t43);
-        let t46 = k(1.2) * t26;
-        let t47 = T::fused(-k(0.96), t24, k(0.72) * t41);
-        let t48 = T::fused(t44, t46, t37 * t47);
-        let t49 = k(1.0) / T::fused(t45, t40, t48 * t33);
-        let t50 = T::fused(
+        let t48 = T::fused(t40, t45, t47 * t46);
+        let t49 = k(0.6) * t28;
+        let t50 = T::fused(-k(0.48), t26, k(0.36) * t44);
+        let t51 = T::fused(t47, t49, t40 * t50);
+        let t52 = k(1.0) / T::fused(t48, t43, t51 * t36);
+        let t53 = T::fused(
             -k(0.1),
-            T::fused(carriage_wx, carriage_wz, k(2.0) * t39),
+            T::fused(carriage_wx, carriage_wz, t41),
             k(0.2) * carriage_dwy,
         );
-        let t51 = T::fused(-(t49 * (t37 * t33)), t28, t49 * (t37 * t40) * t50);
-        let t52 = T::fused(
-            carriage_wx,
-            carriage_wy,
-            -T::fused(k(2.0), t41, -T::fused(k(10.0), t32, k(2.0) * t36)),
-        );
-        let t53 = T::fused(k(0.1), t52, k(0.2) * carriage_dwz);
-        let t54 = T::fused(-(t49 * (t44 * t33)), t28, t49 * (t44 * t40) * t50);
+        let t54 = T::fused(-(t52 * (t40 * t36)), t31, t52 * (t40 * t43) * t53);
         let t55 = T::fused(
-            t49 * T::fused(-t47, t43, t46 * t42),
-            t53,
-            T::fused(t45 * t49, t28, t48 * t49 * t50),
+            k(0.1),
+            T::fused(carriage_wx, carriage_wy, -(t44 - T::fused(k(5.0), t34, t39))),
+            k(0.2) * carriage_dwz,
+        );
+        let t56 = T::fused(-(t52 * (t47 * t36)), t31, t52 * (t47 * t43) * t53);
+        let t57 = T::fused(
+            t52 * T::fused(-t50, t46, t49 * t45),
+            t55,
+            T::fused(t48 * t52, t31, t51 * t52 * t53),
         );
         *lambda = [
-            T::fused(-k(4.0), disc_dsx, t3),
-            -T::fused(k(4.0), disc_dsy, t6),
-            T::fused(-k(4.0), disc_dsz, t10),
-            T::fused(-t18, t11 * t15, t21 * (t13 * t15)),
-            T::fused(-t18, t14 * t15, t21 * (t12 * t15)),
+            T::fused(-k(4.0), disc_dsx, t5),
+            -T::fused(k(4.0), disc_dsy, t9),
+            T::fused(-k(4.0), disc_dsz, t13),
+            T::fused(-(t17 * t19), t16, t8 * t19 * t21),
+            T::fused(-(t18 * t19), t16, t4 * t19 * t21),
             T::fused(
                 k(0.8),
                 T::fused(-k(2.0), carriage_dsy, k(5.0)),
                 k(1.2) * carriage_dsx,
             ),
             T::fused(-k(2.0), carriage_dsz, k(1.0)),
-            T::fused(t49 * T::fused(t46, t33, t43 * t40), t53, -t51),
-            -T::fused(t49 * T::fused(t42, t40, t47 * t33), t53, t54),
-            -t55,
+            T::fused(t52 * T::fused(t49, t36, t46 * t43), t55, -t54),
+            -T::fused(t52 * T::fused(t45, t43, t50 * t36), t55, t56),
+            -t57,
         ];
     }
 }
@@ -1418,12 +1424,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Loads<T> {
         let t5 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t4));
         let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t4));
         let t7 = k(1.0) / T::fused(-t3, t2, t6 * t5);
-        let t8 = carriage_e0 * carriage_e0;
-        let t9 = k(1.6) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t8));
-        let t10 = carriage_e0 * carriage_e3;
-        let t11 = carriage_e1 * carriage_e2;
-        let t12 = t11 - t10;
-        let t13 = T::fused(k(1.2), t12, t9);
+        let t8 = carriage_e0 * carriage_e3;
+        let t9 = carriage_e1 * carriage_e2;
+        let t10 = t9 - t8;
+        let t11 = carriage_e0 * carriage_e0;
+        let t12 = k(1.6) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t11));
+        let t13 = T::fused(k(1.2), t10, t12);
         let t14 = carriage_e0 * carriage_e1;
         let t15 = carriage_e2 * carriage_e3;
         let t16 = t15 - t14;
@@ -1432,14 +1438,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Loads<T> {
         let t19 = t18 + t17;
         let t20 = T::fused(-k(1.28), t16, k(0.96) * t19);
         let t21 = T::fused(-k(1.2), t18 - t17, k(1.6) * (t15 + t14));
-        let t22 = k(0.5) - T::fused(carriage_e3, carriage_e3, t8);
+        let t22 = k(0.5) - T::fused(carriage_e3, carriage_e3, t11);
         let t23 = k(1.6) * t22;
-        let t24 = t11 + t10;
-        let t25 = k(1.2) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t8));
+        let t24 = t9 + t8;
+        let t25 = k(1.2) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t11));
         let t26 = T::fused(
             k(0.8),
-            T::fused(k(1.2), t24, t9),
-            k(0.6) * T::fused(k(1.6), t12, t25),
+            T::fused(k(1.2), t24, t12),
+            k(0.6) * T::fused(k(1.6), t10, t25),
         );
         let t27 = T::fused(t21, t20, t26 * t23);
         let t28 = T::fused(k(1.6), t24, t25);
@@ -1684,7 +1690,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
             -(disc_wx * disc_wz),
             t4,
             t13 * t8,
-            -(t13 * T::fused(-k(1.6), t10, k(1.2) * t11)),
+            t13 * T::fused(-k(1.2), t11, k(1.6) * t10),
             t13 * T::fused(k(1.6), t9, k(1.2) * t12),
             k(0.0),
             k(0.0),
@@ -1841,7 +1847,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
             T::fused(k(4.0), t21, T::fused(-k(3.0), t22, k(0.6) * t25)),
         );
         let t27 = t26 * T::fused(-k(1.6), t14, k(1.2) * t17);
-        let t28 = t26 * T::fused(-k(1.6), t21, k(1.2) * t22);
+        let t28 = t26 * T::fused(-k(1.2), t22, k(1.6) * t21);
         let t29 = t26 * T::fused(k(1.6), t20, k(1.2) * t25);
         let t30 = k(0.6) * t9;
         let t31 = k(0.6) * t3;
@@ -1877,7 +1883,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
             -t1,
             t12,
             t27,
-            -t28,
+            t28,
             t29,
             k(0.0),
             k(0.0),
@@ -1887,7 +1893,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Loads<T> {
             t32,
             T::fused(-t42, t41, t40 * t38),
             T::fused(t42, t38, t40 * t41),
-            T::fused(k(1.2), t27, k(0.8) * T::fused(k(2.0), t28, k(5.0))),
+            T::fused(k(1.2), t27, k(0.8) * T::fused(-k(2.0), t28, k(5.0))),
             T::fused(-k(2.0), t29, k(1.0)),
             -(k(0.1) * t43),
             -T::fused(k(0.08), t44, k(0.06) * t46),

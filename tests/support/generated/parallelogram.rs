@@ -13,23 +13,23 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 1281 operations by rotations of the bodies; 1281 operations by relative Euler parameters
-//! * project: 1092 operations by rotations of the bodies; 1092 operations by relative Euler parameters
+//! * accelerations: 1266 operations by rotations of the bodies, doubled; 1266 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 1082 operations by rotations of the bodies, doubled; 1082 operations by relative Euler parameters, doubled; 2 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 58 | 53 | 0 | 111 | 0 of 20 | 174 | 111 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 74 | 0 | 94 | 0 of 114 | 224 | 94 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 43 | 88 | 0 | 131 | 0 of 66 | 316 | 131 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 20 | 68 | 0 | 88 | 0 of 114 | 244 | 88 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 37 | 78 | 0 | 115 | 0 of 66 | 420 | 115 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 17 of 17 | 0 | 0 |
-//! | gamma | γ | 101 | 166 | 0 | 267 | 0 of 17 | 872 | 267 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 83 | 110 | 0 | 193 | 0 of 17 | 431 | 193 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 527 | 745 | 9 | 1281 | 0 of 21 | 1.8e10 | 1282 |
-//! | multipliers | λ, the accelerations being known | 104 | 171 | 3 | 278 | 0 of 17 | 1653 | 278 |
-//! | project | (δr, δπ') that changes the rows as given | 453 | 630 | 9 | 1092 | 0 of 18 | 1.6e10 | 1093 |
+//! | gamma | γ | 95 | 151 | 0 | 246 | 0 of 17 | 998 | 246 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 77 | 96 | 0 | 173 | 0 of 17 | 499 | 173 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 521 | 736 | 9 | 1266 | 0 of 21 | 2.1e10 | 1267 |
+//! | multipliers | λ, the accelerations being known | 98 | 160 | 3 | 261 | 0 of 17 | 1981 | 261 |
+//! | project | (δr, δπ') that changes the rows as given | 447 | 626 | 9 | 1082 | 0 of 18 | 1.9e10 | 1083 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
 //! | energy | T and V | 19 | 34 | 0 | 53 | 0 of 2 | 53 | 53 |
 //! | read_joints | joint coordinates and rates | 114 | 136 | 0 | 250 | 0 of 19 | 755 | 250 |
@@ -347,7 +347,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
             T::fused(rocker_e3, rocker_e3, T::fused(rocker_e2, rocker_e2, t9)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 193 operations (83 ±, 110 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 173 operations (77 ±, 96 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -380,99 +380,102 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Parallelogram<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_e0 * crank_e3;
-        let t1 = crank_e1 * crank_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = crank_e0 * crank_e2;
-        let t4 = crank_e1 * crank_e3;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = T::fused(-t2, crank_wz, t5 * crank_wy);
-        let t7 = crank_e0 * crank_e0;
-        let t8 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t7));
-        let t9 = crank_e0 * crank_e1;
-        let t10 = crank_e2 * crank_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = T::fused(t8, crank_wz, t11 * crank_wy);
-        let t13 = k(2.0) * (t10 + t9);
-        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t7));
-        let t15 = T::fused(t13, crank_wz, t14 * crank_wy);
-        let t16 = k(2.0) * (t1 + t0);
-        let t17 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t7));
-        let t18 = rocker_e0 * rocker_e3;
-        let t19 = rocker_e1 * rocker_e2;
-        let t20 = k(2.0) * (t19 - t18);
-        let t21 = T::fused(
-            -t20,
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e3 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = crank_e2 * t0;
+        let t6 = crank_e3 * t2;
+        let t7 = t6 + t5;
+        let t8 = T::fused(-crank_wz, t4, crank_wy * t7);
+        let t9 = k(2.0) * crank_e2;
+        let t10 = T::fused(-crank_e0, t0, k(1.0));
+        let t11 = T::fused(-crank_e2, t9, t10);
+        let t12 = crank_e1 * t0;
+        let t13 = crank_e3 * t9;
+        let t14 = t13 - t12;
+        let t15 = T::fused(crank_wz, t11, crank_wy * t14);
+        let t16 = t13 + t12;
+        let t17 = T::fused(-crank_e3, k(2.0) * crank_e3, t10);
+        let t18 = T::fused(crank_wz, t16, crank_wy * t17);
+        let t19 = t3 + t1;
+        let t20 = T::fused(-crank_e1, t2, t10);
+        let t21 = k(2.0) * rocker_e0;
+        let t22 = rocker_e3 * t21;
+        let t23 = k(2.0) * rocker_e1;
+        let t24 = rocker_e2 * t23;
+        let t25 = t24 - t22;
+        let t26 = k(0.15)
+            * T::fused(
+                -rocker_wz,
+                t25,
+                rocker_wy * T::fused(rocker_e2, t21, rocker_e3 * t23),
+            );
+        let t27 = k(2.0) * rocker_e2;
+        let t28 = T::fused(-rocker_e0, t21, k(1.0));
+        let t29 = T::fused(-rocker_e2, t27, t28);
+        let t30 = rocker_e1 * t21;
+        let t31 = rocker_e3 * t27;
+        let t32 = k(0.15) * T::fused(rocker_wz, t29, rocker_wy * (t31 - t30));
+        let t33 = T::fused(
             rocker_wz,
-            k(2.0) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3) * rocker_wy,
+            t31 + t30,
+            rocker_wy * T::fused(-rocker_e3, k(2.0) * rocker_e3, t28),
         );
-        let t22 = k(0.15) * t21;
-        let t23 = rocker_e0 * rocker_e0;
-        let t24 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t23));
-        let t25 = rocker_e0 * rocker_e1;
-        let t26 = rocker_e2 * rocker_e3;
-        let t27 = k(0.15) * T::fused(t24, rocker_wz, k(2.0) * (t26 - t25) * rocker_wy);
-        let t28 = T::fused(
-            k(2.0) * (t26 + t25),
-            rocker_wz,
-            k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t23)) * rocker_wy,
+        let t34 = k(0.15) * t33;
+        let t35 = k(2.0) * coupler_e0;
+        let t36 = coupler_e3 * t35;
+        let t37 = k(2.0) * coupler_e1;
+        let t38 = coupler_e2 * t37;
+        let t39 = t38 - t36;
+        let t40 = coupler_e2 * t35;
+        let t41 = coupler_e3 * t37;
+        let t42 = t41 + t40;
+        let t43 = k(0.25) * T::fused(-coupler_wz, t39, coupler_wy * t42);
+        let t44 = k(2.0) * coupler_e2;
+        let t45 = T::fused(-coupler_e0, t35, k(1.0));
+        let t46 = T::fused(-coupler_e2, t44, t45);
+        let t47 = coupler_e1 * t35;
+        let t48 = coupler_e3 * t44;
+        let t49 = t48 - t47;
+        let t50 = k(0.25) * T::fused(coupler_wz, t46, coupler_wy * t49);
+        let t51 = t48 + t47;
+        let t52 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t45);
+        let t53 = k(0.25) * T::fused(coupler_wz, t51, coupler_wy * t52);
+        let t54 = T::fused(
+            t17,
+            t41 - t40,
+            -T::fused(-t7, T::fused(-coupler_e1, t37, t45), t14 * (t38 + t36)),
         );
-        let t29 = k(0.15) * t28;
-        let t30 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t23)),
-            rocker_wy,
-            t20 * rocker_wx,
-        );
-        let t31 = coupler_e0 * coupler_e3;
-        let t32 = coupler_e1 * coupler_e2;
-        let t33 = k(2.0) * (t32 - t31);
-        let t34 = coupler_e0 * coupler_e2;
-        let t35 = coupler_e1 * coupler_e3;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.25) * T::fused(-t33, coupler_wz, t36 * coupler_wy);
-        let t38 = coupler_e0 * coupler_e0;
-        let t39 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t38));
-        let t40 = coupler_e0 * coupler_e1;
-        let t41 = coupler_e2 * coupler_e3;
-        let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.25) * T::fused(t39, coupler_wz, t42 * coupler_wy);
-        let t44 = k(2.0) * (t41 + t40);
-        let t45 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t38));
-        let t46 = k(0.25) * T::fused(t44, coupler_wz, t45 * coupler_wy);
-        let t47 = T::fused(
-            -t5,
-            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t38)),
-            t11 * (k(2.0) * (t32 + t31)),
-        );
-        let t48 = T::fused(
+        let t55 = T::fused(
             coupler_wz,
-            T::fused(t14, k(2.0) * (t35 - t34), -t47),
-            coupler_wx * T::fused(t14, t45, T::fused(t11, t42, t5 * t36)),
+            t54,
+            coupler_wx * T::fused(t17, t52, T::fused(t7, t42, t14 * t49)),
         );
-        let t49 = T::fused(k(2.0) * (t4 - t3), t44, -T::fused(t17, t33, t16 * t39));
-        let t50 = T::fused(
+        let t56 = T::fused(
             -crank_wy,
-            t49,
-            crank_wx * T::fused(t13, t44, T::fused(t8, t39, t2 * t33)),
+            T::fused(t6 - t5, t51, -T::fused(t20, t39, t19 * t46)),
+            crank_wx * T::fused(t16, t51, T::fused(t4, t39, t11 * t46)),
         );
         *out = [
-            T::fused(k(0.1), t6, crank_sx),
-            T::fused(k(0.1), t12, crank_sy),
-            T::fused(-k(0.1), t15, crank_sz),
-            -T::fused(t16, crank_wy, t8 * crank_wx),
-            -T::fused(t17, crank_wy, t2 * crank_wx),
-            rocker_sx + t22,
-            rocker_sy + t27,
-            rocker_sz - t29,
-            -T::fused(k(2.0) * (t19 + t18), rocker_wy, t24 * rocker_wx),
-            -t30,
-            coupler_sx + t37 - T::fused(-k(0.2), t6, crank_sx),
-            coupler_sy + t43 - T::fused(-k(0.2), t12, crank_sy),
-            coupler_sz - t46 - T::fused(k(0.2), t15, crank_sz),
-            t48 - t50,
-            rocker_sx - t22 - (coupler_sx - t37),
-            rocker_sy - t27 - (coupler_sy - t43),
-            rocker_sz + t29 - (coupler_sz + t46),
+            T::fused(k(0.1), t8, crank_sx),
+            T::fused(k(0.1), t15, crank_sy),
+            T::fused(-k(0.1), t18, crank_sz),
+            -T::fused(crank_wy, t19, crank_wx * t11),
+            -T::fused(crank_wy, t20, crank_wx * t4),
+            rocker_sx + t26,
+            rocker_sy + t32,
+            rocker_sz - t34,
+            -T::fused(rocker_wy, t24 + t22, rocker_wx * t29),
+            -T::fused(rocker_wy, T::fused(-rocker_e1, t23, t28), rocker_wx * t25),
+            coupler_sx + t43 - T::fused(-k(0.2), t8, crank_sx),
+            coupler_sy + t50 - T::fused(-k(0.2), t15, crank_sy),
+            coupler_sz - t53 - T::fused(k(0.2), t18, crank_sz),
+            t55 - t56,
+            rocker_sx - t26 - (coupler_sx - t43),
+            rocker_sy - t32 - (coupler_sy - t50),
+            rocker_sz + t34 - (coupler_sz + t53),
         ];
     }
     /// Kinetic and potential energy: 53 operations (19 ±, 34 ×, 0 ÷).
@@ -1102,7 +1105,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             (16, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 94 operations (20 ±, 74 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 88 operations (20 ±, 68 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1143,17 +1146,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t23 = k(0.5) * coupler_e2;
         let t24 = k(0.5) * coupler_e1;
         let t25 = k(0.5) * coupler_e0;
-        let t26 = k(2.0) * T::fused(coupler_e0, coupler_e1, coupler_e2 * coupler_e3);
-        let t27 = k(2.0)
-            * (k(0.5) - T::fused(coupler_e2, coupler_e2, coupler_e0 * coupler_e0));
-        let t28 = k(2.0) * T::fused(-coupler_e0, coupler_e3, coupler_e1 * coupler_e2);
-        let t29 = k(2.0) * coupler_e1;
-        let t30 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, crank_e0 * crank_e0));
-        let t31 = k(2.0) * T::fused(-crank_e0, crank_e1, crank_e2 * crank_e3);
-        let t32 = k(2.0) * coupler_e3;
-        let t33 = k(2.0) * T::fused(crank_e0, crank_e2, crank_e1 * crank_e3);
-        let t34 = k(2.0) * coupler_e0;
-        let t35 = k(2.0) * coupler_e2;
+        let t26 = k(2.0) * coupler_e0;
+        let t27 = k(2.0) * coupler_e2;
+        let t28 = T::fused(coupler_e1, t26, coupler_e3 * t27);
+        let t29 = T::fused(-coupler_e2, t27, T::fused(-coupler_e0, t26, k(1.0)));
+        let t30 = k(2.0) * coupler_e1;
+        let t31 = T::fused(-coupler_e3, t26, coupler_e2 * t30);
+        let t32 = T::fused(-crank_e3, t8, T::fused(-crank_e0, t7, k(1.0)));
+        let t33 = T::fused(-crank_e1, t7, crank_e3 * t9);
+        let t34 = T::fused(crank_e2, t7, crank_e3 * t6);
+        let t35 = k(2.0) * coupler_e3;
         *out = [
             k(1.0),
             -t0,
@@ -1223,14 +1225,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             -t22,
             t25,
             -t24,
-            T::fused(t26, k(4.0) * crank_e0, T::fused(t27, t6, t28 * t9)),
-            T::fused(t27, t7, t28 * t8),
-            T::fused(-t27, t8, t28 * t7),
-            T::fused(t26, k(4.0) * crank_e3, T::fused(-t27, t9, t28 * t6)),
-            -T::fused(t30, t29, T::fused(-t31, k(4.0) * coupler_e0, t33 * t32)),
-            T::fused(-t30, t34, t33 * t35),
-            T::fused(-t30, t32, T::fused(t31, k(4.0) * coupler_e2, t33 * t29)),
-            -T::fused(t30, t35, t33 * t34),
+            T::fused(k(4.0) * crank_e0, t28, T::fused(t6, t29, t9 * t31)),
+            T::fused(t7, t29, t8 * t31),
+            T::fused(-t8, t29, t7 * t31),
+            T::fused(k(4.0) * crank_e3, t28, T::fused(-t9, t29, t6 * t31)),
+            -T::fused(t30, t32, T::fused(-(k(4.0) * coupler_e0), t33, t35 * t34)),
+            T::fused(-t26, t32, t27 * t34),
+            T::fused(-t35, t32, T::fused(k(4.0) * coupler_e2, t33, t30 * t34)),
+            -T::fused(t27, t32, t26 * t34),
             k(-1.0),
             -coupler_e0,
             -coupler_e1,
@@ -1261,17 +1263,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t6,
             t9,
             t8,
-            t34,
-            t29,
+            t26,
+            t30,
+            t27,
             t35,
-            t32,
             t17,
             t16,
             t19,
             t18,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 131 operations (43 ±, 88 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 115 operations (37 ±, 78 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1286,139 +1288,134 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_e1 = y[18];
         let rocker_e2 = y[19];
         let rocker_e3 = y[20];
-        let t0 = crank_e0 * crank_e2;
-        let t1 = crank_e1 * crank_e3;
-        let t2 = t1 + t0;
-        let t3 = crank_e0 * crank_e3;
-        let t4 = crank_e1 * crank_e2;
-        let t5 = t4 - t3;
-        let t6 = crank_e0 * crank_e1;
-        let t7 = crank_e2 * crank_e3;
-        let t8 = t7 - t6;
-        let t9 = crank_e0 * crank_e0;
-        let t10 = k(0.5) - T::fused(crank_e2, crank_e2, t9);
-        let t11 = k(0.5) - T::fused(crank_e3, crank_e3, t9);
-        let t12 = t7 + t6;
-        let t13 = k(2.0) * t10;
-        let t14 = k(2.0) * (t4 + t3);
-        let t15 = k(2.0) * t5;
-        let t16 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t9));
-        let t17 = k(0.3) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t18 = rocker_e0 * rocker_e3;
-        let t19 = rocker_e1 * rocker_e2;
-        let t20 = t19 - t18;
-        let t21 = k(0.3) * t20;
-        let t22 = rocker_e0 * rocker_e1;
-        let t23 = rocker_e2 * rocker_e3;
-        let t24 = k(0.3) * (t23 - t22);
-        let t25 = rocker_e0 * rocker_e0;
-        let t26 = k(0.5) - T::fused(rocker_e2, rocker_e2, t25);
-        let t27 = k(0.3) * t26;
-        let t28 = k(0.3) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t25));
-        let t29 = k(0.3) * (t23 + t22);
-        let t30 = coupler_e0 * coupler_e2;
-        let t31 = coupler_e1 * coupler_e3;
-        let t32 = t31 + t30;
-        let t33 = k(0.5) * t32;
-        let t34 = coupler_e0 * coupler_e3;
-        let t35 = coupler_e1 * coupler_e2;
-        let t36 = t35 - t34;
-        let t37 = k(0.5) * t36;
-        let t38 = coupler_e0 * coupler_e1;
-        let t39 = coupler_e2 * coupler_e3;
-        let t40 = t39 - t38;
-        let t41 = k(0.5) * t40;
-        let t42 = coupler_e0 * coupler_e0;
-        let t43 = k(0.5) - T::fused(coupler_e2, coupler_e2, t42);
-        let t44 = k(0.5) * t43;
-        let t45 = k(0.5) - T::fused(coupler_e3, coupler_e3, t42);
-        let t46 = k(0.5) * t45;
-        let t47 = t39 + t38;
-        let t48 = k(0.5) * t47;
-        let t49 = k(2.0) * t43;
-        let t50 = k(2.0) * t36;
-        let t51 = k(2.0) * t47;
-        let t52 = T::fused(k(2.0) * (t1 - t0), t51, -T::fused(t16, t50, t14 * t49));
-        let t53 = k(2.0) * t11;
-        let t54 = k(2.0) * t8;
-        let t55 = k(2.0) * t2;
+        let t0 = k(2.0) * crank_e0;
+        let t1 = crank_e2 * t0;
+        let t2 = k(2.0) * crank_e1;
+        let t3 = crank_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = crank_e3 * t0;
+        let t6 = crank_e2 * t2;
+        let t7 = t6 - t5;
+        let t8 = crank_e1 * t0;
+        let t9 = k(2.0) * crank_e2;
+        let t10 = crank_e3 * t9;
+        let t11 = t10 - t8;
+        let t12 = T::fused(-crank_e0, t0, k(1.0));
+        let t13 = T::fused(-crank_e2, t9, t12);
+        let t14 = T::fused(-crank_e3, k(2.0) * crank_e3, t12);
+        let t15 = t10 + t8;
+        let t16 = t6 + t5;
+        let t17 = T::fused(-crank_e1, t2, t12);
+        let t18 = k(2.0) * rocker_e0;
+        let t19 = k(2.0) * rocker_e1;
+        let t20 = k(0.15) * T::fused(rocker_e2, t18, rocker_e3 * t19);
+        let t21 = rocker_e3 * t18;
+        let t22 = rocker_e2 * t19;
+        let t23 = t22 - t21;
+        let t24 = k(0.15) * t23;
+        let t25 = rocker_e1 * t18;
+        let t26 = k(2.0) * rocker_e2;
+        let t27 = rocker_e3 * t26;
+        let t28 = k(0.15) * (t27 - t25);
+        let t29 = T::fused(-rocker_e0, t18, k(1.0));
+        let t30 = T::fused(-rocker_e2, t26, t29);
+        let t31 = k(0.15) * t30;
+        let t32 = k(0.15) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t29);
+        let t33 = k(0.15) * (t27 + t25);
+        let t34 = k(2.0) * coupler_e0;
+        let t35 = coupler_e2 * t34;
+        let t36 = k(2.0) * coupler_e1;
+        let t37 = coupler_e3 * t36;
+        let t38 = t37 + t35;
+        let t39 = k(0.25) * t38;
+        let t40 = coupler_e3 * t34;
+        let t41 = coupler_e2 * t36;
+        let t42 = t41 - t40;
+        let t43 = k(0.25) * t42;
+        let t44 = coupler_e1 * t34;
+        let t45 = k(2.0) * coupler_e2;
+        let t46 = coupler_e3 * t45;
+        let t47 = t46 - t44;
+        let t48 = k(0.25) * t47;
+        let t49 = T::fused(-coupler_e0, t34, k(1.0));
+        let t50 = T::fused(-coupler_e2, t45, t49);
+        let t51 = k(0.25) * t50;
+        let t52 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t49);
+        let t53 = k(0.25) * t52;
+        let t54 = t46 + t44;
+        let t55 = k(0.25) * t54;
         let t56 = T::fused(
-            t53,
-            k(2.0) * t45,
-            T::fused(t54, k(2.0) * t40, t55 * (k(2.0) * t32)),
-        );
-        let t57 = T::fused(
-            -t55,
-            k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t42)),
-            t54 * (k(2.0) * (t35 + t34)),
+            t14,
+            t37 - t35,
+            -T::fused(-t4, T::fused(-coupler_e1, t36, t49), t11 * (t41 + t40)),
         );
         *out = [
             k(1.0),
-            k(0.2) * t2,
-            -(k(0.2) * t5),
+            k(0.1) * t4,
+            -(k(0.1) * t7),
             k(1.0),
-            k(0.2) * t8,
-            k(0.2) * t10,
+            k(0.1) * t11,
+            k(0.1) * t13,
             k(1.0),
-            -(k(0.2) * t11),
-            -(k(0.2) * t12),
+            -(k(0.1) * t14),
+            -(k(0.1) * t15),
             -t13,
-            -t14,
-            -t15,
             -t16,
-            k(1.0),
-            t17,
-            -t21,
-            k(1.0),
-            t24,
-            t27,
-            k(1.0),
-            -t28,
-            -t29,
-            -(k(2.0) * t26),
-            -(k(2.0) * (t19 + t18)),
-            -(k(2.0) * t20),
-            -(k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t25))),
-            k(-1.0),
-            k(0.4) * t2,
-            -(k(0.4) * t5),
-            k(1.0),
-            t33,
-            -t37,
-            k(-1.0),
-            k(0.4) * t8,
-            k(0.4) * t10,
-            k(1.0),
-            t41,
-            t44,
-            k(-1.0),
-            -(k(0.4) * t11),
-            -(k(0.4) * t12),
-            k(1.0),
-            -t46,
-            -t48,
-            -T::fused(k(2.0) * t12, t51, T::fused(t13, t49, t15 * t50)),
-            t52,
-            t56,
-            T::fused(t53, k(2.0) * (t31 - t30), -t57),
-            k(-1.0),
-            t33,
-            -t37,
-            k(1.0),
+            -t7,
             -t17,
-            t21,
-            k(-1.0),
-            t41,
-            t44,
             k(1.0),
+            t20,
             -t24,
-            -t27,
-            k(-1.0),
-            -t46,
-            -t48,
             k(1.0),
             t28,
-            t29,
+            t31,
+            k(1.0),
+            -t32,
+            -t33,
+            -t30,
+            -(t22 + t21),
+            -t23,
+            T::fused(rocker_e1, t19, -t29),
+            k(-1.0),
+            k(0.2) * t4,
+            -(k(0.2) * t7),
+            k(1.0),
+            t39,
+            -t43,
+            k(-1.0),
+            k(0.2) * t11,
+            k(0.2) * t13,
+            k(1.0),
+            t48,
+            t51,
+            k(-1.0),
+            -(k(0.2) * t14),
+            -(k(0.2) * t15),
+            k(1.0),
+            -t53,
+            -t55,
+            -T::fused(t15, t54, T::fused(t7, t42, t13 * t50)),
+            T::fused(t3 - t1, t54, -T::fused(t17, t42, t16 * t50)),
+            T::fused(t14, t52, T::fused(t4, t38, t11 * t47)),
+            t56,
+            k(-1.0),
+            t39,
+            -t43,
+            k(1.0),
+            -t20,
+            t24,
+            k(-1.0),
+            t48,
+            t51,
+            k(1.0),
+            -t28,
+            -t31,
+            k(-1.0),
+            -t53,
+            -t55,
+            k(1.0),
+            t32,
+            t33,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -1444,7 +1441,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 267 operations (101 ±, 166 ×, 0 ÷).
+    /// Writes γ: 246 operations (95 ±, 151 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1468,131 +1465,139 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
-        let t0 = crank_wy * crank_wy;
-        let t1 = T::fused(crank_wz, crank_wz, t0);
-        let t2 = crank_e0 * crank_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t2));
-        let t4 = crank_wx * crank_wy;
-        let t5 = crank_e0 * crank_e3;
-        let t6 = crank_e1 * crank_e2;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = crank_wx * crank_wz;
-        let t9 = crank_e0 * crank_e2;
-        let t10 = crank_e1 * crank_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = T::fused(t11, t8, T::fused(t3, t1, t7 * t4));
-        let t13 = k(2.0) * (t6 + t5);
-        let t14 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t2));
-        let t15 = crank_e0 * crank_e1;
-        let t16 = crank_e2 * crank_e3;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = T::fused(t17, t8, -T::fused(t13, t1, t14 * t4));
-        let t19 = k(2.0) * (t10 - t9);
-        let t20 = k(2.0) * (t16 + t15);
-        let t21 = k(2.0) * (k(0.5) - T::fused(crank_e3, crank_e3, t2));
-        let t22 = T::fused(t21, t8, -T::fused(-t19, t1, t20 * t4));
-        let t23 = crank_wy * crank_wz;
-        let t24 = T::fused(crank_wx, crank_wx, t0);
-        let t25 = rocker_wy * rocker_wy;
-        let t26 = T::fused(rocker_wz, rocker_wz, t25);
-        let t27 = rocker_e0 * rocker_e0;
-        let t28 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t27));
-        let t29 = rocker_wx * rocker_wy;
-        let t30 = rocker_e0 * rocker_e3;
-        let t31 = rocker_e1 * rocker_e2;
-        let t32 = k(2.0) * (t31 - t30);
-        let t33 = rocker_wx * rocker_wz;
-        let t34 = rocker_e0 * rocker_e2;
-        let t35 = rocker_e1 * rocker_e3;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = k(0.15) * T::fused(t36, t33, T::fused(t28, t26, t32 * t29));
-        let t38 = k(2.0) * (t31 + t30);
-        let t39 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t27));
-        let t40 = rocker_e0 * rocker_e1;
-        let t41 = rocker_e2 * rocker_e3;
-        let t42 = k(2.0) * (t41 - t40);
-        let t43 = k(0.15) * T::fused(t42, t33, -T::fused(t38, t26, t39 * t29));
-        let t44 = T::fused(-(k(2.0) * (t35 - t34)), t26, k(2.0) * (t41 + t40) * t29);
-        let t45 = k(0.15)
-            * T::fused(
-                k(2.0) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t27)),
-                t33,
-                -t44,
-            );
-        let t46 = rocker_wy * rocker_wz;
-        let t47 = T::fused(rocker_wx, rocker_wx, t25);
-        let t48 = coupler_wz * coupler_wz;
-        let t49 = T::fused(coupler_wy, coupler_wy, t48);
-        let t50 = coupler_e0 * coupler_e0;
-        let t51 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t50));
-        let t52 = coupler_wx * coupler_wy;
-        let t53 = coupler_e0 * coupler_e3;
-        let t54 = coupler_e1 * coupler_e2;
-        let t55 = k(2.0) * (t54 - t53);
-        let t56 = coupler_wx * coupler_wz;
-        let t57 = coupler_e0 * coupler_e2;
-        let t58 = coupler_e1 * coupler_e3;
-        let t59 = k(2.0) * (t58 + t57);
-        let t60 = k(0.25) * T::fused(t59, t56, T::fused(t51, t49, t55 * t52));
-        let t61 = k(2.0) * (t54 + t53);
-        let t62 = k(2.0) * (k(0.5) - T::fused(coupler_e2, coupler_e2, t50));
-        let t63 = coupler_e0 * coupler_e1;
-        let t64 = coupler_e2 * coupler_e3;
-        let t65 = k(2.0) * (t64 - t63);
-        let t66 = k(0.25) * T::fused(t65, t56, -T::fused(t61, t49, t62 * t52));
-        let t67 = k(2.0) * (t58 - t57);
-        let t68 = k(2.0) * (t64 + t63);
-        let t69 = k(2.0) * (k(0.5) - T::fused(coupler_e3, coupler_e3, t50));
-        let t70 = k(0.25) * T::fused(t69, t56, -T::fused(-t67, t49, t68 * t52));
-        let t71 = T::fused(
-            t8,
-            T::fused(t19, t68, -T::fused(t3, t55, t13 * t62)),
-            t23 * T::fused(t20, t68, T::fused(t14, t62, t7 * t55)),
+        let t0 = k(2.0) * crank_e1;
+        let t1 = k(2.0) * crank_e0;
+        let t2 = T::fused(-crank_e0, t1, k(1.0));
+        let t3 = T::fused(-crank_e1, t0, t2);
+        let t4 = crank_wy * crank_wy;
+        let t5 = T::fused(crank_wz, crank_wz, t4);
+        let t6 = crank_e3 * t1;
+        let t7 = crank_e2 * t0;
+        let t8 = t7 - t6;
+        let t9 = crank_wx * crank_wy;
+        let t10 = crank_e2 * t1;
+        let t11 = crank_e3 * t0;
+        let t12 = t11 + t10;
+        let t13 = crank_wx * crank_wz;
+        let t14 = T::fused(t13, t12, T::fused(t5, t3, t9 * t8));
+        let t15 = t7 + t6;
+        let t16 = k(2.0) * crank_e2;
+        let t17 = T::fused(-crank_e2, t16, t2);
+        let t18 = crank_e1 * t1;
+        let t19 = crank_e3 * t16;
+        let t20 = t19 - t18;
+        let t21 = T::fused(t13, t20, -T::fused(t5, t15, t9 * t17));
+        let t22 = t11 - t10;
+        let t23 = t19 + t18;
+        let t24 = T::fused(-crank_e3, k(2.0) * crank_e3, t2);
+        let t25 = T::fused(t13, t24, -T::fused(-t5, t22, t9 * t23));
+        let t26 = crank_wy * crank_wz;
+        let t27 = T::fused(crank_wx, crank_wx, t4);
+        let t28 = k(2.0) * rocker_e1;
+        let t29 = k(2.0) * rocker_e0;
+        let t30 = T::fused(-rocker_e0, t29, k(1.0));
+        let t31 = T::fused(-rocker_e1, t28, t30);
+        let t32 = rocker_wy * rocker_wy;
+        let t33 = T::fused(rocker_wz, rocker_wz, t32);
+        let t34 = rocker_e3 * t29;
+        let t35 = rocker_e2 * t28;
+        let t36 = t35 - t34;
+        let t37 = rocker_wx * rocker_wy;
+        let t38 = rocker_e2 * t29;
+        let t39 = rocker_e3 * t28;
+        let t40 = t39 + t38;
+        let t41 = rocker_wx * rocker_wz;
+        let t42 = k(0.15) * T::fused(t41, t40, T::fused(t33, t31, t37 * t36));
+        let t43 = t35 + t34;
+        let t44 = k(2.0) * rocker_e2;
+        let t45 = T::fused(-rocker_e2, t44, t30);
+        let t46 = rocker_e1 * t29;
+        let t47 = rocker_e3 * t44;
+        let t48 = t47 - t46;
+        let t49 = k(0.15) * T::fused(t41, t48, -T::fused(t33, t43, t37 * t45));
+        let t50 = T::fused(
+            t41,
+            T::fused(-rocker_e3, k(2.0) * rocker_e3, t30),
+            -T::fused(-t33, t39 - t38, t37 * (t47 + t46)),
         );
-        let t72 = T::fused(t21, t68, -T::fused(-t17, t62, t11 * t55));
-        let t73 = T::fused(
+        let t51 = k(0.15) * t50;
+        let t52 = rocker_wy * rocker_wz;
+        let t53 = T::fused(rocker_wx, rocker_wx, t32);
+        let t54 = k(2.0) * coupler_e1;
+        let t55 = k(2.0) * coupler_e0;
+        let t56 = T::fused(-coupler_e0, t55, k(1.0));
+        let t57 = T::fused(-coupler_e1, t54, t56);
+        let t58 = coupler_wz * coupler_wz;
+        let t59 = T::fused(coupler_wy, coupler_wy, t58);
+        let t60 = coupler_e3 * t55;
+        let t61 = coupler_e2 * t54;
+        let t62 = t61 - t60;
+        let t63 = coupler_wx * coupler_wy;
+        let t64 = coupler_e2 * t55;
+        let t65 = coupler_e3 * t54;
+        let t66 = t65 + t64;
+        let t67 = coupler_wx * coupler_wz;
+        let t68 = k(0.25) * T::fused(t67, t66, T::fused(t59, t57, t63 * t62));
+        let t69 = t61 + t60;
+        let t70 = k(2.0) * coupler_e2;
+        let t71 = T::fused(-coupler_e2, t70, t56);
+        let t72 = coupler_e1 * t55;
+        let t73 = coupler_e3 * t70;
+        let t74 = t73 - t72;
+        let t75 = k(0.25) * T::fused(t67, t74, -T::fused(t59, t69, t63 * t71));
+        let t76 = t65 - t64;
+        let t77 = t73 + t72;
+        let t78 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t56);
+        let t79 = k(0.25) * T::fused(t67, t78, -T::fused(-t59, t76, t63 * t77));
+        let t80 = T::fused(
+            t13,
+            T::fused(t22, t77, -T::fused(t3, t62, t15 * t71)),
+            t26 * T::fused(t23, t77, T::fused(t8, t62, t17 * t71)),
+        );
+        let t81 = T::fused(t24, t77, T::fused(-t12, t62, t20 * t71));
+        let t82 = T::fused(
             coupler_wz,
-            T::fused(t19, t67, T::fused(t3, t51, t13 * t61)),
-            coupler_wx * T::fused(t19, t69, -T::fused(-t3, t59, t13 * t65)),
+            T::fused(t22, t76, T::fused(t3, t57, t15 * t69)),
+            coupler_wx * T::fused(t22, t78, -T::fused(-t3, t66, t15 * t74)),
         );
-        let t74 = T::fused(
+        let t83 = T::fused(
             coupler_wz,
-            T::fused(t20, t67, -T::fused(t7, t51, t14 * t61)),
-            coupler_wx * T::fused(t20, t69, -T::fused(-t14, t65, t7 * t59)),
+            T::fused(t23, t76, -T::fused(t8, t57, t17 * t69)),
+            coupler_wx * T::fused(t23, t78, T::fused(-t8, t66, t17 * t74)),
         );
-        let t75 = T::fused(
-            -t52,
-            T::fused(t21, t67, -T::fused(-t11, t51, t17 * t61)),
-            T::fused(coupler_wx, coupler_wx, t48) * t72,
+        let t84 = T::fused(
+            -t63,
+            T::fused(t24, t76, -T::fused(-t12, t57, t20 * t69)),
+            T::fused(coupler_wx, coupler_wx, t58) * t81,
         );
-        let t76 = T::fused(
+        let t85 = T::fused(
             coupler_wy * coupler_wz,
-            T::fused(t21, t69, T::fused(t17, t65, t11 * t59)),
-            t75,
+            T::fused(t24, t78, T::fused(t12, t66, t20 * t74)),
+            t84,
         );
-        let t77 = T::fused(k(2.0), T::fused(-crank_wy, t73, crank_wx * t74), t76)
-            + T::fused(t24, t72, t71);
+        let t86 = T::fused(k(2.0), T::fused(-crank_wy, t82, crank_wx * t83), t85)
+            + T::fused(t27, t81, t80);
         *out = [
-            k(0.1) * t12,
-            k(0.1) * t18,
-            -(k(0.1) * t22),
-            -T::fused(t17, t24, T::fused(-t13, t8, t14 * t23)),
-            T::fused(t11, t24, -T::fused(-t3, t8, t7 * t23)),
-            t37,
-            t43,
-            -t45,
-            -T::fused(t42, t47, T::fused(-t38, t33, t39 * t46)),
-            T::fused(t36, t47, -T::fused(-t28, t33, t32 * t46)),
-            T::fused(k(0.2), t12, t60),
-            T::fused(k(0.2), t18, t66),
-            -T::fused(k(0.2), t22, t70),
-            -t77,
-            t60 - t37,
-            t66 - t43,
-            t45 - t70,
+            k(0.1) * t14,
+            k(0.1) * t21,
+            -(k(0.1) * t25),
+            -T::fused(t27, t20, T::fused(-t13, t15, t26 * t17)),
+            T::fused(t27, t12, -T::fused(-t13, t3, t26 * t8)),
+            t42,
+            t49,
+            -t51,
+            -T::fused(t53, t48, T::fused(-t41, t43, t52 * t45)),
+            T::fused(t53, t40, -T::fused(-t41, t31, t52 * t36)),
+            T::fused(k(0.2), t14, t68),
+            T::fused(k(0.2), t21, t75),
+            -T::fused(k(0.2), t25, t79),
+            -t86,
+            t68 - t42,
+            t75 - t49,
+            t51 - t79,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let crank_wx = y[24];
@@ -1604,28 +1609,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wx = y[36];
         let rocker_wy = y[37];
         let rocker_wz = y[38];
+        let t0 = k(0.00398) * crank_wx;
+        let t1 = k(0.01995) * coupler_wx;
+        let t2 = k(0.00496) * rocker_wx;
         *out = [
             k(0.0),
             k(-4.905),
             k(0.0),
             k(0.0),
-            k(0.00398) * (crank_wx * crank_wz),
-            -(k(0.00398) * (crank_wx * crank_wy)),
+            crank_wz * t0,
+            -(crank_wy * t0),
             k(0.0),
             k(-7.848),
             k(0.0),
             k(0.0),
-            k(0.01995) * (coupler_wx * coupler_wz),
-            -(k(0.01995) * (coupler_wx * coupler_wy)),
+            coupler_wz * t1,
+            -(coupler_wy * t1),
             k(0.0),
             k(-5.886),
             k(0.0),
             k(0.0),
-            k(0.00496) * (rocker_wx * rocker_wz),
-            -(k(0.00496) * (rocker_wx * rocker_wy)),
+            rocker_wz * t2,
+            -(rocker_wy * t2),
         ];
     }
-    /// Solves eq. (17): 1281 operations (527 ±, 745 ×, 9 ÷).
+    /// Solves eq. (17): 1266 operations (521 ±, 736 ×, 9 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let crank_e0 = y[3];
@@ -1650,10 +1658,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let rocker_wy = y[37];
         let rocker_wz = y[38];
         let (
-            t7,
+            t8,
             t12,
             t14,
-            t15,
             t16,
             t17,
             t18,
@@ -1668,355 +1675,351 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
             t27,
             t28,
             t29,
+            t53,
             t54,
-            t55,
             t58,
             t60,
-            t62,
+            t61,
+            t63,
+            t65,
             t66,
-            t68,
+            t67,
+            t70,
             t71,
             t72,
-            t75,
+            t73,
+            t74,
             t76,
-            t77,
             t78,
-            t79,
             t81,
-            t83,
-            t86,
+            t85,
+            t88,
             t90,
-            t93,
+            t94,
             t95,
-            t99,
+            t98,
             t100,
-            t103,
-            t105,
-            t109,
+            t106,
+            t107,
+            t110,
             t112,
-            t113,
-            t116,
+            t117,
             t118,
-            t123,
+            t119,
+            t120,
             t124,
-            t125,
-            t126,
-            t130,
-            t132,
-            t133,
-            t134,
-            t135,
-            t140,
-            t148,
+            t127,
+            t128,
+            t142,
+            t147,
+            t151,
             t153,
+            t154,
+            t155,
+            t156,
             t157,
-            t159,
-            t160,
-            t161,
             t162,
-            t163,
-            t164,
-            t165,
-            t166,
-            t167,
             t168,
-            t169,
-            t170,
-            t171,
-            t172,
             t173,
-            t174,
-            t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t184,
-            t186,
-            t187,
+            t180,
+            t181,
+            t182,
             t188,
-            t193,
-            t194,
+            t189,
             t195,
             t199,
         ) = {
-            let t0 = coupler_wz * coupler_wz;
-            let t1 = T::fused(coupler_wy, coupler_wy, t0);
-            let t2 = coupler_e0 * coupler_e0;
-            let t3 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t2));
-            let t4 = coupler_wx * coupler_wy;
-            let t5 = coupler_e0 * coupler_e3;
-            let t6 = coupler_e1 * coupler_e2;
-            let t7 = t6 - t5;
-            let t8 = k(2.0) * t7;
-            let t9 = coupler_wx * coupler_wz;
-            let t10 = coupler_e0 * coupler_e2;
-            let t11 = coupler_e1 * coupler_e3;
+            let t0 = k(2.0) * coupler_e1;
+            let t1 = k(2.0) * coupler_e0;
+            let t2 = T::fused(-coupler_e0, t1, k(1.0));
+            let t3 = T::fused(-coupler_e1, t0, t2);
+            let t4 = coupler_wz * coupler_wz;
+            let t5 = T::fused(coupler_wy, coupler_wy, t4);
+            let t6 = coupler_e3 * t1;
+            let t7 = coupler_e2 * t0;
+            let t8 = t7 - t6;
+            let t9 = coupler_wx * coupler_wy;
+            let t10 = coupler_e2 * t1;
+            let t11 = coupler_e3 * t0;
             let t12 = t11 + t10;
-            let t13 = k(2.0) * t12;
-            let t14 = k(0.25) * T::fused(t13, t9, T::fused(t3, t1, t8 * t4));
-            let t15 = rocker_wy * rocker_wy;
-            let t16 = T::fused(rocker_wz, rocker_wz, t15);
-            let t17 = rocker_e0 * rocker_e0;
-            let t18 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t17));
-            let t19 = rocker_wx * rocker_wy;
-            let t20 = rocker_e0 * rocker_e3;
-            let t21 = rocker_e1 * rocker_e2;
-            let t22 = t21 - t20;
-            let t23 = k(2.0) * t22;
-            let t24 = rocker_wx * rocker_wz;
-            let t25 = rocker_e0 * rocker_e2;
-            let t26 = rocker_e1 * rocker_e3;
+            let t13 = coupler_wx * coupler_wz;
+            let t14 = k(0.25) * T::fused(t13, t12, T::fused(t5, t3, t9 * t8));
+            let t15 = k(2.0) * rocker_e1;
+            let t16 = k(2.0) * rocker_e0;
+            let t17 = T::fused(-rocker_e0, t16, k(1.0));
+            let t18 = T::fused(-rocker_e1, t15, t17);
+            let t19 = rocker_wy * rocker_wy;
+            let t20 = T::fused(rocker_wz, rocker_wz, t19);
+            let t21 = rocker_e3 * t16;
+            let t22 = rocker_e2 * t15;
+            let t23 = t22 - t21;
+            let t24 = rocker_wx * rocker_wy;
+            let t25 = rocker_e2 * t16;
+            let t26 = rocker_e3 * t15;
             let t27 = t26 + t25;
-            let t28 = k(2.0) * t27;
-            let t29 = k(0.15) * T::fused(t28, t24, T::fused(t18, t16, t23 * t19));
-            let t30 = crank_wx * crank_wz;
-            let t31 = crank_e0 * crank_e3;
-            let t32 = crank_e1 * crank_e2;
-            let t33 = k(2.0) * (t32 + t31);
-            let t34 = crank_wy * crank_wz;
-            let t35 = crank_e0 * crank_e0;
-            let t36 = k(0.5) - T::fused(crank_e2, crank_e2, t35);
-            let t37 = k(2.0) * t36;
-            let t38 = crank_wy * crank_wy;
-            let t39 = T::fused(crank_wx, crank_wx, t38);
-            let t40 = crank_e0 * crank_e1;
-            let t41 = crank_e2 * crank_e3;
+            let t28 = rocker_wx * rocker_wz;
+            let t29 = k(0.15) * T::fused(t28, t27, T::fused(t20, t18, t24 * t23));
+            let t30 = k(2.0) * crank_e0;
+            let t31 = crank_e3 * t30;
+            let t32 = k(2.0) * crank_e1;
+            let t33 = crank_e2 * t32;
+            let t34 = t33 + t31;
+            let t35 = crank_wx * crank_wz;
+            let t36 = k(2.0) * crank_e2;
+            let t37 = T::fused(-crank_e0, t30, k(1.0));
+            let t38 = T::fused(-crank_e2, t36, t37);
+            let t39 = crank_wy * crank_wz;
+            let t40 = crank_e1 * t30;
+            let t41 = crank_e3 * t36;
             let t42 = t41 - t40;
-            let t43 = k(2.0) * t42;
-            let t44 = T::fused(t43, t39, T::fused(-t33, t30, t37 * t34));
-            let t45 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t35));
-            let t46 = t32 - t31;
-            let t47 = k(2.0) * t46;
-            let t48 = k(1.0) / T::fused(-t45, t37, t47 * t33);
-            let t49 = crank_e0 * crank_e2;
-            let t50 = crank_e1 * crank_e3;
+            let t43 = crank_wy * crank_wy;
+            let t44 = T::fused(crank_wx, crank_wx, t43);
+            let t45 = T::fused(t44, t42, T::fused(-t35, t34, t39 * t38));
+            let t46 = T::fused(-crank_e1, t32, t37);
+            let t47 = t33 - t31;
+            let t48 = k(1.0) / T::fused(-t46, t38, t47 * t34);
+            let t49 = crank_e2 * t30;
+            let t50 = crank_e3 * t32;
             let t51 = t50 + t49;
-            let t52 = k(2.0) * t51;
-            let t53 = T::fused(t52, t39, -T::fused(-t45, t30, t47 * t34));
-            let t54 = T::fused(t47 * t48, t44, t37 * t48 * t53);
-            let t55 = k(0.2) * t51;
-            let t56 = coupler_e0 * coupler_e1;
-            let t57 = coupler_e2 * coupler_e3;
-            let t58 = t57 - t56;
-            let t59 = T::fused(k(3.924), t58, k(0.01995) * t9);
-            let t60 = k(0.5) - T::fused(coupler_e2, coupler_e2, t2);
-            let t61 = k(2.0) * t60;
-            let t62 = t57 + t56;
-            let t63 = k(2.0) * t62;
-            let t64 = k(0.5) - T::fused(crank_e3, crank_e3, t35);
-            let t65 = k(2.0) * t64;
-            let t66 = T::fused(t65, t63, -T::fused(-t43, t61, t52 * t8));
-            let t67 = T::fused(-k(3.924), t60, k(0.01995) * t4);
-            let t68 = k(0.5) - T::fused(coupler_e3, coupler_e3, t2);
-            let t69 = k(2.0) * t68;
-            let t70 = k(2.0) * t58;
-            let t71 = T::fused(t65, t69, T::fused(t43, t70, t52 * t13));
-            let t72 = T::fused(t66, t59, t71 * t67);
-            let t73 = k(2.0) * (t6 + t5);
-            let t74 = k(2.0) * (t11 - t10);
-            let t75 = T::fused(t65, t74, -T::fused(-t52, t3, t43 * t73));
-            let t76 = k(5e-5) * t75;
-            let t77 = k(0.07) * t66;
-            let t78 = k(0.07) * t71;
-            let t79 = k(1.0) / T::fused(t71, t78, T::fused(t75, t76, t66 * t77));
-            let t80 = t79 * t72;
-            let t81 = T::fused(-t77, t80, t59);
-            let t82 = t77 * t79;
-            let t83 = k(1.0) / T::fused(-t77, t82, k(0.07));
-            let t84 = t83 * t81;
-            let t85 = t76 * t79;
-            let t86 = t77 * t85;
-            let t87 = T::fused(crank_wz, crank_wz, t38);
-            let t88 = crank_wx * crank_wy;
-            let t89 = T::fused(t52, t30, T::fused(t45, t87, t47 * t88));
-            let t90 = T::fused(k(0.2), t89, t14);
-            let t91 = k(0.4) * t12;
-            let t92 = k(0.4) * t7;
-            let t93 = T::fused(t66, t91, t71 * t92);
-            let t94 = t79 * t93;
-            let t95 = T::fused(-t77, t94, t91);
-            let t96 = t83 * t95;
-            let t97 = T::fused(-t76, t94, t86 * t96);
-            let t98 = T::fused(t43, t30, -T::fused(t33, t87, t37 * t88));
-            let t99 = k(0.25) * T::fused(t70, t9, -T::fused(t73, t1, t61 * t4));
-            let t100 = T::fused(k(0.2), t98, t99);
-            let t101 = k(0.4) * t58;
-            let t102 = k(0.4) * t60;
-            let t103 = T::fused(-t66, t101, t71 * t102);
-            let t104 = t79 * t103;
-            let t105 = T::fused(t77, t104, t101);
-            let t106 = t83 * t105;
-            let t107 = T::fused(t76, t104, t86 * t106);
-            let t108 = k(2.0) * (t50 - t49);
-            let t109 = t41 + t40;
-            let t110 = k(2.0) * t109;
-            let t111 = T::fused(t65, t30, -T::fused(-t108, t87, t110 * t88));
-            let t112 = k(0.25) * T::fused(t69, t9, -T::fused(-t74, t1, t63 * t4));
-            let t113 = T::fused(k(0.2), t111, t112);
-            let t114 = k(0.4) * t68;
-            let t115 = k(0.4) * t62;
-            let t116 = T::fused(-t66, t114, t71 * t115);
-            let t117 = t79 * t116;
-            let t118 = T::fused(t77, t117, t114);
-            let t119 = t83 * t118;
-            let t120 = T::fused(t76, t117, t86 * t119);
-            let t121 = k(1.0) / T::fused(t71, t71, t75 * t75);
-            let t122 = T::fused(
-                t30,
-                T::fused(t108, t63, -T::fused(t45, t8, t33 * t61)),
-                t34 * T::fused(t110, t63, T::fused(t37, t61, t47 * t8)),
+            let t52 = T::fused(t44, t51, -T::fused(-t35, t46, t39 * t47));
+            let t53 = T::fused(t47 * t48, t45, t38 * t48 * t52);
+            let t54 = k(0.1) * t51;
+            let t55 = coupler_e1 * t1;
+            let t56 = k(2.0) * coupler_e2;
+            let t57 = coupler_e3 * t56;
+            let t58 = t57 - t55;
+            let t59 = T::fused(k(1.962), t58, k(0.01995) * t13);
+            let t60 = T::fused(-coupler_e2, t56, t2);
+            let t61 = t57 + t55;
+            let t62 = T::fused(-crank_e3, k(2.0) * crank_e3, t37);
+            let t63 = T::fused(t62, t61, T::fused(-t51, t8, t42 * t60));
+            let t64 = T::fused(-k(1.962), t60, k(0.01995) * t9);
+            let t65 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t2);
+            let t66 = T::fused(t62, t65, T::fused(t51, t12, t42 * t58));
+            let t67 = T::fused(t63, t59, t66 * t64);
+            let t68 = t7 + t6;
+            let t69 = t11 - t10;
+            let t70 = T::fused(t62, t69, -T::fused(-t51, t3, t42 * t68));
+            let t71 = k(5e-5) * t70;
+            let t72 = k(0.07) * t63;
+            let t73 = k(0.07) * t66;
+            let t74 = k(1.0) / T::fused(t66, t73, T::fused(t70, t71, t63 * t72));
+            let t75 = t74 * t67;
+            let t76 = T::fused(-t72, t75, t59);
+            let t77 = t72 * t74;
+            let t78 = k(1.0) / T::fused(-t72, t77, k(0.07));
+            let t79 = t78 * t76;
+            let t80 = t71 * t74;
+            let t81 = t72 * t80;
+            let t82 = T::fused(crank_wz, crank_wz, t43);
+            let t83 = crank_wx * crank_wy;
+            let t84 = T::fused(t35, t51, T::fused(t82, t46, t83 * t47));
+            let t85 = T::fused(k(0.2), t84, t14);
+            let t86 = k(0.2) * t12;
+            let t87 = k(0.2) * t8;
+            let t88 = T::fused(t63, t86, t66 * t87);
+            let t89 = t74 * t88;
+            let t90 = T::fused(-t72, t89, t86);
+            let t91 = t78 * t90;
+            let t92 = T::fused(-t71, t89, t81 * t91);
+            let t93 = T::fused(t35, t42, -T::fused(t82, t34, t83 * t38));
+            let t94 = k(0.25) * T::fused(t13, t58, -T::fused(t5, t68, t9 * t60));
+            let t95 = T::fused(k(0.2), t93, t94);
+            let t96 = k(0.2) * t58;
+            let t97 = k(0.2) * t60;
+            let t98 = T::fused(-t63, t96, t66 * t97);
+            let t99 = t74 * t98;
+            let t100 = T::fused(t72, t99, t96);
+            let t101 = t78 * t100;
+            let t102 = T::fused(t71, t99, t81 * t101);
+            let t103 = t50 - t49;
+            let t104 = t41 + t40;
+            let t105 = T::fused(t35, t62, -T::fused(-t82, t103, t83 * t104));
+            let t106 = k(0.25) * T::fused(t13, t65, -T::fused(-t5, t69, t9 * t61));
+            let t107 = T::fused(k(0.2), t105, t106);
+            let t108 = k(0.2) * t65;
+            let t109 = k(0.2) * t61;
+            let t110 = T::fused(-t63, t108, t66 * t109);
+            let t111 = t74 * t110;
+            let t112 = T::fused(t72, t111, t108);
+            let t113 = t78 * t112;
+            let t114 = T::fused(t71, t111, t81 * t113);
+            let t115 = k(1.0) / T::fused(t66, t66, t70 * t70);
+            let t116 = T::fused(
+                t35,
+                T::fused(t103, t61, -T::fused(t46, t8, t34 * t60)),
+                t39 * T::fused(t104, t61, T::fused(t47, t8, t38 * t60)),
             );
-            let t123 = T::fused(t108, t74, T::fused(t45, t3, t33 * t73));
-            let t124 = T::fused(t108, t69, -T::fused(-t45, t13, t33 * t70));
-            let t125 = T::fused(t110, t74, -T::fused(t47, t3, t37 * t73));
-            let t126 = T::fused(t110, t69, -T::fused(-t37, t70, t47 * t13));
-            let t127 = T::fused(
+            let t117 = T::fused(t103, t69, T::fused(t46, t3, t34 * t68));
+            let t118 = T::fused(t103, t65, -T::fused(-t46, t12, t34 * t58));
+            let t119 = T::fused(t104, t69, -T::fused(t47, t3, t38 * t68));
+            let t120 = T::fused(t104, t65, T::fused(-t47, t12, t38 * t58));
+            let t121 = T::fused(
                 -crank_wy,
-                T::fused(coupler_wz, t123, coupler_wx * t124),
-                crank_wx * T::fused(coupler_wz, t125, coupler_wx * t126),
+                T::fused(coupler_wz, t117, coupler_wx * t118),
+                crank_wx * T::fused(coupler_wz, t119, coupler_wx * t120),
             );
-            let t128 = T::fused(
+            let t122 = T::fused(
                 coupler_wy * coupler_wz,
-                t71,
-                T::fused(-t4, t75, T::fused(coupler_wx, coupler_wx, t0) * t66),
+                t66,
+                T::fused(-t9, t70, T::fused(coupler_wx, coupler_wx, t4) * t63),
             );
-            let t129 = T::fused(k(2.0), t127, t128) + T::fused(t39, t66, t122);
-            let t130 = t129 * (t71 * t121);
-            let t131 = t83 * t86;
-            let t132 = T::fused(t86, t131, -T::fused(-t76, t85, k(5e-5)));
-            let t133 = t75 * t121 * t129;
-            let t134 = t78 * t82;
-            let t135 = T::fused(t78, t85, t134 * t131);
-            let t136 = T::fused(-t132, t130, t135 * t133)
-                + T::fused(t120, t113, T::fused(t97, t90, t107 * t100));
-            let t137 = T::fused(t134, t96, T::fused(-t78, t94, t92));
-            let t138 = T::fused(t134, t106, -T::fused(-t78, t104, t102));
-            let t139 = T::fused(t134, t119, -T::fused(-t78, t117, t115));
-            let t140 = T::fused(t134, t83 * t134, -T::fused(-t78, t78 * t79, k(0.07)));
-            let t141 = T::fused(-t135, t130, t140 * t133)
-                + T::fused(t139, t113, T::fused(t137, t90, t138 * t100));
-            let t142 = T::fused(
-                t75,
-                t136 + T::fused(-t76, t80, t86 * t84),
-                t71 * (t141 + T::fused(t134, t84, T::fused(-t78, t80, t67))),
+            let t123 = T::fused(k(2.0), t121, t122) + T::fused(t44, t63, t116);
+            let t124 = t123 * (t66 * t115);
+            let t125 = t78 * t81;
+            let t126 = T::fused(t81, t125, -T::fused(-t71, t80, k(5e-5)));
+            let t127 = t70 * t115 * t123;
+            let t128 = t73 * t77;
+            let t129 = T::fused(t73, t80, t128 * t125);
+            let t130 = T::fused(-t126, t124, t129 * t127)
+                + T::fused(t114, t107, T::fused(t92, t85, t102 * t95));
+            let t131 = T::fused(t128, t91, T::fused(-t73, t89, t87));
+            let t132 = T::fused(t128, t101, -T::fused(-t73, t99, t97));
+            let t133 = T::fused(t128, t113, -T::fused(-t73, t111, t109));
+            let t134 = T::fused(t128, t78 * t128, -T::fused(-t73, t73 * t74, k(0.07)));
+            let t135 = T::fused(-t129, t124, t134 * t127)
+                + T::fused(t133, t107, T::fused(t131, t85, t132 * t95));
+            let t136 = T::fused(
+                t70,
+                t130 + T::fused(-t71, t75, t81 * t79),
+                t66 * (t135 + T::fused(t128, t79, T::fused(-t73, t75, t64))),
             );
-            let t143 = T::fused(t93, t94, t95 * t96);
-            let t144 = T::fused(-t103, t94, t105 * t96);
-            let t145 = T::fused(-t116, t94, t118 * t96);
-            let t146 = T::fused(
+            let t137 = T::fused(t88, t89, t90 * t91);
+            let t138 = T::fused(-t98, t89, t100 * t91);
+            let t139 = T::fused(-t110, t89, t112 * t91);
+            let t140 = T::fused(
                 -k(0.8),
-                t90,
-                T::fused(t145, t113, T::fused(t143, t90, t144 * t100)),
+                t85,
+                T::fused(t139, t107, T::fused(t137, t85, t138 * t95)),
             );
-            let t147 = T::fused(-t97, t130, t137 * t133) + t146
-                + T::fused(t93, t80, t95 * t84);
-            let t148 = k(0.4) * t46;
-            let t149 = T::fused(t103, t104, t105 * t106);
-            let t150 = T::fused(t116, t104, t118 * t106);
-            let t151 = T::fused(
+            let t141 = T::fused(-t92, t124, t131 * t127) + t140
+                + T::fused(t88, t75, t90 * t79);
+            let t142 = k(0.2) * t47;
+            let t143 = T::fused(t98, t99, t100 * t101);
+            let t144 = T::fused(t110, t99, t112 * t101);
+            let t145 = T::fused(
                 -k(0.8),
-                t100,
-                T::fused(t150, t113, T::fused(t144, t90, t149 * t100)),
+                t95,
+                T::fused(t144, t107, T::fused(t138, t85, t143 * t95)),
             );
-            let t152 = T::fused(-t107, t130, t138 * t133) + t151
-                + T::fused(t105, t84, -T::fused(t103, t80, k(7.848)));
-            let t153 = k(0.4) * t36;
-            let t154 = T::fused(t116, t117, t118 * t119);
-            let t155 = T::fused(
+            let t146 = T::fused(-t102, t124, t132 * t127) + t145
+                + T::fused(t100, t79, -T::fused(t98, t75, k(7.848)));
+            let t147 = k(0.2) * t38;
+            let t148 = T::fused(t110, t111, t112 * t113);
+            let t149 = T::fused(
                 -k(0.8),
-                t113,
-                T::fused(t154, t113, T::fused(t145, t90, t150 * t100)),
+                t107,
+                T::fused(t148, t107, T::fused(t139, t85, t144 * t95)),
             );
-            let t156 = T::fused(-t120, t130, t139 * t133) + t155
-                + T::fused(-t116, t80, t118 * t84);
-            let t157 = k(0.4) * t109;
-            let t158 = T::fused(
+            let t150 = T::fused(-t114, t124, t133 * t127) + t149
+                + T::fused(-t110, t75, t112 * t79);
+            let t151 = k(0.2) * t104;
+            let t152 = T::fused(
                 k(0.00398),
-                t88,
-                T::fused(t157, t156, T::fused(-t148, t147, t153 * t152)) + t142,
+                t83,
+                T::fused(t151, t150, T::fused(-t142, t141, t147 * t146)) + t136,
             );
-            let t159 = k(0.2) * t46;
-            let t160 = k(0.2) * t36;
-            let t161 = k(0.2) * t109;
-            let t162 = T::fused(
-                t161,
-                t156,
-                -T::fused(t159, t147, t160 * (k(4.905) - t152)),
-            ) + t158;
-            let t163 = k(0.1) * t89;
-            let t164 = T::fused(t161, t145, T::fused(-t159, t143, t160 * t144));
-            let t165 = T::fused(t75, t97, t71 * t137);
-            let t166 = T::fused(t157, t145, T::fused(-t148, t143, t153 * t144));
-            let t167 = T::fused(k(0.32), t46, t166) + t165;
-            let t168 = k(0.1) * t98;
-            let t169 = T::fused(t161, t150, T::fused(-t159, t144, t160 * t149));
-            let t170 = T::fused(t75, t107, t71 * t138);
-            let t171 = T::fused(t157, t150, T::fused(-t148, t144, t153 * t149));
-            let t172 = T::fused(-k(0.32), t36, t171) + t170;
-            let t173 = T::fused(
-                t167 + T::fused(k(0.26), t46, t164),
-                t163,
-                (t172 + T::fused(-k(0.26), t36, t169)) * t168,
+            let t153 = k(0.1) * t47;
+            let t154 = k(0.1) * t38;
+            let t155 = k(0.1) * t104;
+            let t156 = T::fused(
+                t155,
+                t150,
+                -T::fused(t153, t141, t154 * (k(4.905) - t146)),
+            ) + t152;
+            let t157 = k(0.1) * t84;
+            let t158 = T::fused(t155, t139, T::fused(-t153, t137, t154 * t138));
+            let t159 = T::fused(t70, t92, t66 * t131);
+            let t160 = T::fused(t151, t139, T::fused(-t142, t137, t147 * t138));
+            let t161 = T::fused(k(0.16), t47, t160) + t159;
+            let t162 = k(0.1) * t93;
+            let t163 = T::fused(t155, t144, T::fused(-t153, t138, t154 * t143));
+            let t164 = T::fused(t70, t102, t66 * t132);
+            let t165 = T::fused(t151, t144, T::fused(-t142, t138, t147 * t143));
+            let t166 = T::fused(-k(0.16), t38, t165) + t164;
+            let t167 = T::fused(
+                t161 + T::fused(k(0.13), t47, t158),
+                t157,
+                (t166 + T::fused(-k(0.13), t38, t163)) * t162,
             );
-            let t174 = k(0.1) * t111;
-            let t175 = T::fused(t161, t154, T::fused(-t159, t145, t160 * t150));
-            let t176 = T::fused(t75, t120, t71 * t139);
-            let t177 = T::fused(t157, t154, T::fused(-t148, t145, t153 * t150));
-            let t178 = T::fused(-k(0.32), t109, t177) + t176;
-            let t179 = T::fused(t44, t45 * t48, t53 * (t33 * t48));
-            let t180 = T::fused(
-                t75,
-                T::fused(t132, t123, t135 * t124),
-                t71 * T::fused(t135, t123, t140 * t124),
+            let t168 = k(0.1) * t105;
+            let t169 = T::fused(t155, t148, T::fused(-t153, t139, t154 * t144));
+            let t170 = T::fused(t70, t114, t66 * t133);
+            let t171 = T::fused(t151, t148, T::fused(-t142, t139, t147 * t144));
+            let t172 = T::fused(-k(0.16), t104, t171) + t170;
+            let t173 = T::fused(t45, t46 * t48, t52 * (t34 * t48));
+            let t174 = T::fused(
+                t70,
+                T::fused(t126, t117, t129 * t118),
+                t66 * T::fused(t129, t117, t134 * t118),
             );
-            let t181 = T::fused(t97, t123, t137 * t124);
-            let t182 = T::fused(t107, t123, t138 * t124);
-            let t183 = T::fused(t120, t123, t139 * t124);
-            let t184 = T::fused(t161, t183, T::fused(-t159, t181, t160 * t182))
-                + (T::fused(t157, t183, T::fused(-t148, t181, t153 * t182)) + t180);
-            let t185 = T::fused(
-                t75,
-                T::fused(t132, t125, t135 * t126),
-                t71 * T::fused(t135, t125, t140 * t126),
+            let t175 = T::fused(t92, t117, t131 * t118);
+            let t176 = T::fused(t102, t117, t132 * t118);
+            let t177 = T::fused(t114, t117, t133 * t118);
+            let t178 = T::fused(t155, t177, T::fused(-t153, t175, t154 * t176))
+                + (T::fused(t151, t177, T::fused(-t142, t175, t147 * t176)) + t174);
+            let t179 = T::fused(
+                t70,
+                T::fused(t126, t119, t129 * t120),
+                t66 * T::fused(t129, t119, t134 * t120),
             );
-            let t186 = k(0.4) * t51;
-            let t187 = k(0.4) * t42;
-            let t188 = k(0.4) * t64;
-            let t189 = T::fused(t97, t125, t137 * t126);
-            let t190 = T::fused(t107, t125, t138 * t126);
-            let t191 = T::fused(t120, t125, t139 * t126);
-            let t192 = T::fused(t157, t191, T::fused(-t148, t189, t153 * t190))
-                - T::fused(t188, t176, T::fused(t186, t165, t187 * t170));
-            let t193 = t192 - T::fused(t188, t177, T::fused(t186, t166, t187 * t171))
-                + t185;
-            let t194 = k(0.2) * t42;
-            let t195 = k(0.2) * t64;
-            let t196 = T::fused(
-                -k(0.32),
+            let t180 = k(0.2) * t51;
+            let t181 = k(0.2) * t42;
+            let t182 = k(0.2) * t62;
+            let t183 = T::fused(t92, t119, t131 * t120);
+            let t184 = T::fused(t102, t119, t132 * t120);
+            let t185 = T::fused(t114, t119, t133 * t120);
+            let t186 = T::fused(t151, t185, T::fused(-t142, t183, t147 * t184))
+                - T::fused(t170, t182, T::fused(t159, t180, t164 * t181));
+            let t187 = t186 - T::fused(t171, t182, T::fused(t160, t180, t165 * t181))
+                + t179;
+            let t188 = k(0.1) * t42;
+            let t189 = k(0.1) * t62;
+            let t190 = T::fused(
+                -k(0.16),
                 t51,
-                T::fused(t188, t145, T::fused(t186, t143, t187 * t144)),
+                T::fused(t139, t182, T::fused(t137, t180, t138 * t181)),
+            );
+            let t191 = T::fused(
+                -k(0.16),
+                t42,
+                T::fused(t144, t182, T::fused(t138, t180, t143 * t181)),
+            );
+            let t192 = T::fused(
+                -k(0.16),
+                t62,
+                T::fused(t148, t182, T::fused(t139, t180, t144 * t181)),
+            );
+            let t193 = T::fused(
+                t155,
+                t192 - t185,
+                T::fused(-t153, t190 - t183, t154 * (t191 - t184)),
+            );
+            let t194 = t193 + T::fused(t172, t189, T::fused(t161, t54, t166 * t188))
+                + T::fused(t169, t189, T::fused(t158, t54, t163 * t188));
+            let t195 = T::fused(t178, t173, (t194 - t187) * t53)
+                - T::fused(t172 + T::fused(-k(0.13), t104, t169), t168, t167);
+            let t196 = T::fused(
+                t70,
+                T::fused(t70, t126, t66 * t129),
+                t66 * T::fused(t70, t129, t66 * t134),
             );
             let t197 = T::fused(
-                -k(0.32),
-                t42,
-                T::fused(t188, t150, T::fused(t186, t144, t187 * t149)),
+                k(2.0),
+                T::fused(t151, t170, T::fused(-t142, t159, t147 * t164)),
+                T::fused(t151, t171, T::fused(-t142, t160, t147 * t165)),
             );
             let t198 = T::fused(
-                -k(0.32),
-                t64,
-                T::fused(t188, t154, T::fused(t186, t145, t187 * t150)),
+                k(2.0),
+                T::fused(t155, t172, T::fused(-t153, t161, t154 * t166)),
+                T::fused(t155, t169, T::fused(-t153, t158, t154 * t163)),
             );
-            let t199 = T::fused(
-                t161,
-                t198 - t191,
-                T::fused(-t159, t196 - t189, t160 * (t197 - t190)),
-            );
+            let t199 = k(1.0)
+                / (t198 - (k(0.013) + (k(0.004) - (t197 - (k(0.032) - t196)))));
             (
-                t7,
+                t8,
                 t12,
                 t14,
-                t15,
                 t16,
                 t17,
                 t18,
@@ -2031,472 +2034,434 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
                 t27,
                 t28,
                 t29,
+                t53,
                 t54,
-                t55,
                 t58,
                 t60,
-                t62,
+                t61,
+                t63,
+                t65,
                 t66,
-                t68,
+                t67,
+                t70,
                 t71,
                 t72,
-                t75,
+                t73,
+                t74,
                 t76,
-                t77,
                 t78,
-                t79,
                 t81,
-                t83,
-                t86,
+                t85,
+                t88,
                 t90,
-                t93,
+                t94,
                 t95,
-                t99,
+                t98,
                 t100,
-                t103,
-                t105,
-                t109,
+                t106,
+                t107,
+                t110,
                 t112,
-                t113,
-                t116,
+                t117,
                 t118,
-                t123,
+                t119,
+                t120,
                 t124,
-                t125,
-                t126,
-                t130,
-                t132,
-                t133,
-                t134,
-                t135,
-                t140,
-                t148,
+                t127,
+                t128,
+                t142,
+                t147,
+                t151,
                 t153,
+                t154,
+                t155,
+                t156,
                 t157,
-                t159,
-                t160,
-                t161,
                 t162,
-                t163,
-                t164,
-                t165,
-                t166,
-                t167,
                 t168,
-                t169,
-                t170,
-                t171,
-                t172,
                 t173,
-                t174,
-                t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t184,
-                t186,
-                t187,
+                t180,
+                t181,
+                t182,
                 t188,
-                t193,
-                t194,
+                t189,
                 t195,
                 t199,
             )
         };
         let (
-            t206,
-            t207,
-            t209,
-            t211,
+            t200,
+            t201,
+            t203,
+            t205,
+            t213,
+            t214,
+            t215,
+            t216,
             t219,
-            t220,
-            t221,
-            t222,
-            t225,
-            t234,
-            t235,
+            t227,
+            t228,
+            t229,
+            t230,
             t236,
-            t237,
-            t244,
-            t258,
-            t259,
-            t261,
-            t263,
-            t271,
-            t272,
-            t275,
-            t300,
+            t252,
+            t253,
+            t255,
+            t257,
+            t265,
+            t266,
+            t269,
+            t296,
+            t297,
+            t299,
             t301,
-            t303,
-            t305,
+            t309,
+            t310,
             t313,
-            t314,
-            t317,
-            t323,
-            t326,
-            t328,
-            t329,
-            t334,
-            t335,
+            t319,
+            t322,
+            t324,
+            t325,
+            t330,
+            t331,
+            t345,
+            t346,
             t347,
             t348,
-            t349,
             t350,
             t352,
-            t354,
+            t357,
+            t358,
             t359,
-            t360,
             t361,
+            t362,
             t363,
-            t364,
             t365,
+            t366,
             t367,
             t368,
             t369,
             t370,
             t371,
             t372,
-            t373,
-            t374,
         ) = {
-            let t200 = t199 + T::fused(t195, t178, T::fused(t55, t167, t194 * t172))
-                + T::fused(t195, t175, T::fused(t55, t164, t194 * t169));
-            let t201 = T::fused(t184, t179, (t200 - t193) * t54)
-                - T::fused(t178 + T::fused(-k(0.26), t109, t175), t174, t173);
-            let t202 = T::fused(
-                t75,
-                T::fused(t75, t132, t71 * t135),
-                t71 * T::fused(t75, t135, t71 * t140),
+            let t200 = t199 * (t195 - t156);
+            let t201 = t157 - T::fused(t54, t53, t153 * t200);
+            let t202 = t85 - (T::fused(t180, t53, t142 * t200) - t201);
+            let t203 = t162 + T::fused(-t188, t53, t154 * t200);
+            let t204 = t95 + (T::fused(-t181, t53, t147 * t200) + t203);
+            let t205 = t168 + T::fused(-t189, t53, t155 * t200);
+            let t206 = t107 + (T::fused(-t182, t53, t151 * t200) + t205);
+            let t207 = t124 - T::fused(t70, t200, T::fused(-t117, t173, t119 * t53));
+            let t208 = t127 + T::fused(t66, t200, T::fused(-t118, t173, t120 * t53));
+            let t209 = T::fused(-t81, t207, t128 * t208)
+                + T::fused(t112, t206, T::fused(t90, t202, t100 * t204));
+            let t210 = t78 * (t76 + t209);
+            let t211 = T::fused(t73, t208, T::fused(-t71, t207, t72 * t210))
+                + T::fused(t110, t206, T::fused(-t88, t202, t98 * t204));
+            let t212 = t74 * (t67 - t211);
+            let t213 = T::fused(t63, t212, t210);
+            let t214 = k(0.25) * t12;
+            let t215 = T::fused(t66, t212, t208);
+            let t216 = k(0.25) * t8;
+            let t217 = T::fused(t214, t213, t216 * t215);
+            let t218 = t202 - t217;
+            let t219 = t22 + t21;
+            let t220 = k(2.0) * rocker_e2;
+            let t221 = T::fused(-rocker_e2, t220, t17);
+            let t222 = rocker_wy * rocker_wz;
+            let t223 = rocker_e1 * t16;
+            let t224 = rocker_e3 * t220;
+            let t225 = t224 - t223;
+            let t226 = T::fused(rocker_wx, rocker_wx, t19);
+            let t227 = T::fused(t226, t225, T::fused(-t28, t219, t222 * t221));
+            let t228 = k(1.0) / T::fused(-t18, t221, t23 * t219);
+            let t229 = T::fused(t226, t27, -T::fused(-t28, t18, t222 * t23));
+            let t230 = T::fused(t23 * t228, t227, t221 * t228 * t229);
+            let t231 = k(0.15) * T::fused(t28, t225, -T::fused(t20, t219, t24 * t221));
+            let t232 = t224 + t223;
+            let t233 = T::fused(-rocker_e3, k(2.0) * rocker_e3, t17);
+            let t234 = k(0.15)
+                * T::fused(t28, t233, -T::fused(-t20, t26 - t25, t24 * t232));
+            let t235 = T::fused(
+                k(0.09) * t232,
+                t234,
+                T::fused(-(k(0.09) * t23), t29, k(0.09) * t221 * t231),
             );
-            let t203 = T::fused(
-                k(2.0),
-                T::fused(t157, t176, T::fused(-t148, t165, t153 * t170)),
-                T::fused(t157, t177, T::fused(-t148, t166, t153 * t171)),
+            let t236 = k(54.054054054054056)
+                * (t235 - T::fused(-k(0.8829), t221, k(0.00496) * t24));
+            let t237 = k(0.15) * t23;
+            let t238 = T::fused(-t230, k(0.15) * t27, t237 * t236);
+            let t239 = t29 + t238;
+            let t240 = t238 + t239 + (t217 - t218) + (t29 - t14);
+            let t241 = k(0.5) * t12;
+            let t242 = k(0.5) * t8;
+            let t243 = T::fused(t241, t63, t242 * t66);
+            let t244 = t243 * t74;
+            let t245 = T::fused(-t72, t244, t241);
+            let t246 = t245 * t78;
+            let t247 = T::fused(
+                t70,
+                T::fused(-t71, t244, t246 * t81),
+                t66 * T::fused(t246, t128, T::fused(-t73, t244, t242)),
             );
-            let t204 = T::fused(
-                k(2.0),
-                T::fused(t161, t178, T::fused(-t159, t167, t160 * t172)),
-                T::fused(t161, t175, T::fused(-t159, t164, t160 * t169)),
+            let t248 = T::fused(t246, t90, -T::fused(-t244, t88, k(1.0)));
+            let t249 = T::fused(-t244, t98, t246 * t100);
+            let t250 = T::fused(-t244, t110, t246 * t112);
+            let t251 = T::fused(t250, t155, T::fused(-t248, t153, t249 * t154))
+                + (T::fused(t250, t151, T::fused(-t248, t142, t249 * t147)) + t247);
+            let t252 = t251 * t199;
+            let t253 = t153 * t252;
+            let t254 = T::fused(t142, t252, t253);
+            let t255 = t154 * t252;
+            let t256 = T::fused(t147, t252, t255);
+            let t257 = t155 * t252;
+            let t258 = T::fused(t151, t252, t257);
+            let t259 = t70 * t252;
+            let t260 = t66 * t252;
+            let t261 = T::fused(t81, t259, t128 * t260)
+                + T::fused(t112, t258, T::fused(-t90, t254, t100 * t256));
+            let t262 = t78 * (t245 - t261);
+            let t263 = T::fused(t73, t260, -T::fused(-t71, t259, t72 * t262))
+                + T::fused(t110, t258, T::fused(t88, t254, t98 * t256));
+            let t264 = t74 * (t243 + t263);
+            let t265 = T::fused(t63, t264, t262);
+            let t266 = T::fused(-t66, t264, t260);
+            let t267 = T::fused(-t265, t214, t266 * t216);
+            let t268 = t254 + t267;
+            let t269 = k(16.216216216216218) * t23;
+            let t270 = t269 * t237;
+            let t271 = k(1.0) / T::fused(k(2.0), t270, -(t267 + t268));
+            let t272 = k(0.25) * t58;
+            let t273 = k(0.25) * t60;
+            let t274 = T::fused(-t272, t213, t273 * t215);
+            let t275 = t204 + t274;
+            let t276 = k(0.15) * t221;
+            let t277 = T::fused(t230, k(0.15) * t225, t276 * t236);
+            let t278 = t231 - t277;
+            let t279 = T::fused(t265, t272, t266 * t273);
+            let t280 = t256 + t279;
+            let t281 = t269 * t276;
+            let t282 = T::fused(k(2.0), t281, -(t279 + t280));
+            let t283 = t271 * t282;
+            let t284 = T::fused(
+                t283,
+                t240,
+                -(t277 - t278 + (t274 + t275) - (t231 - t94)),
             );
-            let t205 = k(1.0)
-                / (t204 - (k(0.013) + (k(0.004) - (t203 - (k(0.032) - t202)))));
-            let t206 = t205 * (t201 - t162);
-            let t207 = t163 - T::fused(t55, t54, t159 * t206);
-            let t208 = t90 - (T::fused(t186, t54, t148 * t206) - t207);
-            let t209 = t168 + T::fused(-t194, t54, t160 * t206);
-            let t210 = t100 + (T::fused(-t187, t54, t153 * t206) + t209);
-            let t211 = t174 + T::fused(-t195, t54, t161 * t206);
-            let t212 = t113 + (T::fused(-t188, t54, t157 * t206) + t211);
-            let t213 = t130 - T::fused(t75, t206, T::fused(-t123, t179, t125 * t54));
-            let t214 = t133 + T::fused(t71, t206, T::fused(-t124, t179, t126 * t54));
-            let t215 = T::fused(-t86, t213, t134 * t214)
-                + T::fused(t118, t212, T::fused(t95, t208, t105 * t210));
-            let t216 = t83 * (t81 + t215);
-            let t217 = T::fused(t78, t214, T::fused(-t76, t213, t77 * t216))
-                + T::fused(t116, t212, T::fused(-t93, t208, t103 * t210));
-            let t218 = t79 * (t72 - t217);
-            let t219 = T::fused(t66, t218, t216);
-            let t220 = k(0.5) * t12;
-            let t221 = T::fused(t71, t218, t214);
-            let t222 = k(0.5) * t7;
-            let t223 = T::fused(t220, t219, t222 * t221);
-            let t224 = t208 - t223;
-            let t225 = k(2.0) * (t21 + t20);
-            let t226 = rocker_wy * rocker_wz;
-            let t227 = k(0.5) - T::fused(rocker_e2, rocker_e2, t17);
-            let t228 = k(2.0) * t227;
-            let t229 = T::fused(rocker_wx, rocker_wx, t15);
-            let t230 = rocker_e0 * rocker_e1;
-            let t231 = rocker_e2 * rocker_e3;
-            let t232 = t231 - t230;
-            let t233 = k(2.0) * t232;
-            let t234 = T::fused(t233, t229, T::fused(-t225, t24, t228 * t226));
-            let t235 = k(1.0) / T::fused(-t18, t228, t23 * t225);
-            let t236 = T::fused(t28, t229, -T::fused(-t18, t24, t23 * t226));
-            let t237 = T::fused(t23 * t235, t234, t228 * t235 * t236);
-            let t238 = k(0.15) * T::fused(t233, t24, -T::fused(t225, t16, t228 * t19));
-            let t239 = t231 + t230;
-            let t240 = k(0.5) - T::fused(rocker_e3, rocker_e3, t17);
-            let t241 = T::fused(
-                k(2.0) * t240,
-                t24,
-                -T::fused(-(k(2.0) * (t26 - t25)), t16, k(2.0) * t239 * t19),
+            let t285 = k(0.5) * t58;
+            let t286 = k(0.5) * t60;
+            let t287 = T::fused(-t63, t285, t66 * t286);
+            let t288 = t74 * t287;
+            let t289 = T::fused(t72, t288, t285);
+            let t290 = t78 * t289;
+            let t291 = T::fused(
+                t70,
+                T::fused(t71, t288, t81 * t290),
+                t66 * T::fused(t128, t290, -T::fused(-t73, t288, t286)),
             );
-            let t242 = k(0.15) * t241;
-            let t243 = T::fused(
-                k(0.18) * t239,
-                t242,
-                T::fused(-(k(0.18) * t22), t29, k(0.18) * t227 * t238),
+            let t292 = T::fused(-t88, t288, t90 * t290);
+            let t293 = T::fused(t100, t290, -T::fused(-t98, t288, k(1.0)));
+            let t294 = T::fused(t110, t288, t112 * t290);
+            let t295 = T::fused(t155, t294, T::fused(-t153, t292, t154 * t293))
+                + (T::fused(t151, t294, T::fused(-t142, t292, t147 * t293)) + t291);
+            let t296 = t199 * t295;
+            let t297 = t153 * t296;
+            let t298 = T::fused(t142, t296, t297);
+            let t299 = t154 * t296;
+            let t300 = T::fused(t147, t296, t299);
+            let t301 = t155 * t296;
+            let t302 = T::fused(t151, t296, t301);
+            let t303 = t70 * t296;
+            let t304 = t66 * t296;
+            let t305 = T::fused(t81, t303, t128 * t304)
+                + T::fused(t112, t302, T::fused(-t90, t298, t100 * t300));
+            let t306 = t78 * (t289 - t305);
+            let t307 = T::fused(t73, t304, -T::fused(-t71, t303, t72 * t306))
+                + T::fused(t110, t302, T::fused(t88, t298, t98 * t300));
+            let t308 = t74 * (t287 - t307);
+            let t309 = T::fused(-t63, t308, t306);
+            let t310 = T::fused(t66, t308, t304);
+            let t311 = T::fused(t272, t309, t273 * t310);
+            let t312 = t300 + t311;
+            let t313 = k(16.216216216216218) * t221;
+            let t314 = t276 * t313;
+            let t315 = k(1.0)
+                / T::fused(t282, t283, -T::fused(k(2.0), t314, t311 + t312));
+            let t316 = k(0.25) * t65;
+            let t317 = k(0.25) * t61;
+            let t318 = T::fused(-t316, t213, t317 * t215);
+            let t319 = t206 + t318;
+            let t320 = k(0.15) * t232;
+            let t321 = T::fused(t230, k(0.15) * t233, t320 * t236);
+            let t322 = t234 - t321;
+            let t323 = T::fused(t265, t316, t266 * t317);
+            let t324 = t258 + t323;
+            let t325 = t269 * t320;
+            let t326 = T::fused(k(2.0), t325, -(t323 + t324));
+            let t327 = t271 * t326;
+            let t328 = T::fused(
+                t327,
+                t240,
+                -(t321 - t322 + (t318 + t319) - (t234 - t106)),
             );
-            let t244 = k(54.054054054054056)
-                * (t243 - T::fused(-k(1.7658), t227, k(0.00496) * t19));
-            let t245 = k(0.3) * t22;
-            let t246 = T::fused(-(k(0.3) * t27), t237, t245 * t244);
-            let t247 = t29 + t246;
-            let t248 = t246 + t247 + (t223 - t224) + (t29 - t14);
-            let t249 = T::fused(t12, t66, t7 * t71);
-            let t250 = t249 * t79;
-            let t251 = T::fused(-t77, t250, t12);
-            let t252 = t251 * t83;
-            let t253 = T::fused(
-                t75,
-                T::fused(-t76, t250, t252 * t86),
-                t71 * T::fused(t252, t134, T::fused(-t78, t250, t7)),
+            let t329 = T::fused(t309, t316, t310 * t317);
+            let t330 = t302 + t329;
+            let t331 = t313 * t320;
+            let t332 = T::fused(t282, t327, -T::fused(k(2.0), t331, t329 + t330));
+            let t333 = t315 * t332;
+            let t334 = k(0.5) * t65;
+            let t335 = k(0.5) * t61;
+            let t336 = T::fused(-t63, t334, t66 * t335);
+            let t337 = t74 * t336;
+            let t338 = T::fused(t72, t337, t334);
+            let t339 = t78 * t338;
+            let t340 = T::fused(
+                t70,
+                T::fused(t71, t337, t81 * t339),
+                t66 * T::fused(t128, t339, -T::fused(-t73, t337, t335)),
             );
-            let t254 = T::fused(t252, t95, -T::fused(-t250, t93, k(1.0)));
-            let t255 = T::fused(-t250, t103, t252 * t105);
-            let t256 = T::fused(-t250, t116, t252 * t118);
-            let t257 = T::fused(t161, t256, T::fused(-t159, t254, t160 * t255))
-                + (T::fused(t157, t256, T::fused(-t148, t254, t153 * t255)) + t253);
-            let t258 = t257 * t205;
-            let t259 = t159 * t258;
-            let t260 = T::fused(t148, t258, t259);
-            let t261 = t160 * t258;
-            let t262 = T::fused(t153, t258, t261);
-            let t263 = t161 * t258;
-            let t264 = T::fused(t157, t258, t263);
-            let t265 = t75 * t258;
-            let t266 = t71 * t258;
-            let t267 = T::fused(t86, t265, t134 * t266)
-                + T::fused(t118, t264, T::fused(-t95, t260, t105 * t262));
-            let t268 = t83 * (t251 - t267);
-            let t269 = T::fused(t78, t266, -T::fused(-t76, t265, t77 * t268))
-                + T::fused(t116, t264, T::fused(t93, t260, t103 * t262));
-            let t270 = t79 * (t249 + t269);
-            let t271 = T::fused(t66, t270, t268);
-            let t272 = T::fused(-t71, t270, t266);
-            let t273 = T::fused(-t220, t271, t222 * t272);
-            let t274 = t260 + t273;
-            let t275 = k(32.432432432432435) * t22;
-            let t276 = t245 * t275;
-            let t277 = k(1.0) / T::fused(k(2.0), t276, -(t273 + t274));
-            let t278 = k(0.5) * t58;
-            let t279 = k(0.5) * t60;
-            let t280 = T::fused(-t278, t219, t279 * t221);
-            let t281 = t210 + t280;
-            let t282 = k(0.3) * t227;
-            let t283 = T::fused(k(0.3) * t232, t237, t282 * t244);
-            let t284 = t238 - t283;
-            let t285 = T::fused(t278, t271, t279 * t272);
-            let t286 = t262 + t285;
-            let t287 = t282 * t275;
-            let t288 = T::fused(k(2.0), t287, -(t285 + t286));
-            let t289 = t277 * t288;
-            let t290 = T::fused(
-                t289,
-                t248,
-                -(t283 - t284 + (t280 + t281) - (t238 - t99)),
+            let t341 = T::fused(-t88, t337, t90 * t339);
+            let t342 = T::fused(t98, t337, t100 * t339);
+            let t343 = T::fused(t112, t339, -T::fused(-t110, t337, k(1.0)));
+            let t344 = T::fused(t155, t343, T::fused(-t153, t341, t154 * t342))
+                + (T::fused(t151, t343, T::fused(-t142, t341, t147 * t342)) + t340);
+            let t345 = t199 * t344;
+            let t346 = t153 * t345;
+            let t347 = T::fused(t142, t345, t346);
+            let t348 = t154 * t345;
+            let t349 = T::fused(t147, t345, t348);
+            let t350 = t155 * t345;
+            let t351 = T::fused(t151, t345, t350);
+            let t352 = t70 * t345;
+            let t353 = t66 * t345;
+            let t354 = T::fused(t81, t352, t128 * t353)
+                + T::fused(t112, t351, T::fused(-t90, t347, t100 * t349));
+            let t355 = t78 * (t338 - t354);
+            let t356 = T::fused(t73, t353, -T::fused(-t71, t352, t72 * t355))
+                + T::fused(t110, t351, T::fused(t88, t347, t98 * t349));
+            let t357 = t74 * (t336 - t356);
+            let t358 = T::fused(-t63, t357, t355);
+            let t359 = T::fused(t66, t357, t353);
+            let t360 = T::fused(t316, t358, t317 * t359);
+            let t361 = t351 + t360;
+            let t362 = k(16.216216216216218) * t232;
+            let t363 = t320 * t362;
+            let t364 = T::fused(
+                t332,
+                t333,
+                -T::fused(t326, t327, -T::fused(k(2.0), t363, t360 + t361)),
             );
-            let t291 = T::fused(-t58, t66, t60 * t71);
-            let t292 = t79 * t291;
-            let t293 = T::fused(t77, t292, t58);
-            let t294 = t83 * t293;
-            let t295 = T::fused(
-                t75,
-                T::fused(t76, t292, t86 * t294),
-                t71 * T::fused(t134, t294, -T::fused(-t78, t292, t60)),
+            let t365 = T::fused(t333, t284, -t328) / t364;
+            let t366 = T::fused(-t315, t284, t333 * t365);
+            let t367 = T::fused(t327, t365, -T::fused(t271, t240, t283 * t366));
+            let t368 = T::fused(
+                t366,
+                t298 + T::fused(-t214, t309, t216 * t310),
+                -T::fused(t268, t367, t218),
             );
-            let t296 = T::fused(-t93, t292, t95 * t294);
-            let t297 = T::fused(t105, t294, -T::fused(-t103, t292, k(1.0)));
-            let t298 = T::fused(t116, t292, t118 * t294);
-            let t299 = T::fused(t161, t298, T::fused(-t159, t296, t160 * t297))
-                + (T::fused(t157, t298, T::fused(-t148, t296, t153 * t297)) + t295);
-            let t300 = t205 * t299;
-            let t301 = t159 * t300;
-            let t302 = T::fused(t148, t300, t301);
-            let t303 = t160 * t300;
-            let t304 = T::fused(t153, t300, t303);
-            let t305 = t161 * t300;
-            let t306 = T::fused(t157, t300, t305);
-            let t307 = t75 * t300;
-            let t308 = t71 * t300;
-            let t309 = T::fused(t86, t307, t134 * t308)
-                + T::fused(t118, t306, T::fused(-t95, t302, t105 * t304));
-            let t310 = t83 * (t293 - t309);
-            let t311 = T::fused(t78, t308, -T::fused(-t76, t307, t77 * t310))
-                + T::fused(t116, t306, T::fused(t93, t302, t103 * t304));
-            let t312 = t79 * (t291 - t311);
-            let t313 = T::fused(-t66, t312, t310);
-            let t314 = T::fused(t71, t312, t308);
-            let t315 = T::fused(t278, t313, t279 * t314);
-            let t316 = t304 + t315;
-            let t317 = k(32.432432432432435) * t227;
-            let t318 = t282 * t317;
-            let t319 = k(1.0)
-                / T::fused(t288, t289, -T::fused(k(2.0), t318, t315 + t316));
-            let t320 = k(0.5) * t68;
-            let t321 = k(0.5) * t62;
-            let t322 = T::fused(-t320, t219, t321 * t221);
-            let t323 = t212 + t322;
-            let t324 = k(0.3) * t239;
-            let t325 = T::fused(k(0.3) * t240, t237, t324 * t244);
-            let t326 = t242 - t325;
-            let t327 = T::fused(t320, t271, t321 * t272);
-            let t328 = t264 + t327;
-            let t329 = t324 * t275;
-            let t330 = T::fused(k(2.0), t329, -(t327 + t328));
-            let t331 = t277 * t330;
-            let t332 = T::fused(
-                t331,
-                t248,
-                -(t325 - t326 + (t322 + t323) - (t242 - t112)),
+            let t369 = T::fused(
+                t365,
+                t349 + T::fused(t272, t358, t273 * t359),
+                -T::fused(t312, t366, T::fused(-t280, t367, t275)),
             );
-            let t333 = T::fused(t320, t313, t321 * t314);
-            let t334 = t306 + t333;
-            let t335 = t324 * t317;
-            let t336 = T::fused(t288, t331, -T::fused(k(2.0), t335, t333 + t334));
-            let t337 = t319 * t336;
-            let t338 = T::fused(-t68, t66, t62 * t71);
-            let t339 = t79 * t338;
-            let t340 = T::fused(t77, t339, t68);
-            let t341 = t83 * t340;
-            let t342 = T::fused(
-                t75,
-                T::fused(t76, t339, t86 * t341),
-                t71 * T::fused(t134, t341, -T::fused(-t78, t339, t62)),
-            );
-            let t343 = T::fused(-t93, t339, t95 * t341);
-            let t344 = T::fused(t103, t339, t105 * t341);
-            let t345 = T::fused(t118, t341, -T::fused(-t116, t339, k(1.0)));
-            let t346 = T::fused(t161, t345, T::fused(-t159, t343, t160 * t344))
-                + (T::fused(t157, t345, T::fused(-t148, t343, t153 * t344)) + t342);
-            let t347 = t205 * t346;
-            let t348 = t159 * t347;
-            let t349 = T::fused(t148, t347, t348);
-            let t350 = t160 * t347;
-            let t351 = T::fused(t153, t347, t350);
-            let t352 = t161 * t347;
-            let t353 = T::fused(t157, t347, t352);
-            let t354 = t75 * t347;
-            let t355 = t71 * t347;
-            let t356 = T::fused(t86, t354, t134 * t355)
-                + T::fused(t118, t353, T::fused(-t95, t349, t105 * t351));
-            let t357 = t83 * (t340 - t356);
-            let t358 = T::fused(t78, t355, -T::fused(-t76, t354, t77 * t357))
-                + T::fused(t116, t353, T::fused(t93, t349, t103 * t351));
-            let t359 = t79 * (t338 - t358);
-            let t360 = T::fused(-t66, t359, t357);
-            let t361 = T::fused(t71, t359, t355);
-            let t362 = T::fused(t320, t360, t321 * t361);
-            let t363 = t353 + t362;
-            let t364 = k(32.432432432432435) * t239;
-            let t365 = t324 * t364;
-            let t366 = T::fused(
-                t336,
-                t337,
-                -T::fused(t330, t331, -T::fused(k(2.0), t365, t362 + t363)),
-            );
-            let t367 = T::fused(t337, t290, -t332) / t366;
-            let t368 = T::fused(-t319, t290, t337 * t367);
-            let t369 = T::fused(t331, t367, -T::fused(t277, t248, t289 * t368));
             let t370 = T::fused(
-                t368,
-                t302 + T::fused(-t220, t313, t222 * t314),
-                -T::fused(t274, t369, t224),
+                t366,
+                T::fused(t70, t308, t303),
+                -T::fused(t367, T::fused(-t70, t264, t259), T::fused(-t70, t212, t207)),
             );
             let t371 = T::fused(
-                t367,
-                t351 + T::fused(t278, t360, t279 * t361),
-                -T::fused(t316, t368, T::fused(-t286, t369, t281)),
+                t365,
+                t237 * t362,
+                -T::fused(t366, t237 * t313, T::fused(t270, t367, t239)),
             );
             let t372 = T::fused(
-                t368,
-                T::fused(t75, t312, t307),
-                -T::fused(t369, T::fused(-t75, t270, t265), T::fused(-t75, t218, t213)),
-            );
-            let t373 = T::fused(
-                t367,
-                t245 * t364,
-                -T::fused(t368, t245 * t317, T::fused(t276, t369, t247)),
-            );
-            let t374 = T::fused(
-                t367,
-                t282 * t364,
-                -T::fused(t318, t368, -T::fused(-t287, t369, t284)),
+                t365,
+                t276 * t362,
+                -T::fused(t314, t366, -T::fused(-t281, t367, t278)),
             );
             (
-                t206,
-                t207,
-                t209,
-                t211,
+                t200,
+                t201,
+                t203,
+                t205,
+                t213,
+                t214,
+                t215,
+                t216,
                 t219,
-                t220,
-                t221,
-                t222,
-                t225,
-                t234,
-                t235,
+                t227,
+                t228,
+                t229,
+                t230,
                 t236,
-                t237,
-                t244,
-                t258,
-                t259,
-                t261,
-                t263,
-                t271,
-                t272,
-                t275,
-                t300,
+                t252,
+                t253,
+                t255,
+                t257,
+                t265,
+                t266,
+                t269,
+                t296,
+                t297,
+                t299,
                 t301,
-                t303,
-                t305,
+                t309,
+                t310,
                 t313,
-                t314,
-                t317,
-                t323,
-                t326,
-                t328,
-                t329,
-                t334,
-                t335,
+                t319,
+                t322,
+                t324,
+                t325,
+                t330,
+                t331,
+                t345,
+                t346,
                 t347,
                 t348,
-                t349,
                 t350,
                 t352,
-                t354,
+                t357,
+                t358,
                 t359,
-                t360,
                 t361,
+                t362,
                 t363,
-                t364,
                 t365,
+                t366,
                 t367,
                 t368,
                 t369,
                 t370,
                 t371,
                 t372,
-                t373,
-                t374,
             )
         };
         *out = [
-            T::fused(t348, t367, -T::fused(t301, t368, -T::fused(t259, t369, t207))),
-            T::fused(-t350, t367, T::fused(t303, t368, T::fused(-t261, t369, t209))),
-            T::fused(t352, t367, -T::fused(t305, t368, T::fused(-t263, t369, t211))),
-            -t179,
-            t54,
-            T::fused(t347, t367, -T::fused(t300, t368, T::fused(-t258, t369, t206))),
-            T::fused(t367, t349 + T::fused(-t220, t360, t222 * t361), -t370),
-            -t371,
-            T::fused(t363, t367, -T::fused(t334, t368, T::fused(-t328, t369, t323))),
-            T::fused(-t367, T::fused(t75, t359, t354), t372),
-            T::fused(t360, t367, -T::fused(t313, t368, -T::fused(t271, t369, t219))),
-            T::fused(t361, t367, -T::fused(t314, t368, T::fused(-t272, t369, t221))),
-            -t373,
-            t374,
-            T::fused(-t365, t367, T::fused(t335, t368, -T::fused(-t329, t369, t326))),
-            -T::fused(t234, t18 * t235, t236 * (t225 * t235)),
-            t237,
-            T::fused(-t364, t367, T::fused(t317, t368, T::fused(t275, t369, t244))),
+            T::fused(t346, t365, -T::fused(t297, t366, -T::fused(t253, t367, t201))),
+            T::fused(-t348, t365, T::fused(t299, t366, T::fused(-t255, t367, t203))),
+            T::fused(t350, t365, -T::fused(t301, t366, T::fused(-t257, t367, t205))),
+            -t173,
+            t53,
+            T::fused(t345, t365, -T::fused(t296, t366, T::fused(-t252, t367, t200))),
+            T::fused(t365, t347 + T::fused(-t214, t358, t216 * t359), -t368),
             -t369,
-            t368,
-            t367,
+            T::fused(t361, t365, -T::fused(t330, t366, T::fused(-t324, t367, t319))),
+            T::fused(-t365, T::fused(t70, t357, t352), t370),
+            T::fused(t358, t365, -T::fused(t309, t366, -T::fused(t265, t367, t213))),
+            T::fused(t359, t365, -T::fused(t310, t366, T::fused(-t266, t367, t215))),
+            -t371,
+            t372,
+            T::fused(-t363, t365, T::fused(t331, t366, -T::fused(-t325, t367, t322))),
+            -T::fused(t227, t18 * t228, t229 * (t219 * t228)),
+            t230,
+            T::fused(-t362, t365, T::fused(t313, t366, T::fused(t269, t367, t236))),
+            -t367,
+            t366,
+            t365,
         ];
     }
-    /// Writes λ: 278 operations (104 ±, 171 ×, 3 ÷).
+    /// Writes λ: 261 operations (98 ±, 160 ×, 3 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -2549,155 +2514,148 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
         let t3 = T::fused(k(0.5), crank_dsy, k(4.905)) + t2;
         let t4 = T::fused(k(0.8), coupler_dsz, -closing2);
         let t5 = T::fused(k(0.5), crank_dsz, t4);
-        let t6 = coupler_e0 * coupler_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t6));
-        let t8 = crank_e0 * crank_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t8));
-        let t10 = coupler_e0 * coupler_e3;
-        let t11 = coupler_e1 * coupler_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = crank_e0 * crank_e3;
-        let t14 = crank_e1 * crank_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = coupler_e0 * coupler_e2;
-        let t17 = coupler_e1 * coupler_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = crank_e0 * crank_e2;
-        let t20 = crank_e1 * crank_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(5e-5) * coupler_dwx;
-        let t23 = t17 + t16;
-        let t24 = k(0.5) * t23;
-        let t25 = coupler_e0 * coupler_e1;
-        let t26 = coupler_e2 * coupler_e3;
-        let t27 = t26 - t25;
-        let t28 = k(0.5) * t27;
-        let t29 = T::fused(
+        let t6 = k(0.01995) * coupler_wx;
+        let t7 = k(2.0) * coupler_e0;
+        let t8 = coupler_e3 * t7;
+        let t9 = k(2.0) * coupler_e1;
+        let t10 = coupler_e2 * t9;
+        let t11 = t10 - t8;
+        let t12 = k(0.25) * t11;
+        let t13 = k(2.0) * coupler_e2;
+        let t14 = T::fused(-coupler_e0, t7, k(1.0));
+        let t15 = T::fused(-coupler_e2, t13, t14);
+        let t16 = k(0.25) * t15;
+        let t17 = T::fused(
             closing1,
-            t28,
-            -T::fused(
-                -closing0,
-                t24,
-                T::fused(-k(0.02), coupler_dwy, k(0.01995) * (coupler_wx * coupler_wz)),
-            ),
+            t16,
+            -T::fused(closing0, t12, -T::fused(coupler_wy, t6, k(0.02) * coupler_dwz)),
         );
-        let t30 = k(0.5) - T::fused(coupler_e3, coupler_e3, t6);
-        let t31 = k(0.5) * t30;
-        let t32 = T::fused(t4, t31, -T::fused(t0, t24, t2 * t28))
-            - T::fused(closing2, t31, -t29);
-        let t33 = t11 - t10;
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - T::fused(coupler_e2, coupler_e2, t6);
-        let t36 = k(2.0) * t35;
-        let t37 = t26 + t25;
-        let t38 = k(2.0) * t37;
-        let t39 = T::fused(
-            t22,
-            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
-            T::fused(t21, t38, -T::fused(t9, t34, t15 * t36)) * t32,
-        );
-        let t40 = k(0.5) * t33;
-        let t41 = k(0.5) * t35;
-        let t42 = T::fused(
+        let t18 = coupler_e1 * t7;
+        let t19 = coupler_e3 * t13;
+        let t20 = t19 + t18;
+        let t21 = k(0.25) * t20;
+        let t22 = T::fused(t4, t21, -T::fused(-t0, t12, t2 * t16))
+            - T::fused(closing2, t21, -t17);
+        let t23 = coupler_e2 * t7;
+        let t24 = coupler_e3 * t9;
+        let t25 = t24 + t23;
+        let t26 = k(2.0) * crank_e0;
+        let t27 = crank_e3 * t26;
+        let t28 = k(2.0) * crank_e1;
+        let t29 = crank_e2 * t28;
+        let t30 = t29 - t27;
+        let t31 = t19 - t18;
+        let t32 = k(2.0) * crank_e2;
+        let t33 = T::fused(-crank_e0, t26, k(1.0));
+        let t34 = T::fused(-crank_e2, t32, t33);
+        let t35 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t14);
+        let t36 = crank_e1 * t26;
+        let t37 = crank_e3 * t32;
+        let t38 = t37 + t36;
+        let t39 = k(0.25) * t25;
+        let t40 = k(0.25) * t31;
+        let t41 = T::fused(
             closing1,
-            t41,
-            T::fused(
-                -closing0,
-                t40,
-                T::fused(k(0.02), coupler_dwz, k(0.01995) * (coupler_wx * coupler_wy)),
-            ),
+            t40,
+            T::fused(closing0, t39, T::fused(-coupler_wz, t6, k(0.02) * coupler_dwy)),
         );
-        let t43 = k(0.5) * t37;
-        let t44 = T::fused(t4, t43, -T::fused(-t0, t40, t2 * t41))
-            - T::fused(closing2, t43, -t42);
-        let t45 = k(2.0) * t23;
-        let t46 = k(2.0) * t27;
-        let t47 = k(2.0) * t30;
+        let t42 = k(0.25) * t35;
+        let t43 = T::fused(t4, t42, -T::fused(t0, t39, t2 * t40))
+            - T::fused(closing2, t42, -t41);
+        let t44 = T::fused(-coupler_e1, t9, t14);
+        let t45 = t10 + t8;
+        let t46 = t24 - t23;
+        let t47 = k(5e-5) * coupler_dwx;
         let t48 = T::fused(
-            T::fused(t21, t47, -T::fused(-t9, t45, t15 * t46)),
-            t44,
-            -t39,
+            T::fused(t38, t20, T::fused(t30, t11, t34 * t15)),
+            t43,
+            t47 * T::fused(t38, t46, -T::fused(t30, t44, t34 * t45)),
         );
-        let t49 = T::fused(k(2e-5), crank_dwx, -t48);
-        let t50 = k(2.0) * (k(0.5) - T::fused(crank_e2, crank_e2, t8));
-        let t51 = k(2.0) * (t14 - t13);
-        let t52 = k(1.0) / T::fused(-t9, t50, t51 * t15);
-        let t53 = crank_e0 * crank_e1;
-        let t54 = crank_e2 * crank_e3;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(
+        let t49 = T::fused(
+            -T::fused(t38, t35, T::fused(-t30, t25, t34 * t31)),
             t22,
-            T::fused(t55, t18, -T::fused(t51, t7, t50 * t12)),
-            T::fused(t55, t38, T::fused(t50, t36, t51 * t34)) * t32,
+            t48,
         );
-        let t57 = T::fused(
-            T::fused(t55, t47, -T::fused(-t50, t46, t51 * t45)),
-            t44,
-            -t56,
-        );
-        let t58 = t20 + t19;
-        let t59 = t54 - t53;
-        let t60 = k(0.5) - T::fused(crank_e3, crank_e3, t8);
-        let t61 = T::fused(
+        let t50 = crank_e2 * t26;
+        let t51 = crank_e3 * t28;
+        let t52 = t51 + t50;
+        let t53 = t37 - t36;
+        let t54 = T::fused(-crank_e3, k(2.0) * crank_e3, t33);
+        let t55 = T::fused(
             t4,
-            k(0.4) * t60,
-            -T::fused(t0, k(0.4) * t58, t2 * (k(0.4) * t59)),
+            k(0.2) * t54,
+            -T::fused(t0, k(0.2) * t52, t2 * (k(0.2) * t53)),
         );
-        let t62 = T::fused(
+        let t56 = T::fused(
             t5,
-            k(0.2) * t60,
-            -T::fused(t1, k(0.2) * t58, t3 * (k(0.2) * t59)),
+            k(0.1) * t54,
+            -T::fused(t1, k(0.1) * t52, t3 * (k(0.1) * t53)),
         );
-        let t63 = t62
+        let t57 = t56
             - (T::fused(-k(0.004), crank_dwy, k(0.00398) * (crank_wx * crank_wz))
-                - (t61 - t57));
-        let t64 = T::fused(k(0.6), rocker_dsx, closing0);
-        let t65 = T::fused(k(0.6), rocker_dsy, k(5.886)) + closing1;
-        let t66 = T::fused(k(0.6), rocker_dsz, closing2);
-        let t67 = rocker_e0 * rocker_e0;
-        let t68 = k(2.0) * (k(0.5) - T::fused(rocker_e2, rocker_e2, t67));
-        let t69 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t67));
-        let t70 = rocker_e0 * rocker_e3;
-        let t71 = rocker_e1 * rocker_e2;
-        let t72 = k(2.0) * (t71 + t70);
-        let t73 = k(2.0) * (t71 - t70);
-        let t74 = k(1.0) / T::fused(-t69, t68, t73 * t72);
-        let t75 = k(4e-5) * rocker_dwx;
-        let t76 = k(0.3) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3);
-        let t77 = k(0.3) * T::fused(-rocker_e0, rocker_e1, rocker_e2 * rocker_e3);
-        let t78 = T::fused(
+                - (t55 + t49));
+        let t58 = T::fused(-crank_e1, t28, t33);
+        let t59 = t29 + t27;
+        let t60 = k(1.0) / T::fused(-t58, t34, t30 * t59);
+        let t61 = t51 - t50;
+        let t62 = T::fused(
+            T::fused(t61, t20, -T::fused(t58, t11, t59 * t15)),
+            t43,
+            t47 * T::fused(t61, t46, T::fused(t58, t44, t59 * t45)),
+        );
+        let t63 = T::fused(
+            -T::fused(t61, t35, -T::fused(-t58, t25, t59 * t31)),
+            t22,
+            t62,
+        );
+        let t64 = T::fused(k(2e-5), crank_dwx, t63);
+        let t65 = T::fused(k(0.6), rocker_dsx, closing0);
+        let t66 = T::fused(k(0.6), rocker_dsy, k(5.886)) + closing1;
+        let t67 = T::fused(k(0.6), rocker_dsz, closing2);
+        let t68 = k(2.0) * rocker_e2;
+        let t69 = k(2.0) * rocker_e0;
+        let t70 = T::fused(-rocker_e0, t69, k(1.0));
+        let t71 = T::fused(-rocker_e2, t68, t70);
+        let t72 = k(2.0) * rocker_e1;
+        let t73 = T::fused(-rocker_e1, t72, t70);
+        let t74 = rocker_e3 * t69;
+        let t75 = rocker_e2 * t72;
+        let t76 = t75 + t74;
+        let t77 = t75 - t74;
+        let t78 = k(1.0) / T::fused(-t73, t71, t77 * t76);
+        let t79 = k(4e-5) * rocker_dwx;
+        let t80 = k(0.15) * T::fused(rocker_e2, t69, rocker_e3 * t72);
+        let t81 = k(0.15) * T::fused(-rocker_e1, t69, rocker_e3 * t68);
+        let t82 = T::fused(
             closing1,
-            t77,
+            t81,
             T::fused(
                 closing0,
-                t76,
+                t80,
                 T::fused(-k(0.005), rocker_dwy, k(0.00496) * (rocker_wx * rocker_wz)),
             ),
         );
-        let t79 = k(0.3) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t67));
-        let t80 = T::fused(t66, t79, -T::fused(t64, t76, t65 * t77))
-            + T::fused(closing2, t79, -t78);
-        let t81 = k(2.0) * t60;
-        let t82 = k(2.0) * t59;
-        let t83 = k(2.0) * t58;
-        let t84 = T::fused(t81, t47, T::fused(t82, t46, t83 * t45));
-        let t85 = T::fused(t81, t18, -T::fused(-t83, t7, t82 * t12));
-        let t86 = k(1.0) / T::fused(t84, t84, t85 * t85);
+        let t83 = k(0.15) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t70);
+        let t84 = T::fused(t67, t83, -T::fused(t65, t80, t66 * t81))
+            + T::fused(closing2, t83, -t82);
+        let t85 = T::fused(t54, t35, T::fused(t52, t25, t53 * t31));
+        let t86 = T::fused(t54, t46, -T::fused(-t52, t44, t53 * t45));
+        let t87 = k(1.0) / T::fused(t85, t85, t86 * t86);
         *lambda = [
             -t1,
             -t3,
             -t5,
-            T::fused(-(t9 * t52), t49, t51 * t52 * t63),
-            T::fused(-(t50 * t52), t63, t15 * t52 * t49),
-            -t64,
+            T::fused(-(t58 * t60), t64, t30 * t60 * t57),
+            T::fused(-(t34 * t60), t57, t59 * t60 * t64),
             -t65,
             -t66,
-            T::fused(-t75, t69 * t74, t73 * t74 * t80),
-            T::fused(-(t68 * t74), t80, t75 * (t72 * t74)),
+            -t67,
+            T::fused(-t79, t73 * t78, t77 * t78 * t84),
+            T::fused(-(t71 * t78), t84, t79 * (t76 * t78)),
             -t0,
             -t2,
             -t4,
-            -T::fused(t22, t84 * t86, t85 * t86 * t44),
+            -T::fused(t86 * t87, t22, t47 * (t85 * t87)),
             closing0,
             closing1,
             closing2,
@@ -2705,7 +2663,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Parallelogram<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Parallelogram<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 1092 operations (453 ±, 630 ×, 9 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 1082 operations (447 ±, 626 ×, 9 ÷).
     fn project(
         &self,
         _t: T,
@@ -2744,62 +2702,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Parallelogram<T> {
         let row15 = rows[15];
         let row16 = rows[16];
         let (
-            t10,
-            t20,
-            t31,
-            t34,
-            t36,
+            t11,
+            t27,
+            t33,
+            t35,
+            t37,
             t38,
-            t41,
-            t42,
+            t39,
+            t40,
+            t44,
+            t45,
             t46,
             t47,
             t48,
-            t49,
             t50,
             t52,
-            t54,
-            t57,
+            t55,
+            t59,
             t61,
-            t63,
+            t66,
             t68,
-            t70,
-            t78,
-            t91,
-            t96,
+            t76,
+            t89,
+            t94,
+            t99,
             t101,
+            t102,
             t103,
-            t104,
-            t105,
-            t119,
-            t152,
+            t117,
+            t149,
+            t150,
+            t151,
             t153,
             t154,
+            t155,
             t156,
             t157,
-            t158,
-            t159,
-            t160,
+            t162,
+            t163,
+            t164,
             t165,
             t166,
-            t167,
             t168,
-            t169,
             t171,
             t172,
-            t173,
-            t175,
+            t174,
+            t177,
             t178,
             t179,
+            t180,
             t181,
             t182,
             t183,
-            t184,
             t185,
-            t187,
+            t186,
             t188,
-            t190,
-            t191,
+            t189,
             t192,
             t194,
             t196,
@@ -2807,343 +2765,339 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Parallelogram<T> {
             t198,
             t199,
         ) = {
-            let t0 = crank_e0 * crank_e0;
-            let t1 = k(0.5) - T::fused(crank_e2, crank_e2, t0);
-            let t2 = k(2.0) * t1;
-            let t3 = k(2.0) * (k(0.5) - T::fused(crank_e1, crank_e1, t0));
-            let t4 = crank_e0 * crank_e3;
-            let t5 = crank_e1 * crank_e2;
-            let t6 = k(2.0) * (t5 + t4);
-            let t7 = t5 - t4;
-            let t8 = k(2.0) * t7;
-            let t9 = k(1.0) / T::fused(-t3, t2, t8 * t6);
-            let t10 = T::fused(-(t8 * t9), row3, t2 * t9 * row4);
-            let t11 = crank_e0 * crank_e2;
-            let t12 = crank_e1 * crank_e3;
-            let t13 = t12 + t11;
-            let t14 = k(0.2) * t13;
-            let t15 = coupler_e0 * coupler_e2;
-            let t16 = coupler_e1 * coupler_e3;
-            let t17 = t16 + t15;
-            let t18 = k(0.4) * t17;
-            let t19 = coupler_e0 * coupler_e0;
-            let t20 = k(0.5) - T::fused(coupler_e2, coupler_e2, t19);
-            let t21 = crank_e0 * crank_e1;
-            let t22 = crank_e2 * crank_e3;
-            let t23 = t22 - t21;
-            let t24 = k(2.0) * t23;
-            let t25 = coupler_e0 * coupler_e3;
-            let t26 = coupler_e1 * coupler_e2;
-            let t27 = t26 - t25;
-            let t28 = k(2.0) * t13;
-            let t29 = coupler_e0 * coupler_e1;
-            let t30 = coupler_e2 * coupler_e3;
-            let t31 = t30 + t29;
-            let t32 = k(0.5) - T::fused(crank_e3, crank_e3, t0);
-            let t33 = k(2.0) * t32;
-            let t34 = T::fused(
-                t33,
-                k(2.0) * t31,
-                -T::fused(-t24, k(2.0) * t20, t28 * (k(2.0) * t27)),
-            );
-            let t35 = k(0.4) * t27;
-            let t36 = k(0.5) - T::fused(coupler_e3, coupler_e3, t19);
-            let t37 = k(2.0) * t36;
-            let t38 = t30 - t29;
-            let t39 = k(2.0) * t38;
-            let t40 = k(2.0) * t17;
-            let t41 = T::fused(t33, t37, T::fused(t24, t39, t28 * t40));
-            let t42 = T::fused(t34, t18, t41 * t35);
-            let t43 = k(2.0) * (k(0.5) - T::fused(coupler_e1, coupler_e1, t19));
-            let t44 = k(2.0) * (t26 + t25);
-            let t45 = k(2.0) * (t16 - t15);
-            let t46 = T::fused(t33, t45, -T::fused(-t28, t43, t24 * t44));
-            let t47 = k(5e-5) * t46;
-            let t48 = k(0.07) * t34;
-            let t49 = k(0.07) * t41;
-            let t50 = k(1.0) / T::fused(t41, t49, T::fused(t46, t47, t34 * t48));
-            let t51 = t50 * t42;
-            let t52 = T::fused(-t48, t51, t18);
-            let t53 = t48 * t50;
-            let t54 = k(1.0) / T::fused(-t48, t53, k(0.07));
-            let t55 = t54 * t52;
-            let t56 = t47 * t50;
-            let t57 = t48 * t56;
-            let t58 = T::fused(-t47, t51, t57 * t55);
-            let t59 = k(0.4) * t38;
-            let t60 = k(0.4) * t20;
-            let t61 = T::fused(-t34, t59, t41 * t60);
-            let t62 = t50 * t61;
-            let t63 = T::fused(t48, t62, t59);
-            let t64 = t54 * t63;
-            let t65 = T::fused(t47, t62, t57 * t64);
-            let t66 = k(0.4) * t36;
-            let t67 = k(0.4) * t31;
-            let t68 = T::fused(-t34, t66, t41 * t67);
-            let t69 = t50 * t68;
-            let t70 = T::fused(t48, t69, t66);
-            let t71 = t54 * t70;
-            let t72 = T::fused(t47, t69, t57 * t71);
-            let t73 = k(1.0) / T::fused(t41, t41, t46 * t46);
-            let t74 = t41 * t73 * row13;
-            let t75 = t54 * t57;
-            let t76 = T::fused(t57, t75, -T::fused(-t47, t56, k(5e-5)));
-            let t77 = t46 * t73 * row13;
-            let t78 = t49 * t53;
-            let t79 = T::fused(t49, t56, t78 * t75);
-            let t80 = T::fused(-t76, t74, t79 * t77)
-                + T::fused(t72, row12, -T::fused(t58, row10, t65 * row11));
-            let t81 = T::fused(t78, t55, T::fused(-t49, t51, t35));
-            let t82 = T::fused(t78, t64, -T::fused(-t49, t62, t60));
-            let t83 = T::fused(t78, t71, -T::fused(-t49, t69, t67));
-            let t84 = T::fused(t78, t54 * t78, -T::fused(-t49, t49 * t50, k(0.07)));
-            let t85 = T::fused(-t79, t74, t84 * t77)
-                + T::fused(t83, row12, -T::fused(t81, row10, t82 * row11));
-            let t86 = T::fused(t42, t51, t52 * t55);
-            let t87 = T::fused(-t61, t51, t63 * t55);
-            let t88 = T::fused(-t68, t51, t70 * t55);
-            let t89 = T::fused(
+            let t0 = k(2.0) * crank_e2;
+            let t1 = k(2.0) * crank_e0;
+            let t2 = T::fused(-crank_e0, t1, k(1.0));
+            let t3 = T::fused(-crank_e2, t0, t2);
+            let t4 = k(2.0) * crank_e1;
+            let t5 = T::fused(-crank_e1, t4, t2);
+            let t6 = crank_e3 * t1;
+            let t7 = crank_e2 * t4;
+            let t8 = t7 + t6;
+            let t9 = t7 - t6;
+            let t10 = k(1.0) / T::fused(-t5, t3, t9 * t8);
+            let t11 = T::fused(-(t9 * t10), row3, t3 * t10 * row4);
+            let t12 = crank_e2 * t1;
+            let t13 = crank_e3 * t4;
+            let t14 = t13 + t12;
+            let t15 = k(0.1) * t14;
+            let t16 = k(2.0) * coupler_e0;
+            let t17 = coupler_e2 * t16;
+            let t18 = k(2.0) * coupler_e1;
+            let t19 = coupler_e3 * t18;
+            let t20 = t19 + t17;
+            let t21 = k(0.2) * t20;
+            let t22 = coupler_e3 * t16;
+            let t23 = coupler_e2 * t18;
+            let t24 = t23 - t22;
+            let t25 = k(2.0) * coupler_e2;
+            let t26 = T::fused(-coupler_e0, t16, k(1.0));
+            let t27 = T::fused(-coupler_e2, t25, t26);
+            let t28 = crank_e1 * t1;
+            let t29 = crank_e3 * t0;
+            let t30 = t29 - t28;
+            let t31 = coupler_e1 * t16;
+            let t32 = coupler_e3 * t25;
+            let t33 = t32 + t31;
+            let t34 = T::fused(-crank_e3, k(2.0) * crank_e3, t2);
+            let t35 = T::fused(t34, t33, T::fused(-t14, t24, t30 * t27));
+            let t36 = k(0.2) * t24;
+            let t37 = t32 - t31;
+            let t38 = T::fused(-coupler_e3, k(2.0) * coupler_e3, t26);
+            let t39 = T::fused(t34, t38, T::fused(t14, t20, t30 * t37));
+            let t40 = T::fused(t35, t21, t39 * t36);
+            let t41 = T::fused(-coupler_e1, t18, t26);
+            let t42 = t23 + t22;
+            let t43 = t19 - t17;
+            let t44 = T::fused(t34, t43, -T::fused(-t14, t41, t30 * t42));
+            let t45 = k(5e-5) * t44;
+            let t46 = k(0.07) * t35;
+            let t47 = k(0.07) * t39;
+            let t48 = k(1.0) / T::fused(t39, t47, T::fused(t44, t45, t35 * t46));
+            let t49 = t48 * t40;
+            let t50 = T::fused(-t46, t49, t21);
+            let t51 = t46 * t48;
+            let t52 = k(1.0) / T::fused(-t46, t51, k(0.07));
+            let t53 = t52 * t50;
+            let t54 = t45 * t48;
+            let t55 = t46 * t54;
+            let t56 = T::fused(-t45, t49, t55 * t53);
+            let t57 = k(0.2) * t37;
+            let t58 = k(0.2) * t27;
+            let t59 = T::fused(-t35, t57, t39 * t58);
+            let t60 = t48 * t59;
+            let t61 = T::fused(t46, t60, t57);
+            let t62 = t52 * t61;
+            let t63 = T::fused(t45, t60, t55 * t62);
+            let t64 = k(0.2) * t38;
+            let t65 = k(0.2) * t33;
+            let t66 = T::fused(-t35, t64, t39 * t65);
+            let t67 = t48 * t66;
+            let t68 = T::fused(t46, t67, t64);
+            let t69 = t52 * t68;
+            let t70 = T::fused(t45, t67, t55 * t69);
+            let t71 = k(1.0) / T::fused(t39, t39, t44 * t44);
+            let t72 = t39 * t71 * row13;
+            let t73 = t52 * t55;
+            let t74 = T::fused(t55, t73, -T::fused(-t45, t54, k(5e-5)));
+            let t75 = t44 * t71 * row13;
+            let t76 = t47 * t51;
+            let t77 = T::fused(t47, t54, t76 * t73);
+            let t78 = T::fused(-t74, t72, t77 * t75)
+                + T::fused(t70, row12, -T::fused(t56, row10, t63 * row11));
+            let t79 = T::fused(t76, t53, T::fused(-t47, t49, t36));
+            let t80 = T::fused(t76, t62, -T::fused(-t47, t60, t58));
+            let t81 = T::fused(t76, t69, -T::fused(-t47, t67, t65));
+            let t82 = T::fused(t76, t52 * t76, -T::fused(-t47, t47 * t48, k(0.07)));
+            let t83 = T::fused(-t77, t72, t82 * t75)
+                + T::fused(t81, row12, -T::fused(t79, row10, t80 * row11));
+            let t84 = T::fused(t40, t49, t50 * t53);
+            let t85 = T::fused(-t59, t49, t61 * t53);
+            let t86 = T::fused(-t66, t49, t68 * t53);
+            let t87 = T::fused(
                 k(0.8),
                 row10,
-                T::fused(t88, row12, -T::fused(t86, row10, t87 * row11)),
+                T::fused(t86, row12, -T::fused(t84, row10, t85 * row11)),
             );
-            let t90 = T::fused(-t58, t74, t81 * t77) + t89;
-            let t91 = k(0.4) * t7;
-            let t92 = T::fused(t61, t62, t63 * t64);
-            let t93 = T::fused(t68, t62, t70 * t64);
-            let t94 = T::fused(
+            let t88 = T::fused(-t56, t72, t79 * t75) + t87;
+            let t89 = k(0.2) * t9;
+            let t90 = T::fused(t59, t60, t61 * t62);
+            let t91 = T::fused(t66, t60, t68 * t62);
+            let t92 = T::fused(
                 k(0.8),
                 row11,
-                T::fused(t93, row12, -T::fused(t87, row10, t92 * row11)),
+                T::fused(t91, row12, -T::fused(t85, row10, t90 * row11)),
             );
-            let t95 = T::fused(-t65, t74, t82 * t77) + t94;
-            let t96 = k(0.4) * t1;
-            let t97 = T::fused(t68, t69, t70 * t71);
-            let t98 = T::fused(
+            let t93 = T::fused(-t63, t72, t80 * t75) + t92;
+            let t94 = k(0.2) * t3;
+            let t95 = T::fused(t66, t67, t68 * t69);
+            let t96 = T::fused(
                 k(0.8),
                 row12,
-                -T::fused(t97, row12, -T::fused(t88, row10, t93 * row11)),
+                -T::fused(t95, row12, -T::fused(t86, row10, t91 * row11)),
             );
-            let t99 = T::fused(-t72, t74, t83 * t77) - t98;
-            let t100 = t22 + t21;
-            let t101 = k(0.4) * t100;
-            let t102 = T::fused(t101, t99, T::fused(-t91, t90, t96 * t95))
-                + T::fused(t46, t80, t41 * t85);
-            let t103 = k(0.2) * t7;
-            let t104 = k(0.2) * t1;
-            let t105 = k(0.2) * t100;
-            let t106 = T::fused(t105, t88, T::fused(-t103, t86, t104 * t87));
-            let t107 = T::fused(t46, t58, t41 * t81);
-            let t108 = T::fused(t101, t88, T::fused(-t91, t86, t96 * t87));
-            let t109 = T::fused(k(0.32), t7, t108) + t107;
-            let t110 = T::fused(t105, t93, T::fused(-t103, t87, t104 * t92));
-            let t111 = T::fused(t46, t65, t41 * t82);
-            let t112 = T::fused(t101, t93, T::fused(-t91, t87, t96 * t92));
-            let t113 = T::fused(-k(0.32), t1, t112) + t111;
-            let t114 = T::fused(
-                t109 + T::fused(k(0.26), t7, t106),
+            let t97 = T::fused(-t70, t72, t81 * t75) - t96;
+            let t98 = t29 + t28;
+            let t99 = k(0.2) * t98;
+            let t100 = T::fused(t99, t97, T::fused(-t89, t88, t94 * t93))
+                + T::fused(t44, t78, t39 * t83);
+            let t101 = k(0.1) * t9;
+            let t102 = k(0.1) * t3;
+            let t103 = k(0.1) * t98;
+            let t104 = T::fused(t103, t86, T::fused(-t101, t84, t102 * t85));
+            let t105 = T::fused(t44, t56, t39 * t79);
+            let t106 = T::fused(t99, t86, T::fused(-t89, t84, t94 * t85));
+            let t107 = T::fused(k(0.16), t9, t106) + t105;
+            let t108 = T::fused(t103, t91, T::fused(-t101, t85, t102 * t90));
+            let t109 = T::fused(t44, t63, t39 * t80);
+            let t110 = T::fused(t99, t91, T::fused(-t89, t85, t94 * t90));
+            let t111 = T::fused(-k(0.16), t3, t110) + t109;
+            let t112 = T::fused(
+                t107 + T::fused(k(0.13), t9, t104),
                 row0,
-                (t113 + T::fused(-k(0.26), t1, t110)) * row1,
+                (t111 + T::fused(-k(0.13), t3, t108)) * row1,
             );
-            let t115 = T::fused(t105, t97, T::fused(-t103, t88, t104 * t93));
-            let t116 = T::fused(t46, t72, t41 * t83);
-            let t117 = T::fused(t101, t97, T::fused(-t91, t88, t96 * t93));
-            let t118 = T::fused(-k(0.32), t100, t117) + t116;
-            let t119 = T::fused(-(t3 * t9), row3, t6 * t9 * row4);
-            let t120 = k(2.0) * (t12 - t11);
-            let t121 = T::fused(t120, t45, T::fused(t3, t43, t6 * t44));
-            let t122 = T::fused(t120, t37, -T::fused(-t3, t40, t6 * t39));
-            let t123 = T::fused(
-                t46,
-                T::fused(t76, t121, t79 * t122),
-                t41 * T::fused(t79, t121, t84 * t122),
+            let t113 = T::fused(t103, t95, T::fused(-t101, t86, t102 * t91));
+            let t114 = T::fused(t44, t70, t39 * t81);
+            let t115 = T::fused(t99, t95, T::fused(-t89, t86, t94 * t91));
+            let t116 = T::fused(-k(0.16), t98, t115) + t114;
+            let t117 = T::fused(-(t5 * t10), row3, t8 * t10 * row4);
+            let t118 = t13 - t12;
+            let t119 = T::fused(t118, t43, T::fused(t5, t41, t8 * t42));
+            let t120 = T::fused(t118, t38, -T::fused(-t5, t20, t8 * t37));
+            let t121 = T::fused(
+                t44,
+                T::fused(t74, t119, t77 * t120),
+                t39 * T::fused(t77, t119, t82 * t120),
             );
-            let t124 = T::fused(t58, t121, t81 * t122);
-            let t125 = T::fused(t65, t121, t82 * t122);
-            let t126 = T::fused(t72, t121, t83 * t122);
-            let t127 = T::fused(t105, t126, T::fused(-t103, t124, t104 * t125))
-                + (T::fused(t101, t126, T::fused(-t91, t124, t96 * t125)) + t123);
-            let t128 = k(2.0) * t100;
-            let t129 = T::fused(t128, t45, -T::fused(t8, t43, t2 * t44));
-            let t130 = T::fused(t128, t37, -T::fused(-t2, t39, t8 * t40));
-            let t131 = T::fused(
-                t46,
-                T::fused(t76, t129, t79 * t130),
-                t41 * T::fused(t79, t129, t84 * t130),
+            let t122 = T::fused(t56, t119, t79 * t120);
+            let t123 = T::fused(t63, t119, t80 * t120);
+            let t124 = T::fused(t70, t119, t81 * t120);
+            let t125 = T::fused(t103, t124, T::fused(-t101, t122, t102 * t123))
+                + (T::fused(t99, t124, T::fused(-t89, t122, t94 * t123)) + t121);
+            let t126 = T::fused(t98, t43, -T::fused(t9, t41, t3 * t42));
+            let t127 = T::fused(t98, t38, T::fused(-t9, t20, t3 * t37));
+            let t128 = T::fused(
+                t44,
+                T::fused(t74, t126, t77 * t127),
+                t39 * T::fused(t77, t126, t82 * t127),
             );
-            let t132 = k(0.4) * t13;
-            let t133 = k(0.4) * t23;
-            let t134 = k(0.4) * t32;
-            let t135 = T::fused(t58, t129, t81 * t130);
-            let t136 = T::fused(t65, t129, t82 * t130);
-            let t137 = T::fused(t72, t129, t83 * t130);
-            let t138 = T::fused(t101, t137, T::fused(-t91, t135, t96 * t136))
-                - T::fused(t134, t116, T::fused(t132, t107, t133 * t111));
-            let t139 = t138 - T::fused(t134, t117, T::fused(t132, t108, t133 * t112))
-                + t131;
-            let t140 = k(0.2) * t23;
-            let t141 = k(0.2) * t32;
-            let t142 = T::fused(
-                -k(0.32),
-                t13,
-                T::fused(t134, t88, T::fused(t132, t86, t133 * t87)),
+            let t129 = k(0.2) * t14;
+            let t130 = k(0.2) * t30;
+            let t131 = k(0.2) * t34;
+            let t132 = T::fused(t56, t126, t79 * t127);
+            let t133 = T::fused(t63, t126, t80 * t127);
+            let t134 = T::fused(t70, t126, t81 * t127);
+            let t135 = T::fused(t99, t134, T::fused(-t89, t132, t94 * t133))
+                - T::fused(t114, t131, T::fused(t105, t129, t109 * t130));
+            let t136 = t135 - T::fused(t115, t131, T::fused(t106, t129, t110 * t130))
+                + t128;
+            let t137 = k(0.1) * t30;
+            let t138 = k(0.1) * t34;
+            let t139 = T::fused(
+                -k(0.16),
+                t14,
+                T::fused(t86, t131, T::fused(t84, t129, t85 * t130)),
             );
-            let t143 = T::fused(
-                -k(0.32),
-                t23,
-                T::fused(t134, t93, T::fused(t132, t87, t133 * t92)),
+            let t140 = T::fused(
+                -k(0.16),
+                t30,
+                T::fused(t91, t131, T::fused(t85, t129, t90 * t130)),
             );
-            let t144 = T::fused(
-                -k(0.32),
-                t32,
-                T::fused(t134, t97, T::fused(t132, t88, t133 * t93)),
-            );
-            let t145 = T::fused(
-                t105,
-                t144 - t137,
-                T::fused(-t103, t142 - t135, t104 * (t143 - t136)),
-            );
-            let t146 = t145 + T::fused(t141, t118, T::fused(t14, t109, t140 * t113))
-                + T::fused(t141, t115, T::fused(t14, t106, t140 * t110));
-            let t147 = T::fused(t127, t119, (t146 - t139) * t10)
-                + T::fused(t118 + T::fused(-k(0.26), t100, t115), row2, -t114);
-            let t148 = t147
-                + (T::fused(t105, t99, T::fused(-t103, t90, t104 * t95)) + t102);
-            let t149 = T::fused(
-                t46,
-                T::fused(t46, t76, t41 * t79),
-                t41 * T::fused(t46, t79, t41 * t84),
-            );
-            let t150 = T::fused(
-                k(2.0),
-                T::fused(t101, t116, T::fused(-t91, t107, t96 * t111)),
-                T::fused(t101, t117, T::fused(-t91, t108, t96 * t112)),
-            );
-            let t151 = T::fused(
-                k(2.0),
-                T::fused(t105, t118, T::fused(-t103, t109, t104 * t113)),
-                T::fused(t105, t115, T::fused(-t103, t106, t104 * t110)),
-            );
-            let t152 = k(1.0)
-                / (t151 - (k(0.013) + (k(0.004) - (t150 - (k(0.032) - t149)))));
-            let t153 = t152 * t148;
-            let t154 = row0 - T::fused(t14, t10, t103 * t153);
-            let t155 = row10 - (T::fused(t132, t10, t91 * t153) - t154);
-            let t156 = row1 + T::fused(-t140, t10, t104 * t153);
-            let t157 = row11 + (T::fused(-t133, t10, t96 * t153) + t156);
-            let t158 = row2 - T::fused(-t141, t10, t105 * t153);
-            let t159 = row12 - (T::fused(-t134, t10, t101 * t153) - t158);
-            let t160 = t74 + T::fused(t46, t153, T::fused(-t121, t119, t129 * t10));
-            let t161 = t77 - T::fused(t41, t153, T::fused(-t122, t119, t130 * t10));
-            let t162 = T::fused(-t57, t160, t78 * t161)
-                + T::fused(t70, t159, -T::fused(t52, t155, t63 * t157));
-            let t163 = t54 * t162;
-            let t164 = T::fused(t49, t161, T::fused(-t47, t160, t48 * t163))
-                + T::fused(t68, t159, -T::fused(-t42, t155, t61 * t157));
-            let t165 = t50 * t164;
-            let t166 = T::fused(-t34, t165, t163);
-            let t167 = k(0.5) * t17;
-            let t168 = T::fused(-t41, t165, t161);
-            let t169 = k(0.5) * t27;
-            let t170 = T::fused(t167, t166, t169 * t168);
-            let t171 = t155 + t170;
-            let t172 = rocker_e0 * rocker_e0;
-            let t173 = k(0.5) - T::fused(rocker_e2, rocker_e2, t172);
-            let t174 = k(2.0) * t173;
-            let t175 = k(2.0) * (k(0.5) - T::fused(rocker_e1, rocker_e1, t172));
-            let t176 = rocker_e0 * rocker_e3;
-            let t177 = rocker_e1 * rocker_e2;
-            let t178 = k(2.0) * (t177 + t176);
-            let t179 = t177 - t176;
-            let t180 = k(2.0) * t179;
-            let t181 = k(1.0) / T::fused(-t175, t174, t180 * t178);
-            let t182 = T::fused(-(t180 * t181), row8, t174 * t181 * row9);
-            let t183 = rocker_e0 * rocker_e1;
-            let t184 = rocker_e2 * rocker_e3;
-            let t185 = t184 + t183;
-            let t186 = T::fused(
-                k(0.18) * t185,
-                row7,
-                -T::fused(-(k(0.18) * t179), row5, k(0.18) * t173 * row6),
-            );
-            let t187 = k(54.054054054054056) * t186;
-            let t188 = k(0.3) * t179;
-            let t189 = T::fused(
-                k(0.3) * T::fused(rocker_e0, rocker_e2, rocker_e1 * rocker_e3),
-                t182,
-                t188 * t187,
-            );
-            let t190 = row5 - t189;
-            let t191 = row14 + (t189 - t190 + (t170 + t171));
-            let t192 = T::fused(t17, t34, t27 * t41);
-            let t193 = t192 * t50;
-            let t194 = T::fused(-t48, t193, t17);
-            let t195 = t194 * t54;
-            let t196 = T::fused(
-                t46,
-                T::fused(-t47, t193, t195 * t57),
-                t41 * T::fused(t195, t78, T::fused(-t49, t193, t27)),
-            );
-            let t197 = T::fused(t195, t52, -T::fused(-t193, t42, k(1.0)));
-            let t198 = T::fused(-t193, t61, t195 * t63);
-            let t199 = T::fused(-t193, t68, t195 * t70);
-            (
-                t10,
-                t20,
-                t31,
+            let t141 = T::fused(
+                -k(0.16),
                 t34,
-                t36,
+                T::fused(t95, t131, T::fused(t86, t129, t91 * t130)),
+            );
+            let t142 = T::fused(
+                t103,
+                t141 - t134,
+                T::fused(-t101, t139 - t132, t102 * (t140 - t133)),
+            );
+            let t143 = t142 + T::fused(t116, t138, T::fused(t107, t15, t111 * t137))
+                + T::fused(t113, t138, T::fused(t104, t15, t108 * t137));
+            let t144 = T::fused(t125, t117, (t143 - t136) * t11)
+                + T::fused(t116 + T::fused(-k(0.13), t98, t113), row2, -t112);
+            let t145 = t144
+                + (T::fused(t103, t97, T::fused(-t101, t88, t102 * t93)) + t100);
+            let t146 = T::fused(
+                t44,
+                T::fused(t44, t74, t39 * t77),
+                t39 * T::fused(t44, t77, t39 * t82),
+            );
+            let t147 = T::fused(
+                k(2.0),
+                T::fused(t99, t114, T::fused(-t89, t105, t94 * t109)),
+                T::fused(t99, t115, T::fused(-t89, t106, t94 * t110)),
+            );
+            let t148 = T::fused(
+                k(2.0),
+                T::fused(t103, t116, T::fused(-t101, t107, t102 * t111)),
+                T::fused(t103, t113, T::fused(-t101, t104, t102 * t108)),
+            );
+            let t149 = k(1.0)
+                / (t148 - (k(0.013) + (k(0.004) - (t147 - (k(0.032) - t146)))));
+            let t150 = t149 * t145;
+            let t151 = row0 - T::fused(t15, t11, t101 * t150);
+            let t152 = row10 - (T::fused(t129, t11, t89 * t150) - t151);
+            let t153 = row1 + T::fused(-t137, t11, t102 * t150);
+            let t154 = row11 + (T::fused(-t130, t11, t94 * t150) + t153);
+            let t155 = row2 - T::fused(-t138, t11, t103 * t150);
+            let t156 = row12 - (T::fused(-t131, t11, t99 * t150) - t155);
+            let t157 = t72 + T::fused(t44, t150, T::fused(-t119, t117, t126 * t11));
+            let t158 = t75 - T::fused(t39, t150, T::fused(-t120, t117, t127 * t11));
+            let t159 = T::fused(-t55, t157, t76 * t158)
+                + T::fused(t68, t156, -T::fused(t50, t152, t61 * t154));
+            let t160 = t52 * t159;
+            let t161 = T::fused(t47, t158, T::fused(-t45, t157, t46 * t160))
+                + T::fused(t66, t156, -T::fused(-t40, t152, t59 * t154));
+            let t162 = t48 * t161;
+            let t163 = T::fused(-t35, t162, t160);
+            let t164 = k(0.25) * t20;
+            let t165 = T::fused(-t39, t162, t158);
+            let t166 = k(0.25) * t24;
+            let t167 = T::fused(t164, t163, t166 * t165);
+            let t168 = t152 + t167;
+            let t169 = k(2.0) * rocker_e2;
+            let t170 = k(2.0) * rocker_e0;
+            let t171 = T::fused(-rocker_e0, t170, k(1.0));
+            let t172 = T::fused(-rocker_e2, t169, t171);
+            let t173 = k(2.0) * rocker_e1;
+            let t174 = T::fused(-rocker_e1, t173, t171);
+            let t175 = rocker_e3 * t170;
+            let t176 = rocker_e2 * t173;
+            let t177 = t176 + t175;
+            let t178 = t176 - t175;
+            let t179 = k(1.0) / T::fused(-t174, t172, t178 * t177);
+            let t180 = T::fused(-(t178 * t179), row8, t172 * t179 * row9);
+            let t181 = rocker_e1 * t170;
+            let t182 = rocker_e3 * t169;
+            let t183 = t182 + t181;
+            let t184 = T::fused(
+                k(0.09) * t183,
+                row7,
+                -T::fused(-(k(0.09) * t178), row5, k(0.09) * t172 * row6),
+            );
+            let t185 = k(54.054054054054056) * t184;
+            let t186 = k(0.15) * t178;
+            let t187 = T::fused(
+                k(0.15) * T::fused(rocker_e2, t170, rocker_e3 * t173),
+                t180,
+                t186 * t185,
+            );
+            let t188 = row5 - t187;
+            let t189 = row14 + (t187 - t188 + (t167 + t168));
+            let t190 = k(0.5) * t20;
+            let t191 = k(0.5) * t24;
+            let t192 = T::fused(t190, t35, t191 * t39);
+            let t193 = t192 * t48;
+            let t194 = T::fused(-t46, t193, t190);
+            let t195 = t194 * t52;
+            let t196 = T::fused(
+                t44,
+                T::fused(-t45, t193, t195 * t55),
+                t39 * T::fused(t195, t76, T::fused(-t47, t193, t191)),
+            );
+            let t197 = T::fused(t195, t50, -T::fused(-t193, t40, k(1.0)));
+            let t198 = T::fused(-t193, t59, t195 * t61);
+            let t199 = T::fused(-t193, t66, t195 * t68);
+            (
+                t11,
+                t27,
+                t33,
+                t35,
+                t37,
                 t38,
-                t41,
-                t42,
+                t39,
+                t40,
+                t44,
+                t45,
                 t46,
                 t47,
                 t48,
-                t49,
                 t50,
                 t52,
-                t54,
-                t57,
+                t55,
+                t59,
                 t61,
-                t63,
+                t66,
                 t68,
-                t70,
-                t78,
-                t91,
-                t96,
+                t76,
+                t89,
+                t94,
+                t99,
                 t101,
+                t102,
                 t103,
-                t104,
-                t105,
-                t119,
-                t152,
+                t117,
+                t149,
+                t150,
+                t151,
                 t153,
                 t154,
+                t155,
                 t156,
                 t157,
-                t158,
-                t159,
-                t160,
+                t162,
+                t163,
+                t164,
                 t165,
                 t166,
-                t167,
                 t168,
-                t169,
                 t171,
                 t172,
-                t173,
-                t175,
+                t174,
+                t177,
                 t178,
                 t179,
+                t180,
                 t181,
                 t182,
                 t183,
-                t184,
                 t185,
-                t187,
+                t186,
                 t188,
-                t190,
-                t191,
+                t189,
                 t192,
                 t194,
                 t196,
@@ -3160,207 +3114,211 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Parallelogram<T> {
             t214,
             t215,
             t218,
-            t243,
-            t244,
+            t245,
             t246,
             t248,
-            t256,
-            t257,
-            t260,
-            t266,
-            t269,
+            t250,
+            t258,
+            t259,
+            t262,
+            t268,
             t271,
-            t272,
-            t276,
-            t277,
-            t290,
-            t291,
-            t292,
-            t293,
+            t273,
+            t274,
+            t278,
+            t279,
+            t294,
             t295,
+            t296,
             t297,
-            t302,
-            t303,
-            t304,
+            t299,
+            t301,
             t306,
             t307,
             t308,
             t310,
             t311,
             t312,
-            t313,
             t314,
             t315,
             t316,
             t317,
+            t318,
+            t319,
+            t320,
+            t321,
         ) = {
-            let t200 = T::fused(t105, t199, T::fused(-t103, t197, t104 * t198))
-                + (T::fused(t101, t199, T::fused(-t91, t197, t96 * t198)) + t196);
-            let t201 = t200 * t152;
-            let t202 = t103 * t201;
-            let t203 = T::fused(t91, t201, t202);
-            let t204 = t104 * t201;
-            let t205 = T::fused(t96, t201, t204);
-            let t206 = t105 * t201;
-            let t207 = T::fused(t101, t201, t206);
-            let t208 = t46 * t201;
-            let t209 = t41 * t201;
-            let t210 = T::fused(t57, t208, t78 * t209)
-                + T::fused(t70, t207, T::fused(-t52, t203, t63 * t205));
-            let t211 = t54 * (t194 - t210);
-            let t212 = T::fused(t49, t209, -T::fused(-t47, t208, t48 * t211))
-                + T::fused(t68, t207, T::fused(t42, t203, t61 * t205));
-            let t213 = t50 * (t192 + t212);
-            let t214 = T::fused(t34, t213, t211);
-            let t215 = T::fused(-t41, t213, t209);
-            let t216 = T::fused(-t167, t214, t169 * t215);
+            let t200 = T::fused(t199, t103, T::fused(-t197, t101, t198 * t102))
+                + (T::fused(t199, t99, T::fused(-t197, t89, t198 * t94)) + t196);
+            let t201 = t200 * t149;
+            let t202 = t101 * t201;
+            let t203 = T::fused(t89, t201, t202);
+            let t204 = t102 * t201;
+            let t205 = T::fused(t94, t201, t204);
+            let t206 = t103 * t201;
+            let t207 = T::fused(t99, t201, t206);
+            let t208 = t44 * t201;
+            let t209 = t39 * t201;
+            let t210 = T::fused(t55, t208, t76 * t209)
+                + T::fused(t68, t207, T::fused(-t50, t203, t61 * t205));
+            let t211 = t52 * (t194 - t210);
+            let t212 = T::fused(t47, t209, -T::fused(-t45, t208, t46 * t211))
+                + T::fused(t66, t207, T::fused(t40, t203, t59 * t205));
+            let t213 = t48 * (t192 + t212);
+            let t214 = T::fused(t35, t213, t211);
+            let t215 = T::fused(-t39, t213, t209);
+            let t216 = T::fused(-t214, t164, t215 * t166);
             let t217 = t203 + t216;
-            let t218 = k(32.432432432432435) * t179;
-            let t219 = t188 * t218;
+            let t218 = k(16.216216216216218) * t178;
+            let t219 = t218 * t186;
             let t220 = k(1.0) / T::fused(k(2.0), t219, -(t216 + t217));
-            let t221 = k(0.5) * t38;
-            let t222 = k(0.5) * t20;
-            let t223 = T::fused(-t221, t166, t222 * t168);
-            let t224 = t157 - t223;
-            let t225 = k(0.3) * t173;
-            let t226 = T::fused(-(k(0.3) * (t184 - t183)), t182, t225 * t187);
+            let t221 = k(0.25) * t37;
+            let t222 = k(0.25) * t27;
+            let t223 = T::fused(-t221, t163, t222 * t165);
+            let t224 = t154 - t223;
+            let t225 = k(0.15) * t172;
+            let t226 = T::fused(-(k(0.15) * (t182 - t181)), t180, t225 * t185);
             let t227 = row6 + t226;
-            let t228 = T::fused(t221, t214, t222 * t215);
+            let t228 = T::fused(t214, t221, t215 * t222);
             let t229 = t205 + t228;
-            let t230 = t225 * t218;
+            let t230 = t218 * t225;
             let t231 = T::fused(k(2.0), t230, -(t228 + t229));
             let t232 = t220 * t231;
-            let t233 = T::fused(t232, t191, row15 - (t226 + t227 + (t223 - t224)));
-            let t234 = T::fused(-t38, t34, t20 * t41);
-            let t235 = t50 * t234;
-            let t236 = T::fused(t48, t235, t38);
-            let t237 = t54 * t236;
-            let t238 = T::fused(
-                t46,
-                T::fused(t47, t235, t57 * t237),
-                t41 * T::fused(t78, t237, -T::fused(-t49, t235, t20)),
+            let t233 = T::fused(t232, t189, row15 - (t226 + t227 + (t223 - t224)));
+            let t234 = k(0.5) * t37;
+            let t235 = k(0.5) * t27;
+            let t236 = T::fused(-t35, t234, t39 * t235);
+            let t237 = t48 * t236;
+            let t238 = T::fused(t46, t237, t234);
+            let t239 = t52 * t238;
+            let t240 = T::fused(
+                t44,
+                T::fused(t45, t237, t55 * t239),
+                t39 * T::fused(t76, t239, -T::fused(-t47, t237, t235)),
             );
-            let t239 = T::fused(-t42, t235, t52 * t237);
-            let t240 = T::fused(t63, t237, -T::fused(-t61, t235, k(1.0)));
-            let t241 = T::fused(t68, t235, t70 * t237);
-            let t242 = T::fused(t105, t241, T::fused(-t103, t239, t104 * t240))
-                + (T::fused(t101, t241, T::fused(-t91, t239, t96 * t240)) + t238);
-            let t243 = t152 * t242;
-            let t244 = t103 * t243;
-            let t245 = T::fused(t91, t243, t244);
-            let t246 = t104 * t243;
-            let t247 = T::fused(t96, t243, t246);
-            let t248 = t105 * t243;
-            let t249 = T::fused(t101, t243, t248);
-            let t250 = t46 * t243;
-            let t251 = t41 * t243;
-            let t252 = T::fused(t57, t250, t78 * t251)
-                + T::fused(t70, t249, T::fused(-t52, t245, t63 * t247));
-            let t253 = t54 * (t236 - t252);
-            let t254 = T::fused(t49, t251, -T::fused(-t47, t250, t48 * t253))
-                + T::fused(t68, t249, T::fused(t42, t245, t61 * t247));
-            let t255 = t50 * (t234 - t254);
-            let t256 = T::fused(-t34, t255, t253);
-            let t257 = T::fused(t41, t255, t251);
-            let t258 = T::fused(t221, t256, t222 * t257);
-            let t259 = t247 + t258;
-            let t260 = k(32.432432432432435) * t173;
-            let t261 = t225 * t260;
-            let t262 = k(1.0)
-                / T::fused(t231, t232, -T::fused(k(2.0), t261, t258 + t259));
-            let t263 = k(0.5) * t36;
-            let t264 = k(0.5) * t31;
-            let t265 = T::fused(-t263, t166, t264 * t168);
-            let t266 = t159 + t265;
-            let t267 = k(0.3) * t185;
-            let t268 = T::fused(
-                -(k(0.3) * (k(0.5) - T::fused(rocker_e3, rocker_e3, t172))),
-                t182,
-                t267 * t187,
+            let t241 = T::fused(-t40, t237, t50 * t239);
+            let t242 = T::fused(t61, t239, -T::fused(-t59, t237, k(1.0)));
+            let t243 = T::fused(t66, t237, t68 * t239);
+            let t244 = T::fused(t103, t243, T::fused(-t101, t241, t102 * t242))
+                + (T::fused(t99, t243, T::fused(-t89, t241, t94 * t242)) + t240);
+            let t245 = t149 * t244;
+            let t246 = t101 * t245;
+            let t247 = T::fused(t89, t245, t246);
+            let t248 = t102 * t245;
+            let t249 = T::fused(t94, t245, t248);
+            let t250 = t103 * t245;
+            let t251 = T::fused(t99, t245, t250);
+            let t252 = t44 * t245;
+            let t253 = t39 * t245;
+            let t254 = T::fused(t55, t252, t76 * t253)
+                + T::fused(t68, t251, T::fused(-t50, t247, t61 * t249));
+            let t255 = t52 * (t238 - t254);
+            let t256 = T::fused(t47, t253, -T::fused(-t45, t252, t46 * t255))
+                + T::fused(t66, t251, T::fused(t40, t247, t59 * t249));
+            let t257 = t48 * (t236 - t256);
+            let t258 = T::fused(-t35, t257, t255);
+            let t259 = T::fused(t39, t257, t253);
+            let t260 = T::fused(t221, t258, t222 * t259);
+            let t261 = t249 + t260;
+            let t262 = k(16.216216216216218) * t172;
+            let t263 = t225 * t262;
+            let t264 = k(1.0)
+                / T::fused(t231, t232, -T::fused(k(2.0), t263, t260 + t261));
+            let t265 = k(0.25) * t38;
+            let t266 = k(0.25) * t33;
+            let t267 = T::fused(-t265, t163, t266 * t165);
+            let t268 = t156 + t267;
+            let t269 = k(0.15) * t183;
+            let t270 = T::fused(
+                -(k(0.15) * T::fused(-rocker_e3, k(2.0) * rocker_e3, t171)),
+                t180,
+                t269 * t185,
             );
-            let t269 = row7 - t268;
-            let t270 = T::fused(t263, t214, t264 * t215);
-            let t271 = t207 + t270;
-            let t272 = t267 * t218;
-            let t273 = T::fused(k(2.0), t272, -(t270 + t271));
-            let t274 = t220 * t273;
-            let t275 = T::fused(t263, t256, t264 * t257);
-            let t276 = t249 + t275;
-            let t277 = t267 * t260;
-            let t278 = T::fused(t231, t274, -T::fused(k(2.0), t277, t275 + t276));
-            let t279 = t262 * t278;
-            let t280 = T::fused(
-                t279,
+            let t271 = row7 - t270;
+            let t272 = T::fused(t214, t265, t215 * t266);
+            let t273 = t207 + t272;
+            let t274 = t218 * t269;
+            let t275 = T::fused(k(2.0), t274, -(t272 + t273));
+            let t276 = t220 * t275;
+            let t277 = T::fused(t258, t265, t259 * t266);
+            let t278 = t251 + t277;
+            let t279 = t262 * t269;
+            let t280 = T::fused(t231, t276, -T::fused(k(2.0), t279, t277 + t278));
+            let t281 = t264 * t280;
+            let t282 = T::fused(
+                t281,
                 t233,
-                -T::fused(t274, t191, -(row16 + (t268 - t269 + (t265 + t266)))),
+                -T::fused(t276, t189, -(row16 + (t270 - t271 + (t267 + t268)))),
             );
-            let t281 = T::fused(-t36, t34, t31 * t41);
-            let t282 = t50 * t281;
-            let t283 = T::fused(t48, t282, t36);
-            let t284 = t54 * t283;
-            let t285 = T::fused(
-                t46,
-                T::fused(t47, t282, t57 * t284),
-                t41 * T::fused(t78, t284, -T::fused(-t49, t282, t31)),
+            let t283 = k(0.5) * t38;
+            let t284 = k(0.5) * t33;
+            let t285 = T::fused(-t35, t283, t39 * t284);
+            let t286 = t48 * t285;
+            let t287 = T::fused(t46, t286, t283);
+            let t288 = t52 * t287;
+            let t289 = T::fused(
+                t44,
+                T::fused(t45, t286, t55 * t288),
+                t39 * T::fused(t76, t288, -T::fused(-t47, t286, t284)),
             );
-            let t286 = T::fused(-t42, t282, t52 * t284);
-            let t287 = T::fused(t61, t282, t63 * t284);
-            let t288 = T::fused(t70, t284, -T::fused(-t68, t282, k(1.0)));
-            let t289 = T::fused(t105, t288, T::fused(-t103, t286, t104 * t287))
-                + (T::fused(t101, t288, T::fused(-t91, t286, t96 * t287)) + t285);
-            let t290 = t152 * t289;
-            let t291 = t103 * t290;
-            let t292 = T::fused(t91, t290, t291);
-            let t293 = t104 * t290;
-            let t294 = T::fused(t96, t290, t293);
-            let t295 = t105 * t290;
-            let t296 = T::fused(t101, t290, t295);
-            let t297 = t46 * t290;
-            let t298 = t41 * t290;
-            let t299 = T::fused(t57, t297, t78 * t298)
-                + T::fused(t70, t296, T::fused(-t52, t292, t63 * t294));
-            let t300 = t54 * (t283 - t299);
-            let t301 = T::fused(t49, t298, -T::fused(-t47, t297, t48 * t300))
-                + T::fused(t68, t296, T::fused(t42, t292, t61 * t294));
-            let t302 = t50 * (t281 - t301);
-            let t303 = T::fused(-t34, t302, t300);
-            let t304 = T::fused(t41, t302, t298);
-            let t305 = T::fused(t263, t303, t264 * t304);
-            let t306 = t296 + t305;
-            let t307 = k(32.432432432432435) * t185;
-            let t308 = t267 * t307;
-            let t309 = T::fused(
-                t278,
-                t279,
-                -T::fused(t273, t274, -T::fused(k(2.0), t308, t305 + t306)),
-            );
-            let t310 = t280 / t309;
-            let t311 = T::fused(-t262, t233, t279 * t310);
-            let t312 = T::fused(t274, t310, -T::fused(t220, t191, t232 * t311));
+            let t290 = T::fused(-t40, t286, t50 * t288);
+            let t291 = T::fused(t59, t286, t61 * t288);
+            let t292 = T::fused(t68, t288, -T::fused(-t66, t286, k(1.0)));
+            let t293 = T::fused(t103, t292, T::fused(-t101, t290, t102 * t291))
+                + (T::fused(t99, t292, T::fused(-t89, t290, t94 * t291)) + t289);
+            let t294 = t149 * t293;
+            let t295 = t101 * t294;
+            let t296 = T::fused(t89, t294, t295);
+            let t297 = t102 * t294;
+            let t298 = T::fused(t94, t294, t297);
+            let t299 = t103 * t294;
+            let t300 = T::fused(t99, t294, t299);
+            let t301 = t44 * t294;
+            let t302 = t39 * t294;
+            let t303 = T::fused(t55, t301, t76 * t302)
+                + T::fused(t68, t300, T::fused(-t50, t296, t61 * t298));
+            let t304 = t52 * (t287 - t303);
+            let t305 = T::fused(t47, t302, -T::fused(-t45, t301, t46 * t304))
+                + T::fused(t66, t300, T::fused(t40, t296, t59 * t298));
+            let t306 = t48 * (t285 - t305);
+            let t307 = T::fused(-t35, t306, t304);
+            let t308 = T::fused(t39, t306, t302);
+            let t309 = T::fused(t265, t307, t266 * t308);
+            let t310 = t300 + t309;
+            let t311 = k(16.216216216216218) * t183;
+            let t312 = t269 * t311;
             let t313 = T::fused(
-                t245 + T::fused(-t167, t256, t169 * t257),
-                t311,
-                T::fused(-t217, t312, t171),
+                t280,
+                t281,
+                -T::fused(t275, t276, -T::fused(k(2.0), t312, t309 + t310)),
             );
-            let t314 = T::fused(
-                t294 + T::fused(t221, t303, t222 * t304),
-                t310,
-                -T::fused(t259, t311, -T::fused(t229, t312, t224)),
-            );
-            let t315 = T::fused(
-                T::fused(t46, t255, t250),
-                t311,
-                -T::fused(T::fused(-t46, t213, t208), t312, T::fused(t46, t165, t160)),
-            );
-            let t316 = T::fused(
-                t188 * t307,
-                t310,
-                -T::fused(t188 * t260, t311, -T::fused(-t219, t312, t190)),
-            );
+            let t314 = t282 / t313;
+            let t315 = T::fused(-t264, t233, t281 * t314);
+            let t316 = T::fused(t276, t314, -T::fused(t220, t189, t232 * t315));
             let t317 = T::fused(
-                t225 * t307,
-                t310,
-                -T::fused(t261, t311, T::fused(t230, t312, t227)),
+                t247 + T::fused(-t164, t258, t166 * t259),
+                t315,
+                T::fused(-t217, t316, t168),
+            );
+            let t318 = T::fused(
+                t298 + T::fused(t221, t307, t222 * t308),
+                t314,
+                -T::fused(t261, t315, -T::fused(t229, t316, t224)),
+            );
+            let t319 = T::fused(
+                T::fused(t44, t257, t252),
+                t315,
+                -T::fused(T::fused(-t44, t213, t208), t316, T::fused(t44, t162, t157)),
+            );
+            let t320 = T::fused(
+                t186 * t311,
+                t314,
+                -T::fused(t186 * t262, t315, -T::fused(-t219, t316, t188)),
+            );
+            let t321 = T::fused(
+                t225 * t311,
+                t314,
+                -T::fused(t263, t315, T::fused(t230, t316, t227)),
             );
             (
                 t201,
@@ -3370,60 +3328,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Parallelogram<T> {
                 t214,
                 t215,
                 t218,
-                t243,
-                t244,
+                t245,
                 t246,
                 t248,
-                t256,
-                t257,
-                t260,
-                t266,
-                t269,
+                t250,
+                t258,
+                t259,
+                t262,
+                t268,
                 t271,
-                t272,
-                t276,
-                t277,
-                t290,
-                t291,
-                t292,
-                t293,
+                t273,
+                t274,
+                t278,
+                t279,
+                t294,
                 t295,
+                t296,
                 t297,
-                t302,
-                t303,
-                t304,
+                t299,
+                t301,
                 t306,
                 t307,
                 t308,
                 t310,
                 t311,
                 t312,
-                t313,
                 t314,
                 t315,
                 t316,
                 t317,
+                t318,
+                t319,
+                t320,
+                t321,
             )
         };
         *out = [
-            T::fused(-t291, t310, T::fused(t244, t311, T::fused(-t202, t312, t154))),
-            T::fused(t293, t310, -T::fused(t246, t311, -T::fused(t204, t312, t156))),
-            T::fused(-t295, t310, T::fused(t248, t311, T::fused(-t206, t312, t158))),
-            -t119,
-            t10,
-            T::fused(-t290, t310, T::fused(t243, t311, -T::fused(t201, t312, t153))),
-            T::fused(-(t292 + T::fused(-t167, t303, t169 * t304)), t310, t313),
-            t314,
-            T::fused(-t306, t310, T::fused(t276, t311, T::fused(-t271, t312, t266))),
-            T::fused(T::fused(t46, t302, t297), t310, -t315),
-            T::fused(-t303, t310, T::fused(t256, t311, -T::fused(t214, t312, t166))),
-            T::fused(-t304, t310, T::fused(t257, t311, T::fused(-t215, t312, t168))),
-            t316,
-            -t317,
-            T::fused(t308, t310, -T::fused(t277, t311, -T::fused(-t272, t312, t269))),
-            T::fused(-(t178 * t181), row9, t175 * t181 * row8),
-            t182,
-            T::fused(t307, t310, -T::fused(t260, t311, T::fused(t218, t312, t187))),
+            T::fused(-t295, t314, T::fused(t246, t315, T::fused(-t202, t316, t151))),
+            T::fused(t297, t314, -T::fused(t248, t315, -T::fused(t204, t316, t153))),
+            T::fused(-t299, t314, T::fused(t250, t315, T::fused(-t206, t316, t155))),
+            -t117,
+            t11,
+            T::fused(-t294, t314, T::fused(t245, t315, -T::fused(t201, t316, t150))),
+            T::fused(-(t296 + T::fused(-t164, t307, t166 * t308)), t314, t317),
+            t318,
+            T::fused(-t310, t314, T::fused(t278, t315, T::fused(-t273, t316, t268))),
+            T::fused(T::fused(t44, t306, t301), t314, -t319),
+            T::fused(-t307, t314, T::fused(t258, t315, -T::fused(t214, t316, t163))),
+            T::fused(-t308, t314, T::fused(t259, t315, T::fused(-t215, t316, t165))),
+            t320,
+            -t321,
+            T::fused(t312, t314, -T::fused(t279, t315, -T::fused(-t274, t316, t271))),
+            T::fused(-(t177 * t179), row9, t174 * t179 * row8),
+            t180,
+            T::fused(t311, t314, -T::fused(t262, t315, T::fused(t218, t316, t185))),
         ];
     }
 }

@@ -10,8 +10,8 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 88 operations by rotations of the bodies; 88 operations by relative Euler parameters
-//! * project: 60 operations by rotations of the bodies; 60 operations by relative Euler parameters
+//! * accelerations: 86 operations by rotations of the bodies, doubled; 86 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 60 operations by rotations of the bodies; 60 operations by relative Euler parameters; 2 more compared
 //! * joint_accelerations: 1 operations by recursion; 1 operations by normal form
 //! * joint_accelerations_at: 4 operations by recursion; 4 operations by normal form; 1 more compared
 //! * corrected_accelerations: 63 operations by recursion in the bodies' frames; 63 operations by normal form in the bodies' frames; 5 more compared
@@ -25,10 +25,10 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 25 | 14 | 4 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 14 | 0 | 25 | 0 of 13 | 38 | 25 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 24 | 43 | 0 | 67 | 0 of 5 | 118 | 67 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 19 | 31 | 0 | 50 | 0 of 5 | 65 | 50 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 4 | 0 | 4 | 3 of 6 | 4 | 4 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 32 | 55 | 1 | 88 | 0 of 6 | 589 | 89 |
+//! | gamma | γ | 22 | 38 | 0 | 60 | 0 of 5 | 133 | 60 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 17 | 27 | 0 | 44 | 0 of 5 | 75 | 44 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 3 | 0 | 3 | 3 of 6 | 4 | 3 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 30 | 55 | 1 | 86 | 0 of 6 | 694 | 87 |
 //! | multipliers | λ, the accelerations being known | 18 | 34 | 1 | 53 | 0 of 5 | 170 | 53 |
 //! | project | (δr, δπ') that changes the rows as given | 22 | 37 | 1 | 60 | 0 of 6 | 398 | 60 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
@@ -218,7 +218,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Pendulum<T> {
             T::fused(rod_e3, rod_e3, T::fused(rod_e2, rod_e2, t0)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 50 operations (19 ±, 31 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 44 operations (17 ±, 27 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let rod_e0 = y[3];
@@ -231,39 +231,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Pendulum<T> {
         let rod_wx = y[10];
         let rod_wy = y[11];
         let rod_wz = y[12];
-        let t0 = rod_e0 * rod_e3;
-        let t1 = rod_e1 * rod_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = T::fused(
-            -(k(2.0) * T::fused(rod_e0, rod_e2, rod_e1 * rod_e3)),
-            rod_wy,
-            t2 * rod_wz,
-        );
-        let t4 = rod_e0 * rod_e1;
-        let t5 = rod_e2 * rod_e3;
-        let t6 = rod_e0 * rod_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t6));
-        let t8 = T::fused(
+        let t0 = k(2.0) * rod_e0;
+        let t1 = rod_e3 * t0;
+        let t2 = k(2.0) * rod_e1;
+        let t3 = rod_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(
             k(0.5),
-            T::fused(k(2.0) * (t5 - t4), rod_wy, t7 * rod_wz),
-            rod_sy,
+            T::fused(-rod_wz, t4, rod_wy * T::fused(rod_e2, t0, rod_e3 * t2)),
+            rod_sx,
         );
-        let t9 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rod_e3, rod_e3, t6)),
-            rod_wy,
-            k(2.0) * (t5 + t4) * rod_wz,
-        );
-        let t10 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t6)),
-            rod_wy,
-            t2 * rod_wx,
+        let t6 = k(2.0) * rod_e2;
+        let t7 = T::fused(-rod_e0, t0, k(1.0));
+        let t8 = T::fused(-rod_e2, t6, t7);
+        let t9 = rod_e1 * t0;
+        let t10 = rod_e3 * t6;
+        let t11 = T::fused(
+            rod_wz,
+            t10 + t9,
+            rod_wy * T::fused(-rod_e3, k(2.0) * rod_e3, t7),
         );
         *out = [
-            T::fused(-k(0.5), t3, rod_sx),
-            t8,
-            T::fused(-k(0.5), t9, rod_sz),
-            -T::fused(k(2.0) * (t1 + t0), rod_wy, t7 * rod_wx),
-            -t10,
+            t5,
+            T::fused(k(0.5), T::fused(rod_wz, t8, rod_wy * (t10 - t9)), rod_sy),
+            T::fused(-k(0.5), t11, rod_sz),
+            -T::fused(rod_wy, t3 + t1, rod_wx * t8),
+            -T::fused(rod_wy, T::fused(-rod_e1, t2, t7), rod_wx * t4),
         ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
@@ -677,7 +670,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Pendulum<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 67 operations (24 ±, 43 ×, 0 ÷).
+    /// Writes γ: 60 operations (22 ±, 38 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let rod_e0 = y[3];
@@ -687,52 +680,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Pendulum<T> {
         let rod_wx = y[10];
         let rod_wy = y[11];
         let rod_wz = y[12];
-        let t0 = rod_wy * rod_wy;
-        let t1 = T::fused(rod_wz, rod_wz, t0);
-        let t2 = rod_e0 * rod_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t2));
-        let t4 = rod_wx * rod_wy;
-        let t5 = rod_e0 * rod_e3;
-        let t6 = rod_e1 * rod_e2;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = rod_wx * rod_wz;
-        let t9 = rod_e0 * rod_e2;
-        let t10 = rod_e1 * rod_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = k(2.0) * (t6 + t5);
-        let t13 = k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t2));
-        let t14 = rod_e0 * rod_e1;
-        let t15 = rod_e2 * rod_e3;
-        let t16 = k(2.0) * (t15 - t14);
-        let t17 = T::fused(-(k(2.0) * (t10 - t9)), t1, k(2.0) * (t15 + t14) * t4);
-        let t18 = k(0.5)
-            * T::fused(k(2.0) * (k(0.5) - T::fused(rod_e3, rod_e3, t2)), t8, -t17);
-        let t19 = rod_wy * rod_wz;
-        let t20 = T::fused(rod_wx, rod_wx, t0);
+        let t0 = k(2.0) * rod_e1;
+        let t1 = k(2.0) * rod_e0;
+        let t2 = T::fused(-rod_e0, t1, k(1.0));
+        let t3 = T::fused(-rod_e1, t0, t2);
+        let t4 = rod_wy * rod_wy;
+        let t5 = T::fused(rod_wz, rod_wz, t4);
+        let t6 = rod_e3 * t1;
+        let t7 = rod_e2 * t0;
+        let t8 = t7 - t6;
+        let t9 = rod_wx * rod_wy;
+        let t10 = rod_e2 * t1;
+        let t11 = rod_e3 * t0;
+        let t12 = t11 + t10;
+        let t13 = rod_wx * rod_wz;
+        let t14 = t7 + t6;
+        let t15 = k(2.0) * rod_e2;
+        let t16 = T::fused(-rod_e2, t15, t2);
+        let t17 = rod_e1 * t1;
+        let t18 = rod_e3 * t15;
+        let t19 = t18 - t17;
+        let t20 = T::fused(
+            t13,
+            T::fused(-rod_e3, k(2.0) * rod_e3, t2),
+            -T::fused(-t5, t11 - t10, t9 * (t18 + t17)),
+        );
+        let t21 = rod_wy * rod_wz;
+        let t22 = T::fused(rod_wx, rod_wx, t4);
         *out = [
-            k(0.5) * T::fused(t11, t8, T::fused(t3, t1, t7 * t4)),
-            k(0.5) * T::fused(t16, t8, -T::fused(t12, t1, t13 * t4)),
-            -t18,
-            -T::fused(t16, t20, T::fused(-t12, t8, t13 * t19)),
-            T::fused(t11, t20, -T::fused(-t3, t8, t7 * t19)),
+            k(0.5) * T::fused(t13, t12, T::fused(t5, t3, t9 * t8)),
+            k(0.5) * T::fused(t13, t19, -T::fused(t5, t14, t9 * t16)),
+            -(k(0.5) * t20),
+            -T::fused(t22, t19, T::fused(-t13, t14, t21 * t16)),
+            T::fused(t22, t12, -T::fused(-t13, t3, t21 * t8)),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 4 operations (0 ±, 4 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 3 operations (0 ±, 3 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let rod_wx = y[10];
         let rod_wy = y[11];
         let rod_wz = y[12];
-        *out = [
-            k(0.0),
-            k(-11.772),
-            k(0.0),
-            k(0.0),
-            k(0.0999) * (rod_wx * rod_wz),
-            -(k(0.0999) * (rod_wx * rod_wy)),
-        ];
+        let t0 = k(0.0999) * rod_wx;
+        *out = [k(0.0), k(-11.772), k(0.0), k(0.0), rod_wz * t0, -(rod_wy * t0)];
     }
-    /// Solves eq. (17): 88 operations (32 ±, 55 ×, 1 ÷).
+    /// Solves eq. (17): 86 operations (30 ±, 55 ×, 1 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let rod_e0 = y[3];
@@ -742,53 +734,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Pendulum<T> {
         let rod_wx = y[10];
         let rod_wy = y[11];
         let rod_wz = y[12];
-        let t0 = rod_e0 * rod_e0;
-        let t1 = k(0.5) - T::fused(rod_e3, rod_e3, t0);
-        let t2 = rod_wy * rod_wy;
-        let t3 = T::fused(rod_wx, rod_wx, t2) * (k(0.5) / t1);
-        let t4 = rod_e0 * rod_e2;
-        let t5 = rod_e1 * rod_e3;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = rod_wx * rod_wz;
-        let t8 = T::fused(-t6, t3, t7);
-        let t9 = t5 + t4;
-        let t10 = k(0.5) - T::fused(rod_e2, rod_e2, t0);
-        let t11 = rod_wx * rod_wy;
-        let t12 = T::fused(rod_wz, rod_wz, t2);
-        let t13 = rod_e0 * rod_e3;
-        let t14 = rod_e1 * rod_e2;
-        let t15 = t14 - t13;
-        let t16 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t0)),
-            t12,
-            k(2.0) * t15 * t11,
+        let t0 = k(2.0) * rod_e0;
+        let t1 = rod_e2 * t0;
+        let t2 = k(2.0) * rod_e1;
+        let t3 = rod_e3 * t2;
+        let t4 = t3 + t1;
+        let t5 = T::fused(-rod_e0, t0, k(1.0));
+        let t6 = T::fused(-rod_e3, k(2.0) * rod_e3, t5);
+        let t7 = rod_wy * rod_wy;
+        let t8 = T::fused(rod_wx, rod_wx, t7) / t6;
+        let t9 = t3 - t1;
+        let t10 = rod_wx * rod_wz;
+        let t11 = T::fused(-t9, t8, t10);
+        let t12 = rod_e3 * t0;
+        let t13 = rod_e2 * t2;
+        let t14 = t13 - t12;
+        let t15 = k(2.0) * rod_e2;
+        let t16 = T::fused(-rod_e2, t15, t5);
+        let t17 = rod_wx * rod_wy;
+        let t18 = T::fused(rod_wz, rod_wz, t7);
+        let t19 = T::fused(t10, t4, T::fused(t18, T::fused(-rod_e1, t2, t5), t17 * t14));
+        let t20 = k(0.5) * t19;
+        let t21 = rod_e1 * t0;
+        let t22 = rod_e3 * t15;
+        let t23 = t22 - t21;
+        let t24 = k(0.5) * T::fused(t10, t23, -T::fused(t18, t13 + t12, t17 * t16));
+        let t25 = t22 + t21;
+        let t26 = k(0.5) * T::fused(t10, t6, -T::fused(-t18, t9, t17 * t25));
+        let t27 = T::fused(
+            k(0.6) * t25,
+            t26,
+            T::fused(-(k(0.6) * t14), t20, k(0.6) * t16 * t24),
         );
-        let t17 = k(0.5) * T::fused(k(2.0) * t9, t7, t16);
-        let t18 = rod_e0 * rod_e1;
-        let t19 = rod_e2 * rod_e3;
-        let t20 = t19 - t18;
-        let t21 = T::fused(
-            k(2.0) * t20,
-            t7,
-            -T::fused(k(2.0) * (t14 + t13), t12, k(2.0) * t10 * t11),
-        );
-        let t22 = k(0.5) * t21;
-        let t23 = t19 + t18;
-        let t24 = k(2.0) * t23;
-        let t25 = k(0.5) * T::fused(k(2.0) * t1, t7, -T::fused(-t6, t12, t24 * t11));
-        let t26 = T::fused(
-            k(1.2) * t23,
-            t25,
-            T::fused(-(k(1.2) * t15), t17, k(1.2) * t10 * t22),
-        );
-        let t27 = k(2.5) * (t26 - T::fused(-k(11.772), t10, k(0.0999) * t11));
+        let t28 = k(2.5) * (t27 - T::fused(-k(5.886), t16, k(0.0999) * t17));
         *out = [
-            t17 + T::fused(t9, t8, t15 * t27),
-            t22 - T::fused(-t20, t8, t10 * t27),
-            T::fused(-t1, t8, t23 * t27) - t25,
-            T::fused(-t24, t3, rod_wy * rod_wz),
-            -t8,
-            t27,
+            t20 + T::fused(t11, k(0.5) * t4, t28 * (k(0.5) * t14)),
+            t24 - T::fused(-t11, k(0.5) * t23, t28 * (k(0.5) * t16)),
+            T::fused(-t11, k(0.5) * t6, t28 * (k(0.5) * t25)) - t26,
+            T::fused(-t25, t8, rod_wy * rod_wz),
+            -t11,
+            t28,
         ];
     }
     /// Writes λ: 53 operations (18 ±, 34 ×, 1 ÷).

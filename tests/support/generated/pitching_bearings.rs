@@ -10,11 +10,11 @@
 //! * left out: coordinates of `base` (driven: a function of time)
 //! * left out: the turning of `rotor` from u̇ (it looks the same all around its axis)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 553 operations by relative Euler parameters; 554 operations by rotations of the bodies
-//! * project: 417 operations by relative Euler parameters; 420 operations by rotations of the bodies
+//! * accelerations: 523 operations by relative Euler parameters, doubled; 533 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 403 operations by rotations of the bodies, doubled; 410 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 115 operations by recursion; 124 operations by normal form
 //! * joint_accelerations_at: 145 operations by recursion on the bodies' spins; 160 operations by recursion; 1 more compared
-//! * corrected_accelerations: 554 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * corrected_accelerations: 523 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
 //! * joint_jacobian: 1755 operations by derivatives of u̇, from its leaves; 1755 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -22,31 +22,31 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 53 | 69 | 0 | 122 | 0 of 18 | 216 | 122 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 76 | 159 | 0 | 235 | 0 of 77 | 672 | 235 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 70 | 121 | 0 | 191 | 0 of 41 | 613 | 191 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 74 | 144 | 0 | 218 | 0 of 77 | 752 | 218 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 64 | 106 | 0 | 170 | 0 of 41 | 731 | 170 |
 //! | nu | ν | 9 | 28 | 0 | 37 | 13 of 15 | 79 | 37 |
-//! | gamma | γ | 157 | 249 | 0 | 406 | 6 of 15 | 2005 | 406 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 101 | 156 | 0 | 257 | 0 of 15 | 734 | 257 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 12 | 0 | 12 | 9 of 18 | 12 | 12 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 216 | 332 | 5 | 553 | 7 of 18 | 585590 | 557 |
-//! | multipliers | λ, the accelerations being known | 120 | 203 | 3 | 326 | 0 of 15 | 4184 | 326 |
-//! | project | (δr, δπ') that changes the rows as given | 155 | 257 | 5 | 417 | 1 of 18 | 429646 | 418 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 132 | 236 | 1 | 369 | 0 of 22 | 2523 | 369 |
+//! | gamma | γ | 151 | 234 | 0 | 385 | 6 of 15 | 2294 | 385 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 95 | 141 | 0 | 236 | 0 of 15 | 851 | 236 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 208 | 310 | 5 | 523 | 7 of 18 | 611110 | 527 |
+//! | multipliers | λ, the accelerations being known | 114 | 188 | 3 | 305 | 0 of 15 | 4894 | 305 |
+//! | project | (δr, δπ') that changes the rows as given | 150 | 248 | 5 | 403 | 1 of 18 | 492063 | 404 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 126 | 221 | 1 | 348 | 0 of 22 | 2914 | 348 |
 //! | energy | T and V | 19 | 33 | 0 | 52 | 0 of 2 | 52 | 52 |
 //! | read_joints | joint coordinates and rates | 59 | 74 | 0 | 133 | 0 of 9 | 268 | 133 |
-//! | outputs | outputs, the accelerations being known | 203 | 340 | 3 | 546 | 1 of 26 | 76821 | 546 |
+//! | outputs | outputs, the accelerations being known | 197 | 325 | 3 | 525 | 1 of 26 | 89856 | 525 |
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 12 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 206 | 343 | 3 | 552 | 6 of 21 | 2.3e9 | 552 |
 //! | solve_velocities | dependent velocities, eq. (19) | 113 | 196 | 3 | 312 | 6 of 18 | 21819 | 312 |
-//! | joint_accelerations | u̇ in joint coordinates | 35 | 79 | 1 | 115 | 0 of 3 | 755 | 116 |
-//! | joint_derivative | ẋ but for u̇ | 192 | 347 | 2 | 541 | 0 of 4 | 132773 | 542 |
+//! | joint_accelerations | u̇ in joint coordinates | 35 | 77 | 1 | 113 | 0 of 3 | 755 | 114 |
+//! | joint_derivative | ẋ but for u̇ | 192 | 346 | 2 | 540 | 0 of 4 | 132773 | 541 |
 //! | to_maximal | (q, v) of a joint state | 39 | 88 | 0 | 127 | 12 of 39 | 2299 | 127 |
 //! | to_joints | (x, u) of a maximal state | 68 | 86 | 0 | 154 | 0 of 6 | 549 | 154 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 46 | 98 | 1 | 145 | 0 of 3 | 1501 | 146 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 216 | 333 | 5 | 554 | 7 of 18 | 568811 | 558 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 46 | 96 | 1 | 143 | 0 of 3 | 1501 | 144 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 208 | 310 | 5 | 523 | 7 of 18 | 611110 | 527 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 60 | 96 | 0 | 156 | 0 of 15 | 931 | 156 |
-//! | corrected_solution | both | 261 | 401 | 5 | 667 | 7 of 33 | 4.6e6 | 671 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 678 | 1075 | 2 | 1755 | 29 of 56 | 1.2e8 | 1755 |
+//! | corrected_solution | both | 249 | 373 | 5 | 627 | 7 of 33 | 5.0e6 | 631 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 678 | 1071 | 2 | 1751 | 29 of 56 | 1.2e8 | 1751 |
 //!
 //! # Proof
 //!
@@ -139,7 +139,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
             k(0.0),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 369 operations (132 ±, 236 ×, 1 ÷) and 8 functions.
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 348 operations (126 ±, 221 ×, 1 ÷) and 8 functions.
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -185,160 +185,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = rotor_e0 * rotor_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t0));
-        let t2 = inner_ring_e0 * inner_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t2));
-        let t4 = rotor_e0 * rotor_e3;
-        let t5 = rotor_e1 * rotor_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = rotor_e0 * rotor_e2;
-        let t11 = rotor_e1 * rotor_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(1e-5) * rotor_dwx;
-        let t17 = k(2.0) * (t5 - t4);
-        let t18 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t0));
-        let t19 = rotor_e0 * rotor_e1;
-        let t20 = rotor_e2 * rotor_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t23 = T::fused(
-            t16,
-            T::fused(t15, t12, T::fused(t3, t1, t9 * t6)),
-            t22 * T::fused(t15, t21, -T::fused(t3, t17, t9 * t18)),
+        let t0 = k(2.0) * rotor_e1;
+        let t1 = k(2.0) * rotor_e0;
+        let t2 = T::fused(-rotor_e0, t1, k(1.0));
+        let t3 = T::fused(-rotor_e1, t0, t2);
+        let t4 = k(2.0) * inner_ring_e1;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e1, t4, t6);
+        let t8 = rotor_e3 * t1;
+        let t9 = rotor_e2 * t0;
+        let t10 = t9 + t8;
+        let t11 = inner_ring_e3 * t5;
+        let t12 = inner_ring_e2 * t4;
+        let t13 = t12 + t11;
+        let t14 = rotor_e2 * t1;
+        let t15 = rotor_e3 * t0;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e2 * t5;
+        let t18 = inner_ring_e3 * t4;
+        let t19 = t18 - t17;
+        let t20 = k(1e-5) * rotor_dwx;
+        let t21 = t9 - t8;
+        let t22 = k(2.0) * rotor_e2;
+        let t23 = T::fused(-rotor_e2, t22, t2);
+        let t24 = rotor_e1 * t1;
+        let t25 = rotor_e3 * t22;
+        let t26 = t25 + t24;
+        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t28 = T::fused(
+            t20,
+            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
+            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
         );
-        let t24 = k(2.0) * (t11 + t10);
-        let t25 = k(2.0) * (t20 - t19);
-        let t26 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t0));
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t28 = T::fused(t27, T::fused(t15, t26, -T::fused(-t3, t24, t9 * t25)), t23);
-        let t29 = T::fused(
+        let t29 = t15 + t14;
+        let t30 = t25 - t24;
+        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
+        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
+        let t34 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t28,
+            -t33,
         );
-        let t30 = outer_ring_e0 * outer_ring_e0;
-        let t31 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t30));
-        let t32 = outer_ring_e0 * outer_ring_e3;
-        let t33 = outer_ring_e1 * outer_ring_e2;
-        let t34 = k(2.0) * (t33 + t32);
-        let t35 = outer_ring_e0 * outer_ring_e2;
-        let t36 = outer_ring_e1 * outer_ring_e3;
-        let t37 = k(2.0) * (t36 - t35);
-        let t38 = t8 - t7;
-        let t39 = k(2.0) * t38;
-        let t40 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t2);
-        let t41 = k(2.0) * t40;
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = t43 + t42;
-        let t45 = k(2.0) * t44;
-        let t46 = T::fused(
-            t16,
-            T::fused(t45, t12, -T::fused(t39, t1, t41 * t6)),
-            t22 * T::fused(t45, t21, T::fused(t41, t18, t39 * t17)),
+        let t35 = k(2.0) * outer_ring_e1;
+        let t36 = k(2.0) * outer_ring_e0;
+        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
+        let t38 = T::fused(-outer_ring_e1, t35, t37);
+        let t39 = outer_ring_e3 * t36;
+        let t40 = outer_ring_e2 * t35;
+        let t41 = t40 + t39;
+        let t42 = outer_ring_e2 * t36;
+        let t43 = outer_ring_e3 * t35;
+        let t44 = t43 - t42;
+        let t45 = t12 - t11;
+        let t46 = k(2.0) * inner_ring_e2;
+        let t47 = T::fused(-inner_ring_e2, t46, t6);
+        let t48 = inner_ring_e1 * t5;
+        let t49 = inner_ring_e3 * t46;
+        let t50 = t49 + t48;
+        let t51 = T::fused(
+            t20,
+            T::fused(t50, t16, -T::fused(t45, t3, t47 * t10)),
+            t27 * T::fused(t50, t26, T::fused(t45, t21, t47 * t23)),
         );
-        let t47 = T::fused(
-            t27,
-            T::fused(t45, t26, -T::fused(-t41, t25, t39 * t24)),
-            t46,
+        let t52 = T::fused(t32, T::fused(t50, t31, T::fused(-t45, t29, t47 * t30)), t51);
+        let t53 = t18 + t17;
+        let t54 = k(0.08) * rotor_dsx;
+        let t55 = t49 - t48;
+        let t56 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t57 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
+        let t58 = k(0.08) * rotor_dsz;
+        let t59 = T::fused(
+            t58,
+            k(0.000125) * t57,
+            -T::fused(t54, k(0.000125) * t53, t56 * (k(0.000125) * t55)),
         );
-        let t48 = t14 + t13;
-        let t49 = k(0.08) * rotor_dsx;
-        let t50 = t43 - t42;
-        let t51 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t52 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t2);
-        let t53 = k(0.08) * rotor_dsz;
-        let t54 = T::fused(
-            t53,
-            k(0.00025) * t52,
-            -T::fused(t49, k(0.00025) * t48, t51 * (k(0.00025) * t50)),
+        let t60 = T::fused(k(2e-6), inner_ring_dwy, t59 + t52);
+        let t61 = T::fused(
+            -T::fused(t44, t19, T::fused(t38, t7, t41 * t13)),
+            t34,
+            T::fused(t44, t50, -T::fused(t38, t45, t41 * t47)) * t60,
         );
-        let t55 = T::fused(k(2e-6), inner_ring_dwy, t54 + t47);
-        let t56 = T::fused(
-            -T::fused(t37, t15, T::fused(t31, t3, t34 * t9)),
-            t29,
-            T::fused(t37, t45, -T::fused(t31, t39, t34 * t41)) * t55,
-        );
-        let t57 = k(2.0) * t48;
-        let t58 = k(2.0) * t50;
-        let t59 = k(2.0) * t52;
-        let t60 = T::fused(
-            t16,
-            T::fused(t59, t12, -T::fused(-t57, t1, t58 * t6)),
-            t22 * T::fused(t59, t21, -T::fused(-t58, t18, t57 * t17)),
-        );
-        let t61 = T::fused(t27, T::fused(t59, t26, T::fused(t58, t25, t57 * t24)), t60);
         let t62 = T::fused(
-            t53,
-            k(0.00025) * t44,
-            -T::fused(-t49, k(0.00025) * t38, t51 * (k(0.00025) * t40)),
+            t20,
+            T::fused(t57, t16, -T::fused(-t53, t3, t55 * t10)),
+            t27 * T::fused(t57, t26, T::fused(-t53, t21, t55 * t23)),
         );
-        let t63 = T::fused(
+        let t63 = T::fused(t32, T::fused(t57, t31, T::fused(t53, t29, t55 * t30)), t62);
+        let t64 = T::fused(
+            t58,
+            k(0.000125) * t50,
+            -T::fused(-t54, k(0.000125) * t45, t56 * (k(0.000125) * t47)),
+        );
+        let t65 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t62 - t61,
+            t64 - t63,
         );
-        let t64 = T::fused(
-            T::fused(t37, t59, -T::fused(-t31, t57, t34 * t58)),
-            t63,
-            -t56,
+        let t66 = T::fused(
+            T::fused(t44, t57, -T::fused(-t38, t53, t41 * t55)),
+            t65,
+            -t61,
         );
-        let t65 = T::fused(k(2e-6), outer_ring_dwx, -t64);
-        let t66 = k(18.84955592153876) * t;
-        let t67 = k(0.05) * t66.sin();
-        let t68 = t67.cos();
-        let t69 = t67.sin();
-        let t70 = k(12.566370614359172) * t;
-        let t71 = k(0.1) * t70.sin();
-        let t72 = t71.cos();
-        let t73 = t72 * t69;
-        let t74 = t71.sin();
-        let t75 = t74 * t69;
-        let t76 = T::fused(t75, t37, T::fused(-t68, t31, t73 * t34));
-        let t77 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t30));
-        let t78 = outer_ring_e0 * outer_ring_e1;
-        let t79 = outer_ring_e2 * outer_ring_e3;
-        let t80 = k(2.0) * (t79 - t78);
-        let t81 = T::fused(t72, t77, t74 * t80);
-        let t82 = k(2.0) * (t36 + t35);
-        let t83 = T::fused(-t75, t77, T::fused(t73, t80, t68 * t82));
-        let t84 = T::fused(-t72, t37, t74 * t34);
-        let t85 = k(1.0) / T::fused(-t81, t76, t84 * t83);
-        let t86 = T::fused(
-            -T::fused(t77, t15, -T::fused(-t82, t3, t80 * t9)),
-            t29,
-            T::fused(t77, t45, -T::fused(-t80, t41, t82 * t39)) * t55,
+        let t67 = T::fused(k(2e-6), outer_ring_dwx, -t66);
+        let t68 = k(18.84955592153876) * t;
+        let t69 = k(0.05) * t68.sin();
+        let t70 = t69.cos();
+        let t71 = t69.sin();
+        let t72 = k(12.566370614359172) * t;
+        let t73 = k(0.1) * t72.sin();
+        let t74 = t73.cos();
+        let t75 = t74 * t71;
+        let t76 = t73.sin();
+        let t77 = t76 * t71;
+        let t78 = T::fused(t77, t44, T::fused(-t70, t38, t75 * t41));
+        let t79 = outer_ring_e1 * t36;
+        let t80 = k(2.0) * outer_ring_e2;
+        let t81 = outer_ring_e3 * t80;
+        let t82 = t81 - t79;
+        let t83 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
+        let t84 = T::fused(t76, t82, t74 * t83);
+        let t85 = T::fused(-t76, t41, t74 * t44);
+        let t86 = t43 + t42;
+        let t87 = T::fused(t77, t83, -T::fused(t70, t86, t75 * t82));
+        let t88 = k(1.0) / T::fused(-t84, t78, t87 * t85);
+        let t89 = T::fused(
+            -T::fused(t83, t19, -T::fused(-t86, t7, t82 * t13)),
+            t34,
+            T::fused(t83, t50, T::fused(-t86, t45, t82 * t47)) * t60,
         );
-        let t87 = T::fused(T::fused(t77, t59, T::fused(t80, t58, t82 * t57)), t63, -t86);
-        let t88 = T::fused(
+        let t90 = T::fused(T::fused(t83, t57, T::fused(t86, t53, t82 * t55)), t65, -t89);
+        let t91 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t87,
+            -t90,
         );
-        let t89 = k(1.2566370614359172) * t70.cos();
-        let t90 = t89 * t74;
-        let t91 = k(2.0) * (t79 + t78);
-        let t92 = t89 * t72;
-        let t93 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t30));
-        let t94 = k(0.9424777960769379) * t66.cos();
-        let t95 = t94 * t68;
-        let t96 = T::fused(
-            -t93,
-            T::fused(-t72, t95, t69 * t90),
-            k(2.0) * (t33 - t32) * (t94 * t69),
+        let t92 = t81 + t79;
+        let t93 = k(1.2566370614359172) * t72.cos();
+        let t94 = t93 * t76;
+        let t95 = T::fused(-outer_ring_e2, t80, t37);
+        let t96 = t93 * t74;
+        let t97 = k(0.9424777960769379) * t68.cos();
+        let t98 = t97 * t70;
+        let t99 = T::fused(
+            -T::fused(-t74, t98, t71 * t94),
+            t95,
+            t97 * t71 * (t40 - t39),
         );
-        let t97 = T::fused(
-            T::fused(-t91, t90, t93 * t92),
-            T::fused(-(t76 * t85), t65, t83 * t85 * t88),
-            T::fused(t91, T::fused(t74, t95, t69 * t92), -t96)
-                * T::fused(-(t84 * t85), t65, t81 * t85 * t88),
+        let t100 = T::fused(
+            T::fused(-t94, t92, t96 * t95),
+            T::fused(t78 * t88, t67, t87 * t88 * t91),
+            T::fused(-T::fused(t76, t98, t71 * t96), t92, t99)
+                * T::fused(t85 * t88, t67, t84 * t88 * t91),
         );
         *dy = [
             outer_ring_sx,
@@ -456,7 +455,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for PitchingBearings<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            t97,
+            -t100,
         ];
     }
 }
@@ -473,7 +472,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 9]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 369 operations (132 ±, 236 ×, 1 ÷) and 8 functions.
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 348 operations (126 ±, 221 ×, 1 ÷) and 8 functions.
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -519,160 +518,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
         let rotor_dwx = accelerations[15];
         let rotor_dwy = accelerations[16];
         let rotor_dwz = accelerations[17];
-        let t0 = rotor_e0 * rotor_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t0));
-        let t2 = inner_ring_e0 * inner_ring_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t2));
-        let t4 = rotor_e0 * rotor_e3;
-        let t5 = rotor_e1 * rotor_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = inner_ring_e0 * inner_ring_e3;
-        let t8 = inner_ring_e1 * inner_ring_e2;
-        let t9 = k(2.0) * (t8 + t7);
-        let t10 = rotor_e0 * rotor_e2;
-        let t11 = rotor_e1 * rotor_e3;
-        let t12 = k(2.0) * (t11 - t10);
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = k(1e-5) * rotor_dwx;
-        let t17 = k(2.0) * (t5 - t4);
-        let t18 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t0));
-        let t19 = rotor_e0 * rotor_e1;
-        let t20 = rotor_e2 * rotor_e3;
-        let t21 = k(2.0) * (t20 + t19);
-        let t22 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t23 = T::fused(
-            t16,
-            T::fused(t15, t12, T::fused(t3, t1, t9 * t6)),
-            t22 * T::fused(t15, t21, -T::fused(t3, t17, t9 * t18)),
+        let t0 = k(2.0) * rotor_e1;
+        let t1 = k(2.0) * rotor_e0;
+        let t2 = T::fused(-rotor_e0, t1, k(1.0));
+        let t3 = T::fused(-rotor_e1, t0, t2);
+        let t4 = k(2.0) * inner_ring_e1;
+        let t5 = k(2.0) * inner_ring_e0;
+        let t6 = T::fused(-inner_ring_e0, t5, k(1.0));
+        let t7 = T::fused(-inner_ring_e1, t4, t6);
+        let t8 = rotor_e3 * t1;
+        let t9 = rotor_e2 * t0;
+        let t10 = t9 + t8;
+        let t11 = inner_ring_e3 * t5;
+        let t12 = inner_ring_e2 * t4;
+        let t13 = t12 + t11;
+        let t14 = rotor_e2 * t1;
+        let t15 = rotor_e3 * t0;
+        let t16 = t15 - t14;
+        let t17 = inner_ring_e2 * t5;
+        let t18 = inner_ring_e3 * t4;
+        let t19 = t18 - t17;
+        let t20 = k(1e-5) * rotor_dwx;
+        let t21 = t9 - t8;
+        let t22 = k(2.0) * rotor_e2;
+        let t23 = T::fused(-rotor_e2, t22, t2);
+        let t24 = rotor_e1 * t1;
+        let t25 = rotor_e3 * t22;
+        let t26 = t25 + t24;
+        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t28 = T::fused(
+            t20,
+            T::fused(t19, t16, T::fused(t7, t3, t13 * t10)),
+            t27 * T::fused(t19, t26, -T::fused(t7, t21, t13 * t23)),
         );
-        let t24 = k(2.0) * (t11 + t10);
-        let t25 = k(2.0) * (t20 - t19);
-        let t26 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t0));
-        let t27 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t28 = T::fused(t27, T::fused(t15, t26, -T::fused(-t3, t24, t9 * t25)), t23);
-        let t29 = T::fused(
+        let t29 = t15 + t14;
+        let t30 = t25 - t24;
+        let t31 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t2);
+        let t32 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t33 = T::fused(t32, T::fused(t19, t31, -T::fused(-t7, t29, t13 * t30)), t28);
+        let t34 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t28,
+            -t33,
         );
-        let t30 = outer_ring_e0 * outer_ring_e0;
-        let t31 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t30));
-        let t32 = outer_ring_e0 * outer_ring_e3;
-        let t33 = outer_ring_e1 * outer_ring_e2;
-        let t34 = k(2.0) * (t33 + t32);
-        let t35 = outer_ring_e0 * outer_ring_e2;
-        let t36 = outer_ring_e1 * outer_ring_e3;
-        let t37 = k(2.0) * (t36 - t35);
-        let t38 = t8 - t7;
-        let t39 = k(2.0) * t38;
-        let t40 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t2);
-        let t41 = k(2.0) * t40;
-        let t42 = inner_ring_e0 * inner_ring_e1;
-        let t43 = inner_ring_e2 * inner_ring_e3;
-        let t44 = t43 + t42;
-        let t45 = k(2.0) * t44;
-        let t46 = T::fused(
-            t16,
-            T::fused(t45, t12, -T::fused(t39, t1, t41 * t6)),
-            t22 * T::fused(t45, t21, T::fused(t41, t18, t39 * t17)),
+        let t35 = k(2.0) * outer_ring_e1;
+        let t36 = k(2.0) * outer_ring_e0;
+        let t37 = T::fused(-outer_ring_e0, t36, k(1.0));
+        let t38 = T::fused(-outer_ring_e1, t35, t37);
+        let t39 = outer_ring_e3 * t36;
+        let t40 = outer_ring_e2 * t35;
+        let t41 = t40 + t39;
+        let t42 = outer_ring_e2 * t36;
+        let t43 = outer_ring_e3 * t35;
+        let t44 = t43 - t42;
+        let t45 = t12 - t11;
+        let t46 = k(2.0) * inner_ring_e2;
+        let t47 = T::fused(-inner_ring_e2, t46, t6);
+        let t48 = inner_ring_e1 * t5;
+        let t49 = inner_ring_e3 * t46;
+        let t50 = t49 + t48;
+        let t51 = T::fused(
+            t20,
+            T::fused(t50, t16, -T::fused(t45, t3, t47 * t10)),
+            t27 * T::fused(t50, t26, T::fused(t45, t21, t47 * t23)),
         );
-        let t47 = T::fused(
-            t27,
-            T::fused(t45, t26, -T::fused(-t41, t25, t39 * t24)),
-            t46,
+        let t52 = T::fused(t32, T::fused(t50, t31, T::fused(-t45, t29, t47 * t30)), t51);
+        let t53 = t18 + t17;
+        let t54 = k(0.08) * rotor_dsx;
+        let t55 = t49 - t48;
+        let t56 = T::fused(k(0.08), rotor_dsy, k(0.8));
+        let t57 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t6);
+        let t58 = k(0.08) * rotor_dsz;
+        let t59 = T::fused(
+            t58,
+            k(0.000125) * t57,
+            -T::fused(t54, k(0.000125) * t53, t56 * (k(0.000125) * t55)),
         );
-        let t48 = t14 + t13;
-        let t49 = k(0.08) * rotor_dsx;
-        let t50 = t43 - t42;
-        let t51 = T::fused(k(0.08), rotor_dsy, k(0.8));
-        let t52 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t2);
-        let t53 = k(0.08) * rotor_dsz;
-        let t54 = T::fused(
-            t53,
-            k(0.00025) * t52,
-            -T::fused(t49, k(0.00025) * t48, t51 * (k(0.00025) * t50)),
+        let t60 = T::fused(k(2e-6), inner_ring_dwy, t59 + t52);
+        let t61 = T::fused(
+            -T::fused(t44, t19, T::fused(t38, t7, t41 * t13)),
+            t34,
+            T::fused(t44, t50, -T::fused(t38, t45, t41 * t47)) * t60,
         );
-        let t55 = T::fused(k(2e-6), inner_ring_dwy, t54 + t47);
-        let t56 = T::fused(
-            -T::fused(t37, t15, T::fused(t31, t3, t34 * t9)),
-            t29,
-            T::fused(t37, t45, -T::fused(t31, t39, t34 * t41)) * t55,
-        );
-        let t57 = k(2.0) * t48;
-        let t58 = k(2.0) * t50;
-        let t59 = k(2.0) * t52;
-        let t60 = T::fused(
-            t16,
-            T::fused(t59, t12, -T::fused(-t57, t1, t58 * t6)),
-            t22 * T::fused(t59, t21, -T::fused(-t58, t18, t57 * t17)),
-        );
-        let t61 = T::fused(t27, T::fused(t59, t26, T::fused(t58, t25, t57 * t24)), t60);
         let t62 = T::fused(
-            t53,
-            k(0.00025) * t44,
-            -T::fused(-t49, k(0.00025) * t38, t51 * (k(0.00025) * t40)),
+            t20,
+            T::fused(t57, t16, -T::fused(-t53, t3, t55 * t10)),
+            t27 * T::fused(t57, t26, T::fused(-t53, t21, t55 * t23)),
         );
-        let t63 = T::fused(
+        let t63 = T::fused(t32, T::fused(t57, t31, T::fused(t53, t29, t55 * t30)), t62);
+        let t64 = T::fused(
+            t58,
+            k(0.000125) * t50,
+            -T::fused(-t54, k(0.000125) * t45, t56 * (k(0.000125) * t47)),
+        );
+        let t65 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t62 - t61,
+            t64 - t63,
         );
-        let t64 = T::fused(
-            T::fused(t37, t59, -T::fused(-t31, t57, t34 * t58)),
-            t63,
-            -t56,
+        let t66 = T::fused(
+            T::fused(t44, t57, -T::fused(-t38, t53, t41 * t55)),
+            t65,
+            -t61,
         );
-        let t65 = T::fused(k(2e-6), outer_ring_dwx, -t64);
-        let t66 = k(18.84955592153876) * t;
-        let t67 = k(0.05) * t66.sin();
-        let t68 = t67.cos();
-        let t69 = t67.sin();
-        let t70 = k(12.566370614359172) * t;
-        let t71 = k(0.1) * t70.sin();
-        let t72 = t71.cos();
-        let t73 = t72 * t69;
-        let t74 = t71.sin();
-        let t75 = t74 * t69;
-        let t76 = T::fused(t75, t37, T::fused(-t68, t31, t73 * t34));
-        let t77 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t30));
-        let t78 = outer_ring_e0 * outer_ring_e1;
-        let t79 = outer_ring_e2 * outer_ring_e3;
-        let t80 = k(2.0) * (t79 - t78);
-        let t81 = T::fused(t72, t77, t74 * t80);
-        let t82 = k(2.0) * (t36 + t35);
-        let t83 = T::fused(-t75, t77, T::fused(t73, t80, t68 * t82));
-        let t84 = T::fused(-t72, t37, t74 * t34);
-        let t85 = k(1.0) / T::fused(-t81, t76, t84 * t83);
-        let t86 = T::fused(
-            -T::fused(t77, t15, -T::fused(-t82, t3, t80 * t9)),
-            t29,
-            T::fused(t77, t45, -T::fused(-t80, t41, t82 * t39)) * t55,
+        let t67 = T::fused(k(2e-6), outer_ring_dwx, -t66);
+        let t68 = k(18.84955592153876) * t;
+        let t69 = k(0.05) * t68.sin();
+        let t70 = t69.cos();
+        let t71 = t69.sin();
+        let t72 = k(12.566370614359172) * t;
+        let t73 = k(0.1) * t72.sin();
+        let t74 = t73.cos();
+        let t75 = t74 * t71;
+        let t76 = t73.sin();
+        let t77 = t76 * t71;
+        let t78 = T::fused(t77, t44, T::fused(-t70, t38, t75 * t41));
+        let t79 = outer_ring_e1 * t36;
+        let t80 = k(2.0) * outer_ring_e2;
+        let t81 = outer_ring_e3 * t80;
+        let t82 = t81 - t79;
+        let t83 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t37);
+        let t84 = T::fused(t76, t82, t74 * t83);
+        let t85 = T::fused(-t76, t41, t74 * t44);
+        let t86 = t43 + t42;
+        let t87 = T::fused(t77, t83, -T::fused(t70, t86, t75 * t82));
+        let t88 = k(1.0) / T::fused(-t84, t78, t87 * t85);
+        let t89 = T::fused(
+            -T::fused(t83, t19, -T::fused(-t86, t7, t82 * t13)),
+            t34,
+            T::fused(t83, t50, T::fused(-t86, t45, t82 * t47)) * t60,
         );
-        let t87 = T::fused(T::fused(t77, t59, T::fused(t80, t58, t82 * t57)), t63, -t86);
-        let t88 = T::fused(
+        let t90 = T::fused(T::fused(t83, t57, T::fused(t86, t53, t82 * t55)), t65, -t89);
+        let t91 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t87,
+            -t90,
         );
-        let t89 = k(1.2566370614359172) * t70.cos();
-        let t90 = t89 * t74;
-        let t91 = k(2.0) * (t79 + t78);
-        let t92 = t89 * t72;
-        let t93 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t30));
-        let t94 = k(0.9424777960769379) * t66.cos();
-        let t95 = t94 * t68;
-        let t96 = T::fused(
-            -t93,
-            T::fused(-t72, t95, t69 * t90),
-            k(2.0) * (t33 - t32) * (t94 * t69),
+        let t92 = t81 + t79;
+        let t93 = k(1.2566370614359172) * t72.cos();
+        let t94 = t93 * t76;
+        let t95 = T::fused(-outer_ring_e2, t80, t37);
+        let t96 = t93 * t74;
+        let t97 = k(0.9424777960769379) * t68.cos();
+        let t98 = t97 * t70;
+        let t99 = T::fused(
+            -T::fused(-t74, t98, t71 * t94),
+            t95,
+            t97 * t71 * (t40 - t39),
         );
-        let t97 = T::fused(
-            T::fused(-t91, t90, t93 * t92),
-            T::fused(-(t76 * t85), t65, t83 * t85 * t88),
-            T::fused(t91, T::fused(t74, t95, t69 * t92), -t96)
-                * T::fused(-(t84 * t85), t65, t81 * t85 * t88),
+        let t100 = T::fused(
+            T::fused(-t94, t92, t96 * t95),
+            T::fused(t78 * t88, t67, t87 * t88 * t91),
+            T::fused(-T::fused(t76, t98, t71 * t96), t92, t99)
+                * T::fused(t85 * t88, t67, t84 * t88 * t91),
         );
         *dy = [
             outer_ring_sx,
@@ -790,7 +788,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
             accelerations[15],
             accelerations[16],
             accelerations[17],
-            t97,
+            -t100,
         ];
     }
     /// Writes Φ: 122 operations (53 ±, 69 ×, 0 ÷) and 6 functions.
@@ -885,7 +883,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
             T::fused(rotor_e3, rotor_e3, T::fused(rotor_e2, rotor_e2, t27)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 257 operations (101 ±, 156 ×, 0 ÷) and 8 functions.
+    /// Writes Φ_r s + Φ_π' w' − ν: 236 operations (95 ±, 141 ×, 0 ÷) and 8 functions.
     fn velocity_residual(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -917,150 +915,159 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for PitchingBearings<T> {
         let inner_ring_wz = y[32];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = k(12.566370614359172) * t;
-        let t1 = k(0.1) * t0.sin();
-        let t2 = t1.sin();
-        let t3 = k(1.2566370614359172) * t0.cos();
-        let t4 = t3 * t2;
-        let t5 = outer_ring_e0 * outer_ring_e1;
-        let t6 = outer_ring_e2 * outer_ring_e3;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = outer_ring_e0 * outer_ring_e2;
-        let t9 = outer_ring_e1 * outer_ring_e3;
-        let t10 = k(2.0) * (t9 - t8);
-        let t11 = outer_ring_e0 * outer_ring_e0;
-        let t12 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t11));
-        let t13 = T::fused(t10, outer_ring_wz, t12 * outer_ring_wx);
-        let t14 = t1.cos();
-        let t15 = t3 * t14;
-        let t16 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t11));
-        let t17 = outer_ring_e0 * outer_ring_e3;
-        let t18 = outer_ring_e1 * outer_ring_e2;
-        let t19 = k(2.0) * (t18 + t17);
-        let t20 = k(2.0) * (t6 - t5);
-        let t21 = T::fused(-t19, outer_ring_wz, t20 * outer_ring_wx);
-        let t22 = T::fused(-t16, t15, t2 * t21) + T::fused(t7, t4, t14 * t13);
-        let t23 = k(18.84955592153876) * t;
-        let t24 = k(0.05) * t23.sin();
-        let t25 = t24.cos();
-        let t26 = k(0.9424777960769379) * t23.cos();
-        let t27 = t26 * t25;
-        let t28 = t24.sin();
-        let t29 = T::fused(-t7, T::fused(t2, t27, t28 * t15), t2 * t28 * t13);
-        let t30 = T::fused(t16, T::fused(-t14, t27, t28 * t4), t14 * t28 * t21);
-        let t31 = k(2.0) * (t18 - t17);
-        let t32 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t11));
-        let t33 = k(2.0) * (t9 + t8);
-        let t34 = T::fused(
-            -t31,
-            t26 * t28,
-            t25 * T::fused(t32, outer_ring_wz, t33 * outer_ring_wx),
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e2 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t6 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t5);
+        let t7 = T::fused(outer_ring_wz, t4, outer_ring_wx * t6);
+        let t8 = k(12.566370614359172) * t;
+        let t9 = k(0.1) * t8.sin();
+        let t10 = t9.cos();
+        let t11 = outer_ring_e1 * t0;
+        let t12 = k(2.0) * outer_ring_e2;
+        let t13 = outer_ring_e3 * t12;
+        let t14 = t13 + t11;
+        let t15 = t9.sin();
+        let t16 = k(1.2566370614359172) * t8.cos();
+        let t17 = t16 * t15;
+        let t18 = outer_ring_e3 * t0;
+        let t19 = outer_ring_e2 * t2;
+        let t20 = t19 + t18;
+        let t21 = t13 - t11;
+        let t22 = T::fused(-outer_ring_wz, t20, outer_ring_wx * t21);
+        let t23 = T::fused(-outer_ring_e2, t12, t5);
+        let t24 = t16 * t10;
+        let t25 = T::fused(-t15, t22, t24 * t23) - T::fused(t10, t7, t17 * t14);
+        let t26 = k(18.84955592153876) * t;
+        let t27 = k(0.05) * t26.sin();
+        let t28 = t27.sin();
+        let t29 = t27.cos();
+        let t30 = k(0.9424777960769379) * t26.cos();
+        let t31 = t30 * t29;
+        let t32 = T::fused(-(t15 * t28), t7, T::fused(t15, t31, t28 * t24) * t14);
+        let t33 = T::fused(t10 * t28, t22, T::fused(-t10, t31, t28 * t17) * t23);
+        let t34 = T::fused(-outer_ring_e1, t2, t5);
+        let t35 = t3 + t1;
+        let t36 = t19 - t18;
+        let t37 = T::fused(
+            -t29,
+            T::fused(outer_ring_wz, t34, outer_ring_wx * t35),
+            t30 * t28 * t36,
         );
-        let t35 = inner_ring_e0 * inner_ring_e1;
-        let t36 = inner_ring_e2 * inner_ring_e3;
-        let t37 = k(2.0) * (t36 - t35);
-        let t38 = inner_ring_e0 * inner_ring_e2;
-        let t39 = inner_ring_e1 * inner_ring_e3;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = inner_ring_e0 * inner_ring_e0;
-        let t42 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t41));
-        let t43 = T::fused(t12, t42, T::fused(t20, t37, t33 * t40));
-        let t44 = T::fused(
+        let t38 = k(2.0) * inner_ring_e0;
+        let t39 = inner_ring_e2 * t38;
+        let t40 = k(2.0) * inner_ring_e1;
+        let t41 = inner_ring_e3 * t40;
+        let t42 = t41 + t39;
+        let t43 = inner_ring_e1 * t38;
+        let t44 = k(2.0) * inner_ring_e2;
+        let t45 = inner_ring_e3 * t44;
+        let t46 = t45 - t43;
+        let t47 = T::fused(-inner_ring_e0, t38, k(1.0));
+        let t48 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t47);
+        let t49 = T::fused(t6, t48, T::fused(t35, t42, t21 * t46));
+        let t50 = T::fused(
             outer_ring_wz,
-            T::fused(t7, t42, -T::fused(-t16, t37, t31 * t40)),
-            outer_ring_wy * t43,
+            T::fused(t14, t48, T::fused(-t36, t42, t23 * t46)),
+            outer_ring_wy * t49,
         );
-        let t45 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t41));
-        let t46 = inner_ring_e0 * inner_ring_e3;
-        let t47 = inner_ring_e1 * inner_ring_e2;
-        let t48 = k(2.0) * (t47 + t46);
-        let t49 = k(2.0) * (t39 - t38);
-        let t50 = k(2.0) * (t47 - t46);
-        let t51 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t41));
-        let t52 = k(2.0) * (t36 + t35);
-        let t53 = T::fused(
+        let t51 = T::fused(-inner_ring_e1, t40, t47);
+        let t52 = inner_ring_e3 * t38;
+        let t53 = inner_ring_e2 * t40;
+        let t54 = t53 + t52;
+        let t55 = t41 - t39;
+        let t56 = t53 - t52;
+        let t57 = T::fused(-inner_ring_e2, t44, t47);
+        let t58 = t45 + t43;
+        let t59 = T::fused(
             -inner_ring_wy,
-            T::fused(t10, t49, T::fused(t32, t45, t19 * t48)),
-            inner_ring_wx * T::fused(t10, t52, -T::fused(t32, t50, t19 * t51)),
+            T::fused(t4, t55, T::fused(t34, t51, t20 * t54)),
+            inner_ring_wx * T::fused(t4, t58, -T::fused(t34, t56, t20 * t57)),
         );
-        let t54 = T::fused(
+        let t60 = T::fused(
             outer_ring_wz,
-            T::fused(t10, t42, -T::fused(-t32, t40, t19 * t37)),
-            outer_ring_wx * t43,
+            T::fused(t4, t48, -T::fused(-t34, t42, t20 * t46)),
+            outer_ring_wx * t49,
         );
-        let t55 = T::fused(
+        let t61 = T::fused(
             -inner_ring_wy,
-            T::fused(t7, t49, -T::fused(t31, t45, t16 * t48)),
-            inner_ring_wx * T::fused(t7, t52, T::fused(t16, t51, t31 * t50)),
+            T::fused(t14, t55, -T::fused(t36, t51, t23 * t54)),
+            inner_ring_wx * T::fused(t14, t58, T::fused(t36, t56, t23 * t57)),
         );
-        let t56 = rotor_e0 * rotor_e0;
-        let t57 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t56));
-        let t58 = rotor_e0 * rotor_e3;
-        let t59 = rotor_e1 * rotor_e2;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = rotor_e0 * rotor_e2;
-        let t62 = rotor_e1 * rotor_e3;
-        let t63 = k(2.0) * (t62 - t61);
-        let t64 = T::fused(t49, t63, T::fused(t45, t57, t48 * t60));
-        let t65 = T::fused(
-            inner_ring_wx,
-            T::fused(t42, t63, -T::fused(-t40, t57, t37 * t60)),
-            inner_ring_wz * t64,
+        let t62 = k(2.0) * rotor_e1;
+        let t63 = k(2.0) * rotor_e0;
+        let t64 = T::fused(-rotor_e0, t63, k(1.0));
+        let t65 = T::fused(-rotor_e1, t62, t64);
+        let t66 = rotor_e3 * t63;
+        let t67 = rotor_e2 * t62;
+        let t68 = t67 + t66;
+        let t69 = rotor_e2 * t63;
+        let t70 = rotor_e3 * t62;
+        let t71 = t70 - t69;
+        let t72 = T::fused(t55, t71, T::fused(t51, t65, t54 * t68));
+        let t73 = T::fused(
+            inner_ring_wz,
+            t72,
+            inner_ring_wx * T::fused(t48, t71, -T::fused(-t42, t65, t46 * t68)),
         );
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t56));
-        let t67 = k(2.0) * (t59 - t58);
-        let t68 = rotor_e0 * rotor_e1;
-        let t69 = rotor_e2 * rotor_e3;
-        let t70 = k(2.0) * (t69 + t68);
-        let t71 = k(2.0) * (t69 - t68);
-        let t72 = k(2.0) * (t62 + t61);
-        let t73 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t56));
-        let t74 = T::fused(
+        let t74 = t67 - t66;
+        let t75 = k(2.0) * rotor_e2;
+        let t76 = T::fused(-rotor_e2, t75, t64);
+        let t77 = rotor_e1 * t63;
+        let t78 = rotor_e3 * t75;
+        let t79 = t78 + t77;
+        let t80 = t70 + t69;
+        let t81 = t78 - t77;
+        let t82 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t64);
+        let t83 = T::fused(
             rotor_wz,
-            T::fused(t52, t70, T::fused(t51, t66, t50 * t67)),
-            rotor_wy * T::fused(t52, t73, -T::fused(-t51, t71, t50 * t72)),
+            T::fused(t58, t79, T::fused(t56, t74, t57 * t76)),
+            rotor_wy * T::fused(t58, t82, T::fused(-t56, t80, t57 * t81)),
         );
-        let t75 = T::fused(
+        let t84 = T::fused(
             -inner_ring_wy,
-            t64,
-            inner_ring_wx * T::fused(t52, t63, -T::fused(t50, t57, t51 * t60)),
+            t72,
+            inner_ring_wx * T::fused(t58, t71, -T::fused(t56, t65, t57 * t68)),
         );
-        let t76 = T::fused(
+        let t85 = T::fused(
             rotor_wz,
-            T::fused(t42, t70, -T::fused(-t37, t66, t40 * t67)),
-            rotor_wy * T::fused(t42, t73, T::fused(t37, t71, t40 * t72)),
+            T::fused(t48, t79, T::fused(-t42, t74, t46 * t76)),
+            rotor_wy * T::fused(t48, t82, T::fused(t42, t80, t46 * t81)),
         );
         *out = [
             outer_ring_sx,
             outer_ring_sy,
             outer_ring_sz,
-            -t22,
-            t34 + t30 - t29,
+            t25,
+            t32 - (t37 - t33),
             inner_ring_sx - outer_ring_sx,
             inner_ring_sy - outer_ring_sy,
             inner_ring_sz - outer_ring_sz,
-            -(t53 + t44),
-            t54 - t55,
+            -(t59 + t50),
+            t60 - t61,
             rotor_sx
                 - T::fused(
-                    k(0.000125),
-                    T::fused(-t40, inner_ring_wy, t50 * inner_ring_wz),
+                    -k(0.000125),
+                    T::fused(-inner_ring_wz, t56, inner_ring_wy * t42),
                     inner_ring_sx,
                 ),
             rotor_sy
                 - T::fused(
                     -k(0.000125),
-                    T::fused(t37, inner_ring_wy, t51 * inner_ring_wz),
+                    T::fused(inner_ring_wz, t57, inner_ring_wy * t46),
                     inner_ring_sy,
                 ),
             rotor_sz
                 - T::fused(
                     k(0.000125),
-                    T::fused(t42, inner_ring_wy, t52 * inner_ring_wz),
+                    T::fused(inner_ring_wz, t58, inner_ring_wy * t48),
                     inner_ring_sz,
                 ),
-            t74 - t65,
-            -(t76 + t75),
+            t83 - t73,
+            -(t85 + t84),
         ];
     }
     /// Kinetic and potential energy: 52 operations (19 ±, 33 ×, 0 ÷).
@@ -2051,7 +2058,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             (14, 17),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 235 operations (76 ±, 159 ×, 0 ÷) and 6 functions.
+    /// Writes the non-zeros of Φ_q: 218 operations (74 ±, 144 ×, 0 ÷) and 6 functions.
     fn phi_q(&self, t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2080,55 +2087,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let t11 = t9.sin();
         let t12 = t4 * t11;
         let t13 = t2 * t11;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t14));
-        let t16 = t15 * t8;
-        let t17 = inner_ring_e0 * inner_ring_e1;
-        let t18 = inner_ring_e2 * inner_ring_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = k(2.0)
-            * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t21 = t15 * t7;
-        let t22 = t15 * t5;
-        let t23 = t15 * t3;
-        let t24 = k(4.0) * inner_ring_e0;
-        let t25 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e2, outer_ring_e1 * outer_ring_e3);
-        let t26 = k(2.0) * inner_ring_e1;
-        let t27 = outer_ring_e0 * outer_ring_e3;
-        let t28 = outer_ring_e1 * outer_ring_e2;
-        let t29 = k(2.0) * (t28 + t27);
-        let t30 = k(2.0) * inner_ring_e2;
-        let t31 = outer_ring_e0 * outer_ring_e0;
-        let t32 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t31));
-        let t33 = k(2.0) * inner_ring_e0;
-        let t34 = k(2.0) * inner_ring_e3;
+        let t14 = k(2.0) * inner_ring_e3;
+        let t15 = k(2.0) * inner_ring_e0;
+        let t16 = T::fused(-inner_ring_e0, t15, k(1.0));
+        let t17 = T::fused(-inner_ring_e3, t14, t16);
+        let t18 = t8 * t17;
+        let t19 = inner_ring_e1 * t15;
+        let t20 = k(2.0) * inner_ring_e2;
+        let t21 = inner_ring_e3 * t20;
+        let t22 = t21 - t19;
+        let t23 = k(2.0) * inner_ring_e1;
+        let t24 = T::fused(inner_ring_e2, t15, inner_ring_e3 * t23);
+        let t25 = t7 * t17;
+        let t26 = t5 * t17;
+        let t27 = t3 * t17;
+        let t28 = T::fused(-outer_ring_e2, t5, outer_ring_e3 * t3);
+        let t29 = k(4.0) * inner_ring_e0;
+        let t30 = outer_ring_e3 * t5;
+        let t31 = outer_ring_e2 * t3;
+        let t32 = t31 + t30;
+        let t33 = T::fused(-outer_ring_e0, t5, k(1.0));
+        let t34 = T::fused(-outer_ring_e1, t3, t33);
         let t35 = k(4.0) * inner_ring_e3;
-        let t36 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t31));
-        let t38 = k(2.0) * (t28 - t27);
+        let t36 = T::fused(outer_ring_e1, t5, outer_ring_e3 * t8);
+        let t37 = T::fused(-outer_ring_e2, t8, t33);
+        let t38 = t31 - t30;
         let t39 = k(0.00025) * inner_ring_e3;
         let t40 = k(0.00025) * inner_ring_e2;
         let t41 = k(0.00025) * inner_ring_e1;
         let t42 = k(0.00025) * inner_ring_e0;
-        let t43 = k(2.0) * T::fused(-rotor_e0, rotor_e2, rotor_e1 * rotor_e3);
-        let t44 = k(2.0) * T::fused(rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t45 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, rotor_e0 * rotor_e0));
-        let t46 = t45 * t34;
-        let t47 = t45 * t30;
-        let t48 = t45 * t26;
-        let t49 = t45 * t33;
-        let t50 = k(2.0) * rotor_e2;
-        let t51 = k(2.0) * (t18 + t17);
-        let t52 = k(2.0) * rotor_e3;
-        let t53 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t14));
-        let t54 = k(4.0) * rotor_e0;
-        let t55 = k(2.0)
-            * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t56 = k(4.0) * rotor_e1;
-        let t57 = k(2.0) * rotor_e0;
-        let t58 = k(2.0) * rotor_e1;
+        let t43 = k(2.0) * rotor_e0;
+        let t44 = k(2.0) * rotor_e1;
+        let t45 = T::fused(-rotor_e2, t43, rotor_e3 * t44);
+        let t46 = T::fused(rotor_e3, t43, rotor_e2 * t44);
+        let t47 = T::fused(-rotor_e1, t44, T::fused(-rotor_e0, t43, k(1.0)));
+        let t48 = t14 * t47;
+        let t49 = t20 * t47;
+        let t50 = t23 * t47;
+        let t51 = t15 * t47;
+        let t52 = t21 + t19;
+        let t53 = k(2.0) * rotor_e2;
+        let t54 = T::fused(-inner_ring_e2, t20, t16);
+        let t55 = k(2.0) * rotor_e3;
+        let t56 = T::fused(-inner_ring_e3, t15, inner_ring_e2 * t23);
+        let t57 = k(4.0) * rotor_e0;
+        let t58 = k(4.0) * rotor_e1;
         *out = [
             k(1.0),
             k(1.0),
@@ -2147,22 +2150,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             k(1.0),
             k(-1.0),
             k(1.0),
-            T::fused(t19, t7, t20 * t0) + t16,
-            T::fused(t19, t8, t20 * (k(4.0) * outer_ring_e1)) - t21,
-            T::fused(t19, t3, t22),
-            T::fused(t19, t5, -t23),
-            T::fused(t25, t24, -T::fused(t29, t26, t32 * t30)),
-            -T::fused(t29, t33, t32 * t34),
-            T::fused(-t32, t33, t29 * t34),
-            T::fused(t25, t35, -T::fused(-t29, t30, t32 * t26)),
-            -(t23 + T::fused(-t19, t0, t20 * t7)),
-            T::fused(t20, t8, -t22),
-            T::fused(t19, t6, t20 * t3) - t21,
-            -T::fused(t20, t5, t16),
-            T::fused(t36, t24, T::fused(t37, t26, t38 * t30)),
-            T::fused(t37, t33, t38 * t34),
-            T::fused(-t37, t34, t38 * t33),
-            T::fused(t36, t35, T::fused(-t37, t30, t38 * t26)),
+            T::fused(t7, t22, t0 * t24) + t18,
+            T::fused(t8, t22, k(4.0) * outer_ring_e1 * t24) - t25,
+            T::fused(t3, t22, t26),
+            T::fused(t5, t22, -t27),
+            T::fused(t29, t28, -T::fused(t23, t32, t20 * t34)),
+            -T::fused(t15, t32, t14 * t34),
+            T::fused(-t15, t34, t14 * t32),
+            T::fused(t35, t28, -T::fused(-t20, t32, t23 * t34)),
+            -(t27 + T::fused(-t0, t22, t7 * t24)),
+            T::fused(t8, t24, -t26),
+            T::fused(t6, t22, t3 * t24) - t25,
+            -T::fused(t5, t24, t18),
+            T::fused(t29, t36, T::fused(t23, t37, t20 * t38)),
+            T::fused(t15, t37, t14 * t38),
+            T::fused(-t14, t37, t15 * t38),
+            T::fused(t35, t36, T::fused(-t20, t37, t23 * t38)),
             k(-1.0),
             -(k(0.0005) * inner_ring_e0),
             -(k(0.0005) * inner_ring_e1),
@@ -2179,37 +2182,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             t42,
             -t41,
             k(1.0),
-            T::fused(t43, t26, T::fused(t44, t24, t46)),
-            T::fused(t43, t33, -t47),
-            T::fused(t43, t34, -T::fused(-t44, k(4.0) * inner_ring_e2, t48)),
-            T::fused(t43, t30, t49),
-            T::fused(-t51, t50, T::fused(-t53, t52, t55 * t54)),
-            T::fused(t51, t52, T::fused(-t53, t50, t55 * t56)),
-            -T::fused(t51, t57, t53 * t58),
-            T::fused(-t53, t57, t51 * t58),
-            T::fused(t43, t24, -T::fused(t44, t26, t47)),
-            -T::fused(t44, t33, t46),
-            T::fused(t44, t34, -t49),
-            T::fused(t43, t35, -T::fused(-t44, t30, t48)),
-            T::fused(t15, t50, T::fused(t19, t52, t20 * t54)),
-            T::fused(-t15, t52, T::fused(t19, t50, t20 * t56)),
-            T::fused(t15, t57, t19 * t58),
-            T::fused(-t15, t58, t19 * t57),
+            T::fused(t23, t45, T::fused(t29, t46, t48)),
+            T::fused(t15, t45, -t49),
+            T::fused(t14, t45, -T::fused(-(k(4.0) * inner_ring_e2), t46, t50)),
+            T::fused(t20, t45, t51),
+            T::fused(-t53, t52, T::fused(-t55, t54, t57 * t56)),
+            T::fused(t55, t52, T::fused(-t53, t54, t58 * t56)),
+            -T::fused(t43, t52, t44 * t54),
+            T::fused(-t43, t54, t44 * t52),
+            T::fused(t29, t45, -T::fused(t23, t46, t49)),
+            -T::fused(t15, t46, t48),
+            T::fused(t14, t46, -t51),
+            T::fused(t35, t45, -T::fused(-t20, t46, t50)),
+            T::fused(t53, t17, T::fused(t55, t22, t57 * t24)),
+            T::fused(-t55, t17, T::fused(t53, t22, t58 * t24)),
+            T::fused(t43, t17, t44 * t22),
+            T::fused(-t44, t17, t43 * t22),
             t5,
             t3,
             t8,
             t7,
-            t33,
-            t26,
-            t30,
-            t34,
-            t57,
-            t58,
-            t50,
-            t52,
+            t15,
+            t23,
+            t20,
+            t14,
+            t43,
+            t44,
+            t53,
+            t55,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 191 operations (70 ±, 121 ×, 0 ÷) and 6 functions.
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 170 operations (64 ±, 106 ×, 0 ÷) and 6 functions.
     fn phi_pi(&self, t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2224,112 +2227,115 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let rotor_e1 = y[18];
         let rotor_e2 = y[19];
         let rotor_e3 = y[20];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t2 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t3 = t2.cos();
-        let t4 = outer_ring_e0 * outer_ring_e1;
-        let t5 = outer_ring_e2 * outer_ring_e3;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = t2.sin();
-        let t8 = outer_ring_e0 * outer_ring_e2;
-        let t9 = outer_ring_e1 * outer_ring_e3;
-        let t10 = k(2.0) * (t9 - t8);
-        let t11 = outer_ring_e0 * outer_ring_e3;
-        let t12 = outer_ring_e1 * outer_ring_e2;
-        let t13 = k(2.0) * (t12 + t11);
-        let t14 = k(0.05) * (k(18.84955592153876) * t).sin();
-        let t15 = t14.sin();
-        let t16 = t7 * t15;
-        let t17 = t3 * t15;
-        let t18 = k(2.0) * (t9 + t8);
-        let t19 = t14.cos();
-        let t20 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t21 = inner_ring_e0 * inner_ring_e0;
-        let t22 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t21);
-        let t23 = k(2.0) * t22;
-        let t24 = inner_ring_e0 * inner_ring_e1;
-        let t25 = inner_ring_e2 * inner_ring_e3;
-        let t26 = t25 - t24;
-        let t27 = k(2.0) * t26;
-        let t28 = inner_ring_e0 * inner_ring_e2;
-        let t29 = inner_ring_e1 * inner_ring_e3;
-        let t30 = t29 + t28;
-        let t31 = k(2.0) * t30;
-        let t32 = T::fused(t1, t23, T::fused(t6, t27, t18 * t31));
-        let t33 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t34 = k(2.0) * (t12 - t11);
-        let t35 = k(2.0) * (t5 + t4);
-        let t36 = inner_ring_e0 * inner_ring_e3;
-        let t37 = inner_ring_e1 * inner_ring_e2;
-        let t38 = t37 - t36;
-        let t39 = k(2.0) * t38;
-        let t40 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t21);
-        let t41 = k(2.0) * t40;
-        let t42 = t25 + t24;
-        let t43 = k(2.0) * t42;
-        let t44 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t21));
-        let t45 = k(2.0) * (t37 + t36);
-        let t46 = k(2.0) * (t29 - t28);
-        let t47 = rotor_e0 * rotor_e0;
-        let t48 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t47));
-        let t49 = rotor_e0 * rotor_e3;
-        let t50 = rotor_e1 * rotor_e2;
-        let t51 = k(2.0) * (t50 + t49);
-        let t52 = rotor_e0 * rotor_e2;
-        let t53 = rotor_e1 * rotor_e3;
-        let t54 = k(2.0) * (t53 - t52);
-        let t55 = T::fused(t46, t54, T::fused(t44, t48, t45 * t51));
-        let t56 = rotor_e0 * rotor_e1;
-        let t57 = rotor_e2 * rotor_e3;
-        let t58 = k(2.0) * (t57 - t56);
-        let t59 = k(2.0) * (t53 + t52);
-        let t60 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t47));
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t47));
-        let t62 = k(2.0) * (t50 - t49);
-        let t63 = k(2.0) * (t57 + t56);
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e1 * t0;
+        let t2 = k(2.0) * outer_ring_e2;
+        let t3 = outer_ring_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t6 = t5.sin();
+        let t7 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t8 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t7);
+        let t9 = t5.cos();
+        let t10 = outer_ring_e3 * t0;
+        let t11 = k(2.0) * outer_ring_e1;
+        let t12 = outer_ring_e2 * t11;
+        let t13 = t12 + t10;
+        let t14 = outer_ring_e2 * t0;
+        let t15 = outer_ring_e3 * t11;
+        let t16 = t15 - t14;
+        let t17 = t15 + t14;
+        let t18 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t19 = t18.cos();
+        let t20 = t18.sin();
+        let t21 = t9 * t20;
+        let t22 = t6 * t20;
+        let t23 = T::fused(-outer_ring_e1, t11, t7);
+        let t24 = k(2.0) * inner_ring_e0;
+        let t25 = inner_ring_e2 * t24;
+        let t26 = k(2.0) * inner_ring_e1;
+        let t27 = inner_ring_e3 * t26;
+        let t28 = t27 + t25;
+        let t29 = inner_ring_e1 * t24;
+        let t30 = k(2.0) * inner_ring_e2;
+        let t31 = inner_ring_e3 * t30;
+        let t32 = t31 - t29;
+        let t33 = T::fused(-inner_ring_e0, t24, k(1.0));
+        let t34 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t33);
+        let t35 = T::fused(t8, t34, T::fused(t17, t28, t4 * t32));
+        let t36 = t12 - t10;
+        let t37 = T::fused(-outer_ring_e2, t2, t7);
+        let t38 = t3 + t1;
+        let t39 = inner_ring_e3 * t24;
+        let t40 = inner_ring_e2 * t26;
+        let t41 = t40 - t39;
+        let t42 = T::fused(-inner_ring_e2, t30, t33);
+        let t43 = t31 + t29;
+        let t44 = T::fused(-inner_ring_e1, t26, t33);
+        let t45 = t40 + t39;
+        let t46 = t27 - t25;
+        let t47 = k(2.0) * rotor_e1;
+        let t48 = k(2.0) * rotor_e0;
+        let t49 = T::fused(-rotor_e0, t48, k(1.0));
+        let t50 = T::fused(-rotor_e1, t47, t49);
+        let t51 = rotor_e3 * t48;
+        let t52 = rotor_e2 * t47;
+        let t53 = t52 + t51;
+        let t54 = rotor_e2 * t48;
+        let t55 = rotor_e3 * t47;
+        let t56 = t55 - t54;
+        let t57 = T::fused(t46, t56, T::fused(t44, t50, t45 * t53));
+        let t58 = t55 + t54;
+        let t59 = rotor_e1 * t48;
+        let t60 = k(2.0) * rotor_e2;
+        let t61 = rotor_e3 * t60;
+        let t62 = t61 - t59;
+        let t63 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t49);
+        let t64 = t52 - t51;
+        let t65 = T::fused(-rotor_e2, t60, t49);
+        let t66 = t61 + t59;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -T::fused(t3, t1, t7 * t6),
-            T::fused(-t3, t10, t7 * t13),
-            T::fused(-t16, t1, T::fused(t17, t6, t19 * t18)),
-            -T::fused(t16, t10, T::fused(-t19, t20, t17 * t13)),
+            -T::fused(t6, t4, t9 * t8),
+            T::fused(-t9, t16, t6 * t13),
+            T::fused(-t22, t8, T::fused(t19, t17, t21 * t4)),
+            -T::fused(t22, t16, T::fused(-t19, t23, t21 * t13)),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
             k(-1.0),
             k(1.0),
-            -t32,
-            T::fused(-t35, t23, T::fused(-t33, t27, t34 * t31)),
-            T::fused(-t10, t43, T::fused(t20, t39, t13 * t41)),
-            T::fused(t10, t46, T::fused(t20, t44, t13 * t45)),
-            t32,
-            T::fused(t10, t23, -T::fused(-t20, t31, t13 * t27)),
-            -T::fused(t35, t43, T::fused(t33, t41, t34 * t39)),
-            T::fused(t35, t46, -T::fused(t34, t44, t33 * t45)),
+            -t35,
+            -T::fused(t38, t34, T::fused(-t36, t28, t37 * t32)),
+            T::fused(-t16, t43, T::fused(t23, t41, t13 * t42)),
+            T::fused(t16, t46, T::fused(t23, t44, t13 * t45)),
+            t35,
+            T::fused(t16, t34, -T::fused(-t23, t28, t13 * t32)),
+            -T::fused(t38, t43, T::fused(t36, t41, t37 * t42)),
+            T::fused(t38, t46, -T::fused(t36, t44, t37 * t45)),
             k(-1.0),
-            k(0.00025) * t30,
-            -(k(0.00025) * t38),
+            k(0.000125) * t28,
+            -(k(0.000125) * t41),
             k(1.0),
             k(-1.0),
-            k(0.00025) * t26,
-            k(0.00025) * t40,
+            k(0.000125) * t32,
+            k(0.000125) * t42,
             k(1.0),
             k(-1.0),
-            -(k(0.00025) * t22),
-            -(k(0.00025) * t42),
+            -(k(0.000125) * t34),
+            -(k(0.000125) * t43),
             k(1.0),
-            T::fused(-t23, t54, T::fused(-t31, t48, t27 * t51)),
-            -t55,
-            T::fused(t43, t60, -T::fused(-t41, t58, t39 * t59)),
-            T::fused(t43, t63, T::fused(t41, t61, t39 * t62)),
-            T::fused(-t43, t54, T::fused(t39, t48, t41 * t51)),
-            t55,
-            -T::fused(t23, t60, T::fused(t27, t58, t31 * t59)),
-            T::fused(-t23, t63, T::fused(-t27, t61, t31 * t62)),
+            T::fused(-t34, t56, T::fused(-t28, t50, t32 * t53)),
+            -t57,
+            T::fused(t43, t63, T::fused(-t41, t58, t42 * t62)),
+            T::fused(t43, t66, T::fused(t41, t64, t42 * t65)),
+            T::fused(-t43, t56, T::fused(t41, t50, t42 * t53)),
+            t57,
+            -T::fused(t34, t63, T::fused(t28, t58, t32 * t62)),
+            -T::fused(t34, t66, T::fused(-t28, t64, t32 * t65)),
         ];
     }
     /// Writes ν: 37 operations (9 ±, 28 ×, 0 ÷) and 8 functions.
@@ -2381,7 +2387,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 406 operations (157 ±, 249 ×, 0 ÷) and 8 functions.
+    /// Writes γ: 385 operations (151 ±, 234 ×, 0 ÷) and 8 functions.
     fn gamma(&self, t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2405,197 +2411,206 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_wx * outer_ring_wy;
-        let t1 = outer_ring_e0 * outer_ring_e3;
-        let t2 = outer_ring_e1 * outer_ring_e2;
-        let t3 = k(2.0) * (t2 + t1);
-        let t4 = outer_ring_wz * outer_ring_wz;
-        let t5 = T::fused(outer_ring_wx, outer_ring_wx, t4);
-        let t6 = outer_ring_e0 * outer_ring_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t6));
-        let t8 = outer_ring_wy * outer_ring_wz;
-        let t9 = outer_ring_e0 * outer_ring_e1;
-        let t10 = outer_ring_e2 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = T::fused(t11, t8, T::fused(t3, t0, t7 * t5));
-        let t13 = k(12.566370614359172) * t;
-        let t14 = t13.sin();
-        let t15 = k(0.1) * t14;
-        let t16 = t15.sin();
-        let t17 = T::fused(-t3, outer_ring_wz, t11 * outer_ring_wx);
-        let t18 = t15.cos();
-        let t19 = k(1.2566370614359172) * t13.cos();
-        let t20 = t19 * t18;
-        let t21 = t20 * t17;
-        let t22 = t19 * t16;
-        let t23 = k(15.791367041742975) * t14;
-        let t24 = T::fused(t19, t22, t18 * t23);
-        let t25 = outer_ring_e0 * outer_ring_e2;
-        let t26 = outer_ring_e1 * outer_ring_e3;
-        let t27 = k(2.0) * (t26 - t25);
-        let t28 = k(2.0) * (t10 + t9);
-        let t29 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t6));
-        let t30 = T::fused(t29, t8, T::fused(-t27, t0, t28 * t5));
-        let t31 = T::fused(t27, outer_ring_wz, t29 * outer_ring_wx);
-        let t32 = t22 * t31;
-        let t33 = T::fused(-t19, t20, t16 * t23);
-        let t34 = T::fused(t28, t33, t32) + T::fused(-t18, t30, t32)
-            - (T::fused(t7, t24, t21) + T::fused(t16, t12, t21));
-        let t35 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t6));
-        let t36 = k(2.0) * (t2 - t1);
-        let t37 = k(2.0) * (t26 + t25);
-        let t38 = k(18.84955592153876) * t;
-        let t39 = t38.sin();
-        let t40 = k(0.05) * t39;
-        let t41 = t40.cos();
-        let t42 = t40.sin();
-        let t43 = k(0.9424777960769379) * t38.cos();
-        let t44 = t43 * t42;
-        let t45 = t44 * T::fused(t35, outer_ring_wz, t37 * outer_ring_wx);
-        let t46 = T::fused(-t41, T::fused(t37, t8, -T::fused(t35, t0, t36 * t5)), t45);
-        let t47 = t43 * t41;
-        let t48 = k(17.765287921960844) * t39;
-        let t49 = T::fused(-t18, t47, t42 * t22) * t17;
-        let t50 = t22 * t47;
-        let t51 = T::fused(t43, t44, t41 * t48);
-        let t52 = T::fused(t7, T::fused(t18, t51, t50) + T::fused(-t42, t33, t50), -t49);
-        let t53 = t52 - T::fused(-(t18 * t42), t12, t49)
-            + (T::fused(t36, T::fused(-t43, t47, t42 * t48), -t45) - t46);
-        let t54 = T::fused(t16, t47, t42 * t20) * t31;
-        let t55 = t20 * t47;
-        let t56 = T::fused(
-            t28,
-            T::fused(-t16, t51, t55) + T::fused(-t42, t24, t55),
-            -t54,
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = outer_ring_wx * outer_ring_wy;
+        let t6 = k(2.0) * outer_ring_e2;
+        let t7 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t8 = T::fused(-outer_ring_e2, t6, t7);
+        let t9 = outer_ring_wz * outer_ring_wz;
+        let t10 = T::fused(outer_ring_wx, outer_ring_wx, t9);
+        let t11 = outer_ring_e1 * t0;
+        let t12 = outer_ring_e3 * t6;
+        let t13 = t12 - t11;
+        let t14 = outer_ring_wy * outer_ring_wz;
+        let t15 = T::fused(t14, t13, T::fused(t5, t4, t10 * t8));
+        let t16 = k(12.566370614359172) * t;
+        let t17 = t16.sin();
+        let t18 = k(0.1) * t17;
+        let t19 = t18.sin();
+        let t20 = T::fused(-outer_ring_wz, t4, outer_ring_wx * t13);
+        let t21 = t18.cos();
+        let t22 = k(1.2566370614359172) * t16.cos();
+        let t23 = t22 * t21;
+        let t24 = t23 * t20;
+        let t25 = t22 * t19;
+        let t26 = k(15.791367041742975) * t17;
+        let t27 = T::fused(t22, t25, t21 * t26);
+        let t28 = outer_ring_e2 * t0;
+        let t29 = outer_ring_e3 * t2;
+        let t30 = t29 - t28;
+        let t31 = t12 + t11;
+        let t32 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t7);
+        let t33 = T::fused(t14, t32, T::fused(-t5, t30, t10 * t31));
+        let t34 = T::fused(outer_ring_wz, t30, outer_ring_wx * t32);
+        let t35 = t25 * t34;
+        let t36 = T::fused(-t22, t23, t19 * t26);
+        let t37 = T::fused(t36, t31, t35) + T::fused(-t21, t33, t35)
+            - (T::fused(t27, t8, t24) + T::fused(t19, t15, t24));
+        let t38 = T::fused(-outer_ring_e1, t2, t7);
+        let t39 = t3 - t1;
+        let t40 = t29 + t28;
+        let t41 = k(18.84955592153876) * t;
+        let t42 = t41.sin();
+        let t43 = k(0.05) * t42;
+        let t44 = t43.cos();
+        let t45 = t43.sin();
+        let t46 = k(0.9424777960769379) * t41.cos();
+        let t47 = t46 * t45;
+        let t48 = t47 * T::fused(outer_ring_wz, t38, outer_ring_wx * t40);
+        let t49 = T::fused(-t44, T::fused(t14, t40, -T::fused(t5, t38, t10 * t39)), t48);
+        let t50 = t46 * t44;
+        let t51 = k(17.765287921960844) * t42;
+        let t52 = T::fused(-t21, t50, t45 * t25) * t20;
+        let t53 = t25 * t50;
+        let t54 = T::fused(t46, t47, t44 * t51);
+        let t55 = T::fused(T::fused(t21, t54, t53) + T::fused(-t45, t36, t53), t8, -t52);
+        let t56 = t55 - T::fused(-(t21 * t45), t15, t52)
+            + (T::fused(T::fused(-t46, t50, t45 * t51), t39, -t48) - t49);
+        let t57 = T::fused(t19, t50, t45 * t23) * t34;
+        let t58 = t23 * t50;
+        let t59 = T::fused(
+            T::fused(-t19, t54, t58) + T::fused(-t45, t27, t58),
+            t31,
+            -t57,
         );
-        let t57 = inner_ring_e0 * inner_ring_e2;
-        let t58 = inner_ring_e1 * inner_ring_e3;
-        let t59 = k(2.0) * (t58 + t57);
-        let t60 = inner_ring_e0 * inner_ring_e1;
-        let t61 = inner_ring_e2 * inner_ring_e3;
-        let t62 = k(2.0) * (t61 - t60);
-        let t63 = inner_ring_e0 * inner_ring_e0;
-        let t64 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t63));
-        let t65 = T::fused(t27, t64, -T::fused(-t35, t59, t3 * t62));
-        let t66 = T::fused(t28, t64, -T::fused(-t7, t62, t36 * t59));
-        let t67 = T::fused(t29, t64, T::fused(t11, t62, t37 * t59));
-        let t68 = T::fused(
+        let t60 = k(2.0) * inner_ring_e0;
+        let t61 = inner_ring_e2 * t60;
+        let t62 = k(2.0) * inner_ring_e1;
+        let t63 = inner_ring_e3 * t62;
+        let t64 = t63 + t61;
+        let t65 = inner_ring_e1 * t60;
+        let t66 = k(2.0) * inner_ring_e2;
+        let t67 = inner_ring_e3 * t66;
+        let t68 = t67 - t65;
+        let t69 = T::fused(-inner_ring_e0, t60, k(1.0));
+        let t70 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t69);
+        let t71 = T::fused(t30, t70, -T::fused(-t38, t64, t4 * t68));
+        let t72 = T::fused(t31, t70, T::fused(-t39, t64, t8 * t68));
+        let t73 = T::fused(t32, t70, T::fused(t40, t64, t13 * t68));
+        let t74 = T::fused(
             outer_ring_wx * outer_ring_wz,
-            t67,
-            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t4), t65, t0 * t66),
+            t73,
+            -T::fused(-T::fused(outer_ring_wy, outer_ring_wy, t9), t71, t5 * t72),
         );
-        let t69 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t63));
-        let t70 = inner_ring_e0 * inner_ring_e3;
-        let t71 = inner_ring_e1 * inner_ring_e2;
-        let t72 = k(2.0) * (t71 + t70);
-        let t73 = k(2.0) * (t58 - t57);
-        let t74 = T::fused(t28, t73, -T::fused(t36, t69, t7 * t72));
-        let t75 = k(2.0) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t63));
-        let t76 = k(2.0) * (t71 - t70);
-        let t77 = k(2.0) * (t61 + t60);
-        let t78 = T::fused(t28, t77, T::fused(t7, t75, t36 * t76));
-        let t79 = T::fused(
+        let t75 = T::fused(-inner_ring_e1, t62, t69);
+        let t76 = inner_ring_e3 * t60;
+        let t77 = inner_ring_e2 * t62;
+        let t78 = t77 + t76;
+        let t79 = t63 - t61;
+        let t80 = T::fused(t31, t79, -T::fused(t39, t75, t8 * t78));
+        let t81 = t77 - t76;
+        let t82 = T::fused(-inner_ring_e2, t66, t69);
+        let t83 = t67 + t65;
+        let t84 = T::fused(t31, t83, T::fused(t39, t81, t8 * t82));
+        let t85 = T::fused(
             -inner_ring_wy,
-            T::fused(t29, t73, -T::fused(-t37, t69, t11 * t72)),
-            inner_ring_wx * T::fused(t29, t77, -T::fused(-t11, t75, t37 * t76)),
+            T::fused(t32, t79, -T::fused(-t40, t75, t13 * t78)),
+            inner_ring_wx * T::fused(t32, t83, T::fused(-t40, t81, t13 * t82)),
         );
-        let t80 = T::fused(t27, t73, T::fused(t35, t69, t3 * t72));
-        let t81 = inner_ring_wx * inner_ring_wz;
-        let t82 = T::fused(t27, t77, -T::fused(t35, t76, t3 * t75));
-        let t83 = inner_ring_wy * inner_ring_wz;
-        let t84 = inner_ring_wx * inner_ring_wx;
-        let t85 = inner_ring_wy * inner_ring_wy;
-        let t86 = t85 + t84;
-        let t87 = T::fused(
+        let t86 = T::fused(t30, t79, T::fused(t38, t75, t4 * t78));
+        let t87 = inner_ring_wx * inner_ring_wz;
+        let t88 = T::fused(t30, t83, -T::fused(t38, t81, t4 * t82));
+        let t89 = inner_ring_wy * inner_ring_wz;
+        let t90 = inner_ring_wx * inner_ring_wx;
+        let t91 = inner_ring_wy * inner_ring_wy;
+        let t92 = t91 + t90;
+        let t93 = T::fused(
             -k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t74, inner_ring_wx * t78),
-                outer_ring_wy * t79,
+                T::fused(-inner_ring_wy, t80, inner_ring_wx * t84),
+                outer_ring_wy * t85,
             ),
-            T::fused(t86, t65, T::fused(t81, t80, t83 * t82)),
+            T::fused(t92, t71, T::fused(t87, t86, t89 * t88)),
         );
-        let t88 = T::fused(
+        let t94 = T::fused(
             k(2.0),
             T::fused(
                 outer_ring_wz,
-                T::fused(-inner_ring_wy, t80, inner_ring_wx * t82),
-                outer_ring_wx * t79,
+                T::fused(-inner_ring_wy, t86, inner_ring_wx * t88),
+                outer_ring_wx * t85,
             ),
-            T::fused(t86, t66, T::fused(t81, t74, t83 * t78)),
+            T::fused(t92, t72, T::fused(t87, t80, t89 * t84)),
         );
-        let t89 = inner_ring_wz * inner_ring_wz;
-        let t90 = t89 + t85;
-        let t91 = inner_ring_wx * inner_ring_wy;
-        let t92 = rotor_e0 * rotor_e0;
-        let t93 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t92));
-        let t94 = rotor_e0 * rotor_e3;
-        let t95 = rotor_e1 * rotor_e2;
-        let t96 = k(2.0) * (t95 + t94);
-        let t97 = rotor_e0 * rotor_e2;
-        let t98 = rotor_e1 * rotor_e3;
-        let t99 = k(2.0) * (t98 - t97);
-        let t100 = T::fused(t73, t99, T::fused(t69, t93, t72 * t96));
-        let t101 = T::fused(t77, t99, -T::fused(t76, t93, t75 * t96));
-        let t102 = T::fused(t64, t99, -T::fused(-t59, t93, t62 * t96));
-        let t103 = k(2.0) * (t95 - t94);
-        let t104 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t92));
-        let t105 = rotor_e0 * rotor_e1;
-        let t106 = rotor_e2 * rotor_e3;
-        let t107 = k(2.0) * (t106 + t105);
-        let t108 = k(2.0) * (t98 + t97);
-        let t109 = k(2.0) * (t106 - t105);
-        let t110 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t92));
-        let t111 = T::fused(
+        let t95 = inner_ring_wz * inner_ring_wz;
+        let t96 = t95 + t91;
+        let t97 = inner_ring_wx * inner_ring_wy;
+        let t98 = k(2.0) * rotor_e1;
+        let t99 = k(2.0) * rotor_e0;
+        let t100 = T::fused(-rotor_e0, t99, k(1.0));
+        let t101 = T::fused(-rotor_e1, t98, t100);
+        let t102 = rotor_e3 * t99;
+        let t103 = rotor_e2 * t98;
+        let t104 = t103 + t102;
+        let t105 = rotor_e2 * t99;
+        let t106 = rotor_e3 * t98;
+        let t107 = t106 - t105;
+        let t108 = T::fused(t79, t107, T::fused(t75, t101, t78 * t104));
+        let t109 = T::fused(t83, t107, -T::fused(t81, t101, t82 * t104));
+        let t110 = T::fused(t70, t107, -T::fused(-t64, t101, t68 * t104));
+        let t111 = t103 - t102;
+        let t112 = k(2.0) * rotor_e2;
+        let t113 = T::fused(-rotor_e2, t112, t100);
+        let t114 = rotor_e1 * t99;
+        let t115 = rotor_e3 * t112;
+        let t116 = t115 + t114;
+        let t117 = t106 + t105;
+        let t118 = t115 - t114;
+        let t119 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t100);
+        let t120 = T::fused(
             rotor_wz,
-            T::fused(t73, t107, -T::fused(t69, t103, t72 * t104)),
-            rotor_wy * T::fused(t73, t110, -T::fused(-t69, t108, t72 * t109)),
+            T::fused(t79, t116, -T::fused(t75, t111, t78 * t113)),
+            rotor_wy * T::fused(t79, t119, -T::fused(-t75, t117, t78 * t118)),
         );
-        let t112 = T::fused(t64, t107, -T::fused(-t62, t104, t59 * t103));
-        let t113 = T::fused(t64, t110, T::fused(t62, t109, t59 * t108));
-        let t114 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
-        let t115 = T::fused(t77, t107, T::fused(t75, t104, t76 * t103));
-        let t116 = rotor_wx * rotor_wy;
-        let t117 = T::fused(t77, t110, -T::fused(-t75, t109, t76 * t108));
-        let t118 = rotor_wx * rotor_wz;
-        let t119 = T::fused(
+        let t121 = T::fused(t70, t116, T::fused(-t64, t111, t68 * t113));
+        let t122 = T::fused(t70, t119, T::fused(t64, t117, t68 * t118));
+        let t123 = T::fused(rotor_wy, rotor_wy, rotor_wz * rotor_wz);
+        let t124 = T::fused(t83, t116, T::fused(t81, t111, t82 * t113));
+        let t125 = rotor_wx * rotor_wy;
+        let t126 = T::fused(t83, t119, T::fused(-t81, t117, t82 * t118));
+        let t127 = rotor_wx * rotor_wz;
+        let t128 = T::fused(
             k(2.0),
             T::fused(
                 inner_ring_wz,
-                t111,
-                inner_ring_wx * T::fused(rotor_wz, t112, rotor_wy * t113),
+                t120,
+                inner_ring_wx * T::fused(rotor_wz, t121, rotor_wy * t122),
             ),
-            T::fused(t118, t117, -T::fused(-t114, t101, t116 * t115)),
+            T::fused(t127, t126, -T::fused(-t123, t109, t125 * t124)),
         );
-        let t120 = t119 + T::fused(t83, t102, T::fused(-t91, t100, (t89 + t84) * t101));
-        let t121 = T::fused(
+        let t129 = t128 + T::fused(t89, t110, T::fused(-t97, t108, (t95 + t90) * t109));
+        let t130 = T::fused(
             -k(2.0),
             T::fused(
                 -inner_ring_wy,
-                t111,
-                inner_ring_wx * T::fused(rotor_wz, t115, rotor_wy * t117),
+                t120,
+                inner_ring_wx * T::fused(rotor_wz, t124, rotor_wy * t126),
             ),
-            T::fused(t118, t113, -T::fused(-t114, t102, t116 * t112)),
+            T::fused(t127, t122, -T::fused(-t123, t110, t125 * t121)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            -t34,
-            -(t56 - T::fused(t16 * t42, t30, t54) + t53),
+            -t37,
+            -(t59 - T::fused(t19 * t45, t33, t57) + t56),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t87 + t68),
-            -(t88 + T::fused(t8, t67, T::fused(-t0, t65, t5 * t66))),
-            k(0.000125) * T::fused(t59, t81, T::fused(t69, t90, t76 * t91)),
-            k(0.000125) * T::fused(t62, t81, -T::fused(t72, t90, t75 * t91)),
-            -(k(0.000125) * T::fused(t64, t81, -T::fused(-t73, t90, t77 * t91))),
-            t120,
-            -(t121 + T::fused(t86, t102, T::fused(t81, t100, t83 * t101))),
+            -(t93 + t74),
+            -(t94 + T::fused(t14, t73, T::fused(-t5, t71, t10 * t72))),
+            k(0.000125) * T::fused(t87, t64, T::fused(t96, t75, t97 * t81)),
+            k(0.000125) * T::fused(t87, t68, -T::fused(t96, t78, t97 * t82)),
+            -(k(0.000125) * T::fused(t87, t70, -T::fused(-t96, t79, t97 * t83))),
+            t129,
+            -(t130 + T::fused(t92, t110, T::fused(t87, t108, t89 * t109))),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 12 operations (0 ±, 12 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 9 operations (0 ±, 9 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let outer_ring_wx = y[24];
@@ -2607,28 +2622,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
+        let t0 = k(1e-6) * outer_ring_wx;
+        let t1 = k(1e-6) * inner_ring_wy;
+        let t2 = k(5e-6) * rotor_wx;
         *out = [
             k(0.0),
             k(-0.1),
             k(0.0),
             k(0.0),
-            -(k(1e-6) * (outer_ring_wx * outer_ring_wz)),
-            k(1e-6) * (outer_ring_wx * outer_ring_wy),
+            -(outer_ring_wz * t0),
+            outer_ring_wy * t0,
             k(0.0),
             k(-0.1),
             k(0.0),
-            k(1e-6) * (inner_ring_wy * inner_ring_wz),
+            inner_ring_wz * t1,
             k(0.0),
-            -(k(1e-6) * (inner_ring_wx * inner_ring_wy)),
+            -(inner_ring_wx * t1),
             k(0.0),
             k(-0.8),
             k(0.0),
             k(0.0),
-            -(k(5e-6) * (rotor_wx * rotor_wz)),
-            k(5e-6) * (rotor_wx * rotor_wy),
+            -(rotor_wz * t2),
+            rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 553 operations (216 ±, 332 ×, 5 ÷) and 8 functions.
+    /// Solves eq. (17): 523 operations (208 ±, 310 ×, 5 ÷) and 8 functions.
     fn accelerations(&self, t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2652,76 +2670,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t2 = k(18.84955592153876) * t;
-        let t3 = t2.sin();
-        let t4 = k(0.05) * t3;
-        let t5 = t4.sin();
-        let t6 = k(12.566370614359172) * t;
-        let t7 = t6.sin();
-        let t8 = k(0.1) * t7;
-        let t9 = t8.cos();
-        let t10 = t9 * t5;
-        let t11 = outer_ring_e0 * outer_ring_e3;
-        let t12 = outer_ring_e1 * outer_ring_e2;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = t4.cos();
-        let t15 = outer_ring_e0 * outer_ring_e1;
-        let t16 = outer_ring_e2 * outer_ring_e3;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = t8.sin();
-        let t19 = t18 * t5;
-        let t20 = k(1.2566370614359172) * t6.cos();
-        let t21 = t20 * t14;
-        let t22 = t9 * t14;
-        let t23 = t18 * t14;
-        let t24 = T::fused(t23, t17, -T::fused(t22, t1, t5 * t13));
-        let t25 = t20 * t5;
-        let t26 = T::fused(
-            -t21,
-            T::fused(t19, t17, T::fused(-t10, t1, t14 * t13)),
-            t25 * t24,
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = k(18.84955592153876) * t;
+        let t6 = t5.sin();
+        let t7 = k(0.05) * t6;
+        let t8 = t7.cos();
+        let t9 = k(2.0) * outer_ring_e2;
+        let t10 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t11 = T::fused(-outer_ring_e2, t9, t10);
+        let t12 = t7.sin();
+        let t13 = k(12.566370614359172) * t;
+        let t14 = t13.sin();
+        let t15 = k(0.1) * t14;
+        let t16 = t15.cos();
+        let t17 = t16 * t12;
+        let t18 = outer_ring_e1 * t0;
+        let t19 = outer_ring_e3 * t9;
+        let t20 = t19 + t18;
+        let t21 = t15.sin();
+        let t22 = t21 * t12;
+        let t23 = k(1.2566370614359172) * t13.cos();
+        let t24 = t23 * t8;
+        let t25 = t16 * t8;
+        let t26 = t21 * t8;
+        let t27 = T::fused(t26, t20, -T::fused(t12, t4, t25 * t11));
+        let t28 = t23 * t12;
+        let t29 = T::fused(
+            -t24,
+            T::fused(t22, t20, -T::fused(-t8, t4, t17 * t11)),
+            t28 * t27,
         );
-        let t27 = k(0.9424777960769379) * t2.cos();
-        let t28 = T::fused(t27, T::fused(t18, t1, t9 * t17), -t26);
-        let t29 = outer_ring_wy - t28;
-        let t30 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t31 = k(2.0) * (t16 - t15);
-        let t32 = outer_ring_e0 * outer_ring_e2;
-        let t33 = outer_ring_e1 * outer_ring_e3;
-        let t34 = k(2.0) * (t33 + t32);
-        let t35 = T::fused(-t19, t30, T::fused(t10, t31, t14 * t34));
-        let t36 = T::fused(t23, t30, T::fused(-t22, t31, t5 * t34));
-        let t37 = T::fused(t9, t30, t18 * t31);
-        let t38 = T::fused(t27, t37, -T::fused(t21, t35, t25 * t36));
-        let t39 = outer_ring_wz + t38;
-        let t40 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t41 = k(2.0) * (t12 + t11);
-        let t42 = k(2.0) * (t33 - t32);
-        let t43 = T::fused(t19, t42, T::fused(-t14, t40, t10 * t41));
-        let t44 = T::fused(t23, t42, T::fused(t5, t40, t22 * t41));
-        let t45 = T::fused(-t9, t42, t18 * t41);
-        let t46 = T::fused(t27, t45, T::fused(-t21, t43, t25 * t44));
-        let t47 = outer_ring_wx + t46;
-        let t48 = T::fused(t39, t39, t47 * t47) / t24;
-        let t49 = k(15.791367041742975) * t7;
-        let t50 = T::fused(t20, t27 * t5, t14 * t49);
-        let t51 = T::fused(-t20, t27 * t14, t5 * t49);
-        let t52 = k(17.765287921960844) * t3;
-        let t53 = T::fused(outer_ring_wz, t28, outer_ring_wy * t38)
-            + T::fused(t52, t45, T::fused(-t50, t43, t51 * t44));
-        let t54 = t53 + T::fused(-t39, t29, t36 * t48);
-        let t55 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t56 = T::fused(
+        let t30 = k(0.9424777960769379) * t5.cos();
+        let t31 = T::fused(t30, T::fused(t21, t11, t16 * t20), -t29);
+        let t32 = outer_ring_wy - t31;
+        let t33 = outer_ring_e2 * t0;
+        let t34 = outer_ring_e3 * t2;
+        let t35 = t34 + t33;
+        let t36 = t19 - t18;
+        let t37 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t10);
+        let t38 = T::fused(t22, t37, -T::fused(t8, t35, t17 * t36));
+        let t39 = T::fused(t26, t37, -T::fused(-t12, t35, t25 * t36));
+        let t40 = T::fused(t21, t36, t16 * t37);
+        let t41 = T::fused(t30, t40, -T::fused(-t24, t38, t28 * t39));
+        let t42 = outer_ring_wz + t41;
+        let t43 = T::fused(-outer_ring_e1, t2, t10);
+        let t44 = t3 + t1;
+        let t45 = t34 - t33;
+        let t46 = T::fused(t22, t45, T::fused(-t8, t43, t17 * t44));
+        let t47 = T::fused(t26, t45, T::fused(t12, t43, t25 * t44));
+        let t48 = T::fused(-t21, t44, t16 * t45);
+        let t49 = T::fused(t30, t48, -T::fused(-t24, t46, t28 * t47));
+        let t50 = outer_ring_wx - t49;
+        let t51 = T::fused(t42, t42, t50 * t50) / t27;
+        let t52 = k(15.791367041742975) * t14;
+        let t53 = T::fused(t23, t30 * t12, t8 * t52);
+        let t54 = T::fused(-t23, t30 * t8, t12 * t52);
+        let t55 = k(17.765287921960844) * t6;
+        let t56 = T::fused(outer_ring_wz, t31, outer_ring_wy * t41)
+            - T::fused(t55, t48, -T::fused(-t53, t46, t54 * t47));
+        let t57 = t56 + T::fused(-t42, t32, t39 * t51);
+        let t58 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -2730,17 +2742,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t57 = t56 * t55;
-        let t58 = T::fused(
-            -inner_ring_e1,
+        let t59 = k(2.0) * t58;
+        let t60 = T::fused(
+            -inner_ring_e0,
             rotor_e3,
             T::fused(
-                -inner_ring_e0,
+                inner_ring_e1,
                 rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
             ),
         );
-        let t59 = T::fused(
+        let t61 = t60 * t59;
+        let t62 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -2749,38 +2762,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t60 = t59 * t58;
-        let t61 = t60 + t57;
-        let t62 = k(1e-5) * t61;
-        let t63 = k(2.0) * t61;
-        let t64 = t56 * t58;
-        let t65 = t59 * t55;
-        let t66 = t65 - t64;
-        let t67 = k(1e-5) * t66;
-        let t68 = k(2.0) * t66;
-        let t69 = t56 * t59;
-        let t70 = t58 * t55;
-        let t71 = t70 - t69;
-        let t72 = k(2.0) * t71;
-        let t73 = t56 * t56;
-        let t74 = k(0.5) - T::fused(t55, t55, t73);
-        let t75 = k(2.0) * t74;
-        let t76 = T::fused(-t72, t62, t75 * t67);
-        let t77 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t72, k(1e-5) * t71, t75 * (k(1e-5) * t74)));
-        let t78 = k(1.0) / t77;
-        let t79 = t78 * t76;
-        let t80 = T::fused(t76, t79, -(k(1e-6) + T::fused(t63, t62, t68 * t67)));
-        let t81 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
+        let t63 = k(2.0) * t62;
+        let t64 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
             T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
             ),
         );
-        let t82 = T::fused(
+        let t65 = t64 * t63;
+        let t66 = t65 + t61;
+        let t67 = k(5e-6) * t66;
+        let t68 = t64 * t59;
+        let t69 = t60 * t63;
+        let t70 = t69 - t68;
+        let t71 = k(5e-6) * t70;
+        let t72 = t62 * t59;
+        let t73 = k(2.0) * t64;
+        let t74 = t60 * t73;
+        let t75 = t74 - t72;
+        let t76 = T::fused(-t58, t59, k(1.0));
+        let t77 = T::fused(-t60, k(2.0) * t60, t76);
+        let t78 = T::fused(-t75, t67, t77 * t71);
+        let t79 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t75, k(5e-6) * t75, t77 * (k(5e-6) * t77)));
+        let t80 = k(1.0) / t79;
+        let t81 = t80 * t78;
+        let t82 = T::fused(t78, t81, -(k(1e-6) + T::fused(t66, t67, t70 * t71)));
+        let t83 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2789,17 +2800,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t83 = t82 * t81;
-        let t84 = T::fused(
-            -outer_ring_e1,
+        let t84 = k(2.0) * t83;
+        let t85 = T::fused(
+            -outer_ring_e0,
             inner_ring_e3,
             T::fused(
-                -outer_ring_e0,
+                outer_ring_e1,
                 inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t85 = T::fused(
+        let t86 = t85 * t84;
+        let t87 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2808,185 +2820,183 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t86 = t85 * t84;
-        let t87 = k(2.0) * (t86 - t83);
-        let t88 = k(0.5) - T::fused(t58, t58, t73);
-        let t89 = k(2.0) * t88;
-        let t90 = t70 + t69;
-        let t91 = k(2.0) * t90;
-        let t92 = k(1e-5) * t88;
-        let t93 = k(1e-5) * t90;
-        let t94 = T::fused(t72, t92, t75 * t93);
-        let t95 = T::fused(t94, t79, -T::fused(-t89, t62, t91 * t67));
-        let t96 = t82 * t82;
-        let t97 = k(2.0) * (k(0.5) - T::fused(t84, t84, t96));
-        let t98 = T::fused(-t87, t80, t97 * t95);
-        let t99 = T::fused(
-            t94,
-            t78 * t94,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t89, t92, t91 * t93))),
-        );
-        let t100 = T::fused(-t87, t95, t97 * t99);
-        let t101 = k(0.5) - T::fused(t59, t59, t73);
-        let t102 = T::fused(
-            inner_ring_wz,
-            k(2.0) * (t65 + t64),
+        let t88 = k(2.0) * t87;
+        let t89 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
             T::fused(
-                -inner_ring_wx,
-                k(2.0) * t101,
-                inner_ring_wy * (k(2.0) * (t60 - t57)),
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t103 = rotor_wx - t102;
-        let t104 = T::fused(
+        let t90 = t89 * t88;
+        let t91 = t90 - t86;
+        let t92 = T::fused(-t64, t73, t76);
+        let t93 = t74 + t72;
+        let t94 = k(5e-6) * t92;
+        let t95 = k(5e-6) * t93;
+        let t96 = T::fused(t75, t94, t77 * t95);
+        let t97 = T::fused(t96, t81, -T::fused(-t92, t67, t93 * t71));
+        let t98 = k(2.0) * t89;
+        let t99 = T::fused(-t83, t84, k(1.0));
+        let t100 = T::fused(-t89, t98, t99);
+        let t101 = T::fused(-t91, t82, t100 * t97);
+        let t102 = T::fused(
+            t96,
+            t80 * t96,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t92, t94, t93 * t95))),
+        );
+        let t103 = T::fused(-t91, t97, t100 * t102);
+        let t104 = T::fused(-t62, t63, t76);
+        let t105 = T::fused(
+            inner_ring_wz,
+            t69 + t68,
+            T::fused(-inner_ring_wx, t104, inner_ring_wy * (t65 - t61)),
+        );
+        let t106 = rotor_wx - t105;
+        let t107 = T::fused(
+            inner_ring_wz,
+            t77,
+            -T::fused(inner_ring_wx, t70, inner_ring_wy * t93),
+        );
+        let t108 = rotor_wz + t107;
+        let t109 = T::fused(
             inner_ring_wz,
             t75,
-            -T::fused(inner_ring_wx, t68, inner_ring_wy * t91),
+            -T::fused(-inner_ring_wx, t66, inner_ring_wy * t92),
         );
-        let t105 = rotor_wz + t104;
-        let t106 = T::fused(
-            inner_ring_wz,
-            t72,
-            -T::fused(-inner_ring_wx, t63, inner_ring_wy * t89),
+        let t110 = rotor_wy - t109;
+        let t111 = T::fused(t108, t108, t110 * t110) / t104;
+        let t112 = T::fused(rotor_wx, t107, rotor_wz * t105)
+            + T::fused(-t108, t106, t70 * t111);
+        let t113 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t112);
+        let t114 = T::fused(-rotor_wy, t105, rotor_wx * t109)
+            - T::fused(-t110, t106, t66 * t111);
+        let t115 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t114);
+        let t116 = k(2.0) * inner_ring_e0;
+        let t117 = inner_ring_e3 * t116;
+        let t118 = k(2.0) * inner_ring_e1;
+        let t119 = inner_ring_e2 * t118;
+        let t120 = t119 - t117;
+        let t121 = k(0.000125) * t120;
+        let t122 = T::fused(-inner_ring_e0, t116, k(1.0));
+        let t123 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t124 = inner_ring_wx * inner_ring_wy;
+        let t125 = inner_ring_e2 * t116;
+        let t126 = inner_ring_e3 * t118;
+        let t127 = t126 + t125;
+        let t128 = inner_ring_wx * inner_ring_wz;
+        let t129 = T::fused(
+            t128,
+            t127,
+            T::fused(t123, T::fused(-inner_ring_e1, t118, t122), t124 * t120),
         );
-        let t107 = rotor_wy - t106;
-        let t108 = k(0.5) / t101 * T::fused(t105, t105, t107 * t107);
-        let t109 = T::fused(rotor_wx, t104, rotor_wz * t102)
-            + T::fused(-t105, t103, t68 * t108);
-        let t110 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t109);
-        let t111 = T::fused(-rotor_wy, t102, rotor_wx * t106)
-            - T::fused(-t107, t103, t63 * t108);
-        let t112 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t111);
-        let t113 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t114 = inner_ring_e0 * inner_ring_e0;
-        let t115 = inner_ring_wx * inner_ring_wy;
-        let t116 = inner_ring_e0 * inner_ring_e3;
-        let t117 = inner_ring_e1 * inner_ring_e2;
-        let t118 = t117 - t116;
-        let t119 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t114)),
-            t113,
-            k(2.0) * t118 * t115,
-        );
-        let t120 = inner_ring_wx * inner_ring_wz;
-        let t121 = inner_ring_e0 * inner_ring_e2;
-        let t122 = inner_ring_e1 * inner_ring_e3;
-        let t123 = t122 + t121;
-        let t124 = T::fused(k(2.0) * t123, t120, t119);
-        let t125 = k(1e-5) * t124;
-        let t126 = k(0.00025) * t118;
-        let t127 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t114);
-        let t128 = inner_ring_e0 * inner_ring_e1;
-        let t129 = inner_ring_e2 * inner_ring_e3;
-        let t130 = t129 - t128;
-        let t131 = T::fused(
-            k(2.0) * t130,
-            t120,
-            -T::fused(k(2.0) * (t117 + t116), t113, k(2.0) * t127 * t115),
-        );
-        let t132 = T::fused(k(1e-5), t131, k(0.8));
-        let t133 = k(0.00025) * t127;
-        let t134 = t129 + t128;
-        let t135 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t114);
-        let t136 = T::fused(
-            k(2.0) * t135,
-            t120,
-            -T::fused(-(k(2.0) * (t122 - t121)), t113, k(2.0) * t134 * t115),
-        );
-        let t137 = k(1e-5) * t136;
-        let t138 = k(0.00025) * t134;
-        let t139 = T::fused(t138, t137, T::fused(-t126, t125, t133 * t132))
-            - T::fused(t72, t110, t75 * t112);
-        let t140 = T::fused(k(1e-6), t115, -t139);
-        let t141 = t78 * t140;
-        let t142 = T::fused(
-            t76,
-            t141,
+        let t130 = k(1e-5) * t129;
+        let t131 = k(2.0) * inner_ring_e2;
+        let t132 = T::fused(-inner_ring_e2, t131, t122);
+        let t133 = k(0.000125) * t132;
+        let t134 = inner_ring_e1 * t116;
+        let t135 = inner_ring_e3 * t131;
+        let t136 = t135 - t134;
+        let t137 = T::fused(t128, t136, -T::fused(t123, t119 + t117, t124 * t132));
+        let t138 = T::fused(k(1e-5), t137, k(0.8));
+        let t139 = t135 + t134;
+        let t140 = k(0.000125) * t139;
+        let t141 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t122);
+        let t142 = T::fused(t128, t141, -T::fused(-t123, t126 - t125, t124 * t139));
+        let t143 = k(1e-5) * t142;
+        let t144 = T::fused(t143, t140, T::fused(-t130, t121, t138 * t133))
+            - T::fused(t75, t113, t77 * t115);
+        let t145 = T::fused(k(1e-6), t124, -t144);
+        let t146 = t80 * t145;
+        let t147 = T::fused(
+            t78,
+            t146,
             -T::fused(
                 k(1e-6),
                 inner_ring_wy * inner_ring_wz,
-                T::fused(-t63, t110, t68 * t112),
+                T::fused(-t66, t113, t70 * t115),
             ),
         );
-        let t143 = t82 * t84;
-        let t144 = t85 * t81;
-        let t145 = t82 * t85;
-        let t146 = t84 * t81;
-        let t147 = T::fused(
-            outer_ring_wx,
-            k(2.0) * (t144 - t143),
-            outer_ring_wy * (k(2.0) * (t146 + t145)),
-        );
-        let t148 = k(0.5) - T::fused(t81, t81, t96);
-        let t149 = T::fused(outer_ring_wz, k(2.0) * t148, -t147);
-        let t150 = inner_ring_wz + t149;
-        let t151 = k(2.0) * (t86 + t83);
-        let t152 = k(2.0) * (t146 - t145);
+        let t148 = t89 * t84;
+        let t149 = t85 * t88;
+        let t150 = t87 * t84;
+        let t151 = t85 * t98;
+        let t152 = T::fused(-t85, k(2.0) * t85, t99);
         let t153 = T::fused(
             outer_ring_wz,
             t152,
-            -T::fused(-outer_ring_wx, t151, outer_ring_wy * t97),
+            -T::fused(outer_ring_wx, t149 - t148, outer_ring_wy * (t151 + t150)),
         );
-        let t154 = inner_ring_wy - t153;
-        let t155 = k(2.0) * (k(0.5) - T::fused(t85, t85, t96));
-        let t156 = k(2.0) * (t144 + t143);
+        let t154 = inner_ring_wz + t153;
+        let t155 = t90 + t86;
+        let t156 = t151 - t150;
         let t157 = T::fused(
             outer_ring_wz,
             t156,
-            T::fused(-outer_ring_wx, t155, outer_ring_wy * t87),
+            -T::fused(-outer_ring_wx, t155, outer_ring_wy * t100),
         );
-        let t158 = inner_ring_wx - t157;
-        let t159 = k(0.5) / t148 * T::fused(t154, t154, t158 * t158);
-        let t160 = T::fused(inner_ring_wz, t153, inner_ring_wy * t149)
-            - T::fused(-t154, t150, t152 * t159);
-        let t161 = T::fused(inner_ring_wx, t149, inner_ring_wz * t157)
-            - T::fused(-t158, t150, t156 * t159);
-        let t162 = k(0.00025) * t123;
-        let t163 = k(0.00025) * t130;
-        let t164 = k(0.00025) * t135;
-        let t165 = T::fused(t164, t137, T::fused(t162, t125, t163 * t132))
-            + T::fused(t89, t110, t91 * t112);
-        let t166 = T::fused(
-            -t87,
-            T::fused(-t80, t160, t95 * t161) + t142,
-            t97 * (T::fused(-t95, t160, t99 * t161) + T::fused(t94, t141, -t165)),
+        let t158 = inner_ring_wy - t157;
+        let t159 = T::fused(-t87, t88, t99);
+        let t160 = t149 + t148;
+        let t161 = T::fused(
+            outer_ring_wz,
+            t160,
+            T::fused(-outer_ring_wx, t159, outer_ring_wy * t91),
         );
-        let t167 = T::fused(
-            -t87,
-            T::fused(-t155, t80, t151 * t95),
-            t97 * T::fused(-t155, t95, t151 * t99),
+        let t162 = inner_ring_wx - t161;
+        let t163 = T::fused(t158, t158, t162 * t162) / t152;
+        let t164 = T::fused(inner_ring_wz, t157, inner_ring_wy * t153)
+            - T::fused(-t158, t154, t156 * t163);
+        let t165 = T::fused(inner_ring_wx, t153, inner_ring_wz * t161)
+            - T::fused(-t162, t154, t160 * t163);
+        let t166 = k(0.000125) * t127;
+        let t167 = k(0.000125) * t136;
+        let t168 = k(0.000125) * t141;
+        let t169 = T::fused(t143, t168, T::fused(t130, t166, t138 * t167))
+            + T::fused(t92, t113, t93 * t115);
+        let t170 = T::fused(
+            -t91,
+            T::fused(-t82, t164, t97 * t165) + t147,
+            t100 * (T::fused(-t97, t164, t102 * t165) + T::fused(t96, t146, -t169)),
         );
-        let t168 = T::fused(outer_ring_wy, t46, outer_ring_wx * t28)
-            - T::fused(t52, t37, -T::fused(t50, t35, t51 * t36));
-        let t169 = t168 - T::fused(t47, t29, t44 * t48);
-        let t170 = T::fused(-t54, t167, t169 * T::fused(t156, t98, t152 * t100))
-            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t166);
-        let t171 = t170 / (k(1e-6) - T::fused(-t87, t98, t97 * t100));
-        let t172 = t160 - T::fused(t169, t156, -T::fused(-t54, t155, t87 * t171));
-        let t173 = t161 + T::fused(t169, t152, T::fused(-t54, t151, t97 * t171));
-        let t174 = t78 * (t140 + T::fused(-t76, t172, t94 * t173));
+        let t171 = T::fused(
+            -t91,
+            T::fused(-t159, t82, t155 * t97),
+            t100 * T::fused(-t159, t97, t155 * t102),
+        );
+        let t172 = T::fused(-outer_ring_wy, t49, outer_ring_wx * t31)
+            - T::fused(t55, t40, -T::fused(-t53, t38, t54 * t39));
+        let t173 = t172 - T::fused(t50, t32, t47 * t51);
+        let t174 = T::fused(-t57, t171, t173 * T::fused(t160, t101, t156 * t103))
+            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t170);
+        let t175 = t174 / (k(1e-6) - T::fused(-t91, t101, t100 * t103));
+        let t176 = t164 - T::fused(t160, t173, -T::fused(-t159, t57, t91 * t175));
+        let t177 = t165 + T::fused(t156, t173, T::fused(-t155, t57, t100 * t175));
+        let t178 = t80 * (t145 + T::fused(-t78, t176, t96 * t177));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t54,
-            t171,
-            -t169,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t172,
+            t57,
+            t175,
             -t173,
-            -t174,
-            T::fused(k(0.000125), t124, -T::fused(-t162, t173, t126 * t174)),
-            T::fused(k(0.000125), t131, T::fused(t163, t173, t133 * t174)),
-            -T::fused(k(0.000125), t136, T::fused(t164, t173, t138 * t174)),
             k(0.0),
-            -(t109 + T::fused(t72, t174, -T::fused(t63, t172, t89 * t173))),
-            T::fused(t75, t174, -T::fused(-t68, t172, t91 * t173)) - t111,
+            k(0.0),
+            k(0.0),
+            t176,
+            -t177,
+            -t178,
+            T::fused(k(0.000125), t129, -T::fused(-t166, t177, t121 * t178)),
+            T::fused(k(0.000125), t137, T::fused(t167, t177, t133 * t178)),
+            -T::fused(k(0.000125), t142, T::fused(t168, t177, t140 * t178)),
+            k(0.0),
+            -(t112 + T::fused(t75, t178, -T::fused(t66, t176, t92 * t177))),
+            T::fused(t77, t178, -T::fused(-t70, t176, t93 * t177)) - t114,
         ];
     }
-    /// Writes λ: 326 operations (120 ±, 203 ×, 3 ÷) and 6 functions.
+    /// Writes λ: 305 operations (114 ±, 188 ×, 3 ÷) and 6 functions.
     fn multipliers(
         &self,
         t: T,
@@ -3038,161 +3048,168 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for PitchingBearings<T> {
         let t3 = T::fused(k(0.01), inner_ring_dsy, k(0.1)) + t2;
         let t4 = k(0.08) * rotor_dsz;
         let t5 = T::fused(k(0.01), inner_ring_dsz, t4);
-        let t6 = rotor_e0 * rotor_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t6));
-        let t8 = inner_ring_e0 * inner_ring_e0;
-        let t9 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t8));
-        let t10 = rotor_e0 * rotor_e3;
-        let t11 = rotor_e1 * rotor_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e0 * inner_ring_e3;
-        let t14 = inner_ring_e1 * inner_ring_e2;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = rotor_e0 * rotor_e2;
-        let t17 = rotor_e1 * rotor_e3;
-        let t18 = k(2.0) * (t17 - t16);
-        let t19 = inner_ring_e0 * inner_ring_e2;
-        let t20 = inner_ring_e1 * inner_ring_e3;
-        let t21 = k(2.0) * (t20 - t19);
-        let t22 = k(1e-5) * rotor_dwx;
-        let t23 = k(2.0) * (t11 - t10);
-        let t24 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t6));
-        let t25 = rotor_e0 * rotor_e1;
-        let t26 = rotor_e2 * rotor_e3;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t29 = T::fused(
-            t22,
-            T::fused(t21, t18, T::fused(t9, t7, t15 * t12)),
-            t28 * T::fused(t21, t27, -T::fused(t9, t23, t15 * t24)),
+        let t6 = k(2.0) * rotor_e1;
+        let t7 = k(2.0) * rotor_e0;
+        let t8 = T::fused(-rotor_e0, t7, k(1.0));
+        let t9 = T::fused(-rotor_e1, t6, t8);
+        let t10 = k(2.0) * inner_ring_e1;
+        let t11 = k(2.0) * inner_ring_e0;
+        let t12 = T::fused(-inner_ring_e0, t11, k(1.0));
+        let t13 = T::fused(-inner_ring_e1, t10, t12);
+        let t14 = rotor_e3 * t7;
+        let t15 = rotor_e2 * t6;
+        let t16 = t15 + t14;
+        let t17 = inner_ring_e3 * t11;
+        let t18 = inner_ring_e2 * t10;
+        let t19 = t18 + t17;
+        let t20 = rotor_e2 * t7;
+        let t21 = rotor_e3 * t6;
+        let t22 = t21 - t20;
+        let t23 = inner_ring_e2 * t11;
+        let t24 = inner_ring_e3 * t10;
+        let t25 = t24 - t23;
+        let t26 = k(1e-5) * rotor_dwx;
+        let t27 = t15 - t14;
+        let t28 = k(2.0) * rotor_e2;
+        let t29 = T::fused(-rotor_e2, t28, t8);
+        let t30 = rotor_e1 * t7;
+        let t31 = rotor_e3 * t28;
+        let t32 = t31 + t30;
+        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t34 = T::fused(
+            t26,
+            T::fused(t25, t22, T::fused(t13, t9, t19 * t16)),
+            t33 * T::fused(t25, t32, -T::fused(t13, t27, t19 * t29)),
         );
-        let t30 = k(2.0) * (t17 + t16);
-        let t31 = k(2.0) * (t26 - t25);
-        let t32 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t6));
-        let t33 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t34 = T::fused(t33, T::fused(t21, t32, -T::fused(-t9, t30, t15 * t31)), t29);
-        let t35 = T::fused(
+        let t35 = t21 + t20;
+        let t36 = t31 - t30;
+        let t37 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t8);
+        let t38 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t39 = T::fused(
+            t38,
+            T::fused(t25, t37, -T::fused(-t13, t35, t19 * t36)),
+            t34,
+        );
+        let t40 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t34,
+            -t39,
         );
-        let t36 = outer_ring_e0 * outer_ring_e0;
-        let t37 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t36));
-        let t38 = outer_ring_e0 * outer_ring_e3;
-        let t39 = outer_ring_e1 * outer_ring_e2;
-        let t40 = k(2.0) * (t39 + t38);
-        let t41 = outer_ring_e0 * outer_ring_e2;
-        let t42 = outer_ring_e1 * outer_ring_e3;
-        let t43 = k(2.0) * (t42 - t41);
-        let t44 = T::fused(t43, t21, T::fused(t37, t9, t40 * t15));
-        let t45 = t14 - t13;
-        let t46 = k(2.0) * t45;
-        let t47 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t8);
-        let t48 = k(2.0) * t47;
-        let t49 = inner_ring_e0 * inner_ring_e1;
-        let t50 = inner_ring_e2 * inner_ring_e3;
-        let t51 = t50 + t49;
-        let t52 = k(2.0) * t51;
-        let t53 = T::fused(t52, t27, T::fused(t48, t24, t46 * t23));
-        let t54 = T::fused(
-            t22,
-            T::fused(t52, t18, -T::fused(t46, t7, t48 * t12)),
-            t28 * t53,
-        );
-        let t55 = T::fused(t52, t32, -T::fused(-t48, t31, t46 * t30));
-        let t56 = t20 + t19;
-        let t57 = t50 - t49;
-        let t58 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t8);
+        let t41 = k(2.0) * outer_ring_e1;
+        let t42 = k(2.0) * outer_ring_e0;
+        let t43 = T::fused(-outer_ring_e0, t42, k(1.0));
+        let t44 = T::fused(-outer_ring_e1, t41, t43);
+        let t45 = outer_ring_e3 * t42;
+        let t46 = outer_ring_e2 * t41;
+        let t47 = t46 + t45;
+        let t48 = outer_ring_e2 * t42;
+        let t49 = outer_ring_e3 * t41;
+        let t50 = t49 - t48;
+        let t51 = T::fused(t50, t25, T::fused(t44, t13, t47 * t19));
+        let t52 = t18 - t17;
+        let t53 = k(2.0) * inner_ring_e2;
+        let t54 = T::fused(-inner_ring_e2, t53, t12);
+        let t55 = inner_ring_e1 * t11;
+        let t56 = inner_ring_e3 * t53;
+        let t57 = t56 + t55;
+        let t58 = T::fused(t57, t32, T::fused(t52, t27, t54 * t29));
         let t59 = T::fused(
+            t26,
+            T::fused(t57, t22, -T::fused(t52, t9, t54 * t16)),
+            t33 * t58,
+        );
+        let t60 = T::fused(t57, t37, T::fused(-t52, t35, t54 * t36));
+        let t61 = t24 + t23;
+        let t62 = t56 - t55;
+        let t63 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t12);
+        let t64 = T::fused(
             t4,
-            k(0.00025) * t58,
-            -T::fused(t0, k(0.00025) * t56, t2 * (k(0.00025) * t57)),
+            k(0.000125) * t63,
+            -T::fused(t0, k(0.000125) * t61, t2 * (k(0.000125) * t62)),
         );
-        let t60 = T::fused(k(2e-6), inner_ring_dwy, t59 + T::fused(t33, t55, t54));
-        let t61 = T::fused(t43, t52, -T::fused(t37, t46, t40 * t48));
-        let t62 = k(2.0) * t56;
-        let t63 = k(2.0) * t57;
-        let t64 = k(2.0) * t58;
-        let t65 = T::fused(t64, t27, -T::fused(-t63, t24, t62 * t23));
-        let t66 = T::fused(
-            t22,
-            T::fused(t64, t18, -T::fused(-t62, t7, t63 * t12)),
-            t28 * t65,
-        );
-        let t67 = T::fused(t64, t32, T::fused(t63, t31, t62 * t30));
+        let t65 = T::fused(k(2e-6), inner_ring_dwy, t64 + T::fused(t38, t60, t59));
+        let t66 = T::fused(t50, t57, -T::fused(t44, t52, t47 * t54));
+        let t67 = T::fused(t63, t32, T::fused(-t61, t27, t62 * t29));
         let t68 = T::fused(
-            t4,
-            k(0.00025) * t51,
-            -T::fused(-t0, k(0.00025) * t45, t2 * (k(0.00025) * t47)),
+            t26,
+            T::fused(t63, t22, -T::fused(-t61, t9, t62 * t16)),
+            t33 * t67,
         );
-        let t69 = T::fused(
+        let t69 = T::fused(t63, t37, T::fused(t61, t35, t62 * t36));
+        let t70 = T::fused(
+            t4,
+            k(0.000125) * t57,
+            -T::fused(-t0, k(0.000125) * t52, t2 * (k(0.000125) * t54)),
+        );
+        let t71 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t68 - T::fused(t33, t67, t66),
+            t70 - T::fused(t38, t69, t68),
         );
-        let t70 = T::fused(
-            T::fused(t43, t64, -T::fused(-t37, t62, t40 * t63)),
-            t69,
-            -T::fused(-t44, t35, t61 * t60),
+        let t72 = T::fused(
+            T::fused(t50, t63, -T::fused(-t44, t61, t47 * t62)),
+            t71,
+            -T::fused(-t51, t40, t66 * t65),
         );
-        let t71 = T::fused(k(2e-6), outer_ring_dwx, -t70);
-        let t72 = k(0.05) * (k(18.84955592153876) * t).sin();
-        let t73 = t72.cos();
-        let t74 = t72.sin();
-        let t75 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t76 = t75.cos();
-        let t77 = t76 * t74;
-        let t78 = t75.sin();
-        let t79 = t78 * t74;
-        let t80 = T::fused(t79, t43, T::fused(-t73, t37, t77 * t40));
-        let t81 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t36));
-        let t82 = outer_ring_e0 * outer_ring_e1;
-        let t83 = outer_ring_e2 * outer_ring_e3;
-        let t84 = k(2.0) * (t83 - t82);
-        let t85 = T::fused(t76, t81, t78 * t84);
-        let t86 = k(2.0) * (t42 + t41);
-        let t87 = T::fused(-t79, t81, T::fused(t77, t84, t73 * t86));
-        let t88 = T::fused(-t76, t43, t78 * t40);
-        let t89 = k(1.0) / T::fused(-t85, t80, t88 * t87);
-        let t90 = T::fused(
-            -T::fused(t81, t21, -T::fused(-t86, t9, t84 * t15)),
-            t35,
-            T::fused(t81, t52, -T::fused(-t84, t48, t86 * t46)) * t60,
+        let t73 = T::fused(k(2e-6), outer_ring_dwx, -t72);
+        let t74 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t75 = t74.cos();
+        let t76 = t74.sin();
+        let t77 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t78 = t77.cos();
+        let t79 = t78 * t76;
+        let t80 = t77.sin();
+        let t81 = t80 * t76;
+        let t82 = T::fused(t81, t50, T::fused(-t75, t44, t79 * t47));
+        let t83 = outer_ring_e1 * t42;
+        let t84 = k(2.0) * outer_ring_e2;
+        let t85 = outer_ring_e3 * t84;
+        let t86 = t85 - t83;
+        let t87 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t43);
+        let t88 = T::fused(t80, t86, t78 * t87);
+        let t89 = T::fused(-t80, t47, t78 * t50);
+        let t90 = t49 + t48;
+        let t91 = T::fused(t81, t87, -T::fused(t75, t90, t79 * t86));
+        let t92 = k(1.0) / T::fused(-t88, t82, t91 * t89);
+        let t93 = T::fused(
+            -T::fused(t87, t25, -T::fused(-t90, t13, t86 * t19)),
+            t40,
+            T::fused(t87, t57, T::fused(-t90, t52, t86 * t54)) * t65,
         );
-        let t91 = T::fused(T::fused(t81, t64, T::fused(t84, t63, t86 * t62)), t69, -t90);
-        let t92 = T::fused(
+        let t94 = T::fused(T::fused(t87, t63, T::fused(t90, t61, t86 * t62)), t71, -t93);
+        let t95 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t91,
+            -t94,
         );
-        let t93 = k(2.0) * (t39 - t38);
-        let t94 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t36));
-        let t95 = k(2.0) * (t83 + t82);
-        let t96 = T::fused(t95, t21, -T::fused(t93, t9, t94 * t15));
-        let t97 = T::fused(t95, t52, T::fused(t94, t48, t93 * t46));
-        let t98 = k(1.0) / T::fused(-t61, t96, t44 * t97);
-        let t99 = k(1.0) / T::fused(-t55, t65, t53 * t67);
+        let t96 = t46 - t45;
+        let t97 = T::fused(-outer_ring_e2, t84, t43);
+        let t98 = t85 + t83;
+        let t99 = T::fused(t98, t25, -T::fused(t96, t13, t97 * t19));
+        let t100 = T::fused(t98, t57, T::fused(t96, t52, t97 * t54));
+        let t101 = k(1.0) / T::fused(-t99, t66, t100 * t51);
+        let t102 = k(1.0) / T::fused(-t67, t60, t69 * t58);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-(t80 * t89), t71, t87 * t89 * t92),
-            T::fused(-(t88 * t89), t71, t85 * t89 * t92),
+            -T::fused(t82 * t92, t73, t91 * t92 * t95),
+            T::fused(t89 * t92, t73, t88 * t92 * t95),
             -t1,
             -t3,
             -t5,
-            T::fused(-(t97 * t98), t60, t96 * t98 * t35),
-            T::fused(-(t44 * t98), t35, t61 * t98 * t60),
+            T::fused(-(t100 * t101), t65, t99 * t101 * t40),
+            T::fused(-(t51 * t101), t40, t66 * t101 * t65),
             -t0,
             -t2,
             -t4,
-            T::fused(t28, t65 * t99, t33 * (t67 * t99)),
-            T::fused(t28, t53 * t99, t33 * (t55 * t99)),
+            T::fused(t33, t67 * t102, t38 * (t69 * t102)),
+            T::fused(t33, t58 * t102, t38 * (t60 * t102)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for PitchingBearings<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 417 operations (155 ±, 257 ×, 5 ÷) and 6 functions.
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 403 operations (150 ±, 248 ×, 5 ÷) and 6 functions.
     fn project(
         &self,
         t: T,
@@ -3228,242 +3245,185 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for PitchingBearings<T> {
         let row12 = rows[12];
         let row13 = rows[13];
         let row14 = rows[14];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(0.05) * (k(18.84955592153876) * t).sin();
-        let t2 = t1.cos();
-        let t3 = k(2.0)
-            * T::fused(outer_ring_e0, outer_ring_e3, outer_ring_e1 * outer_ring_e2);
-        let t4 = t1.sin();
-        let t5 = k(0.1) * (k(12.566370614359172) * t).sin();
-        let t6 = t5.cos();
-        let t7 = t6 * t4;
-        let t8 = T::fused(
-            -t2,
-            k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0)),
-            t7 * t3,
+        let t0 = k(2.0) * outer_ring_e1;
+        let t1 = k(2.0) * outer_ring_e0;
+        let t2 = T::fused(-outer_ring_e0, t1, k(1.0));
+        let t3 = T::fused(-outer_ring_e1, t0, t2);
+        let t4 = k(0.05) * (k(18.84955592153876) * t).sin();
+        let t5 = t4.cos();
+        let t6 = outer_ring_e3 * t1;
+        let t7 = outer_ring_e2 * t0;
+        let t8 = t7 + t6;
+        let t9 = t4.sin();
+        let t10 = k(0.1) * (k(12.566370614359172) * t).sin();
+        let t11 = t10.cos();
+        let t12 = t11 * t9;
+        let t13 = outer_ring_e2 * t1;
+        let t14 = outer_ring_e3 * t0;
+        let t15 = t14 - t13;
+        let t16 = t10.sin();
+        let t17 = t16 * t9;
+        let t18 = T::fused(t17, t15, T::fused(-t5, t3, t12 * t8));
+        let t19 = outer_ring_e1 * t1;
+        let t20 = k(2.0) * outer_ring_e2;
+        let t21 = outer_ring_e3 * t20;
+        let t22 = t21 - t19;
+        let t23 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t2);
+        let t24 = T::fused(t16, t22, t11 * t23);
+        let t25 = T::fused(-t16, t8, t11 * t15);
+        let t26 = t14 + t13;
+        let t27 = T::fused(t17, t23, -T::fused(t5, t26, t12 * t22));
+        let t28 = k(1.0) / T::fused(-t24, t18, t27 * t25);
+        let t29 = T::fused(-row3, t18 * t28, row4 * (t25 * t28));
+        let t30 = k(2.0) * rotor_e0;
+        let t31 = k(2.0) * rotor_e1;
+        let t32 = T::fused(rotor_e2, t30, rotor_e3 * t31);
+        let t33 = k(2.0) * inner_ring_e0;
+        let t34 = inner_ring_e3 * t33;
+        let t35 = k(2.0) * inner_ring_e1;
+        let t36 = inner_ring_e2 * t35;
+        let t37 = t36 - t34;
+        let t38 = rotor_e1 * t30;
+        let t39 = k(2.0) * rotor_e2;
+        let t40 = rotor_e3 * t39;
+        let t41 = t40 - t38;
+        let t42 = k(2.0) * inner_ring_e2;
+        let t43 = T::fused(-inner_ring_e0, t33, k(1.0));
+        let t44 = T::fused(-inner_ring_e2, t42, t43);
+        let t45 = T::fused(-rotor_e0, t30, k(1.0));
+        let t46 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t45);
+        let t47 = inner_ring_e1 * t33;
+        let t48 = inner_ring_e3 * t42;
+        let t49 = t48 + t47;
+        let t50 = T::fused(t49, t46, T::fused(-t37, t32, t44 * t41));
+        let t51 = T::fused(-rotor_e3, t30, rotor_e2 * t31);
+        let t52 = inner_ring_e2 * t33;
+        let t53 = inner_ring_e3 * t35;
+        let t54 = t53 + t52;
+        let t55 = T::fused(-rotor_e2, t39, t45);
+        let t56 = t48 - t47;
+        let t57 = t40 + t38;
+        let t58 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t43);
+        let t59 = T::fused(t58, t57, T::fused(-t54, t51, t56 * t55));
+        let t60 = T::fused(t49, t57, T::fused(t37, t51, t44 * t55));
+        let t61 = T::fused(t58, t46, T::fused(t54, t32, t56 * t41));
+        let t62 = k(1.0) / T::fused(-t59, t50, t61 * t60);
+        let t63 = T::fused(row13, t59 * t62, row14 * (t60 * t62));
+        let t64 = k(5e-6) * t63;
+        let t65 = T::fused(-inner_ring_e1, t35, t43);
+        let t66 = t36 + t34;
+        let t67 = t53 - t52;
+        let t68 = T::fused(t67, t57, -T::fused(t65, t51, t66 * t55));
+        let t69 = T::fused(row13, t61 * t62, row14 * (t50 * t62));
+        let t70 = k(5e-6) * t69;
+        let t71 = T::fused(t67, t46, -T::fused(-t65, t32, t66 * t41));
+        let t72 = k(0.08) * row10;
+        let t73 = k(0.000125) * t37;
+        let t74 = k(0.08) * row11;
+        let t75 = k(0.000125) * t44;
+        let t76 = k(0.08) * row12;
+        let t77 = k(0.000125) * t49;
+        let t78 = T::fused(t77, t76, -T::fused(-t73, t72, t75 * t74))
+            + T::fused(t59, t64, t61 * t70);
+        let t79 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t59, k(5e-6) * t59, t61 * (k(5e-6) * t61)));
+        let t80 = k(1.0) / t79;
+        let t81 = t80 * t78;
+        let t82 = k(5e-6) * t68;
+        let t83 = k(5e-6) * t71;
+        let t84 = T::fused(t59, t82, t61 * t83);
+        let t85 = k(1e-5) * t37;
+        let t86 = t80 * t85;
+        let t87 = t84 * t86;
+        let t88 = k(1e-5) * t44;
+        let t89 = t80 * t88;
+        let t90 = t84 * t89;
+        let t91 = k(1e-5) * t49;
+        let t92 = t80 * t91;
+        let t93 = t84 * t92;
+        let t94 = T::fused(t15, t49, -T::fused(t3, t37, t8 * t44));
+        let t95 = t7 - t6;
+        let t96 = T::fused(-outer_ring_e2, t20, t2);
+        let t97 = t21 + t19;
+        let t98 = T::fused(t97, t67, -T::fused(t95, t65, t96 * t66));
+        let t99 = T::fused(t15, t67, T::fused(t3, t65, t8 * t66));
+        let t100 = T::fused(t97, t49, T::fused(t95, t37, t96 * t44));
+        let t101 = k(1.0) / T::fused(-t98, t94, t100 * t99);
+        let t102 = T::fused(-row8, t98 * t101, row9 * (t99 * t101));
+        let t103 = t80 * t84;
+        let t104 = T::fused(t84, t103, -(k(1e-6) + T::fused(t68, t82, t71 * t83)));
+        let t105 = T::fused(-row8, t100 * t101, row9 * (t94 * t101));
+        let t106 = k(5e-6) * t60;
+        let t107 = k(5e-6) * t50;
+        let t108 = T::fused(t59, t106, t61 * t107);
+        let t109 = T::fused(t108, t103, -T::fused(t60, t82, t50 * t83));
+        let t110 = T::fused(t104, t102, t109 * t105)
+            + T::fused(row7, t93, -T::fused(-row5, t87, row6 * t90));
+        let t111 = k(0.000125) * t54;
+        let t112 = k(0.000125) * t56;
+        let t113 = k(0.000125) * t58;
+        let t114 = T::fused(t113, t76, -T::fused(t111, t72, t112 * t74))
+            - T::fused(t60, t64, t50 * t70);
+        let t115 = T::fused(-k(1e-5), t54, t108 * t86);
+        let t116 = T::fused(k(1e-5), t56, t108 * t89);
+        let t117 = T::fused(k(1e-5), t58, t108 * t92);
+        let t118 = T::fused(
+            t108,
+            t80 * t108,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t60, t106, t50 * t107))),
         );
-        let t9 = outer_ring_e0 * outer_ring_e2;
-        let t10 = outer_ring_e1 * outer_ring_e3;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = t5.sin();
-        let t13 = t12 * t4;
-        let t14 = T::fused(t13, t11, t8);
-        let t15 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t16 = k(2.0)
-            * T::fused(-outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3);
-        let t17 = T::fused(t6, t15, t12 * t16);
-        let t18 = T::fused(-t13, t15, T::fused(t7, t16, t2 * (k(2.0) * (t10 + t9))));
-        let t19 = T::fused(-t6, t11, t12 * t3);
-        let t20 = k(1.0) / T::fused(-t17, t14, t19 * t18);
-        let t21 = T::fused(t14 * t20, row3, t19 * t20 * row4);
-        let t22 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
+        let t119 = T::fused(t109, t102, t118 * t105)
+            + T::fused(row7, t117, -T::fused(-row5, t115, row6 * t116));
+        let t120 = T::fused(
+            t98,
+            t110 + T::fused(t84, t81, -T::fused(t68, t64, t71 * t70)),
+            t100 * (t119 + T::fused(t108, t81, t114)),
         );
-        let t23 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
+        let t121 = T::fused(
+            -row0,
+            T::fused(t98, t87, t100 * t115),
+            row1 * T::fused(t98, t90, t100 * t116),
         );
-        let t24 = t23 * t22;
-        let t25 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
+        let t122 = T::fused(
+            t98,
+            T::fused(t104, t99, t109 * t94),
+            t100 * T::fused(t109, t99, t118 * t94),
         );
-        let t26 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t27 = t26 * t25;
-        let t28 = t27 - t24;
-        let t29 = k(2.0) * t28;
-        let t30 = t27 + t24;
-        let t31 = k(2.0) * t30;
-        let t32 = t23 * t23;
-        let t33 = k(0.5) - T::fused(t25, t25, t32);
-        let t34 = k(2.0) * t33;
-        let t35 = k(0.5) - T::fused(t26, t26, t32);
-        let t36 = k(2.0) * t35;
-        let t37 = k(1.0) / T::fused(-t31, t29, t36 * t34);
-        let t38 = T::fused(row13, t29 * t37, row14 * (t36 * t37));
-        let t39 = k(5e-6) * t38;
-        let t40 = T::fused(t23, t25, t22 * t26);
-        let t41 = k(2.0) * t40;
-        let t42 = T::fused(row13, t34 * t37, row14 * (t31 * t37));
-        let t43 = k(5e-6) * t42;
-        let t44 = T::fused(-t23, t26, t22 * t25);
-        let t45 = k(2.0) * t44;
-        let t46 = k(0.08) * row10;
-        let t47 = T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2);
-        let t48 = k(0.00025) * t47;
-        let t49 = k(0.08) * row11;
-        let t50 = inner_ring_e0 * inner_ring_e0;
-        let t51 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t50);
-        let t52 = k(0.00025) * t51;
-        let t53 = k(0.08) * row12;
-        let t54 = inner_ring_e0 * inner_ring_e1;
-        let t55 = inner_ring_e2 * inner_ring_e3;
-        let t56 = t55 + t54;
-        let t57 = k(0.00025) * t56;
-        let t58 = T::fused(t57, t53, -T::fused(-t48, t46, t52 * t49))
-            + T::fused(t29, t39, t34 * t43);
-        let t59 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t29, k(1e-5) * t28, t34 * (k(1e-5) * t33)));
-        let t60 = k(1.0) / t59;
-        let t61 = t60 * t58;
-        let t62 = k(1e-5) * t40;
-        let t63 = k(1e-5) * t44;
-        let t64 = T::fused(-t29, t62, t34 * t63);
-        let t65 = k(2e-5) * t47;
-        let t66 = t60 * t65;
-        let t67 = t64 * t66;
-        let t68 = k(2e-5) * t51;
-        let t69 = t60 * t68;
-        let t70 = t64 * t69;
-        let t71 = k(2e-5) * t56;
-        let t72 = t60 * t71;
-        let t73 = t64 * t72;
-        let t74 = T::fused(
-            -outer_ring_e0,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e1,
-                inner_ring_e2,
-                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
-            ),
-        );
-        let t75 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
-        );
-        let t76 = t75 * t74;
-        let t77 = T::fused(
-            -outer_ring_e1,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e0,
-                inner_ring_e2,
-                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
-            ),
-        );
-        let t78 = T::fused(
-            outer_ring_e2,
-            inner_ring_e3,
-            T::fused(
-                -outer_ring_e3,
-                inner_ring_e2,
-                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
-            ),
-        );
-        let t79 = t78 * t77;
-        let t80 = k(2.0) * (t79 - t76);
-        let t81 = k(2.0) * (t79 + t76);
-        let t82 = t75 * t75;
-        let t83 = k(2.0) * (k(0.5) - T::fused(t77, t77, t82));
-        let t84 = k(2.0) * (k(0.5) - T::fused(t78, t78, t82));
-        let t85 = k(1.0) / T::fused(-t81, t80, t84 * t83);
-        let t86 = T::fused(row8, t80 * t85, row9 * (t84 * t85));
-        let t87 = t60 * t64;
-        let t88 = T::fused(t64, t87, -(k(1e-6) + T::fused(t41, t62, t45 * t63)));
-        let t89 = T::fused(row8, t83 * t85, row9 * (t81 * t85));
-        let t90 = k(1e-5) * t35;
-        let t91 = k(1e-5) * t30;
-        let t92 = T::fused(t29, t90, t34 * t91);
-        let t93 = T::fused(t92, t87, -T::fused(-t36, t62, t31 * t63));
-        let t94 = T::fused(-t88, t86, t93 * t89)
-            + T::fused(row7, t73, -T::fused(-row5, t67, row6 * t70));
-        let t95 = T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3);
-        let t96 = k(0.00025) * t95;
-        let t97 = t55 - t54;
-        let t98 = k(0.00025) * t97;
-        let t99 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t50);
-        let t100 = k(0.00025) * t99;
-        let t101 = T::fused(t100, t53, -T::fused(t96, t46, t98 * t49))
-            - T::fused(t36, t39, t31 * t43);
-        let t102 = T::fused(-t92, t66, k(2e-5) * t95);
-        let t103 = T::fused(t92, t69, k(2e-5) * t97);
-        let t104 = T::fused(t92, t72, k(2e-5) * t99);
-        let t105 = T::fused(
-            t92,
-            t60 * t92,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t36, t90, t31 * t91))),
-        );
-        let t106 = T::fused(-t93, t86, t105 * t89)
-            + T::fused(row7, t104, -T::fused(row5, t102, row6 * t103));
-        let t107 = T::fused(
-            -t80,
-            t94 + T::fused(t64, t61, -T::fused(-t41, t39, t45 * t43)),
-            t83 * (t106 + T::fused(t92, t61, t101)),
-        );
-        let t108 = T::fused(
-            row0,
-            T::fused(t80, t67, t83 * t102),
-            row1 * T::fused(-t80, t70, t83 * t103),
-        );
-        let t109 = T::fused(
-            -t80,
-            T::fused(-t84, t88, t81 * t93),
-            t83 * T::fused(-t84, t93, t81 * t105),
-        );
-        let t110 = T::fused(t18 * t20, row3, t17 * t20 * row4);
-        let t111 = T::fused(-t80, t88, t83 * t93);
-        let t112 = k(2.0) * T::fused(t75, t77, t78 * t74);
-        let t113 = T::fused(-t80, t93, t83 * t105);
-        let t114 = k(2.0) * T::fused(-t75, t78, t77 * t74);
-        let t115 = T::fused(t109, t21, T::fused(t112, t111, t114 * t113) * t110)
-            - T::fused(row2, T::fused(-t80, t73, t83 * t104), -t108);
-        let t116 = (t115 - t107) / (k(1e-6) - T::fused(-t80, t111, t83 * t113));
-        let t117 = row0 + row5;
-        let t118 = row1 + row6;
-        let t119 = row2 + row7;
-        let t120 = t86 + T::fused(t112, t110, -T::fused(t84, t21, t80 * t116));
-        let t121 = t89 - T::fused(t114, t110, T::fused(t81, t21, t83 * t116));
-        let t122 = T::fused(t119, t71, -T::fused(-t117, t65, t118 * t68))
-            + T::fused(-t64, t120, t92 * t121);
-        let t123 = t60 * (t58 + t122);
+        let t123 = T::fused(-row3, t27 * t28, row4 * (t24 * t28));
+        let t124 = T::fused(t23, t67, -T::fused(-t26, t65, t22 * t66));
+        let t125 = T::fused(t98, t104, t100 * t109);
+        let t126 = T::fused(t23, t49, T::fused(-t26, t37, t22 * t44));
+        let t127 = T::fused(t109, t98, t118 * t100);
+        let t128 = T::fused(t122, t29, T::fused(t125, t124, t127 * t126) * t123)
+            + T::fused(row2, T::fused(t98, t93, t100 * t117), -t121);
+        let t129 = (t128 + t120) / (k(1e-6) - T::fused(t98, t125, t100 * t127));
+        let t130 = row0 + row5;
+        let t131 = row1 + row6;
+        let t132 = row2 + row7;
+        let t133 = t102 + T::fused(t124, t123, T::fused(t99, t29, t98 * t129));
+        let t134 = t105 + T::fused(t126, t123, T::fused(t94, t29, t100 * t129));
+        let t135 = T::fused(t84, t133, t108 * t134)
+            + T::fused(t132, t91, -T::fused(-t130, t85, t131 * t88));
+        let t136 = t80 * (t78 + t135);
         *out = [
             row0,
             row1,
             row2,
-            t21,
-            -t116,
-            t110,
-            t117,
-            t118,
-            t119,
-            t120,
-            -t121,
-            -t123,
-            row10 + (t117 - T::fused(-t96, t121, t48 * t123)),
-            row11 + (t118 + T::fused(t98, t121, t52 * t123)),
-            row12 + (t119 - T::fused(t100, t121, t57 * t123)),
+            -t29,
+            -t129,
+            t123,
+            t130,
+            t131,
+            t132,
+            -t133,
+            -t134,
+            -t136,
+            row10 + (t130 - T::fused(-t111, t134, t73 * t136)),
+            row11 + (t131 + T::fused(t112, t134, t75 * t136)),
+            row12 + (t132 - T::fused(t113, t134, t77 * t136)),
             k(0.0),
-            t38 - T::fused(t29, t123, -T::fused(t41, t120, t36 * t121)),
-            T::fused(t34, t123, -T::fused(-t45, t120, t31 * t121)) - t42,
+            T::fused(t59, t136, -T::fused(t68, t133, t60 * t134)) - t63,
+            t69 - T::fused(t61, t136, -T::fused(t71, t133, t50 * t134)),
         ];
     }
 }
@@ -3481,7 +3441,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 33]
     }
-    /// Writes u̇: 115 operations (35 ±, 79 ×, 1 ÷) and 12 functions.
+    /// Writes u̇: 113 operations (35 ±, 77 ×, 1 ÷) and 12 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -3489,75 +3449,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = x1.sin();
-        let t1 = x1.cos();
-        let t2 = x0.cos();
-        let t3 = k(18.84955592153876) * t;
-        let t4 = t3.sin();
-        let t5 = k(0.05) * t4;
-        let t6 = t5.cos();
-        let t7 = k(12.566370614359172) * t;
-        let t8 = k(1.2566370614359172) * t7.cos();
-        let t9 = t8 * t6;
-        let t10 = x0.sin();
-        let t11 = k(0.9424777960769379) * t3.cos();
-        let t12 = T::fused(-t9, t2, t11 * t10);
-        let t13 = T::fused(t9, t10, t11 * t2);
-        let t14 = t5.sin();
-        let t15 = T::fused(t8, t14, -u0);
-        let t16 = T::fused(-t0, t12, t15 * t1);
-        let t17 = u1 * t16;
-        let t18 = u1 + t13;
-        let t19 = T::fused(t1, t12, t15 * t0);
-        let t20 = u2 - t19;
-        let t21 = T::fused(
-            k(5e-6),
-            T::fused(u2, t18, t18 * t20),
-            k(1e-5) * (t19 * (k(0.000125) * t18)),
+        let t0 = k(12.566370614359172) * t;
+        let t1 = t0.sin();
+        let t2 = k(0.1) * t1;
+        let t3 = k(10.0) * t2.cos();
+        let t4 = k(18.84955592153876) * t;
+        let t5 = t4.sin();
+        let t6 = k(0.05) * t5;
+        let t7 = t6.sin();
+        let t8 = t7 * t3;
+        let t9 = x0.sin();
+        let t10 = k(10.0) * t2.sin();
+        let t11 = x0.cos();
+        let t12 = x1.cos();
+        let t13 = t6.cos();
+        let t14 = k(1.2566370614359172) * t0.cos();
+        let t15 = t14 * t13;
+        let t16 = k(0.9424777960769379) * t4.cos();
+        let t17 = T::fused(t15, t9, t16 * t11);
+        let t18 = k(15.791367041742975) * t1;
+        let t19 = T::fused(t14, t16 * t7, t13 * t18);
+        let t20 = k(17.765287921960844) * t5;
+        let t21 = T::fused(-u0, t17, T::fused(-t19, t11, t20 * t9));
+        let t22 = x1.sin();
+        let t23 = T::fused(
+            -(k(1e-5) * t12),
+            T::fused(-t9, t8, t11 * t10),
+            T::fused(-t22, k(1e-6) * t12, t12 * (k(7.00125e-6) * t22)) * t21,
         );
-        let t22 = T::fused(
-            t0,
-            k(1e-6) * T::fused(t18, t16, -t17),
-            t1 * T::fused(k(7.00125e-6), u1 * t19, t21),
+        let t24 = T::fused(-t15, t11, t16 * t9);
+        let t25 = T::fused(t14, t7, -u0);
+        let t26 = T::fused(t12, t24, t25 * t22);
+        let t27 = k(1e-5) * t26;
+        let t28 = u1 + t17;
+        let t29 = u2 - t26;
+        let t30 = T::fused(
+            k(0.000125) * t28,
+            t27,
+            k(5e-6) * T::fused(u2, t28, t28 * t29),
         );
-        let t23 = t7.sin();
-        let t24 = k(0.1) * t23;
-        let t25 = t24.cos();
-        let t26 = k(10.0) * (t25 * t14);
-        let t27 = k(10.0) * t24.sin();
-        let t28 = k(15.791367041742975) * t23;
-        let t29 = T::fused(t8, t11 * t14, t6 * t28);
-        let t30 = k(17.765287921960844) * t4;
-        let t31 = T::fused(-u0, t13, T::fused(-t29, t2, t30 * t10));
-        let t32 = T::fused(
-            -(k(1e-5) * t1),
-            T::fused(-t10, t26, t2 * t27),
-            T::fused(-t0, k(1e-6) * t1, t1 * (k(7.00125e-6) * t0)) * t31,
+        let t31 = T::fused(-t22, t24, t25 * t12);
+        let t32 = u1 * t31;
+        let t33 = T::fused(
+            t12,
+            T::fused(k(7.00125e-6), u1 * t26, t30),
+            t22 * (k(1e-6) * T::fused(t28, t31, -t32)),
         );
-        let t33 = (t32 - T::fused(-k(1e-6), t13 * t12, t22))
-            / (k(1e-6) + T::fused(t0, k(1e-6) * t0, t1 * (k(7.00125e-6) * t1)));
-        let t34 = T::fused(
-            k(5e-6),
-            T::fused(u2, t16, t20 * t16),
-            k(1e-5) * (t19 * (k(0.000125) * t16)),
-        );
-        let t35 = T::fused(
-            -t0,
-            T::fused(t2, t26, t10 * t27),
-            t1 * (k(10.0) * (t25 * t6)),
-        );
+        let t34 = (T::fused(k(1e-6), t17 * t24, -t33) + t23)
+            / (k(1e-6) + T::fused(t22, k(1e-6) * t22, t12 * (k(7.00125e-6) * t12)));
+        let t35 = T::fused(-t12, t13 * t3, t22 * T::fused(t11, t8, t9 * t10));
         let t36 = T::fused(
-            k(166631.95167673402),
-            T::fused(k(1e-5), t35, T::fused(k(1e-6), t19 * t16, t34)),
-            -T::fused(u0, t12, T::fused(t29, t10, t30 * t2)),
+            k(0.000125) * t31,
+            t27,
+            k(5e-6) * T::fused(u2, t31, t29 * t31),
+        );
+        let t37 = T::fused(
+            -k(166631.95167673402),
+            T::fused(-k(1e-5), t35, T::fused(k(1e-6), t26 * t31, t36)),
+            T::fused(u0, t24, T::fused(t19, t9, t20 * t11)),
         );
         *out = [
-            t33 - T::fused(-t8, t11 * t6, t14 * t28),
-            -t36,
-            t17 - T::fused(t1, t31, t0 * t33),
+            t34 - T::fused(-t14, t16 * t13, t7 * t18),
+            t37,
+            t32 - T::fused(t22, t34, t12 * t21),
         ];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 541 operations (192 ±, 347 ×, 2 ÷) and 24 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 540 operations (192 ±, 346 ×, 2 ÷) and 24 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -3568,300 +3525,339 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let u0 = x[3];
         let u1 = x[4];
         let u2 = x[5];
-        let t0 = k(0.5) * x0;
-        let t1 = t0.sin();
-        let t2 = k(18.84955592153876) * t;
-        let t3 = t2.sin();
-        let t4 = k(0.025) * t3;
-        let t5 = t4.sin();
-        let t6 = k(12.566370614359172) * t;
-        let t7 = t6.sin();
-        let t8 = k(0.05) * t7;
-        let t9 = t8.cos();
-        let t10 = t9 * t5;
-        let t11 = t0.cos();
-        let t12 = t4.cos();
-        let t13 = t8.sin();
-        let t14 = t13 * t12;
-        let t15 = T::fused(-t10, t1, t14 * t11);
-        let t16 = t13 * t5;
-        let t17 = t9 * t12;
-        let t18 = T::fused(t16, t1, t17 * t11);
-        let t19 = t18 * t15;
-        let t20 = T::fused(t14, t1, t10 * t11);
-        let t21 = T::fused(-t17, t1, t16 * t11);
-        let t22 = t21 * t20;
-        let t23 = k(2.0) * (t22 - t19);
-        let t24 = k(0.1) * t7;
-        let t25 = t24.sin();
-        let t26 = k(1.2566370614359172) * t6.cos();
-        let t27 = t26 * t25;
-        let t28 = t18 * t18;
-        let t29 = k(2.0) * (k(0.5) - T::fused(t21, t21, t28));
-        let t30 = t24.cos();
-        let t31 = t26 * t30;
-        let t32 = k(2.0) * (k(0.5) - T::fused(t15, t15, t28));
-        let t33 = k(0.05) * t3;
-        let t34 = t33.cos();
-        let t35 = t18 * t20;
-        let t36 = t15 * t21;
-        let t37 = k(2.0) * (t36 - t35);
-        let t38 = t33.sin();
-        let t39 = t30 * t38;
-        let t40 = t18 * t21;
-        let t41 = t15 * t20;
-        let t42 = k(2.0) * (t41 + t40);
-        let t43 = t25 * t38;
-        let t44 = T::fused(t43, t42, -T::fused(t34, t32, t39 * t37));
-        let t45 = k(2.0) * (t22 + t19);
-        let t46 = k(2.0) * (k(0.5) - T::fused(t20, t20, t28));
-        let t47 = T::fused(-t25, t45, t30 * t46);
-        let t48 = k(2.0) * (t41 - t40);
-        let t49 = T::fused(t43, t46, T::fused(-t34, t48, t39 * t45));
-        let t50 = T::fused(t25, t37, t30 * t42);
-        let t51 = k(1.0) / T::fused(-t47, t44, t50 * t49);
-        let t52 = k(2.0) * t1;
-        let t53 = t11 * t52;
-        let t54 = t26 * t34;
-        let t55 = T::fused(-t1, t52, k(1.0));
-        let t56 = k(0.9424777960769379) * t2.cos();
-        let t57 = T::fused(t54, t53, t56 * t55);
-        let t58 = x0.cos();
-        let t59 = t56 * t38;
-        let t60 = k(15.791367041742975) * t7;
-        let t61 = T::fused(t26, t59, t34 * t60);
-        let t62 = x0.sin();
-        let t63 = k(17.765287921960844) * t3;
-        let t64 = T::fused(-t61, t58, t63 * t62);
-        let t65 = T::fused(-u0, t57, t64);
-        let t66 = k(0.5) * x1;
-        let t67 = t66.sin();
-        let t68 = t66.cos();
-        let t69 = T::fused(-t21, t67, t15 * t68);
-        let t70 = T::fused(-t20, t67, t18 * t68);
-        let t71 = t70 * t70;
-        let t72 = k(2.0) * (k(0.5) - T::fused(t69, t69, t71));
-        let t73 = T::fused(t18, t67, t20 * t68);
-        let t74 = t70 * t73;
-        let t75 = T::fused(t15, t67, t21 * t68);
-        let t76 = t69 * t75;
-        let t77 = k(2.0) * (t76 - t74);
-        let t78 = t70 * t75;
-        let t79 = t69 * t73;
-        let t80 = k(2.0) * (t79 + t78);
-        let t81 = u1 + t57;
-        let t82 = T::fused(-t54, t55, t56 * t53);
-        let t83 = k(2.0) * t67;
-        let t84 = t68 * t83;
-        let t85 = T::fused(-t67, t83, k(1.0));
-        let t86 = T::fused(t26, t38, -u0);
-        let t87 = T::fused(-t84, t82, t86 * t85);
-        let t88 = x1.cos();
-        let t89 = x1.sin();
-        let t90 = T::fused(-t54, t58, t56 * t62);
-        let t91 = T::fused(t54, t62, t56 * t58);
-        let t92 = T::fused(-t89, t90, t86 * t88);
-        let t93 = u1 * t92;
-        let t94 = u1 + t91;
-        let t95 = T::fused(t88, t90, t86 * t89);
-        let t96 = u2 - t95;
-        let t97 = T::fused(
-            k(5e-6),
-            T::fused(u2, t94, t94 * t96),
-            k(1e-5) * (t95 * (k(0.000125) * t94)),
-        );
-        let t98 = T::fused(
-            t89,
-            k(1e-6) * T::fused(t94, t92, -t93),
-            t88 * T::fused(k(7.00125e-6), u1 * t95, t97),
-        );
-        let t99 = k(10.0) * t39;
-        let t100 = k(10.0) * t25;
-        let t101 = T::fused(-u0, t91, t64);
-        let t102 = T::fused(
-            -(k(1e-5) * t88),
-            T::fused(-t62, t99, t58 * t100),
-            T::fused(-t89, k(1e-6) * t88, t88 * (k(7.00125e-6) * t89)) * t101,
-        );
-        let t103 = (t102 - T::fused(-k(1e-6), t91 * t90, t98))
-            / (k(1e-6) + T::fused(t89, k(1e-6) * t89, t88 * (k(7.00125e-6) * t88)));
-        let t104 = t56 * t34;
-        let t105 = T::fused(-t26, t104, t38 * t60);
-        let t106 = t105 - (t105 - t103);
-        let t107 = T::fused(-u1, t87, T::fused(t88, t65, t89 * t106));
-        let t108 = k(0.5) * x2;
-        let t109 = t108.sin();
-        let t110 = t108.cos();
-        let t111 = T::fused(t70, t109, t69 * t110);
-        let t112 = T::fused(-t69, t109, t70 * t110);
-        let t113 = t112 * t112;
-        let t114 = k(2.0) * (k(0.5) - T::fused(t111, t111, t113));
-        let t115 = T::fused(t75, t109, t73 * t110);
-        let t116 = t112 * t115;
-        let t117 = T::fused(-t73, t109, t75 * t110);
-        let t118 = t111 * t117;
-        let t119 = k(2.0) * (t118 - t116);
-        let t120 = t112 * t117;
-        let t121 = t111 * t115;
-        let t122 = k(2.0) * (t121 + t120);
-        let t123 = k(1e-5) * (t93 - T::fused(t88, t101, t89 * t103) + t107);
-        let t124 = k(2.0) * (t118 + t116);
-        let t125 = k(2.0) * (k(0.5) - T::fused(t117, t117, t113));
-        let t126 = t112 * t111;
-        let t127 = t117 * t115;
-        let t128 = k(2.0) * (t127 - t126);
-        let t129 = k(2.0) * t109;
-        let t130 = t110 * t129;
-        let t131 = T::fused(-t109, t129, k(1.0));
-        let t132 = T::fused(t130, t87, t131 * t81);
-        let t133 = T::fused(t85, t82, t86 * t84);
-        let t134 = u2 - t133;
-        let t135 = T::fused(u1, t133, T::fused(-t89, t65, t88 * t106));
-        let t136 = x2.cos();
-        let t137 = T::fused(t61, t62, t63 * t58);
-        let t138 = T::fused(u0, t82, t137);
-        let t139 = T::fused(
-            k(5e-6),
-            T::fused(u2, t92, t96 * t92),
-            k(1e-5) * (t95 * (k(0.000125) * t92)),
-        );
-        let t140 = T::fused(
-            -t89,
-            T::fused(t58, t99, t62 * t100),
-            t88 * (k(10.0) * (t30 * t34)),
-        );
-        let t141 = T::fused(
-            k(166631.95167673402),
-            T::fused(k(1e-5), t140, T::fused(k(1e-6), t95 * t92, t139)),
-            -T::fused(u0, t90, t137),
-        );
-        let t142 = t141 + t138;
-        let t143 = x2.sin();
-        let t144 = T::fused(
-            -t134,
-            t132,
-            T::fused(-u2, t132, T::fused(-t136, t135, t143 * t142)),
-        );
-        let t145 = k(5e-6) * t144;
-        let t146 = T::fused(
-            t123,
-            T::fused(t80, t122, T::fused(t72, t114, t77 * t119)),
-            t145 * T::fused(t80, t128, -T::fused(t72, t124, t77 * t125)),
-        );
-        let t147 = k(2.0) * (t121 - t120);
-        let t148 = k(2.0) * (t127 + t126);
-        let t149 = k(2.0) * (k(0.5) - T::fused(t115, t115, t113));
-        let t150 = T::fused(-t131, t87, t130 * t81);
-        let t151 = T::fused(
-            t134,
-            t150,
-            T::fused(u2, t150, T::fused(t143, t135, t136 * t142)),
-        );
-        let t152 = k(5e-6) * t151;
-        let t153 = T::fused(
-            t152,
-            T::fused(t80, t149, -T::fused(-t72, t147, t77 * t148)),
-            t146,
-        );
-        let t154 = T::fused(k(1e-6), T::fused(t87, t81, t107), t153);
-        let t155 = t76 + t74;
-        let t156 = k(2.0) * t155;
-        let t157 = k(0.5) - T::fused(t75, t75, t71);
-        let t158 = k(2.0) * t157;
-        let t159 = t70 * t69;
-        let t160 = t75 * t73;
-        let t161 = t160 - t159;
-        let t162 = k(2.0) * t161;
-        let t163 = T::fused(
-            t123,
-            T::fused(t162, t122, -T::fused(t156, t114, t158 * t119)),
-            t145 * T::fused(t162, t128, T::fused(t156, t124, t158 * t125)),
-        );
-        let t164 = T::fused(
-            t152,
-            T::fused(t162, t149, T::fused(-t156, t147, t158 * t148)),
-            t163,
-        );
-        let t165 = k(0.000125) * t87;
-        let t166 = k(0.000125) * t81;
-        let t167 = T::fused(t87, t165, t81 * t166);
-        let t168 = t165 * t133;
-        let t169 = t166 * t133;
-        let t170 = t79 - t78;
-        let t171 = k(2.0) * t170;
-        let t172 = k(0.00025) * t170;
-        let t173 = k(0.00025) * t155;
-        let t174 = T::fused(-t135, t172, t142 * t173)
-            - T::fused(t171, t169, T::fused(-t72, t167, t156 * t168));
-        let t175 = k(0.08) * t174;
-        let t176 = t160 + t159;
-        let t177 = k(2.0) * t176;
-        let t178 = k(0.00025) * t176;
-        let t179 = k(0.00025) * t157;
-        let t180 = T::fused(t135, t178, t142 * t179)
-            + T::fused(t177, t169, -T::fused(-t77, t167, t158 * t168));
-        let t181 = T::fused(k(0.08), t180, k(0.8));
-        let t182 = k(0.5) - T::fused(t73, t73, t71);
-        let t183 = k(2.0) * t182;
-        let t184 = k(0.00025) * t182;
-        let t185 = k(0.00025) * t161;
-        let t186 = T::fused(t135, t184, t142 * t185)
-            + T::fused(t183, t169, -T::fused(t80, t167, t162 * t168));
-        let t187 = k(0.08) * t186;
-        let t188 = T::fused(
-            k(2e-6),
-            t135,
-            T::fused(t184, t187, T::fused(-t172, t175, t178 * t181)) - t164,
-        );
-        let t189 = T::fused(
-            -t154,
-            T::fused(t42, t80, T::fused(t32, t72, t37 * t77)),
-            t188 * T::fused(t42, t162, -T::fused(t32, t156, t37 * t158)),
-        );
-        let t190 = T::fused(
-            t123,
-            T::fused(t183, t122, -T::fused(-t171, t114, t177 * t119)),
-            t145 * T::fused(t183, t128, T::fused(-t171, t124, t177 * t125)),
-        );
-        let t191 = T::fused(
-            t152,
-            T::fused(t183, t149, T::fused(t171, t147, t177 * t148)),
+        let (
+            t13,
+            t25,
+            t77,
+            t180,
+            t187,
+            t188,
+            t189,
             t190,
-        );
-        let t192 = T::fused(
-            k(1e-6),
-            T::fused(-t87, t133, t142),
-            T::fused(t185, t187, T::fused(t173, t175, t179 * t181)) + t191,
-        );
-        let t193 = T::fused(
-            t192,
-            T::fused(t42, t183, -T::fused(-t32, t171, t37 * t177)),
-            -t189,
-        );
-        let t194 = T::fused(k(2e-6), t65, t193);
-        let t195 = T::fused(
-            -t154,
-            T::fused(t46, t80, -T::fused(-t48, t72, t45 * t77)),
-            t188 * T::fused(t46, t162, T::fused(-t48, t156, t45 * t158)),
-        );
-        let t196 = T::fused(
-            t192,
-            T::fused(t46, t183, T::fused(t48, t171, t45 * t177)),
-            -t195,
-        );
-        let t197 = T::fused(k(1e-6), T::fused(t86, t82, t138), t196);
-        let t198 = T::fused(
-            T::fused(-t30, t104, t38 * t27),
-            t29,
-            t59 * (k(2.0) * (t36 + t35)),
-        );
-        let t199 = T::fused(
-            -T::fused(t194, t44 * t51, t197 * (t49 * t51)),
-            T::fused(t27, t23, t31 * t29),
-            T::fused(t194, t50 * t51, t197 * (t47 * t51))
-                * T::fused(-T::fused(t25, t104, t38 * t31), t23, t198),
-        );
-        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], t199];
+            t191,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = x0.cos();
+            let t1 = k(18.84955592153876) * t;
+            let t2 = t1.sin();
+            let t3 = k(0.05) * t2;
+            let t4 = t3.cos();
+            let t5 = k(12.566370614359172) * t;
+            let t6 = k(1.2566370614359172) * t5.cos();
+            let t7 = t6 * t4;
+            let t8 = x0.sin();
+            let t9 = k(0.9424777960769379) * t1.cos();
+            let t10 = T::fused(-t7, t0, t9 * t8);
+            let t11 = x1.cos();
+            let t12 = x1.sin();
+            let t13 = t3.sin();
+            let t14 = T::fused(t6, t13, -u0);
+            let t15 = T::fused(t11, t10, t14 * t12);
+            let t16 = k(1e-5) * t15;
+            let t17 = T::fused(-t12, t10, t14 * t11);
+            let t18 = u2 - t15;
+            let t19 = T::fused(
+                k(0.000125) * t17,
+                t16,
+                k(5e-6) * T::fused(u2, t17, t18 * t17),
+            );
+            let t20 = t5.sin();
+            let t21 = k(0.1) * t20;
+            let t22 = t21.cos();
+            let t23 = t22 * t13;
+            let t24 = k(10.0) * t23;
+            let t25 = t21.sin();
+            let t26 = k(10.0) * t25;
+            let t27 = T::fused(
+                -t12,
+                T::fused(t0, t24, t8 * t26),
+                t11 * (k(10.0) * (t22 * t4)),
+            );
+            let t28 = t9 * t13;
+            let t29 = k(15.791367041742975) * t20;
+            let t30 = T::fused(t6, t28, t4 * t29);
+            let t31 = k(17.765287921960844) * t2;
+            let t32 = T::fused(t30, t8, t31 * t0);
+            let t33 = T::fused(
+                -k(166631.95167673402),
+                T::fused(k(1e-5), t27, T::fused(k(1e-6), t15 * t17, t19)),
+                T::fused(u0, t10, t32),
+            );
+            let t34 = k(0.5) * x0;
+            let t35 = t34.sin();
+            let t36 = k(2.0) * t35;
+            let t37 = T::fused(-t35, t36, k(1.0));
+            let t38 = t34.cos();
+            let t39 = t38 * t36;
+            let t40 = T::fused(-t7, t37, t9 * t39);
+            let t41 = T::fused(u0, t40, t32);
+            let t42 = t41 - t33;
+            let t43 = k(0.5) * x1;
+            let t44 = t43.sin();
+            let t45 = k(0.025) * t2;
+            let t46 = t45.cos();
+            let t47 = k(0.05) * t20;
+            let t48 = t47.cos();
+            let t49 = t48 * t46;
+            let t50 = t45.sin();
+            let t51 = t47.sin();
+            let t52 = t51 * t50;
+            let t53 = T::fused(-t49, t35, t52 * t38);
+            let t54 = t43.cos();
+            let t55 = t48 * t50;
+            let t56 = t51 * t46;
+            let t57 = T::fused(-t55, t35, t56 * t38);
+            let t58 = T::fused(-t53, t44, t57 * t54);
+            let t59 = T::fused(t56, t35, t55 * t38);
+            let t60 = T::fused(t52, t35, t49 * t38);
+            let t61 = T::fused(-t59, t44, t60 * t54);
+            let t62 = t61 * t58;
+            let t63 = T::fused(t60, t44, t59 * t54);
+            let t64 = T::fused(t57, t44, t53 * t54);
+            let t65 = t64 * t63;
+            let t66 = t65 - t62;
+            let t67 = k(0.00025) * t66;
+            let t68 = T::fused(t7, t8, t9 * t0);
+            let t69 = u1 + t68;
+            let t70 = T::fused(
+                k(0.000125) * t69,
+                t16,
+                k(5e-6) * T::fused(u2, t69, t69 * t18),
+            );
+            let t71 = u1 * t17;
+            let t72 = T::fused(
+                t11,
+                T::fused(k(7.00125e-6), u1 * t15, t70),
+                t12 * (k(1e-6) * T::fused(t69, t17, -t71)),
+            );
+            let t73 = T::fused(-t30, t0, t31 * t8);
+            let t74 = T::fused(-u0, t68, t73);
+            let t75 = T::fused(
+                -(k(1e-5) * t11),
+                T::fused(-t8, t24, t0 * t26),
+                T::fused(-t12, k(1e-6) * t11, t11 * (k(7.00125e-6) * t12)) * t74,
+            );
+            let t76 = (t75 + T::fused(k(1e-6), t68 * t10, -t72))
+                / (k(1e-6) + T::fused(t12, k(1e-6) * t12, t11 * (k(7.00125e-6) * t11)));
+            let t77 = t9 * t4;
+            let t78 = T::fused(-t6, t77, t13 * t29);
+            let t79 = t78 - (t78 - t76);
+            let t80 = T::fused(t7, t39, t9 * t37);
+            let t81 = T::fused(-u0, t80, t73);
+            let t82 = k(2.0) * t44;
+            let t83 = T::fused(-t44, t82, k(1.0));
+            let t84 = t54 * t82;
+            let t85 = T::fused(t83, t40, t14 * t84);
+            let t86 = T::fused(u1, t85, -T::fused(-t11, t79, t12 * t81));
+            let t87 = t61 * t61;
+            let t88 = k(0.5) - T::fused(t63, t63, t87);
+            let t89 = k(0.00025) * t88;
+            let t90 = T::fused(-t84, t40, t14 * t83);
+            let t91 = k(0.000125) * t90;
+            let t92 = u1 + t80;
+            let t93 = k(0.000125) * t92;
+            let t94 = T::fused(t90, t91, t92 * t93);
+            let t95 = t61 * t64;
+            let t96 = t58 * t63;
+            let t97 = k(2.0) * (t96 + t95);
+            let t98 = t91 * t85;
+            let t99 = k(2.0) * t66;
+            let t100 = t93 * t85;
+            let t101 = k(2.0) * t88;
+            let t102 = T::fused(t101, t100, -T::fused(t97, t94, t99 * t98))
+                + T::fused(t67, t42, t89 * t86);
+            let t103 = k(0.08) * t102;
+            let t104 = k(0.5) - T::fused(t64, t64, t87);
+            let t105 = k(0.00025) * t104;
+            let t106 = t65 + t62;
+            let t107 = k(0.00025) * t106;
+            let t108 = t61 * t63;
+            let t109 = t58 * t64;
+            let t110 = k(2.0) * (t109 - t108);
+            let t111 = k(2.0) * t104;
+            let t112 = k(2.0) * t106;
+            let t113 = T::fused(t112, t100, -T::fused(-t110, t94, t111 * t98))
+                + T::fused(t105, t42, t107 * t86);
+            let t114 = T::fused(k(0.08), t113, k(0.8));
+            let t115 = t109 + t108;
+            let t116 = k(0.00025) * t115;
+            let t117 = t96 - t95;
+            let t118 = k(0.00025) * t117;
+            let t119 = k(2.0) * (k(0.5) - T::fused(t58, t58, t87));
+            let t120 = k(2.0) * t115;
+            let t121 = k(2.0) * t117;
+            let t122 = T::fused(t121, t100, T::fused(-t119, t94, t120 * t98))
+                + T::fused(-t116, t42, t118 * t86);
+            let t123 = k(0.08) * t122;
+            let t124 = x2.cos();
+            let t125 = x2.sin();
+            let t126 = k(0.5) * x2;
+            let t127 = t126.sin();
+            let t128 = k(2.0) * t127;
+            let t129 = T::fused(-t127, t128, k(1.0));
+            let t130 = t126.cos();
+            let t131 = t130 * t128;
+            let t132 = T::fused(-t129, t90, t131 * t92);
+            let t133 = u2 - t85;
+            let t134 = T::fused(
+                t133,
+                t132,
+                T::fused(u2, t132, T::fused(t124, t42, t125 * t86)),
+            );
+            let t135 = k(5e-6) * t134;
+            let t136 = T::fused(-t63, t127, t64 * t130);
+            let t137 = T::fused(-t58, t127, t61 * t130);
+            let t138 = t137 * t136;
+            let t139 = T::fused(t64, t127, t63 * t130);
+            let t140 = T::fused(t61, t127, t58 * t130);
+            let t141 = t140 * t139;
+            let t142 = k(2.0) * (t141 - t138);
+            let t143 = t137 * t140;
+            let t144 = t136 * t139;
+            let t145 = k(2.0) * (t144 + t143);
+            let t146 = t137 * t137;
+            let t147 = k(2.0) * (k(0.5) - T::fused(t139, t139, t146));
+            let t148 = T::fused(t131, t90, t129 * t92);
+            let t149 = T::fused(
+                t133,
+                t148,
+                T::fused(u2, t148, T::fused(-t125, t42, t124 * t86)),
+            );
+            let t150 = k(5e-6) * t149;
+            let t151 = t137 * t139;
+            let t152 = t140 * t136;
+            let t153 = k(2.0) * (t152 + t151);
+            let t154 = k(2.0) * (k(0.5) - T::fused(t136, t136, t146));
+            let t155 = k(2.0) * (t144 - t143);
+            let t156 = T::fused(u1, t90, -T::fused(t12, t79, t11 * t81));
+            let t157 = k(1e-5) * (t156 - (t71 - T::fused(t12, t76, t11 * t74)));
+            let t158 = k(2.0) * (k(0.5) - T::fused(t140, t140, t146));
+            let t159 = k(2.0) * (t152 - t151);
+            let t160 = k(2.0) * (t141 + t138);
+            let t161 = T::fused(
+                T::fused(t101, t155, T::fused(-t121, t153, t112 * t154)),
+                t150,
+                T::fused(t101, t160, -T::fused(-t121, t158, t112 * t159)) * t157,
+            );
+            let t162 = T::fused(
+                -T::fused(t101, t147, T::fused(t121, t142, t112 * t145)),
+                t135,
+                t161,
+            );
+            let t163 = T::fused(
+                k(1e-6),
+                T::fused(t90, t85, -t42),
+                t162 + T::fused(-t67, t103, T::fused(-t105, t114, t116 * t123)),
+            );
+            let t164 = t60 * t53;
+            let t165 = t57 * t59;
+            let t166 = k(2.0) * (t165 - t164);
+            let t167 = t60 * t57;
+            let t168 = t53 * t59;
+            let t169 = k(2.0) * (t168 + t167);
+            let t170 = t60 * t60;
+            let t171 = k(2.0) * (k(0.5) - T::fused(t59, t59, t170));
+            let t172 = T::fused(
+                T::fused(t99, t155, T::fused(t120, t153, t111 * t154)),
+                t150,
+                T::fused(t99, t160, -T::fused(t120, t158, t111 * t159)) * t157,
+            );
+            let t173 = T::fused(
+                -T::fused(t99, t147, T::fused(-t120, t142, t111 * t145)),
+                t135,
+                t172,
+            );
+            let t174 = T::fused(
+                k(2e-6),
+                t86,
+                t173 + T::fused(t89, t103, T::fused(t107, t114, t118 * t123)),
+            );
+            let t175 = T::fused(
+                T::fused(t97, t155, -T::fused(t119, t153, t110 * t154)),
+                t150,
+                T::fused(t97, t160, T::fused(t119, t158, t110 * t159)) * t157,
+            );
+            let t176 = T::fused(
+                -T::fused(t97, t147, -T::fused(-t119, t142, t110 * t145)),
+                t135,
+                t175,
+            );
+            let t177 = T::fused(k(1e-6), T::fused(t90, t92, -t156), -t176);
+            let t178 = T::fused(
+                -T::fused(t171, t99, T::fused(-t166, t120, t169 * t111)),
+                t174,
+                T::fused(t171, t97, -T::fused(-t166, t119, t169 * t110)) * t177,
+            );
+            let t179 = T::fused(
+                -T::fused(t171, t101, T::fused(t166, t121, t169 * t112)),
+                t163,
+                t178,
+            );
+            let t180 = T::fused(k(1e-6), T::fused(t14, t40, t41), t179);
+            let t181 = k(2.0) * (k(0.5) - T::fused(t57, t57, t170));
+            let t182 = t60 * t59;
+            let t183 = t57 * t53;
+            let t184 = k(2.0) * (t183 - t182);
+            let t185 = k(2.0) * (t165 + t164);
+            let t186 = t25 * t13;
+            let t187 = T::fused(t186, t185, -T::fused(t4, t181, t23 * t184));
+            let t188 = T::fused(-t25, t169, t22 * t171);
+            let t189 = T::fused(t186, t171, T::fused(-t4, t166, t23 * t169));
+            let t190 = T::fused(t25, t184, t22 * t185);
+            let t191 = k(1.0) / T::fused(-t188, t187, t190 * t189);
+            let t192 = T::fused(
+                -T::fused(t185, t99, -T::fused(t181, t120, t184 * t111)),
+                t174,
+                T::fused(t185, t97, T::fused(t181, t119, t184 * t110)) * t177,
+            );
+            let t193 = T::fused(
+                -T::fused(t185, t101, -T::fused(-t181, t121, t184 * t112)),
+                t163,
+                t192,
+            );
+            let t194 = T::fused(k(2e-6), t81, t193);
+            let t195 = k(2.0) * (t168 - t167);
+            let t196 = t6 * t22;
+            let t197 = k(2.0) * (k(0.5) - T::fused(t53, t53, t170));
+            let t198 = t6 * t25;
+            let t199 = T::fused(
+                T::fused(-t22, t77, t13 * t198),
+                t197,
+                t28 * (k(2.0) * (t183 + t182)),
+            );
+            (
+                t13,
+                t25,
+                t77,
+                t180,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (t200,) = {
+            let t200 = T::fused(
+                -T::fused(-T::fused(t25, t77, t13 * t196), t195, t199),
+                T::fused(t188 * t191, t180, t190 * t191 * t194),
+                T::fused(t198, t195, t196 * t197)
+                    * T::fused(t189 * t191, t180, t187 * t191 * t194),
+            );
+            (t200,)
+        };
+        *dx = [u0, u1, u2, rates[0], rates[1], rates[2], -t200];
     }
     /// Writes the maximal state of a joint state: 127 operations (39 ±, 88 ×, 0 ÷) and 16 functions.
     fn to_maximal(&self, t: T, x: &Self::Joints, y: &mut Self::State) {
@@ -4090,7 +4086,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 145 operations (46 ±, 98 ×, 1 ÷) and 12 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 143 operations (46 ±, 96 ×, 1 ÷) and 12 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4108,9 +4104,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let inner_ring_wy = y[31];
         let inner_ring_wz = y[32];
         let rotor_wx = y[36];
-        let t0 = outer_ring_wz - inner_ring_wz;
-        let t1 = inner_ring_wy * t0;
-        let t2 = T::fused(
+        let t0 = k(12.566370614359172) * t;
+        let t1 = t0.sin();
+        let t2 = k(0.1) * t1;
+        let t3 = k(10.0) * t2.cos();
+        let t4 = k(18.84955592153876) * t;
+        let t5 = t4.sin();
+        let t6 = k(0.05) * t5;
+        let t7 = t6.sin();
+        let t8 = t7 * t3;
+        let t9 = k(0.025) * t5;
+        let t10 = t9.cos();
+        let t11 = k(0.05) * t1;
+        let t12 = t11.sin();
+        let t13 = t12 * t10;
+        let t14 = t11.cos();
+        let t15 = t14 * t10;
+        let t16 = t9.sin();
+        let t17 = t14 * t16;
+        let t18 = t12 * t16;
+        let t19 = T::fused(
+            t13,
+            outer_ring_e3,
+            T::fused(
+                t15,
+                outer_ring_e2,
+                T::fused(-t17, outer_ring_e1, t18 * outer_ring_e0),
+            ),
+        );
+        let t20 = k(2.0) * t19;
+        let t21 = T::fused(
+            t17,
+            outer_ring_e3,
+            T::fused(
+                -t18,
+                outer_ring_e2,
+                T::fused(t13, outer_ring_e1, t15 * outer_ring_e0),
+            ),
+        );
+        let t22 = t21 * t20;
+        let t23 = k(10.0) * t2.sin();
+        let t24 = T::fused(-t19, t20, k(1.0));
+        let t25 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -4119,8 +4154,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t3 = k(2.0) * t2;
-        let t4 = T::fused(
+        let t26 = k(2.0) * t25;
+        let t27 = T::fused(-t25, t26, k(1.0));
+        let t28 = k(1.2566370614359172) * t0.cos();
+        let t29 = T::fused(t28, t7, outer_ring_wy);
+        let t30 = k(0.9424777960769379) * t4.cos();
+        let t31 = k(15.791367041742975) * t1;
+        let t32 = t6.cos();
+        let t33 = T::fused(t28, t30 * t7, t32 * t31);
+        let t34 = k(17.765287921960844) * t5;
+        let t35 = T::fused(-outer_ring_wz, t29, T::fused(-t33, t24, t34 * t22));
+        let t36 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -4129,102 +4173,51 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t5 = t4 * t3;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = inner_ring_wx - t6;
-        let t8 = T::fused(
-            -k(5e-6),
-            T::fused(-inner_ring_wz, t6, inner_ring_wz * t7),
-            k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wz)),
+        let t37 = t36 * t26;
+        let t38 = T::fused(
+            k(1e-5) * t27,
+            T::fused(-t22, t8, t24 * t23),
+            T::fused(-t37, k(1e-6) * t27, t27 * (k(7.00125e-6) * t37)) * t35,
         );
-        let t9 = T::fused(-t2, t3, k(1.0));
-        let t10 = T::fused(
-            t5,
-            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t1),
-            t9 * T::fused(k(7.00125e-6), inner_ring_wx * t0, -t8),
-        );
-        let t11 = k(18.84955592153876) * t;
-        let t12 = t11.sin();
-        let t13 = k(0.05) * t12;
-        let t14 = t13.sin();
-        let t15 = k(12.566370614359172) * t;
-        let t16 = k(1.2566370614359172) * t15.cos();
-        let t17 = T::fused(t16, t14, outer_ring_wy);
-        let t18 = k(0.025) * t12;
-        let t19 = t18.cos();
-        let t20 = t15.sin();
-        let t21 = k(0.05) * t20;
-        let t22 = t21.sin();
-        let t23 = t22 * t19;
-        let t24 = t21.cos();
-        let t25 = t24 * t19;
-        let t26 = t18.sin();
-        let t27 = t24 * t26;
-        let t28 = t22 * t26;
-        let t29 = T::fused(
-            t23,
-            outer_ring_e3,
-            T::fused(
-                t25,
-                outer_ring_e2,
-                T::fused(-t27, outer_ring_e1, t28 * outer_ring_e0),
-            ),
-        );
-        let t30 = k(2.0) * t29;
-        let t31 = T::fused(-t29, t30, k(1.0));
-        let t32 = k(0.9424777960769379) * t11.cos();
-        let t33 = k(15.791367041742975) * t20;
-        let t34 = t13.cos();
-        let t35 = T::fused(t16, t32 * t14, t34 * t33);
-        let t36 = T::fused(
-            t27,
-            outer_ring_e3,
-            T::fused(
-                -t28,
-                outer_ring_e2,
-                T::fused(t23, outer_ring_e1, t25 * outer_ring_e0),
-            ),
-        );
-        let t37 = t36 * t30;
-        let t38 = k(17.765287921960844) * t12;
-        let t39 = T::fused(-outer_ring_wz, t17, T::fused(-t35, t31, t38 * t37));
-        let t40 = k(0.1) * t20;
-        let t41 = t40.cos();
-        let t42 = k(10.0) * (t41 * t14);
-        let t43 = k(10.0) * t40.sin();
-        let t44 = T::fused(
-            T::fused(-t5, k(1e-6) * t9, t9 * (k(7.00125e-6) * t5)),
+        let t39 = k(1e-5) * inner_ring_wx;
+        let t40 = inner_ring_wx - rotor_wx;
+        let t41 = inner_ring_wx - t40;
+        let t42 = T::fused(
+            -(k(0.000125) * inner_ring_wz),
             t39,
-            k(1e-5) * t9 * T::fused(-t37, t42, t31 * t43),
+            k(5e-6) * T::fused(-inner_ring_wz, t40, inner_ring_wz * t41),
         );
-        let t45 = (t44 + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t10))
-            / (k(1e-6) + T::fused(t5, k(1e-6) * t5, t9 * (k(7.00125e-6) * t9)));
-        let t46 = T::fused(
-            -k(5e-6),
-            T::fused(-inner_ring_wy, t6, inner_ring_wy * t7),
-            k(1e-5) * (inner_ring_wx * (k(0.000125) * inner_ring_wy)),
+        let t43 = outer_ring_wz - inner_ring_wz;
+        let t44 = inner_ring_wy * t43;
+        let t45 = T::fused(
+            t27,
+            T::fused(k(7.00125e-6), inner_ring_wx * t43, t42),
+            t37 * (k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t44)),
         );
-        let t47 = T::fused(
-            t5,
-            T::fused(t31, t42, t37 * t43),
-            t9 * (k(10.0) * (t41 * t34)),
-        );
+        let t46 = (T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, t45) + t38)
+            / (k(1e-6) + T::fused(t37, k(1e-6) * t37, t27 * (k(7.00125e-6) * t27)));
+        let t47 = T::fused(t27, t32 * t3, t37 * T::fused(t24, t8, t22 * t23));
         let t48 = T::fused(
-            k(166631.95167673402),
+            -(k(0.000125) * inner_ring_wy),
+            t39,
+            k(5e-6) * T::fused(-inner_ring_wy, t40, inner_ring_wy * t41),
+        );
+        let t49 = T::fused(
+            -k(166631.95167673402),
             T::fused(
                 k(1e-5),
                 t47,
-                T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, t46),
+                T::fused(k(1e-6), inner_ring_wx * inner_ring_wy, -t48),
             ),
-            -T::fused(-outer_ring_wx, t17, T::fused(t35, t37, t38 * t31)),
+            T::fused(-outer_ring_wx, t29, T::fused(t33, t22, t34 * t24)),
         );
         *out = [
-            -(T::fused(-t16, t32 * t34, t14 * t33) + t45),
-            -t48,
-            t1 - T::fused(t9, t39, t5 * t45),
+            -(T::fused(-t28, t30 * t32, t7 * t31) + t46),
+            t49,
+            t44 - T::fused(t37, t46, t27 * t35),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 554 operations (216 ±, 333 ×, 5 ÷) and 8 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 523 operations (208 ±, 310 ×, 5 ÷) and 8 functions.
     fn corrected_accelerations(
         &self,
         t: T,
@@ -4253,259 +4246,330 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let rotor_wx = y[36];
         let rotor_wy = y[37];
         let rotor_wz = y[38];
-        let t0 = outer_ring_e0 * outer_ring_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-        let t2 = k(18.84955592153876) * t;
-        let t3 = t2.sin();
-        let t4 = k(0.05) * t3;
-        let t5 = t4.sin();
-        let t6 = k(12.566370614359172) * t;
-        let t7 = t6.sin();
-        let t8 = k(0.1) * t7;
-        let t9 = t8.cos();
-        let t10 = t9 * t5;
-        let t11 = outer_ring_e0 * outer_ring_e3;
-        let t12 = outer_ring_e1 * outer_ring_e2;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = t4.cos();
-        let t15 = outer_ring_e0 * outer_ring_e1;
-        let t16 = outer_ring_e2 * outer_ring_e3;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = t8.sin();
-        let t19 = t18 * t5;
-        let t20 = k(1.2566370614359172) * t6.cos();
-        let t21 = t20 * t14;
-        let t22 = t9 * t14;
-        let t23 = t18 * t14;
-        let t24 = T::fused(t23, t17, -T::fused(t22, t1, t5 * t13));
-        let t25 = t20 * t5;
-        let t26 = T::fused(
-            -t21,
-            T::fused(t19, t17, T::fused(-t10, t1, t14 * t13)),
-            t25 * t24,
+        let t0 = k(2.0) * outer_ring_e0;
+        let t1 = outer_ring_e3 * t0;
+        let t2 = k(2.0) * outer_ring_e1;
+        let t3 = outer_ring_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = k(18.84955592153876) * t;
+        let t6 = t5.sin();
+        let t7 = k(0.05) * t6;
+        let t8 = t7.cos();
+        let t9 = k(2.0) * outer_ring_e2;
+        let t10 = T::fused(-outer_ring_e0, t0, k(1.0));
+        let t11 = T::fused(-outer_ring_e2, t9, t10);
+        let t12 = t7.sin();
+        let t13 = k(12.566370614359172) * t;
+        let t14 = t13.sin();
+        let t15 = k(0.1) * t14;
+        let t16 = t15.cos();
+        let t17 = t16 * t12;
+        let t18 = outer_ring_e1 * t0;
+        let t19 = outer_ring_e3 * t9;
+        let t20 = t19 + t18;
+        let t21 = t15.sin();
+        let t22 = t21 * t12;
+        let t23 = k(1.2566370614359172) * t13.cos();
+        let t24 = t23 * t8;
+        let t25 = t16 * t8;
+        let t26 = t21 * t8;
+        let t27 = T::fused(t26, t20, -T::fused(t12, t4, t25 * t11));
+        let t28 = t23 * t12;
+        let t29 = T::fused(
+            -t24,
+            T::fused(t22, t20, -T::fused(-t8, t4, t17 * t11)),
+            t28 * t27,
         );
-        let t27 = k(0.9424777960769379) * t2.cos();
-        let t28 = T::fused(t27, T::fused(t18, t1, t9 * t17), -t26);
-        let t29 = outer_ring_wy - t28;
-        let t30 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-        let t31 = k(2.0) * (t16 - t15);
-        let t32 = outer_ring_e0 * outer_ring_e2;
-        let t33 = outer_ring_e1 * outer_ring_e3;
-        let t34 = k(2.0) * (t33 + t32);
-        let t35 = T::fused(-t19, t30, T::fused(t10, t31, t14 * t34));
-        let t36 = T::fused(t23, t30, T::fused(-t22, t31, t5 * t34));
-        let t37 = T::fused(t9, t30, t18 * t31);
-        let t38 = T::fused(t27, t37, -T::fused(t21, t35, t25 * t36));
-        let t39 = outer_ring_wz + t38;
-        let t40 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-        let t41 = k(2.0) * (t12 + t11);
-        let t42 = k(2.0) * (t33 - t32);
-        let t43 = T::fused(t19, t42, T::fused(-t14, t40, t10 * t41));
-        let t44 = T::fused(t23, t42, T::fused(t5, t40, t22 * t41));
-        let t45 = T::fused(-t9, t42, t18 * t41);
-        let t46 = T::fused(t27, t45, T::fused(-t21, t43, t25 * t44));
-        let t47 = outer_ring_wx + t46;
-        let t48 = T::fused(t39, t39, t47 * t47) / t24;
-        let t49 = k(15.791367041742975) * t7;
-        let t50 = T::fused(t20, t27 * t5, t14 * t49);
-        let t51 = T::fused(-t20, t27 * t14, t5 * t49);
-        let t52 = k(17.765287921960844) * t3;
-        let t53 = T::fused(outer_ring_wz, t28, outer_ring_wy * t38)
-            + T::fused(t52, t45, T::fused(-t50, t43, t51 * t44));
-        let t54 = t53 + T::fused(-t39, t29, t36 * t48);
-        let t55 = rotor_e0 * rotor_e3;
-        let t56 = rotor_e1 * rotor_e2;
-        let t57 = k(2.0) * (t56 - t55);
-        let t58 = inner_ring_e0 * inner_ring_e0;
-        let t59 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t58));
-        let t60 = rotor_e0 * rotor_e0;
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t60));
-        let t62 = inner_ring_e0 * inner_ring_e3;
-        let t63 = inner_ring_e1 * inner_ring_e2;
-        let t64 = k(2.0) * (t63 + t62);
-        let t65 = rotor_e0 * rotor_e1;
-        let t66 = rotor_e2 * rotor_e3;
-        let t67 = k(2.0) * (t66 + t65);
-        let t68 = inner_ring_e0 * inner_ring_e2;
-        let t69 = inner_ring_e1 * inner_ring_e3;
-        let t70 = k(2.0) * (t69 - t68);
-        let t71 = T::fused(t70, t67, -T::fused(t59, t57, t64 * t61));
-        let t72 = k(5e-6) * t71;
-        let t73 = rotor_e0 * rotor_e2;
-        let t74 = rotor_e1 * rotor_e3;
-        let t75 = k(2.0) * (t74 + t73);
-        let t76 = k(2.0) * (t66 - t65);
-        let t77 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t60));
-        let t78 = T::fused(t70, t77, -T::fused(-t59, t75, t64 * t76));
-        let t79 = k(5e-6) * t78;
-        let t80 = inner_ring_e0 * inner_ring_e1;
-        let t81 = inner_ring_e2 * inner_ring_e3;
-        let t82 = t81 - t80;
-        let t83 = k(2.0) * t82;
-        let t84 = t69 + t68;
-        let t85 = k(2.0) * t84;
-        let t86 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t58);
-        let t87 = k(2.0) * t86;
-        let t88 = T::fused(t87, t67, -T::fused(-t83, t61, t85 * t57));
-        let t89 = T::fused(t87, t77, T::fused(t83, t76, t85 * t75));
-        let t90 = T::fused(t88, t72, t89 * t79);
-        let t91 = k(1e-6)
-            + (k(1.25e-9) + T::fused(t88, k(5e-6) * t88, t89 * (k(5e-6) * t89)));
-        let t92 = k(1.0) / t91;
-        let t93 = t92 * t90;
-        let t94 = T::fused(t90, t93, -(k(1e-6) + T::fused(t71, t72, t78 * t79)));
-        let t95 = T::fused(t17, t70, -T::fused(t13, t59, t1 * t64));
-        let t96 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t58);
-        let t97 = k(2.0) * t96;
-        let t98 = t63 - t62;
-        let t99 = k(2.0) * t98;
-        let t100 = t81 + t80;
-        let t101 = k(2.0) * t100;
-        let t102 = T::fused(t101, t67, T::fused(t97, t61, t99 * t57));
-        let t103 = T::fused(t101, t77, -T::fused(-t97, t76, t99 * t75));
-        let t104 = k(5e-6) * t102;
-        let t105 = k(5e-6) * t103;
-        let t106 = T::fused(t88, t104, t89 * t105);
-        let t107 = T::fused(t106, t93, -T::fused(t102, t72, t103 * t79));
-        let t108 = T::fused(t17, t101, T::fused(t1, t97, t13 * t99));
-        let t109 = T::fused(t95, t94, t108 * t107);
-        let t110 = T::fused(
-            t106,
-            t92 * t106,
-            -(k(2e-6) + (k(1.25e-9) + T::fused(t102, t104, t103 * t105))),
+        let t30 = k(0.9424777960769379) * t5.cos();
+        let t31 = T::fused(t30, T::fused(t21, t11, t16 * t20), -t29);
+        let t32 = outer_ring_wy - t31;
+        let t33 = outer_ring_e2 * t0;
+        let t34 = outer_ring_e3 * t2;
+        let t35 = t34 + t33;
+        let t36 = t19 - t18;
+        let t37 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t10);
+        let t38 = T::fused(t22, t37, -T::fused(t8, t35, t17 * t36));
+        let t39 = T::fused(t26, t37, -T::fused(-t12, t35, t25 * t36));
+        let t40 = T::fused(t21, t36, t16 * t37);
+        let t41 = T::fused(t30, t40, -T::fused(-t24, t38, t28 * t39));
+        let t42 = outer_ring_wz + t41;
+        let t43 = T::fused(-outer_ring_e1, t2, t10);
+        let t44 = t3 + t1;
+        let t45 = t34 - t33;
+        let t46 = T::fused(t22, t45, T::fused(-t8, t43, t17 * t44));
+        let t47 = T::fused(t26, t45, T::fused(t12, t43, t25 * t44));
+        let t48 = T::fused(-t21, t44, t16 * t45);
+        let t49 = T::fused(t30, t48, -T::fused(-t24, t46, t28 * t47));
+        let t50 = outer_ring_wx - t49;
+        let t51 = T::fused(t42, t42, t50 * t50) / t27;
+        let t52 = k(15.791367041742975) * t14;
+        let t53 = T::fused(t23, t30 * t12, t8 * t52);
+        let t54 = T::fused(-t23, t30 * t8, t12 * t52);
+        let t55 = k(17.765287921960844) * t6;
+        let t56 = T::fused(outer_ring_wz, t31, outer_ring_wy * t41)
+            - T::fused(t55, t48, -T::fused(-t53, t46, t54 * t47));
+        let t57 = t56 + T::fused(-t42, t32, t39 * t51);
+        let t58 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
+            ),
         );
-        let t111 = T::fused(t95, t107, t108 * t110);
-        let t112 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t60));
-        let t113 = k(2.0) * (t56 + t55);
-        let t114 = k(2.0) * (t74 - t73);
-        let t115 = T::fused(t70, t114, T::fused(t59, t112, t64 * t113));
-        let t116 = T::fused(
-            inner_ring_wx,
-            t115,
-            inner_ring_wy * T::fused(t101, t114, -T::fused(t99, t112, t97 * t113)),
+        let t59 = k(2.0) * t58;
+        let t60 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
         );
-        let t117 = T::fused(
+        let t61 = t60 * t59;
+        let t62 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t63 = k(2.0) * t62;
+        let t64 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t65 = t64 * t63;
+        let t66 = t65 + t61;
+        let t67 = k(5e-6) * t66;
+        let t68 = t64 * t59;
+        let t69 = t60 * t63;
+        let t70 = t69 - t68;
+        let t71 = k(5e-6) * t70;
+        let t72 = t62 * t59;
+        let t73 = k(2.0) * t64;
+        let t74 = t60 * t73;
+        let t75 = t74 - t72;
+        let t76 = T::fused(-t58, t59, k(1.0));
+        let t77 = T::fused(-t60, k(2.0) * t60, t76);
+        let t78 = T::fused(-t75, t67, t77 * t71);
+        let t79 = k(1e-6)
+            + (k(1.25e-9) + T::fused(t75, k(5e-6) * t75, t77 * (k(5e-6) * t77)));
+        let t80 = k(1.0) / t79;
+        let t81 = t80 * t78;
+        let t82 = T::fused(t78, t81, -(k(1e-6) + T::fused(t66, t67, t70 * t71)));
+        let t83 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t84 = k(2.0) * t83;
+        let t85 = T::fused(
+            -outer_ring_e0,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e1,
+                inner_ring_e2,
+                T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
+            ),
+        );
+        let t86 = t85 * t84;
+        let t87 = T::fused(
+            outer_ring_e2,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e3,
+                inner_ring_e2,
+                T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
+            ),
+        );
+        let t88 = k(2.0) * t87;
+        let t89 = T::fused(
+            -outer_ring_e1,
+            inner_ring_e3,
+            T::fused(
+                -outer_ring_e0,
+                inner_ring_e2,
+                T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+            ),
+        );
+        let t90 = t89 * t88;
+        let t91 = t90 - t86;
+        let t92 = T::fused(-t64, t73, t76);
+        let t93 = t74 + t72;
+        let t94 = k(5e-6) * t92;
+        let t95 = k(5e-6) * t93;
+        let t96 = T::fused(t75, t94, t77 * t95);
+        let t97 = T::fused(t96, t81, -T::fused(-t92, t67, t93 * t71));
+        let t98 = k(2.0) * t89;
+        let t99 = T::fused(-t83, t84, k(1.0));
+        let t100 = T::fused(-t89, t98, t99);
+        let t101 = T::fused(-t91, t82, t100 * t97);
+        let t102 = T::fused(
+            t96,
+            t80 * t96,
+            -(k(2e-6) + (k(1.25e-9) + T::fused(t92, t94, t93 * t95))),
+        );
+        let t103 = T::fused(-t91, t97, t100 * t102);
+        let t104 = T::fused(-t62, t63, t76);
+        let t105 = T::fused(
             inner_ring_wz,
-            T::fused(t87, t114, -T::fused(-t85, t112, t83 * t113)),
-            -t116,
+            t69 + t68,
+            T::fused(-inner_ring_wx, t104, inner_ring_wy * (t65 - t61)),
         );
-        let t118 = rotor_wx + t117;
-        let t119 = T::fused(
+        let t106 = rotor_wx - t105;
+        let t107 = T::fused(
             inner_ring_wz,
-            t89,
-            -T::fused(inner_ring_wx, t78, inner_ring_wy * t103),
+            t77,
+            -T::fused(inner_ring_wx, t70, inner_ring_wy * t93),
         );
-        let t120 = rotor_wz - t119;
-        let t121 = T::fused(
+        let t108 = rotor_wz + t107;
+        let t109 = T::fused(
             inner_ring_wz,
-            t88,
-            -T::fused(inner_ring_wx, t71, inner_ring_wy * t102),
+            t75,
+            -T::fused(-inner_ring_wx, t66, inner_ring_wy * t92),
         );
-        let t122 = rotor_wy + t121;
-        let t123 = T::fused(t120, t120, t122 * t122) / t115;
-        let t124 = T::fused(rotor_wx, t119, rotor_wz * t117)
-            - T::fused(-t120, t118, t78 * t123);
-        let t125 = k(5e-6) * T::fused(rotor_wx, rotor_wz, t124);
-        let t126 = T::fused(-rotor_wy, t117, rotor_wx * t121)
-            - T::fused(t122, t118, t71 * t123);
-        let t127 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t126);
-        let t128 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t129 = inner_ring_wx * inner_ring_wy;
-        let t130 = inner_ring_wx * inner_ring_wz;
-        let t131 = T::fused(t85, t130, T::fused(t59, t128, t99 * t129));
-        let t132 = k(1e-5) * t131;
-        let t133 = k(0.00025) * t98;
-        let t134 = T::fused(t83, t130, -T::fused(t64, t128, t97 * t129));
-        let t135 = T::fused(k(1e-5), t134, k(0.8));
-        let t136 = k(0.00025) * t96;
-        let t137 = T::fused(t87, t130, -T::fused(-t70, t128, t101 * t129));
-        let t138 = k(1e-5) * t137;
-        let t139 = k(0.00025) * t100;
-        let t140 = T::fused(t139, t138, T::fused(-t133, t132, t136 * t135))
-            + T::fused(t88, t125, t89 * t127);
-        let t141 = T::fused(k(1e-6), t129, -t140);
-        let t142 = t92 * t141;
-        let t143 = T::fused(
-            t90,
-            t142,
+        let t110 = rotor_wy - t109;
+        let t111 = T::fused(t108, t108, t110 * t110) / t104;
+        let t112 = T::fused(rotor_wx, t107, rotor_wz * t105)
+            + T::fused(-t108, t106, t70 * t111);
+        let t113 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t112);
+        let t114 = T::fused(-rotor_wy, t105, rotor_wx * t109)
+            - T::fused(-t110, t106, t66 * t111);
+        let t115 = k(5e-6) * T::fused(rotor_wx, rotor_wy, t114);
+        let t116 = k(2.0) * inner_ring_e0;
+        let t117 = inner_ring_e3 * t116;
+        let t118 = k(2.0) * inner_ring_e1;
+        let t119 = inner_ring_e2 * t118;
+        let t120 = t119 - t117;
+        let t121 = k(0.000125) * t120;
+        let t122 = T::fused(-inner_ring_e0, t116, k(1.0));
+        let t123 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t124 = inner_ring_wx * inner_ring_wy;
+        let t125 = inner_ring_e2 * t116;
+        let t126 = inner_ring_e3 * t118;
+        let t127 = t126 + t125;
+        let t128 = inner_ring_wx * inner_ring_wz;
+        let t129 = T::fused(
+            t128,
+            t127,
+            T::fused(t123, T::fused(-inner_ring_e1, t118, t122), t124 * t120),
+        );
+        let t130 = k(1e-5) * t129;
+        let t131 = k(2.0) * inner_ring_e2;
+        let t132 = T::fused(-inner_ring_e2, t131, t122);
+        let t133 = k(0.000125) * t132;
+        let t134 = inner_ring_e1 * t116;
+        let t135 = inner_ring_e3 * t131;
+        let t136 = t135 - t134;
+        let t137 = T::fused(t128, t136, -T::fused(t123, t119 + t117, t124 * t132));
+        let t138 = T::fused(k(1e-5), t137, k(0.8));
+        let t139 = t135 + t134;
+        let t140 = k(0.000125) * t139;
+        let t141 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t122);
+        let t142 = T::fused(t128, t141, -T::fused(-t123, t126 - t125, t124 * t139));
+        let t143 = k(1e-5) * t142;
+        let t144 = T::fused(t143, t140, T::fused(-t130, t121, t138 * t133))
+            - T::fused(t75, t113, t77 * t115);
+        let t145 = T::fused(k(1e-6), t124, -t144);
+        let t146 = t80 * t145;
+        let t147 = T::fused(
+            t78,
+            t146,
             -T::fused(
                 k(1e-6),
                 inner_ring_wy * inner_ring_wz,
-                -T::fused(t71, t125, t78 * t127),
+                T::fused(-t66, t113, t70 * t115),
             ),
         );
-        let t144 = T::fused(
-            outer_ring_wx,
-            T::fused(t42, t87, -T::fused(-t40, t85, t41 * t83)),
-            outer_ring_wy * T::fused(t17, t87, -T::fused(-t1, t83, t13 * t85)),
-        );
-        let t145 = T::fused(t30, t87, T::fused(t31, t83, t34 * t85));
-        let t146 = T::fused(outer_ring_wz, t145, -t144);
-        let t147 = inner_ring_wz - t146;
-        let t148 = T::fused(t42, t101, -T::fused(t40, t99, t41 * t97));
-        let t149 = T::fused(t30, t101, -T::fused(-t31, t97, t34 * t99));
-        let t150 = T::fused(
+        let t148 = t89 * t84;
+        let t149 = t85 * t88;
+        let t150 = t87 * t84;
+        let t151 = t85 * t98;
+        let t152 = T::fused(-t85, k(2.0) * t85, t99);
+        let t153 = T::fused(
             outer_ring_wz,
-            t149,
-            -T::fused(outer_ring_wx, t148, outer_ring_wy * t108),
+            t152,
+            -T::fused(outer_ring_wx, t149 - t148, outer_ring_wy * (t151 + t150)),
         );
-        let t151 = inner_ring_wy + t150;
-        let t152 = T::fused(t42, t70, T::fused(t40, t59, t41 * t64));
-        let t153 = T::fused(t30, t70, -T::fused(-t34, t59, t31 * t64));
-        let t154 = T::fused(
+        let t154 = inner_ring_wz + t153;
+        let t155 = t90 + t86;
+        let t156 = t151 - t150;
+        let t157 = T::fused(
             outer_ring_wz,
-            t153,
-            -T::fused(outer_ring_wx, t152, outer_ring_wy * t95),
+            t156,
+            -T::fused(-outer_ring_wx, t155, outer_ring_wy * t100),
         );
-        let t155 = inner_ring_wx + t154;
-        let t156 = T::fused(t151, t151, t155 * t155) / t145;
-        let t157 = T::fused(inner_ring_wz, t150, inner_ring_wy * t146)
-            + T::fused(-t151, t147, t149 * t156);
-        let t158 = T::fused(inner_ring_wx, t146, inner_ring_wz * t154)
-            + T::fused(-t155, t147, t153 * t156);
-        let t159 = k(0.00025) * t84;
-        let t160 = k(0.00025) * t82;
-        let t161 = k(0.00025) * t86;
-        let t162 = T::fused(t161, t138, T::fused(t159, t132, t160 * t135))
-            - T::fused(t102, t125, t103 * t127);
-        let t163 = T::fused(
-            t95,
-            T::fused(-t94, t157, t107 * t158) - t143,
-            t108 * (T::fused(-t107, t157, t110 * t158) - T::fused(t106, t142, -t162)),
+        let t158 = inner_ring_wy - t157;
+        let t159 = T::fused(-t87, t88, t99);
+        let t160 = t149 + t148;
+        let t161 = T::fused(
+            outer_ring_wz,
+            t160,
+            T::fused(-outer_ring_wx, t159, outer_ring_wy * t91),
         );
-        let t164 = T::fused(
-            t95,
-            T::fused(t152, t94, t148 * t107),
-            t108 * T::fused(t152, t107, t148 * t110),
+        let t162 = inner_ring_wx - t161;
+        let t163 = T::fused(t158, t158, t162 * t162) / t152;
+        let t164 = T::fused(inner_ring_wz, t157, inner_ring_wy * t153)
+            - T::fused(-t158, t154, t156 * t163);
+        let t165 = T::fused(inner_ring_wx, t153, inner_ring_wz * t161)
+            - T::fused(-t162, t154, t160 * t163);
+        let t166 = k(0.000125) * t127;
+        let t167 = k(0.000125) * t136;
+        let t168 = k(0.000125) * t141;
+        let t169 = T::fused(t143, t168, T::fused(t130, t166, t138 * t167))
+            + T::fused(t92, t113, t93 * t115);
+        let t170 = T::fused(
+            -t91,
+            T::fused(-t82, t164, t97 * t165) + t147,
+            t100 * (T::fused(-t97, t164, t102 * t165) + T::fused(t96, t146, -t169)),
         );
-        let t165 = T::fused(outer_ring_wy, t46, outer_ring_wx * t28)
-            - T::fused(t52, t37, -T::fused(t50, t35, t51 * t36));
-        let t166 = t165 - T::fused(t47, t29, t44 * t48);
-        let t167 = T::fused(t54, t164, T::fused(t109, t153, t111 * t149) * t166)
-            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t163);
-        let t168 = t167 / (k(1e-6) - T::fused(t95, t109, t108 * t111));
-        let t169 = t157 - T::fused(t153, t166, T::fused(t152, t54, t95 * t168));
-        let t170 = t158 + T::fused(t149, t166, T::fused(t148, t54, t108 * t168));
-        let t171 = t92 * (t141 - T::fused(-t90, t169, t106 * t170));
+        let t171 = T::fused(
+            -t91,
+            T::fused(-t159, t82, t155 * t97),
+            t100 * T::fused(-t159, t97, t155 * t102),
+        );
+        let t172 = T::fused(-outer_ring_wy, t49, outer_ring_wx * t31)
+            - T::fused(t55, t40, -T::fused(-t53, t38, t54 * t39));
+        let t173 = t172 - T::fused(t50, t32, t47 * t51);
+        let t174 = T::fused(-t57, t171, t173 * T::fused(t160, t101, t156 * t103))
+            - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t170);
+        let t175 = t174 / (k(1e-6) - T::fused(-t91, t101, t100 * t103));
+        let t176 = t164 - T::fused(t160, t173, -T::fused(-t159, t57, t91 * t175));
+        let t177 = t165 + T::fused(t156, t173, T::fused(-t155, t57, t100 * t175));
+        let t178 = t80 * (t145 + T::fused(-t78, t176, t96 * t177));
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
-            t54,
-            t168,
-            -t166,
+            t57,
+            t175,
+            -t173,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t169,
-            t170,
-            -t171,
-            T::fused(k(0.000125), t131, -T::fused(t159, t170, t133 * t171)),
-            T::fused(k(0.000125), t134, T::fused(-t160, t170, t136 * t171)),
-            -T::fused(k(0.000125), t137, T::fused(-t161, t170, t139 * t171)),
+            t176,
+            -t177,
+            -t178,
+            T::fused(k(0.000125), t129, -T::fused(-t166, t177, t121 * t178)),
+            T::fused(k(0.000125), t137, T::fused(t167, t177, t133 * t178)),
+            -T::fused(k(0.000125), t142, T::fused(t168, t177, t140 * t178)),
             k(0.0),
-            t124 + T::fused(t88, t171, T::fused(-t71, t169, t102 * t170)),
-            t126 - T::fused(t89, t171, T::fused(-t78, t169, t103 * t170)),
+            -(t112 + T::fused(t75, t178, -T::fused(t66, t176, t92 * t177))),
+            T::fused(t77, t178, -T::fused(-t70, t176, t93 * t177)) - t114,
         ];
     }
     /// Writes λ: 156 operations (60 ±, 96 ×, 0 ÷) and 6 functions.
@@ -4694,7 +4758,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
             -t21,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 667 operations (261 ±, 401 ×, 5 ÷) and 12 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 627 operations (249 ±, 373 ×, 5 ÷) and 12 functions.
     fn corrected_solution(&self, t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -4719,603 +4783,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for PitchingBearings<T> {
         let rotor_wy = y[37];
         let rotor_wz = y[38];
         let (
-            t54,
-            t130,
-            t162,
-            t163,
-            t164,
-            t169,
-            t171,
-            t172,
-            t173,
-            t174,
-            t175,
-            t176,
-            t177,
-            t178,
-            t179,
-            t180,
-            t181,
-            t182,
-            t183,
-            t184,
-            t187,
-            t188,
-            t190,
-            t191,
-            t193,
-            t194,
-            t195,
-            t197,
-            t198,
-            t199,
-        ) = {
-            let t0 = outer_ring_e0 * outer_ring_e0;
-            let t1 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t0));
-            let t2 = k(18.84955592153876) * t;
-            let t3 = t2.sin();
-            let t4 = k(0.05) * t3;
-            let t5 = t4.sin();
-            let t6 = k(12.566370614359172) * t;
-            let t7 = t6.sin();
-            let t8 = k(0.1) * t7;
-            let t9 = t8.cos();
-            let t10 = t9 * t5;
-            let t11 = outer_ring_e0 * outer_ring_e3;
-            let t12 = outer_ring_e1 * outer_ring_e2;
-            let t13 = k(2.0) * (t12 - t11);
-            let t14 = t4.cos();
-            let t15 = outer_ring_e0 * outer_ring_e1;
-            let t16 = outer_ring_e2 * outer_ring_e3;
-            let t17 = k(2.0) * (t16 + t15);
-            let t18 = t8.sin();
-            let t19 = t18 * t5;
-            let t20 = k(1.2566370614359172) * t6.cos();
-            let t21 = t20 * t14;
-            let t22 = t9 * t14;
-            let t23 = t18 * t14;
-            let t24 = T::fused(t23, t17, -T::fused(t22, t1, t5 * t13));
-            let t25 = t20 * t5;
-            let t26 = T::fused(
-                -t21,
-                T::fused(t19, t17, T::fused(-t10, t1, t14 * t13)),
-                t25 * t24,
-            );
-            let t27 = k(0.9424777960769379) * t2.cos();
-            let t28 = T::fused(t27, T::fused(t18, t1, t9 * t17), -t26);
-            let t29 = outer_ring_wy - t28;
-            let t30 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t0));
-            let t31 = k(2.0) * (t16 - t15);
-            let t32 = outer_ring_e0 * outer_ring_e2;
-            let t33 = outer_ring_e1 * outer_ring_e3;
-            let t34 = k(2.0) * (t33 + t32);
-            let t35 = T::fused(-t19, t30, T::fused(t10, t31, t14 * t34));
-            let t36 = T::fused(t23, t30, T::fused(-t22, t31, t5 * t34));
-            let t37 = T::fused(t9, t30, t18 * t31);
-            let t38 = T::fused(t27, t37, -T::fused(t21, t35, t25 * t36));
-            let t39 = outer_ring_wz + t38;
-            let t40 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t0));
-            let t41 = k(2.0) * (t12 + t11);
-            let t42 = k(2.0) * (t33 - t32);
-            let t43 = T::fused(t19, t42, T::fused(-t14, t40, t10 * t41));
-            let t44 = T::fused(t23, t42, T::fused(t5, t40, t22 * t41));
-            let t45 = T::fused(-t9, t42, t18 * t41);
-            let t46 = T::fused(t27, t45, T::fused(-t21, t43, t25 * t44));
-            let t47 = outer_ring_wx + t46;
-            let t48 = T::fused(t39, t39, t47 * t47) / t24;
-            let t49 = k(15.791367041742975) * t7;
-            let t50 = T::fused(t20, t27 * t5, t14 * t49);
-            let t51 = T::fused(-t20, t27 * t14, t5 * t49);
-            let t52 = k(17.765287921960844) * t3;
-            let t53 = T::fused(outer_ring_wz, t28, outer_ring_wy * t38)
-                + T::fused(t52, t45, T::fused(-t50, t43, t51 * t44));
-            let t54 = t53 + T::fused(-t39, t29, t36 * t48);
-            let t55 = rotor_e0 * rotor_e3;
-            let t56 = rotor_e1 * rotor_e2;
-            let t57 = k(2.0) * (t56 - t55);
-            let t58 = inner_ring_e0 * inner_ring_e0;
-            let t59 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t58));
-            let t60 = rotor_e0 * rotor_e0;
-            let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t60));
-            let t62 = inner_ring_e0 * inner_ring_e3;
-            let t63 = inner_ring_e1 * inner_ring_e2;
-            let t64 = k(2.0) * (t63 + t62);
-            let t65 = rotor_e0 * rotor_e1;
-            let t66 = rotor_e2 * rotor_e3;
-            let t67 = k(2.0) * (t66 + t65);
-            let t68 = inner_ring_e0 * inner_ring_e2;
-            let t69 = inner_ring_e1 * inner_ring_e3;
-            let t70 = k(2.0) * (t69 - t68);
-            let t71 = T::fused(t70, t67, -T::fused(t59, t57, t64 * t61));
-            let t72 = k(5e-6) * t71;
-            let t73 = rotor_e0 * rotor_e2;
-            let t74 = rotor_e1 * rotor_e3;
-            let t75 = k(2.0) * (t74 + t73);
-            let t76 = k(2.0) * (t66 - t65);
-            let t77 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t60));
-            let t78 = T::fused(t70, t77, -T::fused(-t59, t75, t64 * t76));
-            let t79 = k(5e-6) * t78;
-            let t80 = inner_ring_e0 * inner_ring_e1;
-            let t81 = inner_ring_e2 * inner_ring_e3;
-            let t82 = t81 - t80;
-            let t83 = k(2.0) * t82;
-            let t84 = t69 + t68;
-            let t85 = k(2.0) * t84;
-            let t86 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t58);
-            let t87 = k(2.0) * t86;
-            let t88 = T::fused(t87, t67, -T::fused(-t83, t61, t85 * t57));
-            let t89 = T::fused(t87, t77, T::fused(t83, t76, t85 * t75));
-            let t90 = T::fused(t88, t72, t89 * t79);
-            let t91 = k(1e-6)
-                + (k(1.25e-9) + T::fused(t88, k(5e-6) * t88, t89 * (k(5e-6) * t89)));
-            let t92 = k(1.0) / t91;
-            let t93 = t92 * t90;
-            let t94 = T::fused(t90, t93, -(k(1e-6) + T::fused(t71, t72, t78 * t79)));
-            let t95 = T::fused(t17, t70, -T::fused(t13, t59, t1 * t64));
-            let t96 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t58);
-            let t97 = k(2.0) * t96;
-            let t98 = t63 - t62;
-            let t99 = k(2.0) * t98;
-            let t100 = t81 + t80;
-            let t101 = k(2.0) * t100;
-            let t102 = T::fused(t101, t67, T::fused(t97, t61, t99 * t57));
-            let t103 = T::fused(t101, t77, -T::fused(-t97, t76, t99 * t75));
-            let t104 = k(5e-6) * t102;
-            let t105 = k(5e-6) * t103;
-            let t106 = T::fused(t88, t104, t89 * t105);
-            let t107 = T::fused(t106, t93, -T::fused(t102, t72, t103 * t79));
-            let t108 = T::fused(t17, t101, T::fused(t1, t97, t13 * t99));
-            let t109 = T::fused(t95, t94, t108 * t107);
-            let t110 = T::fused(
-                t106,
-                t92 * t106,
-                -(k(2e-6) + (k(1.25e-9) + T::fused(t102, t104, t103 * t105))),
-            );
-            let t111 = T::fused(t95, t107, t108 * t110);
-            let t112 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t60));
-            let t113 = k(2.0) * (t56 + t55);
-            let t114 = k(2.0) * (t74 - t73);
-            let t115 = T::fused(t70, t114, T::fused(t59, t112, t64 * t113));
-            let t116 = T::fused(
-                inner_ring_wx,
-                t115,
-                inner_ring_wy * T::fused(t101, t114, -T::fused(t99, t112, t97 * t113)),
-            );
-            let t117 = T::fused(
-                inner_ring_wz,
-                T::fused(t87, t114, -T::fused(-t85, t112, t83 * t113)),
-                -t116,
-            );
-            let t118 = rotor_wx + t117;
-            let t119 = T::fused(
-                inner_ring_wz,
-                t89,
-                -T::fused(inner_ring_wx, t78, inner_ring_wy * t103),
-            );
-            let t120 = rotor_wz - t119;
-            let t121 = T::fused(
-                inner_ring_wz,
-                t88,
-                -T::fused(inner_ring_wx, t71, inner_ring_wy * t102),
-            );
-            let t122 = rotor_wy + t121;
-            let t123 = T::fused(t120, t120, t122 * t122) / t115;
-            let t124 = T::fused(rotor_wx, t119, rotor_wz * t117)
-                - T::fused(-t120, t118, t78 * t123);
-            let t125 = rotor_wx * rotor_wz;
-            let t126 = k(5e-6) * (t125 + t124);
-            let t127 = T::fused(-rotor_wy, t117, rotor_wx * t121)
-                - T::fused(t122, t118, t71 * t123);
-            let t128 = rotor_wx * rotor_wy;
-            let t129 = k(5e-6) * (t128 - t127);
-            let t130 = inner_ring_wy * inner_ring_wz;
-            let t131 = T::fused(
-                inner_ring_wy,
-                inner_ring_wy,
-                inner_ring_wz * inner_ring_wz,
-            );
-            let t132 = inner_ring_wx * inner_ring_wy;
-            let t133 = inner_ring_wx * inner_ring_wz;
-            let t134 = T::fused(t85, t133, T::fused(t59, t131, t99 * t132));
-            let t135 = k(1e-5) * t134;
-            let t136 = k(0.00025) * t98;
-            let t137 = T::fused(t83, t133, -T::fused(t64, t131, t97 * t132));
-            let t138 = T::fused(k(1e-5), t137, k(0.8));
-            let t139 = k(0.00025) * t96;
-            let t140 = T::fused(t87, t133, -T::fused(-t70, t131, t101 * t132));
-            let t141 = k(1e-5) * t140;
-            let t142 = k(0.00025) * t100;
-            let t143 = T::fused(t142, t141, T::fused(-t136, t135, t139 * t138))
-                + T::fused(t88, t126, t89 * t129);
-            let t144 = T::fused(k(1e-6), t132, -t143);
-            let t145 = t92 * t144;
-            let t146 = T::fused(
-                t90,
-                t145,
-                -T::fused(k(1e-6), t130, -T::fused(t71, t126, t78 * t129)),
-            );
-            let t147 = T::fused(
-                outer_ring_wx,
-                T::fused(t42, t87, -T::fused(-t40, t85, t41 * t83)),
-                outer_ring_wy * T::fused(t17, t87, -T::fused(-t1, t83, t13 * t85)),
-            );
-            let t148 = T::fused(t30, t87, T::fused(t31, t83, t34 * t85));
-            let t149 = T::fused(outer_ring_wz, t148, -t147);
-            let t150 = inner_ring_wz - t149;
-            let t151 = T::fused(t42, t101, -T::fused(t40, t99, t41 * t97));
-            let t152 = T::fused(t30, t101, -T::fused(-t31, t97, t34 * t99));
-            let t153 = T::fused(
-                outer_ring_wz,
-                t152,
-                -T::fused(outer_ring_wx, t151, outer_ring_wy * t108),
-            );
-            let t154 = inner_ring_wy + t153;
-            let t155 = T::fused(t42, t70, T::fused(t40, t59, t41 * t64));
-            let t156 = T::fused(t30, t70, -T::fused(-t34, t59, t31 * t64));
-            let t157 = T::fused(
-                outer_ring_wz,
-                t156,
-                -T::fused(outer_ring_wx, t155, outer_ring_wy * t95),
-            );
-            let t158 = inner_ring_wx + t157;
-            let t159 = T::fused(t154, t154, t158 * t158) / t148;
-            let t160 = T::fused(inner_ring_wz, t153, inner_ring_wy * t149)
-                + T::fused(-t154, t150, t152 * t159);
-            let t161 = T::fused(inner_ring_wx, t149, inner_ring_wz * t157)
-                + T::fused(-t158, t150, t156 * t159);
-            let t162 = k(0.00025) * t84;
-            let t163 = k(0.00025) * t82;
-            let t164 = k(0.00025) * t86;
-            let t165 = T::fused(t164, t141, T::fused(t162, t135, t163 * t138))
-                - T::fused(t102, t126, t103 * t129);
-            let t166 = T::fused(
-                t95,
-                T::fused(-t94, t160, t107 * t161) - t146,
-                t108 * (T::fused(-t107, t160, t110 * t161) - T::fused(t106, t145, -t165)),
-            );
-            let t167 = T::fused(
-                t95,
-                T::fused(t155, t94, t151 * t107),
-                t108 * T::fused(t155, t107, t151 * t110),
-            );
-            let t168 = T::fused(outer_ring_wy, t46, outer_ring_wx * t28)
-                - T::fused(t52, t37, -T::fused(t50, t35, t51 * t36));
-            let t169 = t168 - T::fused(t47, t29, t44 * t48);
-            let t170 = T::fused(t54, t167, T::fused(t109, t156, t111 * t152) * t169)
-                - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t166);
-            let t171 = t170 / (k(1e-6) - T::fused(t95, t109, t108 * t111));
-            let t172 = t160 - T::fused(t156, t169, T::fused(t155, t54, t95 * t171));
-            let t173 = t161 + T::fused(t152, t169, T::fused(t151, t54, t108 * t171));
-            let t174 = t92 * (t144 - T::fused(-t90, t172, t106 * t173));
-            let t175 = T::fused(-k(0.000125), t134, T::fused(t162, t173, t136 * t174));
-            let t176 = T::fused(k(0.000125), t137, T::fused(-t163, t173, t139 * t174));
-            let t177 = T::fused(k(0.000125), t140, T::fused(-t164, t173, t142 * t174));
-            let t178 = t124 + T::fused(t88, t174, T::fused(-t71, t172, t102 * t173));
-            let t179 = t127 - T::fused(t89, t174, T::fused(-t78, t172, t103 * t173));
-            let t180 = k(0.08) * t175;
-            let t181 = T::fused(k(0.08), t176, k(0.8));
-            let t182 = k(0.1) + t181;
-            let t183 = k(0.08) * t177;
-            let t184 = k(5e-6) * (t128 - t179);
-            let t185 = T::fused(
-                inner_ring_e2,
-                rotor_e3,
-                T::fused(
-                    -inner_ring_e3,
-                    rotor_e2,
-                    T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-                ),
-            );
-            let t186 = k(2.0) * t185;
-            let t187 = T::fused(-t185, t186, k(1.0));
-            let t188 = k(5e-6) * (t125 + t178);
-            let t189 = T::fused(
-                inner_ring_e3,
-                rotor_e3,
-                T::fused(
-                    inner_ring_e2,
-                    rotor_e2,
-                    T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-                ),
-            );
-            let t190 = t189 * t186;
-            let t191 = T::fused(t187, t184, t190 * t188);
-            let t192 = T::fused(
-                -k(1e-6),
-                t132 - t174,
-                T::fused(t142, t183, T::fused(t139, t181, t136 * t180)) + t191,
-            );
-            let t193 = T::fused(
-                k(1e-6),
-                T::fused(outer_ring_wx, outer_ring_wy, t169),
-                t192,
-            );
-            let t194 = k(0.025) * t3;
-            let t195 = t194.cos();
-            let t196 = k(0.05) * t7;
-            let t197 = t196.sin();
-            let t198 = t197 * t195;
-            let t199 = t196.cos();
-            (
-                t54,
-                t130,
-                t162,
-                t163,
-                t164,
-                t169,
-                t171,
-                t172,
-                t173,
-                t174,
-                t175,
-                t176,
-                t177,
-                t178,
-                t179,
-                t180,
-                t181,
-                t182,
-                t183,
-                t184,
-                t187,
-                t188,
-                t190,
-                t191,
-                t193,
-                t194,
-                t195,
-                t197,
-                t198,
-                t199,
-            )
-        };
-        let (t207, t208, t209, t213, t214, t215, t216, t217, t218) = {
-            let t200 = t199 * t195;
-            let t201 = t194.sin();
-            let t202 = t199 * t201;
-            let t203 = t197 * t201;
-            let t204 = T::fused(
-                t198,
-                outer_ring_e3,
-                T::fused(
-                    t200,
-                    outer_ring_e2,
-                    T::fused(-t202, outer_ring_e1, t203 * outer_ring_e0),
-                ),
-            );
-            let t205 = k(2.0) * t204;
-            let t206 = T::fused(
-                t202,
-                outer_ring_e3,
-                T::fused(
-                    -t203,
-                    outer_ring_e2,
-                    T::fused(t198, outer_ring_e1, t200 * outer_ring_e0),
-                ),
-            );
-            let t207 = t206 * t205;
-            let t208 = T::fused(-t190, t184, t187 * t188);
-            let t209 = T::fused(
-                k(2e-6),
-                t173,
-                T::fused(-t164, t183, T::fused(-t163, t181, t162 * t180)) + t208,
-            );
-            let t210 = T::fused(
-                -outer_ring_e0,
-                inner_ring_e3,
-                T::fused(
-                    outer_ring_e1,
-                    inner_ring_e2,
-                    T::fused(
-                        -outer_ring_e2,
-                        inner_ring_e1,
-                        outer_ring_e3 * inner_ring_e0,
-                    ),
-                ),
-            );
-            let t211 = k(2.0) * t210;
-            let t212 = T::fused(
-                outer_ring_e3,
-                inner_ring_e3,
-                T::fused(
-                    outer_ring_e2,
-                    inner_ring_e2,
-                    T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-                ),
-            );
-            let t213 = t212 * t211;
-            let t214 = k(1e-6) * (t130 + t172);
-            let t215 = T::fused(-t210, t211, k(1.0));
-            let t216 = T::fused(-t213, t209, t215 * t214);
-            let t217 = T::fused(-k(2e-6), t54, t216);
-            let t218 = T::fused(-t204, t205, k(1.0));
-            (t207, t208, t209, t213, t214, t215, t216, t217, t218)
-        };
-        *out = [
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            t54,
-            t171,
-            -t169,
-            k(0.0),
-            k(0.0),
-            k(0.0),
-            -t172,
-            t173,
-            -t174,
-            -t175,
-            t176,
-            -t177,
-            k(0.0),
-            t178,
-            t179,
-            t180,
-            -(k(0.1) + t182),
-            t183,
-            T::fused(t207, t193, t218 * t217),
-            T::fused(-t218, t193, t207 * t217),
-            t180,
-            -t182,
-            t183,
-            -T::fused(t215, t209, t213 * t214),
-            -t216,
-            t180,
-            -t181,
-            t183,
-            t191,
-            t208,
-        ];
-    }
-}
-impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
-    type Jacobian = [T; 49];
-    type InputJacobian = [T; 0];
-    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
-        [T::constant(0.0); 49]
-    }
-    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
-        [T::constant(0.0); 0]
-    }
-    /// Writes ∂f/∂x and ∂f/∂t: 1755 operations (678 ±, 1075 ×, 2 ÷) and 24 functions.
-    fn joint_jacobian(
-        &self,
-        t: T,
-        x: &Self::Joints,
-        dfdx: &mut Self::Jacobian,
-        dfdt: &mut Self::Joints,
-    ) {
-        let k = T::constant;
-        let x0 = x[0];
-        let x1 = x[1];
-        let x2 = x[2];
-        let u0 = x[3];
-        let u1 = x[4];
-        let u2 = x[5];
-        let (
-            t0,
-            t2,
-            t4,
             t6,
-            t7,
-            t8,
-            t9,
-            t10,
-            t11,
-            t12,
-            t13,
             t14,
-            t15,
-            t16,
-            t17,
-            t18,
-            t19,
-            t21,
-            t23,
-            t27,
-            t29,
-            t30,
-            t32,
-            t35,
-            t36,
-            t38,
-            t39,
-            t40,
-            t41,
-            t42,
-            t45,
-            t53,
-            t54,
-            t63,
-            t69,
-            t73,
-            t75,
-            t76,
-            t77,
-            t81,
-            t86,
-            t89,
-            t90,
-            t91,
-            t93,
-            t94,
-            t95,
-            t96,
-            t98,
-            t100,
-            t102,
-            t103,
-            t104,
-            t105,
-            t106,
-            t107,
-            t108,
-            t109,
-            t110,
-            t111,
-            t112,
-            t113,
-            t114,
-            t115,
-            t116,
-            t117,
-            t118,
-            t121,
-            t122,
-            t123,
-            t124,
-            t125,
-            t126,
-            t127,
+            t57,
+            t83,
+            t119,
             t128,
-            t129,
-            t130,
-            t131,
-            t132,
-            t133,
-            t134,
-            t135,
-            t136,
-            t137,
-            t138,
-            t140,
-            t141,
-            t142,
-            t143,
-            t144,
-            t145,
-            t146,
-            t147,
-            t148,
-            t149,
-            t150,
-            t151,
-            t152,
-            t153,
-            t154,
-            t155,
             t156,
             t157,
-            t158,
-            t159,
-            t160,
-            t161,
-            t162,
-            t163,
-            t164,
-            t166,
-            t167,
-            t168,
-            t169,
-            t170,
-            t171,
-            t172,
-            t174,
-            t176,
-            t177,
-            t178,
             t179,
-            t180,
             t181,
             t182,
             t183,
@@ -5332,403 +4808,354 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
             t194,
             t195,
             t196,
+            t197,
+            t198,
             t199,
         ) = {
-            let t0 = x0.cos();
-            let t1 = k(18.84955592153876) * t;
-            let t2 = t1.sin();
-            let t3 = k(0.05) * t2;
-            let t4 = t3.cos();
-            let t5 = k(12.566370614359172) * t;
-            let t6 = t5.cos();
-            let t7 = k(1.2566370614359172) * t6;
-            let t8 = t7 * t4;
-            let t9 = x0.sin();
-            let t10 = t1.cos();
-            let t11 = k(0.9424777960769379) * t10;
-            let t12 = T::fused(-t8, t0, t11 * t9);
-            let t13 = t3.sin();
-            let t14 = t11 * t13;
-            let t15 = t5.sin();
-            let t16 = k(15.791367041742975) * t15;
-            let t17 = T::fused(t7, t14, t4 * t16);
-            let t18 = k(17.765287921960844) * t2;
-            let t19 = T::fused(t17, t9, t18 * t0);
-            let t20 = T::fused(u0, t12, t19);
-            let t21 = x1.cos();
-            let t22 = k(1e-6) * t21;
-            let t23 = x1.sin();
-            let t24 = t23 * t22;
-            let t25 = k(7.00125e-6) * t23;
-            let t26 = t21 * t25;
-            let t27 = t26 - t24;
-            let t28 = k(0.1) * t15;
-            let t29 = t28.cos();
-            let t30 = t29 * t13;
-            let t31 = k(10.0) * t30;
-            let t32 = t28.sin();
-            let t33 = k(10.0) * t32;
-            let t34 = T::fused(t0, t31, t9 * t33);
-            let t35 = k(1e-5) * t21;
-            let t36 = T::fused(t8, t9, t11 * t0);
-            let t37 = t21 * t36;
-            let t38 = T::fused(t7, t13, -u0);
-            let t39 = T::fused(t21, t12, t38 * t23);
-            let t40 = u1 + t36;
-            let t41 = k(0.000125) * t40;
-            let t42 = u2 - t39;
-            let t43 = T::fused(
-                -k(1e-5),
-                T::fused(-t39, k(0.000125) * t12, t41 * t37),
-                k(5e-6) * T::fused(u2, t12, T::fused(t40, t37, t12 * t42)),
+            let t0 = k(2.0) * outer_ring_e0;
+            let t1 = outer_ring_e3 * t0;
+            let t2 = k(2.0) * outer_ring_e1;
+            let t3 = outer_ring_e2 * t2;
+            let t4 = t3 - t1;
+            let t5 = k(18.84955592153876) * t;
+            let t6 = t5.sin();
+            let t7 = k(0.05) * t6;
+            let t8 = t7.cos();
+            let t9 = k(2.0) * outer_ring_e2;
+            let t10 = T::fused(-outer_ring_e0, t0, k(1.0));
+            let t11 = T::fused(-outer_ring_e2, t9, t10);
+            let t12 = t7.sin();
+            let t13 = k(12.566370614359172) * t;
+            let t14 = t13.sin();
+            let t15 = k(0.1) * t14;
+            let t16 = t15.cos();
+            let t17 = t16 * t12;
+            let t18 = outer_ring_e1 * t0;
+            let t19 = outer_ring_e3 * t9;
+            let t20 = t19 + t18;
+            let t21 = t15.sin();
+            let t22 = t21 * t12;
+            let t23 = k(1.2566370614359172) * t13.cos();
+            let t24 = t23 * t8;
+            let t25 = t16 * t8;
+            let t26 = t21 * t8;
+            let t27 = T::fused(t26, t20, -T::fused(t12, t4, t25 * t11));
+            let t28 = t23 * t12;
+            let t29 = T::fused(
+                -t24,
+                T::fused(t22, t20, -T::fused(-t8, t4, t17 * t11)),
+                t28 * t27,
             );
-            let t44 = t23 * t36;
-            let t45 = T::fused(-t23, t12, t38 * t21);
-            let t46 = u1 * t44;
-            let t47 = T::fused(
-                -t21,
-                T::fused(-k(7.00125e-6), u1 * t37, t43),
-                t23 * (k(1e-6) * (t46 - T::fused(t40, t44, t12 * t45))),
-            );
-            let t48 = T::fused(k(1e-6), T::fused(-t36, t36, t12 * t12), t47)
-                - T::fused(t27, t20, t35 * t34);
-            let t49 = k(1e-6) * t23;
-            let t50 = t23 * t49;
-            let t51 = k(7.00125e-6) * t21;
-            let t52 = t21 * t51;
-            let t53 = k(1.0) / (k(1e-6) + (t52 + t50));
-            let t54 = t53 * t48;
-            let t55 = t53 * t53 * (T::fused(t21, t49, t24) - T::fused(t23, t51, t26));
-            let t56 = u1 * t45;
-            let t57 = t40 * t45;
-            let t58 = k(1e-6) * (t57 - t56);
-            let t59 = T::fused(
-                k(5e-6),
-                T::fused(u2, t40, t40 * t42),
-                k(1e-5) * (t39 * t41),
-            );
-            let t60 = u1 * t39;
-            let t61 = T::fused(k(7.00125e-6), t60, t59);
-            let t62 = T::fused(-t9, t31, t0 * t33);
-            let t63 = T::fused(-t17, t0, t18 * t9);
-            let t64 = T::fused(-u0, t36, t63);
-            let t65 = T::fused(-t35, t62, t27 * t64)
-                - T::fused(-k(1e-6), t36 * t12, T::fused(t23, t58, t21 * t61));
-            let t66 = T::fused(
-                t64,
-                T::fused(-t21, t22, t50) + T::fused(-t23, t25, t52),
-                t62 * (k(1e-5) * t23),
-            );
-            let t67 = T::fused(
-                t21,
+            let t30 = k(0.9424777960769379) * t5.cos();
+            let t31 = T::fused(t30, T::fused(t21, t11, t16 * t20), -t29);
+            let t32 = outer_ring_wy - t31;
+            let t33 = outer_ring_e2 * t0;
+            let t34 = outer_ring_e3 * t2;
+            let t35 = t34 + t33;
+            let t36 = t19 - t18;
+            let t37 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t10);
+            let t38 = T::fused(t22, t37, -T::fused(t8, t35, t17 * t36));
+            let t39 = T::fused(t26, t37, -T::fused(-t12, t35, t25 * t36));
+            let t40 = T::fused(t21, t36, t16 * t37);
+            let t41 = T::fused(t30, t40, -T::fused(-t24, t38, t28 * t39));
+            let t42 = outer_ring_wz + t41;
+            let t43 = T::fused(-outer_ring_e1, t2, t10);
+            let t44 = t3 + t1;
+            let t45 = t34 - t33;
+            let t46 = T::fused(t22, t45, T::fused(-t8, t43, t17 * t44));
+            let t47 = T::fused(t26, t45, T::fused(t12, t43, t25 * t44));
+            let t48 = T::fused(-t21, t44, t16 * t45);
+            let t49 = T::fused(t30, t48, -T::fused(-t24, t46, t28 * t47));
+            let t50 = outer_ring_wx - t49;
+            let t51 = T::fused(t42, t42, t50 * t50) / t27;
+            let t52 = k(15.791367041742975) * t14;
+            let t53 = T::fused(t23, t30 * t12, t8 * t52);
+            let t54 = T::fused(-t23, t30 * t8, t12 * t52);
+            let t55 = k(17.765287921960844) * t6;
+            let t56 = T::fused(outer_ring_wz, t31, outer_ring_wy * t41)
+                - T::fused(t55, t48, -T::fused(-t53, t46, t54 * t47));
+            let t57 = t56 + T::fused(-t42, t32, t39 * t51);
+            let t58 = T::fused(
+                inner_ring_e3,
+                rotor_e3,
                 T::fused(
-                    -k(7.00125e-6),
-                    t56,
-                    T::fused(-k(1e-5), t41 * t45, k(5e-6) * t57),
+                    inner_ring_e2,
+                    rotor_e2,
+                    T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
                 ),
-                t23 * t61,
             );
-            let t68 = T::fused(t23, k(1e-6) * T::fused(-t39, t40, t60), t21 * t58) - t67;
-            let t69 = T::fused(t65, t55, t53 * (t68 - t66));
-            let t70 = T::fused(
-                -k(7.00125e-6),
-                u1 * t23,
-                T::fused(-k(1e-5), t23 * t41, k(5e-6) * (t23 * t40)),
+            let t59 = k(2.0) * t58;
+            let t60 = T::fused(
+                -inner_ring_e0,
+                rotor_e3,
+                T::fused(
+                    inner_ring_e1,
+                    rotor_e2,
+                    T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+                ),
             );
-            let t71 = u1 * t21;
-            let t72 = T::fused(
-                t27,
-                t36,
-                T::fused(t21, t70, t23 * (k(1e-6) * T::fused(-t21, t40, t71))),
+            let t61 = t60 * t59;
+            let t62 = T::fused(
+                inner_ring_e2,
+                rotor_e3,
+                T::fused(
+                    -inner_ring_e3,
+                    rotor_e2,
+                    T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+                ),
             );
-            let t73 = t53 * t72;
-            let t74 = t21
-                * T::fused(
-                    k(7.00125e-6),
-                    t39,
-                    T::fused(k(1.25e-9), t39, k(5e-6) * (u2 + t42)),
-                );
-            let t75 = t53 * t74;
-            let t76 = t53 * (t21 * (k(1e-5) * t40));
-            let t77 = k(0.000125) * t45;
-            let t78 = t45 * t37;
-            let t79 = T::fused(
-                -k(1e-5),
-                T::fused(-t39, k(0.000125) * t44, t77 * t37),
-                k(5e-6) * T::fused(u2, t44, T::fused(t42, t44, t78)),
+            let t63 = k(2.0) * t62;
+            let t64 = T::fused(
+                -inner_ring_e1,
+                rotor_e3,
+                T::fused(
+                    -inner_ring_e0,
+                    rotor_e2,
+                    T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+                ),
             );
-            let t80 = T::fused(
-                -k(1e-5),
-                t23 * t62,
-                T::fused(k(1e-6), T::fused(-t39, t44, t78), -t79),
+            let t65 = t64 * t63;
+            let t66 = t65 + t61;
+            let t67 = k(5e-6) * t66;
+            let t68 = t64 * t59;
+            let t69 = t60 * t63;
+            let t70 = t69 - t68;
+            let t71 = k(5e-6) * t70;
+            let t72 = t62 * t59;
+            let t73 = k(2.0) * t64;
+            let t74 = t60 * t73;
+            let t75 = t74 - t72;
+            let t76 = T::fused(-t58, t59, k(1.0));
+            let t77 = T::fused(-t60, k(2.0) * t60, t76);
+            let t78 = T::fused(-t75, t67, t77 * t71);
+            let t79 = k(1e-6)
+                + (k(1.25e-9) + T::fused(t75, k(5e-6) * t75, t77 * (k(5e-6) * t77)));
+            let t80 = k(1.0) / t79;
+            let t81 = t80 * t78;
+            let t82 = T::fused(t78, t81, -(k(1e-6) + T::fused(t66, t67, t70 * t71)));
+            let t83 = T::fused(
+                outer_ring_e3,
+                inner_ring_e3,
+                T::fused(
+                    outer_ring_e2,
+                    inner_ring_e2,
+                    T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+                ),
             );
-            let t81 = T::fused(k(166631.95167673402), t80, t64);
-            let t82 = k(10.0) * (t29 * t4);
-            let t83 = t45 * t45;
-            let t84 = T::fused(
-                -k(1e-5),
-                T::fused(-t39, k(0.000125) * t39, t45 * t77),
-                k(5e-6) * T::fused(u2, t39, T::fused(t39, t42, t83)),
-            );
+            let t84 = k(2.0) * t83;
             let t85 = T::fused(
-                -k(1e-5),
-                T::fused(t23, t82, t21 * t34),
-                T::fused(k(1e-6), T::fused(-t39, t39, t83), -t84),
+                -outer_ring_e0,
+                inner_ring_e3,
+                T::fused(
+                    outer_ring_e1,
+                    inner_ring_e2,
+                    T::fused(
+                        -outer_ring_e2,
+                        inner_ring_e1,
+                        outer_ring_e3 * inner_ring_e0,
+                    ),
+                ),
             );
-            let t86 = k(166631.95167673402) * t85;
-            let t87 = t23 * t45;
-            let t88 = T::fused(
-                k(1e-5),
-                T::fused(t39, k(0.000125) * t21, t23 * t77),
-                k(5e-6) * T::fused(u2, t21, -T::fused(-t21, t42, t87)),
+            let t86 = t85 * t84;
+            let t87 = T::fused(
+                outer_ring_e2,
+                inner_ring_e3,
+                T::fused(
+                    -outer_ring_e3,
+                    inner_ring_e2,
+                    T::fused(
+                        -outer_ring_e0,
+                        inner_ring_e1,
+                        outer_ring_e1 * inner_ring_e0,
+                    ),
+                ),
             );
+            let t88 = k(2.0) * t87;
             let t89 = T::fused(
-                k(166631.95167673402),
-                T::fused(k(1e-6), T::fused(t21, t39, t87), t88),
-                t12,
+                -outer_ring_e1,
+                inner_ring_e3,
+                T::fused(
+                    -outer_ring_e0,
+                    inner_ring_e2,
+                    T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
+                ),
             );
-            let t90 = k(1.6663195167673401) * t45;
-            let t91 = t46 + T::fused(-t23, t54, t21 * t20);
-            let t92 = t65 * t53;
-            let t93 = t60 - T::fused(t23, t64, -T::fused(-t23, t69, t21 * t92));
-            let t94 = t71 - T::fused(t23, t73, t37);
-            let t95 = T::fused(t23, t75, t45);
-            let t96 = t23 * t76;
-            let t97 = k(0.5) * x0;
-            let t98 = t97.sin();
-            let t99 = k(0.025) * t2;
-            let t100 = t99.sin();
-            let t101 = k(0.05) * t15;
-            let t102 = t101.cos();
-            let t103 = t102 * t100;
-            let t104 = t97.cos();
-            let t105 = t99.cos();
-            let t106 = t101.sin();
-            let t107 = t106 * t105;
-            let t108 = T::fused(-t103, t98, t107 * t104);
-            let t109 = t106 * t100;
-            let t110 = t102 * t105;
-            let t111 = T::fused(t109, t98, t110 * t104);
-            let t112 = t111 * t111;
-            let t113 = k(2.0) * (k(0.5) - T::fused(t108, t108, t112));
-            let t114 = T::fused(t107, t98, t103 * t104);
-            let t115 = t111 * t114;
-            let t116 = T::fused(-t110, t98, t109 * t104);
-            let t117 = t108 * t116;
-            let t118 = k(2.0) * (t117 - t115);
-            let t119 = t111 * t116;
-            let t120 = t108 * t114;
-            let t121 = k(2.0) * (t120 + t119);
-            let t122 = t32 * t13;
-            let t123 = T::fused(t122, t121, -T::fused(t4, t113, t30 * t118));
-            let t124 = t111 * t108;
-            let t125 = t116 * t114;
-            let t126 = k(2.0) * (t125 + t124);
-            let t127 = k(2.0) * (k(0.5) - T::fused(t114, t114, t112));
-            let t128 = T::fused(-t32, t126, t29 * t127);
-            let t129 = k(2.0) * (t120 - t119);
-            let t130 = T::fused(t122, t127, T::fused(-t4, t129, t30 * t126));
-            let t131 = T::fused(t32, t118, t29 * t121);
-            let t132 = k(1.0) / T::fused(-t128, t123, t131 * t130);
-            let t133 = t131 * t132;
-            let t134 = k(2.0) * t98;
-            let t135 = t104 * t134;
-            let t136 = T::fused(-t98, t134, k(1.0));
-            let t137 = T::fused(t8, t135, t11 * t136);
-            let t138 = T::fused(-u0, t137, t63);
-            let t139 = k(0.5) * x1;
-            let t140 = t139.sin();
-            let t141 = t139.cos();
-            let t142 = T::fused(-t116, t140, t108 * t141);
-            let t143 = T::fused(-t114, t140, t111 * t141);
-            let t144 = t143 * t143;
-            let t145 = k(2.0) * (k(0.5) - T::fused(t142, t142, t144));
-            let t146 = T::fused(t111, t140, t114 * t141);
-            let t147 = t143 * t146;
-            let t148 = T::fused(t108, t140, t116 * t141);
-            let t149 = t142 * t148;
-            let t150 = k(2.0) * (t149 - t147);
-            let t151 = t143 * t148;
-            let t152 = t142 * t146;
-            let t153 = k(2.0) * (t152 + t151);
-            let t154 = T::fused(t121, t153, T::fused(t113, t145, t118 * t150));
-            let t155 = u1 + t137;
-            let t156 = T::fused(-t8, t136, t11 * t135);
-            let t157 = k(2.0) * t140;
-            let t158 = t141 * t157;
-            let t159 = T::fused(-t140, t157, k(1.0));
-            let t160 = T::fused(-t158, t156, t38 * t159);
-            let t161 = t11 * t4;
-            let t162 = T::fused(-t7, t161, t13 * t16);
-            let t163 = t162 - (t162 - t92);
-            let t164 = T::fused(-u1, t160, T::fused(t21, t138, t23 * t163));
-            let t165 = k(0.5) * x2;
-            let t166 = t165.sin();
-            let t167 = t165.cos();
-            let t168 = T::fused(t143, t166, t142 * t167);
-            let t169 = T::fused(-t142, t166, t143 * t167);
-            let t170 = t169 * t169;
-            let t171 = k(2.0) * (k(0.5) - T::fused(t168, t168, t170));
-            let t172 = T::fused(t148, t166, t146 * t167);
-            let t173 = t169 * t172;
-            let t174 = T::fused(-t146, t166, t148 * t167);
-            let t175 = t168 * t174;
-            let t176 = k(2.0) * (t175 - t173);
-            let t177 = t169 * t174;
-            let t178 = t168 * t172;
-            let t179 = k(2.0) * (t178 + t177);
-            let t180 = T::fused(t153, t179, T::fused(t145, t171, t150 * t176));
-            let t181 = k(1e-5) * (t56 - T::fused(t21, t64, t23 * t92) + t164);
-            let t182 = k(2.0) * (t175 + t173);
-            let t183 = k(2.0) * (k(0.5) - T::fused(t174, t174, t170));
-            let t184 = t169 * t168;
-            let t185 = t174 * t172;
-            let t186 = k(2.0) * (t185 - t184);
-            let t187 = T::fused(t153, t186, -T::fused(t145, t182, t150 * t183));
-            let t188 = k(2.0) * t166;
-            let t189 = t167 * t188;
-            let t190 = T::fused(-t166, t188, k(1.0));
-            let t191 = T::fused(t189, t160, t190 * t155);
-            let t192 = T::fused(t159, t156, t38 * t158);
-            let t193 = u2 - t192;
-            let t194 = T::fused(u1, t192, T::fused(-t23, t138, t21 * t163));
-            let t195 = x2.cos();
-            let t196 = T::fused(u0, t156, t19);
-            let t197 = T::fused(
-                k(5e-6),
-                T::fused(u2, t45, t42 * t45),
-                k(1e-5) * (t39 * t77),
-            );
-            let t198 = T::fused(
-                k(1e-5),
-                T::fused(-t23, t34, t21 * t82),
-                T::fused(k(1e-6), t39 * t45, t197),
-            );
-            let t199 = T::fused(k(166631.95167673402), t198, -t20) + t196;
-            (
-                t0,
-                t2,
-                t4,
-                t6,
-                t7,
-                t8,
-                t9,
-                t10,
-                t11,
-                t12,
-                t13,
-                t14,
-                t15,
-                t16,
-                t17,
-                t18,
-                t19,
-                t21,
-                t23,
-                t27,
-                t29,
-                t30,
-                t32,
-                t35,
-                t36,
-                t38,
-                t39,
-                t40,
-                t41,
-                t42,
-                t45,
-                t53,
-                t54,
-                t63,
-                t69,
-                t73,
-                t75,
-                t76,
-                t77,
-                t81,
-                t86,
-                t89,
-                t90,
-                t91,
-                t93,
-                t94,
-                t95,
+            let t90 = t89 * t88;
+            let t91 = t90 - t86;
+            let t92 = T::fused(-t64, t73, t76);
+            let t93 = t74 + t72;
+            let t94 = k(5e-6) * t92;
+            let t95 = k(5e-6) * t93;
+            let t96 = T::fused(t75, t94, t77 * t95);
+            let t97 = T::fused(t96, t81, -T::fused(-t92, t67, t93 * t71));
+            let t98 = k(2.0) * t89;
+            let t99 = T::fused(-t83, t84, k(1.0));
+            let t100 = T::fused(-t89, t98, t99);
+            let t101 = T::fused(-t91, t82, t100 * t97);
+            let t102 = T::fused(
                 t96,
-                t98,
-                t100,
-                t102,
-                t103,
-                t104,
-                t105,
-                t106,
-                t107,
-                t108,
-                t109,
-                t110,
-                t111,
-                t112,
-                t113,
-                t114,
-                t115,
-                t116,
-                t117,
-                t118,
-                t121,
-                t122,
-                t123,
-                t124,
-                t125,
-                t126,
-                t127,
-                t128,
-                t129,
-                t130,
-                t131,
+                t80 * t96,
+                -(k(2e-6) + (k(1.25e-9) + T::fused(t92, t94, t93 * t95))),
+            );
+            let t103 = T::fused(-t91, t97, t100 * t102);
+            let t104 = t62 * t63;
+            let t105 = t76 - t104;
+            let t106 = T::fused(
+                inner_ring_wz,
+                t69 + t68,
+                T::fused(-inner_ring_wx, t105, inner_ring_wy * (t65 - t61)),
+            );
+            let t107 = rotor_wx - t106;
+            let t108 = T::fused(
+                inner_ring_wz,
+                t77,
+                -T::fused(inner_ring_wx, t70, inner_ring_wy * t93),
+            );
+            let t109 = rotor_wz + t108;
+            let t110 = T::fused(
+                inner_ring_wz,
+                t75,
+                -T::fused(-inner_ring_wx, t66, inner_ring_wy * t92),
+            );
+            let t111 = rotor_wy - t110;
+            let t112 = T::fused(t109, t109, t111 * t111) / t105;
+            let t113 = T::fused(rotor_wx, t108, rotor_wz * t106)
+                + T::fused(-t109, t107, t70 * t112);
+            let t114 = rotor_wx * rotor_wz;
+            let t115 = k(5e-6) * (t114 - t113);
+            let t116 = T::fused(-rotor_wy, t106, rotor_wx * t110)
+                - T::fused(-t111, t107, t66 * t112);
+            let t117 = rotor_wx * rotor_wy;
+            let t118 = k(5e-6) * (t117 + t116);
+            let t119 = inner_ring_wy * inner_ring_wz;
+            let t120 = k(2.0) * inner_ring_e0;
+            let t121 = inner_ring_e3 * t120;
+            let t122 = k(2.0) * inner_ring_e1;
+            let t123 = inner_ring_e2 * t122;
+            let t124 = t123 - t121;
+            let t125 = k(0.000125) * t124;
+            let t126 = T::fused(-inner_ring_e0, t120, k(1.0));
+            let t127 = T::fused(
+                inner_ring_wy,
+                inner_ring_wy,
+                inner_ring_wz * inner_ring_wz,
+            );
+            let t128 = inner_ring_wx * inner_ring_wy;
+            let t129 = inner_ring_e2 * t120;
+            let t130 = inner_ring_e3 * t122;
+            let t131 = t130 + t129;
+            let t132 = inner_ring_wx * inner_ring_wz;
+            let t133 = T::fused(
                 t132,
-                t133,
-                t134,
-                t135,
-                t136,
-                t137,
-                t138,
-                t140,
-                t141,
-                t142,
-                t143,
-                t144,
-                t145,
-                t146,
-                t147,
-                t148,
-                t149,
+                t131,
+                T::fused(t127, T::fused(-inner_ring_e1, t122, t126), t128 * t124),
+            );
+            let t134 = k(1e-5) * t133;
+            let t135 = k(2.0) * inner_ring_e2;
+            let t136 = T::fused(-inner_ring_e2, t135, t126);
+            let t137 = k(0.000125) * t136;
+            let t138 = inner_ring_e1 * t120;
+            let t139 = inner_ring_e3 * t135;
+            let t140 = t139 - t138;
+            let t141 = T::fused(t132, t140, -T::fused(t127, t123 + t121, t128 * t136));
+            let t142 = T::fused(k(1e-5), t141, k(0.8));
+            let t143 = t139 + t138;
+            let t144 = k(0.000125) * t143;
+            let t145 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t126);
+            let t146 = T::fused(t132, t145, -T::fused(-t127, t130 - t129, t128 * t143));
+            let t147 = k(1e-5) * t146;
+            let t148 = T::fused(t147, t144, T::fused(-t134, t125, t142 * t137))
+                - T::fused(t75, t115, t77 * t118);
+            let t149 = T::fused(k(1e-6), t128, -t148);
+            let t150 = t80 * t149;
+            let t151 = T::fused(
+                t78,
                 t150,
-                t151,
-                t152,
-                t153,
-                t154,
-                t155,
+                -T::fused(k(1e-6), t119, T::fused(-t66, t115, t70 * t118)),
+            );
+            let t152 = t89 * t84;
+            let t153 = t85 * t88;
+            let t154 = t87 * t84;
+            let t155 = t85 * t98;
+            let t156 = k(2.0) * t85;
+            let t157 = t85 * t156;
+            let t158 = t99 - t157;
+            let t159 = T::fused(
+                outer_ring_wz,
+                t158,
+                -T::fused(outer_ring_wx, t153 - t152, outer_ring_wy * (t155 + t154)),
+            );
+            let t160 = inner_ring_wz + t159;
+            let t161 = t90 + t86;
+            let t162 = t155 - t154;
+            let t163 = T::fused(
+                outer_ring_wz,
+                t162,
+                -T::fused(-outer_ring_wx, t161, outer_ring_wy * t100),
+            );
+            let t164 = inner_ring_wy - t163;
+            let t165 = T::fused(-t87, t88, t99);
+            let t166 = t153 + t152;
+            let t167 = T::fused(
+                outer_ring_wz,
+                t166,
+                T::fused(-outer_ring_wx, t165, outer_ring_wy * t91),
+            );
+            let t168 = inner_ring_wx - t167;
+            let t169 = T::fused(t164, t164, t168 * t168) / t158;
+            let t170 = T::fused(inner_ring_wz, t163, inner_ring_wy * t159)
+                - T::fused(-t164, t160, t162 * t169);
+            let t171 = T::fused(inner_ring_wx, t159, inner_ring_wz * t167)
+                - T::fused(-t168, t160, t166 * t169);
+            let t172 = k(0.000125) * t131;
+            let t173 = k(0.000125) * t140;
+            let t174 = k(0.000125) * t145;
+            let t175 = T::fused(t147, t174, T::fused(t134, t172, t142 * t173))
+                + T::fused(t92, t115, t93 * t118);
+            let t176 = T::fused(
+                -t91,
+                T::fused(-t82, t170, t97 * t171) + t151,
+                t100 * (T::fused(-t97, t170, t102 * t171) + T::fused(t96, t150, -t175)),
+            );
+            let t177 = T::fused(
+                -t91,
+                T::fused(-t165, t82, t161 * t97),
+                t100 * T::fused(-t165, t97, t161 * t102),
+            );
+            let t178 = T::fused(-outer_ring_wy, t49, outer_ring_wx * t31)
+                - T::fused(t55, t40, -T::fused(-t53, t38, t54 * t39));
+            let t179 = t178 - T::fused(t50, t32, t47 * t51);
+            let t180 = T::fused(-t57, t177, t179 * T::fused(t166, t101, t162 * t103))
+                - T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t176);
+            let t181 = t180 / (k(1e-6) - T::fused(-t91, t101, t100 * t103));
+            let t182 = t170 - T::fused(t166, t179, -T::fused(-t165, t57, t91 * t181));
+            let t183 = t171 + T::fused(t162, t179, T::fused(-t161, t57, t100 * t181));
+            let t184 = t80 * (t149 + T::fused(-t78, t182, t96 * t183));
+            let t185 = T::fused(k(0.000125), t133, -T::fused(-t172, t183, t125 * t184));
+            let t186 = T::fused(k(0.000125), t141, T::fused(t173, t183, t137 * t184));
+            let t187 = T::fused(k(0.000125), t146, T::fused(t174, t183, t144 * t184));
+            let t188 = t113 + T::fused(t75, t184, -T::fused(t66, t182, t92 * t183));
+            let t189 = t116 - T::fused(t77, t184, -T::fused(-t70, t182, t93 * t183));
+            let t190 = k(0.08) * t185;
+            let t191 = T::fused(k(0.08), t186, k(0.8));
+            let t192 = k(0.1) + t191;
+            let t193 = k(0.08) * t187;
+            let t194 = k(5e-6) * (t117 + t189);
+            let t195 = k(1.0) - t104;
+            let t196 = k(5e-6) * (t114 - t188);
+            let t197 = t58 * t63;
+            let t198 = T::fused(t195, t194, t197 * t196);
+            let t199 = inner_ring_e0 * inner_ring_e1;
+            (
+                t6,
+                t14,
+                t57,
+                t83,
+                t119,
+                t128,
                 t156,
                 t157,
-                t158,
-                t159,
-                t160,
-                t161,
-                t162,
-                t163,
-                t164,
-                t166,
-                t167,
-                t168,
-                t169,
-                t170,
-                t171,
-                t172,
-                t174,
-                t176,
-                t177,
-                t178,
                 t179,
-                t180,
                 t181,
                 t182,
                 t183,
@@ -5745,782 +5172,1451 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
                 t194,
                 t195,
                 t196,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (t204, t218, t219, t222, t223, t224, t225, t226, t227, t228) = {
+            let t200 = inner_ring_e2 * inner_ring_e3;
+            let t201 = inner_ring_e0 * inner_ring_e0;
+            let t202 = T::fused(
+                -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t201))),
+                t191,
+                k(0.00025)
+                    * T::fused(
+                        -inner_ring_e0,
+                        inner_ring_e3,
+                        inner_ring_e1 * inner_ring_e2,
+                    ) * t190,
+            );
+            let t203 = T::fused(
+                k(1e-6),
+                t128 - t184,
+                T::fused(-(k(0.00025) * (t200 + t199)), t193, t202) - t198,
+            );
+            let t204 = T::fused(
+                -k(1e-6),
+                T::fused(outer_ring_wx, outer_ring_wy, t179),
+                t203,
+            );
+            let t205 = k(0.025) * t6;
+            let t206 = t205.cos();
+            let t207 = k(0.05) * t14;
+            let t208 = t207.sin();
+            let t209 = t208 * t206;
+            let t210 = t207.cos();
+            let t211 = t210 * t206;
+            let t212 = t205.sin();
+            let t213 = t210 * t212;
+            let t214 = t208 * t212;
+            let t215 = T::fused(
+                t209,
+                outer_ring_e3,
+                T::fused(
+                    t211,
+                    outer_ring_e2,
+                    T::fused(-t213, outer_ring_e1, t214 * outer_ring_e0),
+                ),
+            );
+            let t216 = k(2.0) * t215;
+            let t217 = T::fused(
+                t213,
+                outer_ring_e3,
+                T::fused(
+                    -t214,
+                    outer_ring_e2,
+                    T::fused(t209, outer_ring_e1, t211 * outer_ring_e0),
+                ),
+            );
+            let t218 = t217 * t216;
+            let t219 = T::fused(-t197, t194, t195 * t196);
+            let t220 = T::fused(
+                k(0.00025) * (t200 - t199),
+                t191,
+                k(0.00025)
+                    * T::fused(
+                        inner_ring_e0,
+                        inner_ring_e2,
+                        inner_ring_e1 * inner_ring_e3,
+                    ) * t190,
+            );
+            let t221 = T::fused(
+                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t201)),
+                t193,
+                t220,
+            ) - t219;
+            let t222 = T::fused(k(2e-6), t183, t221);
+            let t223 = t83 * t156;
+            let t224 = k(1e-6) * (t119 - t182);
+            let t225 = k(1.0) - t157;
+            let t226 = T::fused(t223, t222, t225 * t224);
+            let t227 = T::fused(-k(2e-6), t57, t226);
+            let t228 = T::fused(-t215, t216, k(1.0));
+            (t204, t218, t219, t222, t223, t224, t225, t226, t227, t228)
+        };
+        *out = [
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t57,
+            t181,
+            -t179,
+            k(0.0),
+            k(0.0),
+            k(0.0),
+            t182,
+            -t183,
+            -t184,
+            t185,
+            t186,
+            -t187,
+            k(0.0),
+            -t188,
+            -t189,
+            -t190,
+            -(k(0.1) + t192),
+            t193,
+            T::fused(-t218, t204, t228 * t227),
+            T::fused(t228, t204, t218 * t227),
+            -t190,
+            -t192,
+            t193,
+            T::fused(-t223, t224, t225 * t222),
+            -t226,
+            -t190,
+            -t191,
+            t193,
+            t198,
+            t219,
+        ];
+    }
+}
+impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
+    type Jacobian = [T; 49];
+    type InputJacobian = [T; 0];
+    fn joint_jacobian_buffer(&self) -> Self::Jacobian {
+        [T::constant(0.0); 49]
+    }
+    fn input_jacobian_buffer(&self) -> Self::InputJacobian {
+        [T::constant(0.0); 0]
+    }
+    /// Writes ∂f/∂x and ∂f/∂t: 1751 operations (678 ±, 1071 ×, 2 ÷) and 24 functions.
+    fn joint_jacobian(
+        &self,
+        t: T,
+        x: &Self::Joints,
+        dfdx: &mut Self::Jacobian,
+        dfdt: &mut Self::Joints,
+    ) {
+        let k = T::constant;
+        let x0 = x[0];
+        let x1 = x[1];
+        let x2 = x[2];
+        let u0 = x[3];
+        let u1 = x[4];
+        let u2 = x[5];
+        let (
+            t0,
+            t1,
+            t3,
+            t5,
+            t7,
+            t8,
+            t9,
+            t10,
+            t11,
+            t12,
+            t13,
+            t14,
+            t16,
+            t17,
+            t18,
+            t19,
+            t20,
+            t21,
+            t22,
+            t23,
+            t26,
+            t29,
+            t30,
+            t31,
+            t32,
+            t33,
+            t34,
+            t35,
+            t40,
+            t42,
+            t43,
+            t45,
+            t47,
+            t48,
+            t54,
+            t55,
+            t60,
+            t64,
+            t65,
+            t70,
+            t73,
+            t75,
+            t76,
+            t77,
+            t81,
+            t82,
+            t86,
+            t89,
+            t90,
+            t91,
+            t92,
+            t93,
+            t94,
+            t95,
+            t96,
+            t98,
+            t100,
+            t102,
+            t103,
+            t104,
+            t105,
+            t106,
+            t107,
+            t108,
+            t109,
+            t110,
+            t111,
+            t113,
+            t114,
+            t116,
+            t117,
+            t119,
+            t120,
+            t121,
+            t122,
+            t125,
+            t128,
+            t129,
+            t130,
+            t131,
+            t132,
+            t133,
+            t134,
+            t135,
+            t136,
+            t137,
+            t138,
+            t139,
+            t140,
+            t141,
+            t142,
+            t143,
+            t144,
+            t145,
+            t147,
+            t148,
+            t149,
+            t150,
+            t152,
+            t153,
+            t155,
+            t157,
+            t160,
+            t161,
+            t162,
+            t163,
+            t164,
+            t165,
+            t166,
+            t168,
+            t169,
+            t170,
+            t171,
+            t172,
+            t173,
+            t174,
+            t175,
+            t176,
+            t177,
+            t178,
+            t179,
+            t180,
+            t181,
+            t182,
+            t183,
+            t184,
+            t185,
+            t186,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t196,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = k(7.00125e-6) * u1;
+            let t1 = x0.sin();
+            let t2 = k(18.84955592153876) * t;
+            let t3 = t2.sin();
+            let t4 = k(0.05) * t3;
+            let t5 = t4.cos();
+            let t6 = k(12.566370614359172) * t;
+            let t7 = t6.cos();
+            let t8 = k(1.2566370614359172) * t7;
+            let t9 = t8 * t5;
+            let t10 = x0.cos();
+            let t11 = t2.cos();
+            let t12 = k(0.9424777960769379) * t11;
+            let t13 = T::fused(t9, t1, t12 * t10);
+            let t14 = x1.cos();
+            let t15 = t14 * t13;
+            let t16 = T::fused(-t9, t10, t12 * t1);
+            let t17 = x1.sin();
+            let t18 = t4.sin();
+            let t19 = T::fused(t8, t18, -u0);
+            let t20 = T::fused(t14, t16, t19 * t17);
+            let t21 = u1 + t13;
+            let t22 = k(0.000125) * t21;
+            let t23 = u2 - t20;
+            let t24 = T::fused(
+                -k(1e-5),
+                T::fused(-t20, k(0.000125) * t16, t22 * t15),
+                k(5e-6) * T::fused(u2, t16, T::fused(t21, t15, t16 * t23)),
+            );
+            let t25 = t17 * t13;
+            let t26 = T::fused(-t17, t16, t19 * t14);
+            let t27 = u1 * t25;
+            let t28 = T::fused(
+                -t14,
+                T::fused(-t15, t0, t24),
+                t17 * (k(1e-6) * (t27 - T::fused(t21, t25, t16 * t26))),
+            );
+            let t29 = t12 * t18;
+            let t30 = t6.sin();
+            let t31 = k(15.791367041742975) * t30;
+            let t32 = T::fused(t8, t29, t5 * t31);
+            let t33 = k(17.765287921960844) * t3;
+            let t34 = T::fused(t32, t1, t33 * t10);
+            let t35 = T::fused(u0, t16, t34);
+            let t36 = k(1e-6) * t14;
+            let t37 = t17 * t36;
+            let t38 = k(7.00125e-6) * t17;
+            let t39 = t14 * t38;
+            let t40 = t39 - t37;
+            let t41 = k(0.1) * t30;
+            let t42 = t41.cos();
+            let t43 = t42 * t18;
+            let t44 = k(10.0) * t43;
+            let t45 = t41.sin();
+            let t46 = k(10.0) * t45;
+            let t47 = T::fused(t10, t44, t1 * t46);
+            let t48 = k(1e-5) * t14;
+            let t49 = T::fused(t40, t35, t48 * t47)
+                - T::fused(k(1e-6), T::fused(-t13, t13, t16 * t16), t28);
+            let t50 = k(1e-6) * t17;
+            let t51 = t17 * t50;
+            let t52 = k(7.00125e-6) * t14;
+            let t53 = t14 * t52;
+            let t54 = k(1.0) / (k(1e-6) + (t53 + t51));
+            let t55 = t54 * t49;
+            let t56 = k(1.25e-9) * t21;
+            let t57 = u1 * t20;
+            let t58 = T::fused(
+                k(7.00125e-6),
+                t57,
+                T::fused(t20, t56, k(5e-6) * T::fused(u2, t21, t21 * t23)),
+            );
+            let t59 = t21 * t26;
+            let t60 = u1 * t26;
+            let t61 = T::fused(
+                -t17,
+                t58,
+                t14 * T::fused(k(7.00125e-6), t60, -T::fused(-t26, t56, k(5e-6) * t59)),
+            );
+            let t62 = k(1e-6) * (t59 - t60);
+            let t63 = T::fused(t17, k(1e-6) * T::fused(-t20, t21, t57), t14 * t62) + t61;
+            let t64 = T::fused(-t32, t10, t33 * t1);
+            let t65 = T::fused(-u0, t13, t64);
+            let t66 = T::fused(-t1, t44, t10 * t46);
+            let t67 = T::fused(
+                t65,
+                T::fused(-t14, t36, t51) + T::fused(-t17, t38, t53),
+                t66 * (k(1e-5) * t17),
+            );
+            let t68 = T::fused(-t48, t66, t40 * t65)
+                + T::fused(k(1e-6), t13 * t16, -T::fused(t14, t58, t17 * t62));
+            let t69 = t54 * t54 * (T::fused(t14, t50, t37) - T::fused(t17, t52, t39));
+            let t70 = T::fused(-t54, t67 - t63, t69 * t68);
+            let t71 = u1 * t14;
+            let t72 = T::fused(
+                -t14,
+                T::fused(t17, t0, -T::fused(-t17, t56, k(5e-6) * (t17 * t21))),
+                t17 * (k(1e-6) * T::fused(-t14, t21, t71)),
+            );
+            let t73 = t54 * T::fused(t40, t13, t72);
+            let t74 = t14
+                * T::fused(
+                    k(7.00125e-6),
+                    t20,
+                    T::fused(k(1.25e-9), t20, k(5e-6) * (u2 + t23)),
+                );
+            let t75 = t54 * t74;
+            let t76 = t54 * (t14 * (k(1e-5) * t21));
+            let t77 = k(0.000125) * t26;
+            let t78 = t26 * t15;
+            let t79 = T::fused(
+                -k(1e-5),
+                T::fused(-t20, k(0.000125) * t25, t77 * t15),
+                k(5e-6) * T::fused(u2, t25, T::fused(t23, t25, t78)),
+            );
+            let t80 = T::fused(
+                -k(1e-5),
+                t17 * t66,
+                T::fused(k(1e-6), T::fused(-t20, t25, t78), -t79),
+            );
+            let t81 = T::fused(k(166631.95167673402), t80, t65);
+            let t82 = k(10.0) * (t42 * t5);
+            let t83 = t26 * t26;
+            let t84 = T::fused(
+                -k(1e-5),
+                T::fused(-t20, k(0.000125) * t20, t26 * t77),
+                k(5e-6) * T::fused(u2, t20, T::fused(t20, t23, t83)),
+            );
+            let t85 = T::fused(
+                -k(1e-5),
+                T::fused(t17, t82, t14 * t47),
+                T::fused(k(1e-6), T::fused(-t20, t20, t83), -t84),
+            );
+            let t86 = k(166631.95167673402) * t85;
+            let t87 = t17 * t26;
+            let t88 = T::fused(
+                k(1e-5),
+                T::fused(t20, k(0.000125) * t14, t17 * t77),
+                k(5e-6) * T::fused(u2, t14, -T::fused(-t14, t23, t87)),
+            );
+            let t89 = T::fused(
+                k(166631.95167673402),
+                T::fused(k(1e-6), T::fused(t14, t20, t87), t88),
+                t16,
+            );
+            let t90 = k(1.6663195167673401) * t26;
+            let t91 = t27 + T::fused(t17, t55, t14 * t35);
+            let t92 = t54 * t68;
+            let t93 = t57 - T::fused(t17, t65, T::fused(-t14, t92, t17 * t70));
+            let t94 = t71 - T::fused(t17, t73, t15);
+            let t95 = T::fused(t17, t75, t26);
+            let t96 = t17 * t76;
+            let t97 = k(0.5) * x0;
+            let t98 = t97.sin();
+            let t99 = k(0.025) * t3;
+            let t100 = t99.sin();
+            let t101 = k(0.05) * t30;
+            let t102 = t101.cos();
+            let t103 = t102 * t100;
+            let t104 = t97.cos();
+            let t105 = t99.cos();
+            let t106 = t101.sin();
+            let t107 = t106 * t105;
+            let t108 = T::fused(-t103, t98, t107 * t104);
+            let t109 = t106 * t100;
+            let t110 = t102 * t105;
+            let t111 = T::fused(t109, t98, t110 * t104);
+            let t112 = t111 * t108;
+            let t113 = T::fused(t107, t98, t103 * t104);
+            let t114 = T::fused(-t110, t98, t109 * t104);
+            let t115 = t114 * t113;
+            let t116 = k(2.0) * (t115 - t112);
+            let t117 = t8 * t45;
+            let t118 = t111 * t111;
+            let t119 = k(2.0) * (k(0.5) - T::fused(t114, t114, t118));
+            let t120 = t8 * t42;
+            let t121 = T::fused(t117, t116, t120 * t119);
+            let t122 = k(2.0) * (k(0.5) - T::fused(t108, t108, t118));
+            let t123 = t111 * t113;
+            let t124 = t108 * t114;
+            let t125 = k(2.0) * (t124 - t123);
+            let t126 = t111 * t114;
+            let t127 = t108 * t113;
+            let t128 = k(2.0) * (t127 + t126);
+            let t129 = t45 * t18;
+            let t130 = T::fused(t129, t128, -T::fused(t5, t122, t43 * t125));
+            let t131 = k(2.0) * (t115 + t112);
+            let t132 = k(2.0) * (k(0.5) - T::fused(t113, t113, t118));
+            let t133 = T::fused(-t45, t131, t42 * t132);
+            let t134 = k(2.0) * (t127 - t126);
+            let t135 = T::fused(t129, t132, T::fused(-t5, t134, t43 * t131));
+            let t136 = T::fused(t45, t125, t42 * t128);
+            let t137 = k(1.0) / T::fused(-t133, t130, t136 * t135);
+            let t138 = t130 * t137;
+            let t139 = t12 * t5;
+            let t140 = T::fused(t45, t139, t18 * t120);
+            let t141 = T::fused(-t42, t139, t18 * t117);
+            let t142 = k(2.0) * (t124 + t123);
+            let t143 = T::fused(-t140, t116, T::fused(t141, t119, t29 * t142));
+            let t144 = t136 * t137;
+            let t145 = T::fused(-t138, t121, t144 * t143);
+            let t146 = k(0.5) * x1;
+            let t147 = t146.sin();
+            let t148 = t146.cos();
+            let t149 = T::fused(-t114, t147, t108 * t148);
+            let t150 = T::fused(-t113, t147, t111 * t148);
+            let t151 = t150 * t150;
+            let t152 = k(2.0) * (k(0.5) - T::fused(t149, t149, t151));
+            let t153 = T::fused(t111, t147, t113 * t148);
+            let t154 = t150 * t153;
+            let t155 = T::fused(t108, t147, t114 * t148);
+            let t156 = t149 * t155;
+            let t157 = k(2.0) * (t156 - t154);
+            let t158 = t150 * t155;
+            let t159 = t149 * t153;
+            let t160 = k(2.0) * (t159 + t158);
+            let t161 = T::fused(t128, t160, T::fused(t122, t152, t125 * t157));
+            let t162 = t135 * t137;
+            let t163 = t133 * t137;
+            let t164 = T::fused(-t162, t121, t163 * t143);
+            let t165 = T::fused(t132, t160, -T::fused(-t134, t152, t131 * t157));
+            let t166 = T::fused(t161, t145, t165 * t164);
+            let t167 = k(0.5) * x2;
+            let t168 = t167.sin();
+            let t169 = t167.cos();
+            let t170 = T::fused(t150, t168, t149 * t169);
+            let t171 = T::fused(-t149, t168, t150 * t169);
+            let t172 = t171 * t171;
+            let t173 = k(2.0) * (k(0.5) - T::fused(t170, t170, t172));
+            let t174 = T::fused(t155, t168, t153 * t169);
+            let t175 = t171 * t174;
+            let t176 = T::fused(-t153, t168, t155 * t169);
+            let t177 = t170 * t176;
+            let t178 = k(2.0) * (t177 - t175);
+            let t179 = t171 * t176;
+            let t180 = t170 * t174;
+            let t181 = k(2.0) * (t180 + t179);
+            let t182 = T::fused(t160, t181, T::fused(t152, t173, t157 * t178));
+            let t183 = t156 + t154;
+            let t184 = k(2.0) * t183;
+            let t185 = k(0.5) - T::fused(t155, t155, t151);
+            let t186 = k(2.0) * t185;
+            let t187 = t150 * t149;
+            let t188 = t155 * t153;
+            let t189 = t188 - t187;
+            let t190 = k(2.0) * t189;
+            let t191 = T::fused(t128, t190, -T::fused(t122, t184, t125 * t186));
+            let t192 = T::fused(t132, t190, T::fused(-t134, t184, t131 * t186));
+            let t193 = T::fused(t191, t145, t192 * t164);
+            let t194 = T::fused(t190, t181, -T::fused(t184, t173, t186 * t178));
+            let t195 = t159 - t158;
+            let t196 = k(2.0) * t195;
+            let t197 = t188 + t187;
+            let t198 = k(2.0) * t197;
+            let t199 = k(0.5) - T::fused(t153, t153, t151);
+            (
+                t0,
+                t1,
+                t3,
+                t5,
+                t7,
+                t8,
+                t9,
+                t10,
+                t11,
+                t12,
+                t13,
+                t14,
+                t16,
+                t17,
+                t18,
+                t19,
+                t20,
+                t21,
+                t22,
+                t23,
+                t26,
+                t29,
+                t30,
+                t31,
+                t32,
+                t33,
+                t34,
+                t35,
+                t40,
+                t42,
+                t43,
+                t45,
+                t47,
+                t48,
+                t54,
+                t55,
+                t60,
+                t64,
+                t65,
+                t70,
+                t73,
+                t75,
+                t76,
+                t77,
+                t81,
+                t82,
+                t86,
+                t89,
+                t90,
+                t91,
+                t92,
+                t93,
+                t94,
+                t95,
+                t96,
+                t98,
+                t100,
+                t102,
+                t103,
+                t104,
+                t105,
+                t106,
+                t107,
+                t108,
+                t109,
+                t110,
+                t111,
+                t113,
+                t114,
+                t116,
+                t117,
+                t119,
+                t120,
+                t121,
+                t122,
+                t125,
+                t128,
+                t129,
+                t130,
+                t131,
+                t132,
+                t133,
+                t134,
+                t135,
+                t136,
+                t137,
+                t138,
+                t139,
+                t140,
+                t141,
+                t142,
+                t143,
+                t144,
+                t145,
+                t147,
+                t148,
+                t149,
+                t150,
+                t152,
+                t153,
+                t155,
+                t157,
+                t160,
+                t161,
+                t162,
+                t163,
+                t164,
+                t165,
+                t166,
+                t168,
+                t169,
+                t170,
+                t171,
+                t172,
+                t173,
+                t174,
+                t175,
+                t176,
+                t177,
+                t178,
+                t179,
+                t180,
+                t181,
+                t182,
+                t183,
+                t184,
+                t185,
+                t186,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t196,
+                t197,
+                t198,
                 t199,
             )
         };
         let (
             t200,
+            t203,
+            t205,
+            t206,
             t207,
-            t212,
-            t214,
-            t218,
-            t223,
+            t216,
+            t217,
             t224,
-            t229,
+            t225,
+            t227,
+            t228,
+            t230,
             t231,
-            t235,
+            t233,
+            t234,
+            t236,
             t237,
+            t238,
+            t239,
+            t240,
             t241,
+            t242,
             t243,
-            t260,
-            t261,
+            t244,
+            t245,
+            t246,
+            t247,
+            t248,
+            t249,
+            t258,
+            t259,
+            t263,
+            t264,
             t265,
             t266,
+            t267,
             t268,
             t269,
-            t271,
-            t272,
-            t274,
-            t284,
-            t286,
-            t290,
-            t291,
-            t292,
-            t306,
-            t312,
-            t314,
-            t325,
-            t351,
-            t356,
-            t357,
-            t367,
-            t369,
-            t370,
+            t278,
+            t289,
+            t295,
+            t296,
+            t297,
+            t341,
+            t344,
+            t346,
+            t350,
+            t359,
+            t360,
+            t363,
+            t368,
             t371,
-            t376,
-            t386,
-            t389,
-            t390,
-            t392,
-            t393,
+            t374,
+            t380,
+            t387,
+            t391,
             t394,
-            t395,
-            t396,
             t397,
-            t398,
             t399,
         ) = {
-            let t200 = x2.sin();
-            let t201 = T::fused(
-                -t193,
-                t191,
-                T::fused(-u2, t191, T::fused(-t195, t194, t200 * t199)),
-            );
-            let t202 = k(5e-6) * t201;
-            let t203 = k(2.0) * (t178 - t177);
-            let t204 = k(2.0) * (t185 + t184);
-            let t205 = k(2.0) * (k(0.5) - T::fused(t172, t172, t170));
-            let t206 = T::fused(t153, t205, -T::fused(-t145, t203, t150 * t204));
-            let t207 = T::fused(-t190, t160, t189 * t155);
-            let t208 = T::fused(
+            let t200 = k(2.0) * t199;
+            let t201 = T::fused(t128, t200, -T::fused(-t122, t196, t125 * t198));
+            let t202 = T::fused(t132, t200, T::fused(t134, t196, t131 * t198));
+            let t203 = T::fused(t201, t145, t202 * t164);
+            let t204 = T::fused(t200, t181, -T::fused(-t196, t173, t198 * t178));
+            let t205 = k(1e-5) * T::fused(t182, t166, T::fused(t194, t193, t204 * t203));
+            let t206 = k(1e-6) * t166;
+            let t207 = t205 + t206;
+            let t208 = k(2.0) * (t177 + t175);
+            let t209 = k(2.0) * (k(0.5) - T::fused(t176, t176, t172));
+            let t210 = t171 * t170;
+            let t211 = t176 * t174;
+            let t212 = k(2.0) * (t211 - t210);
+            let t213 = T::fused(t160, t212, -T::fused(t152, t208, t157 * t209));
+            let t214 = T::fused(t190, t212, T::fused(t184, t208, t186 * t209));
+            let t215 = T::fused(t200, t212, T::fused(-t196, t208, t198 * t209));
+            let t216 = k(5e-6) * T::fused(t213, t166, T::fused(t214, t193, t215 * t203));
+            let t217 = x2.cos();
+            let t218 = k(2.0) * (t180 - t179);
+            let t219 = k(2.0) * (t211 + t210);
+            let t220 = k(2.0) * (k(0.5) - T::fused(t174, t174, t172));
+            let t221 = T::fused(t160, t220, -T::fused(-t152, t218, t157 * t219));
+            let t222 = T::fused(t190, t220, T::fused(-t184, t218, t186 * t219));
+            let t223 = T::fused(t200, t220, T::fused(t196, t218, t198 * t219));
+            let t224 = k(5e-6) * T::fused(t221, t166, T::fused(t222, t193, t223 * t203));
+            let t225 = x2.sin();
+            let t226 = k(0.00025) * t195;
+            let t227 = k(0.00025) * t183;
+            let t228 = k(0.08) * T::fused(t226, t193, t227 * t203);
+            let t229 = k(0.00025) * t197;
+            let t230 = k(0.00025) * t185;
+            let t231 = k(0.08) * T::fused(-t229, t193, t230 * t203);
+            let t232 = k(0.00025) * t199;
+            let t233 = k(0.00025) * t189;
+            let t234 = k(0.08) * T::fused(-t232, t193, t233 * t203);
+            let t235 = T::fused(
+                -k(2e-6),
                 t193,
-                t207,
-                T::fused(u2, t207, T::fused(t200, t194, t195 * t199)),
+                T::fused(-t226, t228, T::fused(t229, t231, t232 * t234)),
             );
-            let t209 = k(5e-6) * t208;
-            let t210 = T::fused(
-                k(1e-6),
-                T::fused(t160, t155, t164),
-                T::fused(t209, t206, T::fused(t181, t180, t202 * t187)),
+            let t236 = T::fused(-t217, t216, T::fused(t225, t224, t235));
+            let t237 = T::fused(t17, t207, t14 * t236);
+            let t238 = T::fused(-t8, t139, t18 * t31);
+            let t239 = t238 - (t238 - t92);
+            let t240 = k(2.0) * t98;
+            let t241 = t104 * t240;
+            let t242 = T::fused(-t98, t240, k(1.0));
+            let t243 = T::fused(t9, t241, t12 * t242);
+            let t244 = T::fused(-u0, t243, t64);
+            let t245 = T::fused(-t9, t242, t12 * t241);
+            let t246 = k(2.0) * t147;
+            let t247 = t148 * t246;
+            let t248 = T::fused(-t147, t246, k(1.0));
+            let t249 = T::fused(-t247, t245, t19 * t248);
+            let t250 = T::fused(u1, t249, -T::fused(t17, t239, t14 * t244));
+            let t251 = k(1e-5) * (t250 - (t60 - T::fused(t17, t92, t14 * t65)));
+            let t252 = t166 * t251;
+            let t253 = t193 * t251;
+            let t254 = t203 * t251;
+            let t255 = T::fused(t152, t252, T::fused(-t184, t253, t196 * t254));
+            let t256 = t170 * (k(2.0) * t255);
+            let t257 = T::fused(-t157, t252, T::fused(t186, t253, t198 * t254));
+            let t258 = T::fused(t248, t245, t19 * t247);
+            let t259 = T::fused(u1, t258, -T::fused(-t14, t239, t17 * t244));
+            let t260 = T::fused(u0, t245, t34);
+            let t261 = T::fused(
+                k(5e-6),
+                T::fused(u2, t26, t23 * t26),
+                k(1e-5) * (t20 * t77),
             );
-            let t211 = t149 + t147;
-            let t212 = k(2.0) * t211;
-            let t213 = k(0.5) - T::fused(t148, t148, t144);
-            let t214 = k(2.0) * t213;
-            let t215 = t143 * t142;
-            let t216 = t148 * t146;
-            let t217 = t216 - t215;
-            let t218 = k(2.0) * t217;
-            let t219 = T::fused(t121, t218, -T::fused(t113, t212, t118 * t214));
-            let t220 = T::fused(t218, t179, -T::fused(t212, t171, t214 * t176));
-            let t221 = T::fused(t218, t186, T::fused(t212, t182, t214 * t183));
-            let t222 = T::fused(t218, t205, T::fused(-t212, t203, t214 * t204));
-            let t223 = k(0.000125) * t160;
-            let t224 = k(0.000125) * t155;
-            let t225 = T::fused(t160, t223, t155 * t224);
-            let t226 = t223 * t192;
-            let t227 = t224 * t192;
-            let t228 = t152 - t151;
-            let t229 = k(2.0) * t228;
-            let t230 = k(0.00025) * t228;
-            let t231 = k(0.00025) * t211;
-            let t232 = T::fused(-t194, t230, t199 * t231)
-                - T::fused(t229, t227, T::fused(-t145, t225, t212 * t226));
-            let t233 = k(0.08) * t232;
-            let t234 = t216 + t215;
-            let t235 = k(2.0) * t234;
-            let t236 = k(0.00025) * t234;
-            let t237 = k(0.00025) * t213;
-            let t238 = T::fused(t194, t236, t199 * t237)
-                + T::fused(t235, t227, -T::fused(-t150, t225, t214 * t226));
-            let t239 = T::fused(k(0.08), t238, k(0.8));
-            let t240 = k(0.5) - T::fused(t146, t146, t144);
-            let t241 = k(2.0) * t240;
-            let t242 = k(0.00025) * t240;
-            let t243 = k(0.00025) * t217;
-            let t244 = T::fused(t194, t242, t199 * t243)
-                + T::fused(t241, t227, -T::fused(t153, t225, t218 * t226));
-            let t245 = k(0.08) * t244;
-            let t246 = T::fused(t242, t245, T::fused(-t230, t233, t236 * t239))
-                - T::fused(t209, t222, T::fused(t181, t220, t202 * t221));
-            let t247 = T::fused(k(2e-6), t194, t246);
-            let t248 = T::fused(t121, t241, -T::fused(-t113, t229, t118 * t235));
-            let t249 = T::fused(t241, t179, -T::fused(-t229, t171, t235 * t176));
-            let t250 = T::fused(t241, t186, T::fused(-t229, t182, t235 * t183));
-            let t251 = T::fused(t241, t205, T::fused(t229, t203, t235 * t204));
-            let t252 = T::fused(t243, t245, T::fused(t231, t233, t237 * t239))
-                + T::fused(t209, t251, T::fused(t181, t249, t202 * t250));
-            let t253 = T::fused(k(1e-6), T::fused(-t160, t192, t199), t252);
-            let t254 = T::fused(
-                k(2e-6),
-                t138,
-                T::fused(t253, t248, -T::fused(-t210, t154, t247 * t219)),
+            let t262 = T::fused(
+                k(1e-5),
+                T::fused(-t17, t47, t14 * t82),
+                T::fused(k(1e-6), t20 * t26, t261),
             );
-            let t255 = t128 * t132;
-            let t256 = T::fused(t127, t153, -T::fused(-t129, t145, t126 * t150));
-            let t257 = T::fused(t127, t218, T::fused(-t129, t212, t126 * t214));
-            let t258 = T::fused(t127, t241, T::fused(t129, t229, t126 * t235));
-            let t259 = T::fused(
-                k(1e-6),
-                T::fused(t38, t156, t196),
-                T::fused(t253, t258, -T::fused(-t210, t256, t247 * t257)),
+            let t263 = T::fused(k(166631.95167673402), t262, -t35) + t260;
+            let t264 = k(2.0) * t168;
+            let t265 = t169 * t264;
+            let t266 = u1 + t243;
+            let t267 = T::fused(-t168, t264, k(1.0));
+            let t268 = T::fused(t265, t249, t267 * t266);
+            let t269 = u2 - t258;
+            let t270 = T::fused(
+                t269,
+                t268,
+                T::fused(u2, t268, -T::fused(-t217, t259, t225 * t263)),
             );
-            let t260 = T::fused(t254, t133, t259 * t255);
-            let t261 = t7 * t29;
-            let t262 = T::fused(t32, t161, t13 * t261);
-            let t263 = t123 * t132;
-            let t264 = t130 * t132;
-            let t265 = T::fused(t254, t263, t259 * t264);
-            let t266 = t7 * t32;
-            let t267 = T::fused(t262, t260, t266 * t265);
-            let t268 = k(2.0) * (t125 - t124);
-            let t269 = k(2.0) * (k(0.5) - T::fused(t116, t116, t112));
-            let t270 = T::fused(t266, t268, t261 * t269);
-            let t271 = T::fused(-t29, t161, t13 * t266);
-            let t272 = k(2.0) * (t117 + t115);
-            let t273 = T::fused(-t262, t268, T::fused(t271, t269, t14 * t272));
-            let t274 = T::fused(-t264, t270, t255 * t273);
-            let t275 = t253 * t274;
-            let t276 = t247 * t274;
-            let t277 = t210 * t274;
-            let t278 = t259 * t270;
-            let t279 = t259 * t273;
-            let t280 = t254 * t273;
-            let t281 = t254 * t270;
-            let t282 = T::fused(
-                t123,
-                t281,
-                T::fused(t130, t278, -T::fused(t128, t279, t131 * t280)),
+            let t271 = k(5e-6) * t270;
+            let t272 = t166 * t271;
+            let t273 = t193 * t271;
+            let t274 = t203 * t271;
+            let t275 = T::fused(t152, t272, T::fused(-t184, t273, t196 * t274));
+            let t276 = k(2.0) * (t275 + t257);
+            let t277 = T::fused(t160, t252, T::fused(t190, t253, t200 * t254));
+            let t278 = T::fused(-t267, t249, t265 * t266);
+            let t279 = T::fused(
+                t269,
+                t278,
+                T::fused(u2, t278, T::fused(t225, t259, t217 * t263)),
             );
-            let t283 = t132 * t132 * t282;
-            let t284 = T::fused(-t132, t278, t131 * t283);
-            let t285 = T::fused(
-                t30,
-                t284,
-                -T::fused(t150, t277, T::fused(-t235, t275, t214 * t276)),
+            let t280 = k(5e-6) * t279;
+            let t281 = t166 * t280;
+            let t282 = t193 * t280;
+            let t283 = t203 * t280;
+            let t284 = T::fused(t152, t281, T::fused(-t184, t282, t196 * t283));
+            let t285 = k(2.0) * (t284 - t277);
+            let t286 = T::fused(t160, t272, T::fused(t190, t273, t200 * t274));
+            let t287 = T::fused(-t157, t281, T::fused(t186, t282, t198 * t283));
+            let t288 = k(2.0) * (t287 + t286);
+            let t289 = t256
+                + (T::fused(t176, t276, T::fused(t174, t285, t171 * t288)) + t256);
+            let t290 = T::fused(t160, t281, T::fused(t190, t282, t200 * t283));
+            let t291 = T::fused(-t157, t272, T::fused(t186, t273, t198 * t274));
+            let t292 = t171 * (k(2.0) * (t291 - t290 + t255));
+            let t293 = k(2.0) * (t275 - t257);
+            let t294 = k(2.0) * (t284 + t277);
+            let t295 = t292
+                + (T::fused(t174, t293, T::fused(-t176, t294, t170 * t288)) + t292);
+            let t296 = k(0.000125) * t249;
+            let t297 = k(0.000125) * t266;
+            let t298 = T::fused(t249, t296, t266 * t297);
+            let t299 = t296 * t258;
+            let t300 = t297 * t258;
+            let t301 = T::fused(t200, t300, -T::fused(t160, t298, t190 * t299))
+                + T::fused(t232, t259, t263 * t233);
+            let t302 = k(0.08) * t301;
+            let t303 = T::fused(t198, t300, -T::fused(-t157, t298, t186 * t299))
+                + T::fused(t229, t259, t263 * t230);
+            let t304 = T::fused(k(0.08), t303, k(0.8));
+            let t305 = T::fused(t196, t300, T::fused(-t152, t298, t184 * t299))
+                - T::fused(-t226, t259, t263 * t227);
+            let t306 = k(0.08) * t305;
+            let t307 = T::fused(-t223, t280, T::fused(t215, t271, t204 * t251))
+                + T::fused(-t233, t302, T::fused(-t230, t304, t227 * t306));
+            let t308 = T::fused(k(1e-6), T::fused(-t249, t258, t263), -t307);
+            let t309 = t145 * t308;
+            let t310 = t164 * t308;
+            let t311 = T::fused(
+                -t212,
+                t274,
+                T::fused(t220, t283, T::fused(t128, t309, t132 * t310)),
             );
-            let t286 = T::fused(-t132, t279, t123 * t283);
-            let t287 = T::fused(t32, t286, t285);
-            let t288 = k(2.0) * (t287 + t267);
-            let t289 = T::fused(
-                t4,
-                t284,
-                -T::fused(t145, t277, T::fused(t229, t275, t212 * t276)),
+            let t312 = T::fused(
+                -k(0.00025),
+                T::fused(-t234, t259, t193 * t302),
+                k(2.0) * T::fused(t300, t234, T::fused(-t181, t254, t311)),
             );
-            let t290 = T::fused(t132, t280, t130 * t283);
-            let t291 = T::fused(t132, t281, t128 * t283);
-            let t292 = T::fused(-t263, t270, t133 * t273);
-            let t293 = t253 * t292;
-            let t294 = t247 * t292;
-            let t295 = T::fused(
-                t218,
-                t294,
-                -T::fused(t241, t293, -T::fused(-t29, t290, t122 * t291)),
+            let t313 = T::fused(-t222, t280, T::fused(t214, t271, t194 * t251))
+                + T::fused(t232, t302, T::fused(t229, t304, t226 * t306));
+            let t314 = T::fused(k(2e-6), t259, t313);
+            let t315 = t145 * t314;
+            let t316 = t164 * t314;
+            let t317 = T::fused(
+                -t219,
+                t282,
+                T::fused(t299, t231, T::fused(-t125, t315, t131 * t316)),
             );
-            let t296 = t210 * t292;
-            let t297 = T::fused(t153, t296, -t295);
-            let t298 = k(2.0) * (t297 - t289);
-            let t299 = t14 * t260;
-            let t300 = T::fused(
-                t214,
-                t294,
-                -T::fused(t235, t293, -T::fused(t32, t290, t30 * t291)),
+            let t318 = T::fused(
+                -k(2.0),
+                T::fused(-t178, t253, T::fused(t209, t273, t317)),
+                k(0.00025) * T::fused(t203, t304, t263 * t231),
             );
-            let t301 = T::fused(t150, t296, t300);
-            let t302 = k(2.0) * (t301 + t299);
-            let t303 = T::fused(
-                t145,
-                t296,
-                T::fused(t212, t294, T::fused(t4, t291, t229 * t293)),
-            );
-            let t304 = t108 * (k(2.0) * t303);
-            let t305 = t304
-                + (t304 - T::fused(t116, t302, T::fused(t111, t288, t114 * t298)));
-            let t306 = T::fused(t248, t292, t258 * t274);
-            let t307 = t209 * t306;
-            let t308 = t202 * t306;
-            let t309 = T::fused(
-                t183,
-                t308,
-                T::fused(t204, t307, -T::fused(-t126, t275, t118 * t293)),
-            );
-            let t310 = t181 * t306;
-            let t311 = T::fused(t219, t292, t257 * t274);
-            let t312 = k(0.08) * T::fused(-t236, t311, t237 * t306);
-            let t313 = T::fused(
-                k(2.0),
-                T::fused(t227, t312, -T::fused(t176, t310, -t309)),
-                k(0.00025) * T::fused(-t239, t311, t194 * t312),
-            );
-            let t314 = k(0.08) * T::fused(-t242, t311, t243 * t306);
-            let t315 = t209 * t311;
-            let t316 = T::fused(
-                t205,
-                t315,
-                -T::fused(t226, t314, T::fused(t127, t276, t121 * t294)),
-            );
-            let t317 = t202 * t311;
-            let t318 = t181 * t311;
             let t319 = T::fused(
-                k(0.00025),
-                T::fused(t245, t306, t199 * t314),
-                k(2.0) * T::fused(t179, t318, T::fused(t186, t317, t316)),
+                k(1e-6),
+                T::fused(t249, t266, -t250),
+                -T::fused(-t221, t280, T::fused(t213, t271, t182 * t251)),
             );
-            let t320 = t319 + t313;
-            let t321 = T::fused(
-                t204,
-                t315,
-                -T::fused(t226, t312, -T::fused(-t126, t276, t118 * t294)),
-            );
+            let t320 = t145 * t319;
+            let t321 = t164 * t319;
             let t322 = T::fused(
-                -k(0.00025),
-                T::fused(t239, t306, t199 * t312),
-                k(2.0) * T::fused(t176, t318, -T::fused(t183, t317, t321)),
+                t218,
+                t281,
+                T::fused(t122, t320, T::fused(t134, t321, t298 * t228)),
             );
-            let t323 = t148 * t322;
-            let t324 = T::fused(
-                t182,
-                t308,
-                -T::fused(t203, t307, T::fused(t129, t275, t113 * t293)),
+            let t323 = k(2.0) * T::fused(-t173, t252, T::fused(t208, t272, t322));
+            let t324 = t150 * (t323 + (t318 + t312));
+            let t325 = T::fused(
+                -t219,
+                t281,
+                T::fused(t125, t320, T::fused(-t131, t321, t298 * t231)),
             );
-            let t325 = k(0.08) * T::fused(t230, t311, t231 * t306);
-            let t326 = T::fused(
-                k(2.0),
-                T::fused(t227, t325, -T::fused(t171, t310, -t324)),
-                k(0.00025) * T::fused(-t233, t311, t194 * t325),
+            let t326 = k(2.0) * T::fused(-t178, t252, T::fused(t209, t272, t325));
+            let t327 = T::fused(
+                t218,
+                t282,
+                T::fused(t299, t228, -T::fused(t122, t315, t134 * t316)),
             );
-            let t327 = T::fused(t154, t292, t256 * t274);
-            let t328 = t209 * t327;
-            let t329 = T::fused(
-                t205,
-                t328,
-                T::fused(t121, t296, -T::fused(-t127, t277, t225 * t314)),
+            let t328 = T::fused(
+                -k(2.0),
+                T::fused(-t173, t253, T::fused(t208, t273, t327)),
+                k(0.00025) * T::fused(-t203, t306, t263 * t228),
             );
-            let t330 = t202 * t327;
-            let t331 = t181 * t327;
-            let t332 = k(2.0) * T::fused(t179, t331, T::fused(t186, t330, t329));
-            let t333 = t332 + t326;
-            let t334 = T::fused(
-                t203,
-                t315,
-                T::fused(t226, t325, -T::fused(t129, t276, t113 * t294)),
+            let t329 = t328 - t326;
+            let t330 = T::fused(
+                -t220,
+                t281,
+                T::fused(-t128, t320, T::fused(-t132, t321, t298 * t234)),
             );
+            let t331 = k(2.0) * T::fused(t181, t252, T::fused(t212, t272, t330));
+            let t332 = T::fused(
+                t208,
+                t274,
+                T::fused(t218, t283, T::fused(t122, t309, t134 * t310)),
+            );
+            let t333 = T::fused(
+                k(0.00025),
+                T::fused(t228, t259, t193 * t306),
+                k(2.0) * T::fused(t300, t228, -T::fused(-t173, t254, t332)),
+            );
+            let t334 = t333 - t331;
             let t335 = T::fused(
-                -k(0.00025),
-                T::fused(t233, t306, t199 * t325),
-                k(2.0) * T::fused(t171, t318, -T::fused(t182, t317, -t334)),
+                -t220,
+                t282,
+                T::fused(t299, t234, T::fused(t128, t315, t132 * t316)),
             );
             let t336 = T::fused(
-                t204,
-                t328,
-                -T::fused(t118, t296, T::fused(-t126, t277, t225 * t312)),
+                -k(2.0),
+                T::fused(t181, t253, T::fused(t212, t273, t335)),
+                k(0.00025) * T::fused(t203, t302, t263 * t234),
             );
-            let t337 = k(2.0) * T::fused(t176, t331, -T::fused(t183, t330, t336));
-            let t338 = t337 - t335;
-            let t339 = T::fused(
-                t142,
-                t338,
-                T::fused(t143, t333, t323 + T::fused(t146, t320, t323)),
+            let t337 = T::fused(
+                -t209,
+                t274,
+                T::fused(t219, t283, T::fused(-t125, t309, t131 * t310)),
             );
-            let t340 = T::fused(t150, t328, -T::fused(t235, t307, t214 * t315));
-            let t341 = T::fused(t153, t330, T::fused(t241, t308, t218 * t317));
-            let t342 = k(2.0) * (t341 - t340);
-            let t343 = T::fused(t150, t330, -T::fused(t235, t308, t214 * t317));
-            let t344 = t174 * (k(2.0) * t343);
-            let t345 = T::fused(t145, t328, -T::fused(-t229, t307, t212 * t315));
-            let t346 = T::fused(t153, t331, T::fused(t241, t310, t218 * t318));
-            let t347 = k(2.0) * (t346 - t345);
-            let t348 = T::fused(t145, t330, -T::fused(-t229, t308, t212 * t317));
-            let t349 = T::fused(t150, t331, -T::fused(t235, t310, t214 * t318));
-            let t350 = k(2.0) * (t349 - t348);
+            let t338 = T::fused(
+                -k(0.00025),
+                T::fused(-t231, t259, t193 * t304),
+                k(2.0) * T::fused(t300, t231, T::fused(t178, t254, t337)),
+            );
+            let t339 = t338 - t336;
+            let t340 = t324
+                - (T::fused(t153, t329, T::fused(t155, t334, t149 * t339)) - t324);
+            let t341 = T::fused(-t168, t289, T::fused(-t169, t295, t340));
+            let t342 = k(2.0) * (t287 - t286);
+            let t343 = T::fused(
+                -t170,
+                t285,
+                T::fused(-t176, t342, k(2.0) * (t174 * (k(2.0) * t290))),
+            );
+            let t344 = T::fused(-t171, t293, t343);
+            let t345 = t176 * (k(2.0) * t291);
+            let t346 = T::fused(
+                t170,
+                t276,
+                T::fused(-t171, t294, t345 + T::fused(t174, t342, t345)),
+            );
+            let t347 = t333 + t331;
+            let t348 = t338 + t336;
+            let t349 = T::fused(
+                -t150,
+                t329,
+                T::fused(t149, t347, T::fused(-t155, t348, k(2.0) * (t153 * t312))),
+            );
+            let t350 = T::fused(t169, t344, T::fused(t168, t346, t349));
             let t351 = T::fused(
-                t168,
-                t350,
-                T::fused(t169, t347, t344 + T::fused(t172, t342, t344)),
+                k(2e-6),
+                t244,
+                T::fused(t201, t308, T::fused(-t191, t314, t161 * t319)),
             );
-            let t352 = T::fused(t153, t328, T::fused(t241, t307, t218 * t315));
-            let t353 = k(2.0) * (t346 + t345);
-            let t354 = T::fused(
-                t168,
-                t353,
-                T::fused(-k(2.0), t172 * (k(2.0) * t352), t174 * t342),
+            let t352 = t121 * t351;
+            let t353 = T::fused(
+                k(1e-6),
+                T::fused(t19, t245, t260),
+                T::fused(t202, t308, T::fused(-t192, t314, t165 * t319)),
             );
-            let t355 = k(2.0) * (t349 + t348);
-            let t356 = T::fused(t169, t355, -t354);
-            let t357 = T::fused(t166, t356, -T::fused(t167, t351, t339));
-            let t358 = t319 - t313;
-            let t359 = t332 - t326;
-            let t360 = T::fused(
-                t203,
-                t328,
-                T::fused(t113, t296, T::fused(t129, t277, t225 * t325)),
+            let t354 = t121 * t353;
+            let t355 = t143 * t351;
+            let t356 = t143 * t353;
+            let t357 = T::fused(
+                -t130,
+                t352,
+                T::fused(-t135, t354, T::fused(t136, t355, t133 * t356)),
             );
-            let t361 = k(2.0) * T::fused(t171, t331, -T::fused(t182, t330, -t360));
-            let t362 = t142 * t361;
-            let t363 = t362
-                + (t362 - T::fused(t148, t338, T::fused(-t143, t358, t146 * t359)));
-            let t364 = k(2.0) * (t341 + t340);
-            let t365 = T::fused(t145, t331, -T::fused(-t229, t310, t212 * t318));
-            let t366 = t169 * (k(2.0) * (t365 - (t343 - t352)));
-            let t367 = t366
-                + (t366 + T::fused(t172, t355, -T::fused(-t168, t364, t174 * t347)));
-            let t368 = t168 * (k(2.0) * t365);
-            let t369 = t368
-                + (t368 - T::fused(t174, t350, T::fused(-t169, t364, t172 * t353)));
-            let t370 = T::fused(t167, t369, -T::fused(t166, t367, -t363));
-            let t371 = T::fused(t141, t370, T::fused(t140, t357, t305));
-            let t372 = T::fused(-t271, t260, t261 * t265);
-            let t373 = k(2.0) * (t287 - t267);
-            let t374 = k(2.0) * (t297 + t289);
-            let t375 = T::fused(
-                t111,
-                t374,
-                T::fused(k(2.0), t116 * (k(2.0) * t372), t114 * t373),
-            );
-            let t376 = T::fused(
-                t140,
-                t370,
-                -T::fused(t141, t357, -T::fused(t108, t302, t375)),
-            );
-            let t377 = k(2.0) * (t301 - t299);
-            let t378 = T::fused(
-                t122,
-                t284,
-                T::fused(t153, t277, -T::fused(-t241, t275, t218 * t276)),
-            );
-            let t379 = T::fused(t29, t286, -t378);
-            let t380 = t111 * (k(2.0) * (t303 - (t379 + t372)));
-            let t381 = t380
-                + (t380 + T::fused(t114, t377, -T::fused(t108, t288, t116 * t374)));
-            let t382 = T::fused(
+            let t358 = t137 * t137 * t357;
+            let t359 = T::fused(-t133, t358, t137 * t352);
+            let t360 = T::fused(-t135, t358, t137 * t355);
+            let t361 = T::fused(
                 t186,
-                t308,
-                T::fused(t205, t307, T::fused(t127, t275, t121 * t293)),
+                t315,
+                T::fused(-t198, t309, T::fused(t43, t359, t45 * t360)),
             );
-            let t383 = T::fused(
-                k(2.0),
-                T::fused(t227, t314, T::fused(t179, t310, t382)),
-                k(0.00025) * T::fused(-t245, t311, t194 * t314),
+            let t362 = T::fused(t157, t320, t361);
+            let t363 = T::fused(t163, t353, t144 * t351);
+            let t364 = t29 * t363;
+            let t365 = k(2.0) * (t364 - t362);
+            let t366 = T::fused(
+                -t190,
+                t315,
+                T::fused(t200, t309, T::fused(-t129, t359, t42 * t360)),
             );
-            let t384 = t337 + t335;
-            let t385 = T::fused(
-                t143,
-                t384,
-                -T::fused(t142, t359, T::fused(-k(2.0), t146 * t383, t148 * t320)),
+            let t367 = T::fused(t160, t320, t366);
+            let t368 = T::fused(t136, t358, t137 * t354);
+            let t369 = T::fused(
+                t5,
+                t368,
+                T::fused(t152, t321, T::fused(t184, t316, t196 * t310)),
             );
-            let t386 = T::fused(t167, t356, T::fused(t166, t351, t385));
-            let t387 = t143 * (t361 - (t322 - t383));
-            let t388 = t387
-                + (t387 + T::fused(t146, t384, -T::fused(-t142, t358, t148 * t333)));
-            let t389 = T::fused(t166, t369, T::fused(t167, t367, t388));
-            let t390 = T::fused(t141, t389, T::fused(t140, t386, t381));
-            let t391 = T::fused(
-                t108,
-                t298,
-                T::fused(k(2.0), t114 * (k(2.0) * t379), t116 * t373),
+            let t370 = k(2.0) * (t369 + t367);
+            let t371 = T::fused(t130, t358, t137 * t356);
+            let t372 = T::fused(
+                -t43,
+                t368,
+                T::fused(-t157, t321, T::fused(-t186, t316, t198 * t310)),
             );
-            let t392 = T::fused(
-                t140,
-                t389,
-                -T::fused(t141, t386, T::fused(t111, t377, -t391)),
+            let t373 = T::fused(-t45, t371, t372);
+            let t374 = T::fused(t162, t353, t138 * t351);
+            let t375 = T::fused(t117, t374, t140 * t363);
+            let t376 = k(2.0) * (t375 - t373);
+            let t377 = T::fused(
+                -t129,
+                t368,
+                T::fused(t160, t321, T::fused(-t190, t316, t200 * t310)),
             );
+            let t378 = T::fused(t42, t371, t377);
+            let t379 = T::fused(
+                -t108,
+                t370,
+                T::fused(t114, t376, k(2.0) * (t113 * (k(2.0) * t378))),
+            );
+            let t380 = T::fused(
+                -t147,
+                t341,
+                T::fused(t148, t350, T::fused(-t111, t365, t379)),
+            );
+            let t381 = T::fused(-t120, t374, t141 * t363);
+            let t382 = T::fused(
+                t152,
+                t320,
+                T::fused(t184, t315, T::fused(t196, t309, t5 * t359)),
+            );
+            let t383 = t111 * (k(2.0) * (t382 + (t381 + t378)));
+            let t384 = k(2.0) * (t369 - t367);
+            let t385 = k(2.0) * (t375 + t373);
+            let t386 = t383
+                - (T::fused(t113, t365, T::fused(-t114, t384, t108 * t385)) - t383);
+            let t387 = T::fused(t148, t341, T::fused(t147, t350, t386));
+            let t388 = t149 * t323;
+            let t389 = t328 + t326;
+            let t390 = t388
+                - (T::fused(t155, t389, T::fused(-t153, t347, t150 * t339)) - t388);
+            let t391 = T::fused(-t169, t289, T::fused(t168, t295, t390));
+            let t392 = t155 * t318;
             let t393 = T::fused(
-                t103,
-                t392,
-                -T::fused(t110, t390, -T::fused(-t107, t371, t109 * t376)),
+                -t149,
+                t389,
+                T::fused(-t150, t334, t392 - T::fused(t153, t348, -t392)),
             );
-            let t394 = k(1e-6) * t327;
-            let t395 = k(1e-5) * T::fused(t180, t327, T::fused(t220, t311, t249 * t306));
-            let t396 = t395 + t394;
-            let t397 = k(5e-6) * T::fused(t187, t327, T::fused(t221, t311, t250 * t306));
-            let t398 = k(5e-6) * T::fused(t206, t327, T::fused(t222, t311, t251 * t306));
-            let t399 = T::fused(
-                -k(2e-6),
-                t311,
-                T::fused(-t230, t325, T::fused(t236, t312, t242 * t314)),
+            let t394 = T::fused(t168, t344, T::fused(-t169, t346, t393));
+            let t395 = k(2.0) * (t364 + t362);
+            let t396 = T::fused(
+                t111,
+                t384,
+                T::fused(t113, t376, k(2.0) * (t114 * (k(2.0) * t381))),
             );
+            let t397 = T::fused(
+                -t147,
+                t391,
+                T::fused(t148, t394, T::fused(-t108, t395, t396)),
+            );
+            let t398 = t108 * (k(2.0) * t382);
+            let t399 = t398
+                - (T::fused(t114, t395, T::fused(t113, t370, t111 * t385)) - t398);
             (
                 t200,
+                t203,
+                t205,
+                t206,
                 t207,
-                t212,
-                t214,
-                t218,
-                t223,
+                t216,
+                t217,
                 t224,
-                t229,
+                t225,
+                t227,
+                t228,
+                t230,
                 t231,
-                t235,
+                t233,
+                t234,
+                t236,
                 t237,
+                t238,
+                t239,
+                t240,
                 t241,
+                t242,
                 t243,
-                t260,
-                t261,
+                t244,
+                t245,
+                t246,
+                t247,
+                t248,
+                t249,
+                t258,
+                t259,
+                t263,
+                t264,
                 t265,
                 t266,
+                t267,
                 t268,
                 t269,
-                t271,
-                t272,
-                t274,
-                t284,
-                t286,
-                t290,
-                t291,
-                t292,
-                t306,
-                t312,
-                t314,
-                t325,
-                t351,
-                t356,
-                t357,
-                t367,
-                t369,
-                t370,
+                t278,
+                t289,
+                t295,
+                t296,
+                t297,
+                t341,
+                t344,
+                t346,
+                t350,
+                t359,
+                t360,
+                t363,
+                t368,
                 t371,
-                t376,
-                t386,
-                t389,
-                t390,
-                t392,
-                t393,
+                t374,
+                t380,
+                t387,
+                t391,
                 t394,
-                t395,
-                t396,
                 t397,
-                t398,
                 t399,
             )
         };
-        let (
-            t418,
-            t427,
-            t428,
-            t435,
-            t436,
-            t441,
-            t443,
-            t444,
-            t445,
-            t462,
-            t466,
-            t467,
-            t495,
-        ) = {
-            let t400 = T::fused(-t195, t397, T::fused(t200, t398, t399));
-            let t401 = T::fused(t21, t396, T::fused(-t23, t400, k(2e-6) * t292));
-            let t402 = T::fused(u2, t397, t193 * t397);
-            let t403 = T::fused(u2, t398, t193 * t398);
-            let t404 = T::fused(-t145, t325, T::fused(-t150, t312, t153 * t314));
-            let t405 = T::fused(-t229, t325, T::fused(t235, t312, t241 * t314));
-            let t406 = T::fused(
-                -t189,
-                t403,
-                T::fused(-k(0.000125), T::fused(-t155, t404, t192 * t405), t224 * t404),
+        let (t419, t428, t435, t440, t441, t443, t444, t445, t462, t466, t467, t495) = {
+            let t400 = T::fused(t148, t391, T::fused(t147, t394, t399));
+            let t401 = T::fused(
+                -t107,
+                t380,
+                T::fused(-t109, t387, T::fused(t110, t397, t103 * t400)),
             );
-            let t407 = T::fused(-t160, t394, T::fused(t190, t402, t406));
-            let t408 = T::fused(u0, t401, t407);
-            let t409 = T::fused(t212, t325, T::fused(t214, t312, t218 * t314));
-            let t410 = k(1e-6) * t306;
-            let t411 = T::fused(
-                k(0.000125),
-                T::fused(t160, t404, t192 * t409),
-                T::fused(t223, t404, t192 * t410),
+            let t402 = T::fused(t14, t207, T::fused(-t17, t236, k(2e-6) * t145));
+            let t403 = T::fused(u2, t216, t269 * t216);
+            let t404 = T::fused(u2, t224, t269 * t224);
+            let t405 = T::fused(-t152, t228, T::fused(-t157, t231, t160 * t234));
+            let t406 = T::fused(-t196, t228, T::fused(t198, t231, t200 * t234));
+            let t407 = T::fused(
+                -t265,
+                t404,
+                T::fused(-k(0.000125), T::fused(-t266, t405, t258 * t406), t297 * t405),
             );
+            let t408 = T::fused(-t249, t206, T::fused(t267, t403, t407));
+            let t409 = T::fused(u0, t402, t408);
+            let t410 = T::fused(t184, t228, T::fused(t186, t231, t190 * t234));
+            let t411 = k(1e-6) * t203;
             let t412 = T::fused(
+                k(0.000125),
+                T::fused(t249, t405, t258 * t410),
+                T::fused(t296, t405, t258 * t411),
+            );
+            let t413 = T::fused(
                 u1,
-                t396,
-                T::fused(-t155, t394, T::fused(t189, t402, T::fused(t190, t403, t411))),
+                t207,
+                T::fused(-t266, t206, T::fused(t265, t403, T::fused(t267, t404, t412))),
             );
-            let t413 = t191 * t397;
-            let t414 = t207 * t398;
-            let t415 = t414 - t413;
-            let t416 = T::fused(
-                -u1,
-                t400,
-                T::fused(t223, t409, T::fused(-t224, t405, t160 * t410)) + t415,
-            );
+            let t414 = t268 * t216;
+            let t415 = t278 * t224;
+            let t416 = t415 - t414;
             let t417 = T::fused(
-                t195,
-                t398,
-                T::fused(t231, t325, T::fused(t237, t312, T::fused(t243, t314, t410))),
+                -u1,
+                t236,
+                T::fused(t296, t410, T::fused(-t297, t406, t249 * t411)) + t416,
             );
-            let t418 = T::fused(t200, t397, t417);
-            let t419 = k(1e-6) * t274;
-            let t420 = t419 + t418;
-            let t421 = T::fused(
-                t158,
-                t412,
-                T::fused(-t159, t416, T::fused(u0, t420, t38 * t419)),
+            let t418 = T::fused(
+                t217,
+                t224,
+                T::fused(t227, t228, T::fused(t230, t231, T::fused(t233, t234, t411))),
             );
-            let t422 = T::fused(-t8, t408, t11 * t421);
-            let t423 = T::fused(
-                t107,
-                t392,
-                -T::fused(t109, t390, T::fused(-t103, t371, t110 * t376)),
+            let t419 = T::fused(t225, t216, t418);
+            let t420 = k(1e-6) * t164;
+            let t421 = t420 + t419;
+            let t422 = T::fused(
+                t247,
+                t413,
+                T::fused(-t248, t417, T::fused(u0, t421, t19 * t420)),
             );
-            let t424 = T::fused(t11, t408, t8 * t421);
+            let t423 = T::fused(t12, t409, t9 * t422);
+            let t424 = T::fused(-t9, t409, t12 * t422);
             let t425 = T::fused(
                 k(2.0),
-                T::fused(t104, t422, t98 * t424),
-                T::fused(t134, t424, t423),
+                T::fused(t104, t424, t98 * t423),
+                T::fused(t240, t423, t401),
             );
             let t426 = T::fused(
-                -t9,
-                T::fused(-t17, t401, t18 * t420),
-                t0 * T::fused(t18, t401, t17 * t420),
+                t103,
+                t380,
+                T::fused(t110, t387, T::fused(t109, t397, t107 * t400)),
             );
             let t427 = T::fused(
-                k(0.5),
-                T::fused(-t98, T::fused(t134, t422, t393), t104 * t425),
-                t426,
+                -t1,
+                T::fused(-t32, t402, t33 * t421),
+                t10 * T::fused(t33, t402, t32 * t421),
             );
-            let t428 = T::fused(t23, t396, t21 * t400);
+            let t428 = T::fused(
+                -k(0.5),
+                T::fused(-t104, t425, t98 * T::fused(t240, t424, -t426)),
+                t427,
+            );
             let t429 = T::fused(
-                t111,
-                t389,
-                T::fused(t108, t370, T::fused(t114, t386, t116 * t357)),
+                -t113,
+                t341,
+                T::fused(-t114, t391, T::fused(t108, t394, t111 * t350)),
             );
-            let t430 = T::fused(-t156, t412, t38 * t416);
-            let t431 = T::fused(
-                t114,
-                t389,
-                T::fused(t116, t370, -T::fused(t111, t386, t108 * t357)),
-            );
-            let t432 = T::fused(t38, t412, t156 * t416);
-            let t433 = T::fused(
+            let t430 = T::fused(t19, t413, t245 * t417);
+            let t431 = T::fused(-t245, t413, t19 * t417);
+            let t432 = T::fused(
                 k(2.0),
-                T::fused(-t141, t430, t140 * t432),
-                T::fused(t157, t432, t431),
+                T::fused(-t148, t431, t147 * t430),
+                T::fused(t246, t430, -t429),
+            );
+            let t433 = T::fused(
+                t111,
+                t341,
+                T::fused(t108, t391, T::fused(t114, t394, t113 * t350)),
             );
             let t434 = T::fused(
-                -k(0.5),
-                T::fused(t140, T::fused(t157, t430, t429), t141 * t433),
-                t23 * T::fused(t163, t400, t138 * t396),
+                -t17,
+                T::fused(t236, t239, t244 * t207),
+                k(0.5) * T::fused(t148, t432, t147 * T::fused(t246, t431, t433)),
             );
             let t435 = T::fused(
-                t69,
-                t428,
-                T::fused(t21, T::fused(-t163, t396, t138 * t400), t434),
+                -t237,
+                t70,
+                T::fused(-t14, T::fused(-t207, t239, t244 * t236), t434),
             );
-            let t436 = T::fused(
-                t195,
-                T::fused(t194, t398, t199 * t397),
-                t200 * T::fused(-t199, t398, t194 * t397),
-            );
-            let t437 = T::fused(-t160, t402, t155 * t403);
+            let t436 = T::fused(-t249, t403, t266 * t404);
+            let t437 = T::fused(t266, t403, t249 * t404);
             let t438 = T::fused(
-                t143,
-                t367,
-                T::fused(t146, t356, -T::fused(t148, t351, t188 * t437)),
+                -t153,
+                t346,
+                T::fused(k(2.0), T::fused(t169, t436, t168 * t437), t264 * t437),
             );
-            let t439 = T::fused(t155, t402, t160 * t403);
+            let t439 = T::fused(
+                t150,
+                t295,
+                T::fused(-t153, t344, T::fused(t155, t346, t264 * t436)),
+            );
             let t440 = T::fused(
-                -t146,
-                t351,
-                T::fused(k(2.0), T::fused(t167, t437, t166 * t439), t188 * t439),
+                -t169,
+                T::fused(t150, t289, T::fused(-t149, t295, T::fused(-t155, t344, t438))),
+                t168 * T::fused(t149, t289, t439),
             );
             let t441 = T::fused(
-                -t166,
-                T::fused(t142, t369, t438),
-                t167
-                    * T::fused(
-                        t143,
-                        t369,
-                        -T::fused(t142, t367, -T::fused(t148, t356, -t440)),
-                    ),
+                -t225,
+                T::fused(-t216, t259, t263 * t224),
+                t217 * T::fused(t224, t259, t263 * t216),
             );
-            let t442 = T::fused(-t159, t412, T::fused(-t158, t416, t156 * t419));
+            let t442 = T::fused(-t248, t413, T::fused(-t247, t417, t245 * t420));
             let t443 = T::fused(
-                -t89,
-                t418,
-                T::fused(-t73, t428, T::fused(-t137, t401, T::fused(t156, t420, -t442))),
+                t89,
+                t419,
+                -T::fused(-t237, t73, T::fused(-t243, t402, T::fused(t245, t421, -t442))),
             );
             let t444 = T::fused(
                 t95,
-                t395,
-                T::fused(-t75, t428, T::fused(-t160, t396, T::fused(t192, t400, -t407))),
+                t205,
+                T::fused(-t75, t237, T::fused(-t249, t207, T::fused(t258, t236, -t408))),
             );
             let t445 = T::fused(
                 -t96,
-                t395,
-                T::fused(-t90, t418, T::fused(t76, t428, t413 - (t414 + t415))),
+                t205,
+                T::fused(-t90, t419, T::fused(t76, t237, t414 - (t415 + t416))),
             );
-            let t446 = k(198.44017075391884) * t6;
-            let t447 = t161 * t16;
-            let t448 = T::fused(t7, T::fused(t11, t14, t4 * t18), t447)
-                + T::fused(t13, t446, t447);
-            let t449 = k(334.86778814723806) * t10;
-            let t450 = t14 * t16;
-            let t451 = T::fused(t7, T::fused(-t11, t161, t13 * t18), t450)
-                + T::fused(-t4, t446, t450);
-            let t452 = T::fused(u0, t19, T::fused(t9, t449, t0 * t451));
-            let t453 = k(10.0) * t261;
-            let t454 = k(10.0) * t271;
-            let t455 = T::fused(t21, t63, t162 * t23);
-            let t456 = T::fused(
+            let t446 = T::fused(t14, t64, t238 * t17);
+            let t447 = T::fused(
                 k(1e-5),
-                T::fused(t39, k(0.000125) * t19, t41 * t455),
-                k(5e-6) * T::fused(u2, t19, T::fused(-t40, t455, t42 * t19)),
+                T::fused(t20, k(0.000125) * t34, t22 * t446),
+                k(5e-6) * T::fused(u2, t34, T::fused(-t21, t446, t23 * t34)),
             );
-            let t457 = T::fused(-t23, t63, t162 * t21);
-            let t458 = u1 * t457;
-            let t459 = T::fused(
-                -t21,
-                T::fused(k(7.00125e-6), u1 * t455, t456),
-                t23 * (k(1e-6) * (t458 - T::fused(t40, t457, t45 * t19))),
+            let t448 = T::fused(-t17, t64, t238 * t14);
+            let t449 = u1 * t448;
+            let t450 = T::fused(
+                -t14,
+                T::fused(t446, t0, t447),
+                t17 * (k(1e-6) * (t449 - T::fused(t21, t448, t26 * t34))),
             );
-            let t460 = T::fused(k(1e-6), T::fused(t63, t36, t12 * t19), t459)
-                + T::fused(-t27, t452, t35 * T::fused(t0, t453, t9 * t454));
-            let t461 = t53 * t460;
-            let t462 = t461 + t448;
+            let t451 = k(334.86778814723806) * t11;
+            let t452 = k(198.44017075391884) * t7;
+            let t453 = t29 * t31;
+            let t454 = T::fused(t8, T::fused(-t12, t139, t18 * t33), t453)
+                + T::fused(-t5, t452, t453);
+            let t455 = T::fused(u0, t34, T::fused(t1, t451, t10 * t454));
+            let t456 = k(10.0) * t120;
+            let t457 = k(10.0) * t141;
+            let t458 = T::fused(-t40, t455, t48 * T::fused(t10, t456, t1 * t457))
+                + T::fused(k(1e-6), T::fused(t64, t13, t16 * t34), t450);
+            let t459 = t54 * t458;
+            let t460 = t139 * t31;
+            let t461 = T::fused(t8, T::fused(t12, t29, t5 * t33), t460)
+                + T::fused(t18, t452, t460);
+            let t462 = t461 + t459;
             let t463 = T::fused(
-                -t21,
-                k(10.0) * T::fused(t29, t14, t4 * t266),
-                t23 * T::fused(-t9, t453, t0 * t454),
+                -t14,
+                k(10.0) * T::fused(t42, t29, t5 * t117),
+                t17 * T::fused(-t1, t456, t10 * t457),
             );
-            let t464 = t45 * t455;
+            let t464 = t26 * t446;
             let t465 = T::fused(
                 k(1e-5),
-                T::fused(t39, k(0.000125) * t457, t77 * t455),
-                k(5e-6) * T::fused(u2, t457, -T::fused(-t42, t457, t464)),
+                T::fused(t20, k(0.000125) * t448, t77 * t446),
+                k(5e-6) * T::fused(u2, t448, -T::fused(-t23, t448, t464)),
             );
             let t466 = T::fused(
                 -k(166631.95167673402),
                 T::fused(
                     -k(1e-5),
                     t463,
-                    T::fused(k(1e-6), T::fused(t39, t457, t464), t465),
+                    T::fused(k(1e-6), T::fused(t20, t448, t464), t465),
                 ),
-                T::fused(u0, t63, T::fused(-t0, t449, t9 * t451)),
+                T::fused(u0, t64, T::fused(-t10, t451, t1 * t454)),
             );
-            let t467 = t458 + T::fused(-t23, t461, t21 * t452);
-            let t468 = t268 * t260;
-            let t469 = t269 * t260;
-            let t470 = T::fused(-t13, t469, t268 * t265);
-            let t471 = T::fused(
-                t126,
-                t286,
-                T::fused(t118, t290, -T::fused(t161, t468, t7 * t470)),
+            let t467 = t449 + T::fused(-t17, t459, t14 * t455);
+            let t468 = t116 * t363;
+            let t469 = t119 * t363;
+            let t470 = T::fused(t8, t237, T::fused(t45, t468, t42 * t469));
+            let t471 = T::fused(-t10, t402, t1 * t421);
+            let t472 = T::fused(t241, t409, t242 * t422);
+            let t473 = T::fused(
+                t8,
+                t472,
+                -T::fused(t31, t471, T::fused(t122, t359, t134 * t368)),
             );
-            let t472 = T::fused(-t127, t284, t121 * t291);
-            let t473 = T::fused(t13, t468, t269 * t265);
-            let t474 = T::fused(
-                t127,
-                t286,
-                -T::fused(t121, t290, -T::fused(t161, t469, t7 * t473)),
+            let t474 = T::fused(t142, t363, t8 * t471);
+            let t475 = T::fused(-t125, t359, t131 * t368);
+            let t476 = T::fused(t128, t359, t132 * t368);
+            let t477 = T::fused(
+                -t42,
+                t475,
+                T::fused(-t45, t476, T::fused(-t120, t468, t117 * t469)),
             );
-            let t475 = T::fused(t126, t284, t118 * t291);
-            let t476 = T::fused(
-                t29,
-                T::fused(t13, t472, -t471),
-                t32 * T::fused(t13, t475, -t474),
+            let t478 = T::fused(
+                t18,
+                T::fused(t12, t470, t473),
+                t5 * T::fused(t31, t237, T::fused(t12, t474, T::fused(t8, t442, t477))),
             );
-            let t477 = T::fused(t98, t376, t104 * t390);
-            let t478 = T::fused(t98, t371, t104 * t392);
-            let t479 = T::fused(-t104, t376, t98 * t390);
-            let t480 = T::fused(-t104, t371, t98 * t392);
-            let t481 = T::fused(
-                -t106,
-                T::fused(-t105, t477, t100 * t478),
-                t102 * T::fused(-t100, t479, t105 * t480),
-            );
-            let t482 = T::fused(-t0, t401, t9 * t420);
+            let t479 = T::fused(t98, t380, t104 * t400);
+            let t480 = T::fused(-t104, t387, t98 * t397);
+            let t481 = T::fused(-t104, t380, t98 * t400);
+            let t482 = T::fused(t98, t387, t104 * t397);
             let t483 = T::fused(
-                k(15.791367041742975),
-                T::fused(t13, t428, t4 * t482),
-                T::fused(-k(0.1), t476, k(0.05) * t481),
+                t100,
+                T::fused(-t106, t479, t102 * t480),
+                t105 * T::fused(-t102, t481, t106 * t482),
             );
             let t484 = T::fused(
-                t14,
-                t482,
-                T::fused(t13, t442, -T::fused(t29, t473, t32 * t470)),
-            );
-            let t485 = T::fused(t135, t408, t136 * t421);
-            let t486 = T::fused(
-                t6,
-                t483,
-                t15
-                    * (k(1.2566370614359172)
-                        * T::fused(t161, t428, T::fused(t4, t485, -t484))),
-            );
-            let t487 = T::fused(t272, t260, t7 * t482);
-            let t488 = T::fused(t7, t428, T::fused(t29, t469, t32 * t468));
-            let t489 = T::fused(
-                t4,
-                t488,
-                T::fused(t136, t408, -T::fused(t13, t487, t135 * t421)),
-            );
-            let t490 = T::fused(
-                -t105,
-                T::fused(-t106, t479, t102 * t478),
-                t100 * T::fused(-t102, t477, t106 * t480),
-            );
-            let t491 = T::fused(
-                t29,
-                t475,
-                -T::fused(t32, t472, T::fused(-t266, t469, t261 * t468)),
-            );
-            let t492 = T::fused(
-                t7,
-                t485,
-                -T::fused(t16, t482, T::fused(-t129, t284, t113 * t291)),
-            );
-            let t493 = T::fused(
-                t4,
-                T::fused(t16, t428, T::fused(t11, t487, T::fused(t7, t442, t491))),
-                t13 * T::fused(t11, t488, t492),
-            );
-            let t494 = T::fused(
                 k(0.05),
-                t493,
+                t478,
                 T::fused(
                     -k(0.025),
-                    t490,
-                    k(17.765287921960844) * T::fused(t9, t401, t0 * t420),
+                    t483,
+                    k(17.765287921960844) * T::fused(t1, t402, t10 * t421),
                 ),
             );
-            let t495 = T::fused(
-                k(12.566370614359172),
-                t486,
-                k(18.84955592153876)
-                    * T::fused(t2, k(0.9424777960769379) * t489, t10 * t494),
+            let t485 = T::fused(
+                t5,
+                t470,
+                T::fused(t242, t409, -T::fused(t18, t474, t241 * t422)),
             );
-            (
-                t418,
-                t427,
-                t428,
-                t435,
-                t436,
-                t441,
-                t443,
-                t444,
-                t445,
-                t462,
-                t466,
-                t467,
-                t495,
-            )
+            let t486 = T::fused(-t116, t374, t18 * t469);
+            let t487 = T::fused(t119, t374, t18 * t468);
+            let t488 = T::fused(
+                t29,
+                t471,
+                T::fused(t18, t442, -T::fused(-t45, t486, t42 * t487)),
+            );
+            let t489 = T::fused(
+                t102,
+                T::fused(t105, t479, t100 * t482),
+                t106 * T::fused(t100, t481, t105 * t480),
+            );
+            let t490 = T::fused(
+                -t132,
+                t371,
+                T::fused(-t128, t360, T::fused(t8, t487, t139 * t469)),
+            );
+            let t491 = T::fused(
+                t131,
+                t371,
+                T::fused(-t125, t360, T::fused(-t8, t486, t139 * t468)),
+            );
+            let t492 = T::fused(
+                -t45,
+                T::fused(t18, t475, t490),
+                t42 * T::fused(t18, t476, t491),
+            );
+            let t493 = T::fused(
+                k(15.791367041742975),
+                T::fused(t18, t237, t5 * t471),
+                -T::fused(k(0.05), t489, k(0.1) * t492),
+            );
+            let t494 = T::fused(
+                t30,
+                k(1.2566370614359172) * T::fused(t139, t237, T::fused(t5, t472, -t488)),
+                t7 * t493,
+            );
+            let t495 = T::fused(
+                k(18.84955592153876),
+                T::fused(t11, t484, t3 * (k(0.9424777960769379) * t485)),
+                k(12.566370614359172) * t494,
+            );
+            (t419, t428, t435, t440, t441, t443, t444, t445, t462, t466, t467, t495)
         };
         *dfdx = [
             k(0.0),
@@ -6544,8 +6640,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
             k(0.0),
             k(1.0),
             k(0.0),
-            -t54,
-            -t69,
+            t55,
+            -t70,
             k(0.0),
             -t73,
             -t75,
@@ -6565,10 +6661,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
             t95,
             t96,
             k(0.0),
-            T::fused(-t91, t395, T::fused(t81, t418, -T::fused(t54, t428, -t427))),
-            T::fused(-t93, t395, T::fused(t86, t418, -t435)),
-            T::fused(-k(0.5), t441, t436),
-            T::fused(-t94, t395, t443),
+            T::fused(-t205, t91, T::fused(t81, t419, T::fused(t237, t55, t428))),
+            T::fused(-t205, t93, T::fused(t86, t419, t435)),
+            T::fused(-k(0.5), t440, t441),
+            -T::fused(t205, t94, t443),
             t444,
             -t445,
             k(0.0),
@@ -6580,7 +6676,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for PitchingBearings<T> {
             -t462,
             -t466,
             -t467,
-            T::fused(-t467, t395, T::fused(t466, t418, -T::fused(t462, t428, -t495))),
+            T::fused(-t205, t467, T::fused(t466, t419, T::fused(-t237, t462, t495))),
         ];
     }
     fn joint_input_jacobian(
@@ -6595,7 +6691,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 26]
     }
-    /// Writes the outputs: 546 operations (203 ±, 340 ×, 3 ÷) and 8 functions.
+    /// Writes the outputs: 525 operations (197 ±, 325 ×, 3 ÷) and 8 functions.
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -6658,209 +6754,216 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for PitchingBearings<T> {
         let t18 = t11.cos();
         let t19 = t9 * t18;
         let t20 = t5 * t18;
-        let t21 = rotor_e0 * rotor_e0;
-        let t22 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t21));
-        let t23 = inner_ring_e0 * inner_ring_e0;
-        let t24 = k(2.0) * (k(0.5) - T::fused(inner_ring_e1, inner_ring_e1, t23));
-        let t25 = rotor_e0 * rotor_e3;
-        let t26 = rotor_e1 * rotor_e2;
-        let t27 = k(2.0) * (t26 + t25);
-        let t28 = inner_ring_e0 * inner_ring_e3;
-        let t29 = inner_ring_e1 * inner_ring_e2;
-        let t30 = k(2.0) * (t29 + t28);
-        let t31 = rotor_e0 * rotor_e2;
-        let t32 = rotor_e1 * rotor_e3;
-        let t33 = k(2.0) * (t32 - t31);
-        let t34 = inner_ring_e0 * inner_ring_e2;
-        let t35 = inner_ring_e1 * inner_ring_e3;
-        let t36 = k(2.0) * (t35 - t34);
-        let t37 = k(1e-5) * rotor_dwx;
-        let t38 = k(2.0) * (t26 - t25);
-        let t39 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t21));
-        let t40 = rotor_e0 * rotor_e1;
-        let t41 = rotor_e2 * rotor_e3;
-        let t42 = k(2.0) * (t41 + t40);
-        let t43 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t44 = T::fused(
-            t37,
-            T::fused(t36, t33, T::fused(t24, t22, t30 * t27)),
-            t43 * T::fused(t36, t42, -T::fused(t24, t38, t30 * t39)),
-        );
-        let t45 = k(2.0) * (t32 + t31);
-        let t46 = k(2.0) * (t41 - t40);
-        let t47 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t21));
-        let t48 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t21 = k(2.0) * rotor_e1;
+        let t22 = k(2.0) * rotor_e0;
+        let t23 = T::fused(-rotor_e0, t22, k(1.0));
+        let t24 = T::fused(-rotor_e1, t21, t23);
+        let t25 = k(2.0) * inner_ring_e1;
+        let t26 = k(2.0) * inner_ring_e0;
+        let t27 = T::fused(-inner_ring_e0, t26, k(1.0));
+        let t28 = T::fused(-inner_ring_e1, t25, t27);
+        let t29 = rotor_e3 * t22;
+        let t30 = rotor_e2 * t21;
+        let t31 = t30 + t29;
+        let t32 = inner_ring_e3 * t26;
+        let t33 = inner_ring_e2 * t25;
+        let t34 = t33 + t32;
+        let t35 = rotor_e2 * t22;
+        let t36 = rotor_e3 * t21;
+        let t37 = t36 - t35;
+        let t38 = inner_ring_e2 * t26;
+        let t39 = inner_ring_e3 * t25;
+        let t40 = t39 - t38;
+        let t41 = k(1e-5) * rotor_dwx;
+        let t42 = t30 - t29;
+        let t43 = k(2.0) * rotor_e2;
+        let t44 = T::fused(-rotor_e2, t43, t23);
+        let t45 = rotor_e1 * t22;
+        let t46 = rotor_e3 * t43;
+        let t47 = t46 + t45;
+        let t48 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
         let t49 = T::fused(
-            t48,
-            T::fused(t36, t47, -T::fused(-t24, t45, t30 * t46)),
-            t44,
+            t41,
+            T::fused(t40, t37, T::fused(t28, t24, t34 * t31)),
+            t48 * T::fused(t40, t47, -T::fused(t28, t42, t34 * t44)),
         );
-        let t50 = T::fused(
+        let t50 = t36 + t35;
+        let t51 = t46 - t45;
+        let t52 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t23);
+        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t54 = T::fused(
+            t53,
+            T::fused(t40, t52, -T::fused(-t28, t50, t34 * t51)),
+            t49,
+        );
+        let t55 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wy, inner_ring_wz, -inner_ring_dwx),
-            -t49,
+            -t54,
         );
-        let t51 = outer_ring_e0 * outer_ring_e0;
-        let t52 = k(2.0) * (k(0.5) - T::fused(outer_ring_e1, outer_ring_e1, t51));
-        let t53 = outer_ring_e0 * outer_ring_e3;
-        let t54 = outer_ring_e1 * outer_ring_e2;
-        let t55 = k(2.0) * (t54 + t53);
-        let t56 = outer_ring_e0 * outer_ring_e2;
-        let t57 = outer_ring_e1 * outer_ring_e3;
-        let t58 = k(2.0) * (t57 - t56);
-        let t59 = T::fused(t58, t36, T::fused(t52, t24, t55 * t30));
-        let t60 = t29 - t28;
-        let t61 = k(2.0) * t60;
-        let t62 = k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t23);
-        let t63 = k(2.0) * t62;
-        let t64 = inner_ring_e0 * inner_ring_e1;
-        let t65 = inner_ring_e2 * inner_ring_e3;
-        let t66 = t65 + t64;
-        let t67 = k(2.0) * t66;
-        let t68 = T::fused(t67, t42, T::fused(t63, t39, t61 * t38));
-        let t69 = T::fused(
-            t37,
-            T::fused(t67, t33, -T::fused(t61, t22, t63 * t27)),
-            t43 * t68,
-        );
-        let t70 = T::fused(t67, t47, -T::fused(-t63, t46, t61 * t45));
-        let t71 = t35 + t34;
-        let t72 = t65 - t64;
-        let t73 = k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t23);
+        let t56 = k(2.0) * outer_ring_e1;
+        let t57 = k(2.0) * outer_ring_e0;
+        let t58 = T::fused(-outer_ring_e0, t57, k(1.0));
+        let t59 = T::fused(-outer_ring_e1, t56, t58);
+        let t60 = outer_ring_e3 * t57;
+        let t61 = outer_ring_e2 * t56;
+        let t62 = t61 + t60;
+        let t63 = outer_ring_e2 * t57;
+        let t64 = outer_ring_e3 * t56;
+        let t65 = t64 - t63;
+        let t66 = T::fused(t65, t40, T::fused(t59, t28, t62 * t34));
+        let t67 = t33 - t32;
+        let t68 = k(2.0) * inner_ring_e2;
+        let t69 = T::fused(-inner_ring_e2, t68, t27);
+        let t70 = inner_ring_e1 * t26;
+        let t71 = inner_ring_e3 * t68;
+        let t72 = t71 + t70;
+        let t73 = T::fused(t72, t47, T::fused(t67, t42, t69 * t44));
         let t74 = T::fused(
+            t41,
+            T::fused(t72, t37, -T::fused(t67, t24, t69 * t31)),
+            t48 * t73,
+        );
+        let t75 = T::fused(t72, t52, T::fused(-t67, t50, t69 * t51));
+        let t76 = t39 + t38;
+        let t77 = t71 - t70;
+        let t78 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t27);
+        let t79 = T::fused(
             t0,
-            k(0.00025) * t73,
-            -T::fused(t15, k(0.00025) * t71, t6 * (k(0.00025) * t72)),
+            k(0.000125) * t78,
+            -T::fused(t15, k(0.000125) * t76, t6 * (k(0.000125) * t77)),
         );
-        let t75 = T::fused(k(2e-6), inner_ring_dwy, t74 + T::fused(t48, t70, t69));
-        let t76 = T::fused(t58, t67, -T::fused(t52, t61, t55 * t63));
-        let t77 = k(2.0) * t71;
-        let t78 = k(2.0) * t72;
-        let t79 = k(2.0) * t73;
-        let t80 = T::fused(t79, t42, -T::fused(-t78, t39, t77 * t38));
-        let t81 = T::fused(
-            t37,
-            T::fused(t79, t33, -T::fused(-t77, t22, t78 * t27)),
-            t43 * t80,
-        );
-        let t82 = T::fused(t79, t47, T::fused(t78, t46, t77 * t45));
+        let t80 = T::fused(k(2e-6), inner_ring_dwy, t79 + T::fused(t53, t75, t74));
+        let t81 = T::fused(t65, t72, -T::fused(t59, t67, t62 * t69));
+        let t82 = T::fused(t78, t47, T::fused(-t76, t42, t77 * t44));
         let t83 = T::fused(
-            t0,
-            k(0.00025) * t66,
-            -T::fused(-t15, k(0.00025) * t60, t6 * (k(0.00025) * t62)),
+            t41,
+            T::fused(t78, t37, -T::fused(-t76, t24, t77 * t31)),
+            t48 * t82,
         );
-        let t84 = T::fused(
+        let t84 = T::fused(t78, t52, T::fused(t76, t50, t77 * t51));
+        let t85 = T::fused(
+            t0,
+            k(0.000125) * t72,
+            -T::fused(-t15, k(0.000125) * t67, t6 * (k(0.000125) * t69)),
+        );
+        let t86 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            t83 - T::fused(t48, t82, t81),
+            t85 - T::fused(t53, t84, t83),
         );
-        let t85 = T::fused(
-            T::fused(t58, t79, -T::fused(-t52, t77, t55 * t78)),
-            t84,
-            -T::fused(-t59, t50, t76 * t75),
+        let t87 = T::fused(
+            T::fused(t65, t78, -T::fused(-t59, t76, t62 * t77)),
+            t86,
+            -T::fused(-t66, t55, t81 * t80),
         );
-        let t86 = T::fused(k(2e-6), outer_ring_dwx, -t85);
-        let t87 = T::fused(t13, t58, T::fused(-t18, t52, t14 * t55));
-        let t88 = k(2.0) * (k(0.5) - T::fused(outer_ring_e3, outer_ring_e3, t51));
-        let t89 = outer_ring_e0 * outer_ring_e1;
-        let t90 = outer_ring_e2 * outer_ring_e3;
-        let t91 = k(2.0) * (t90 - t89);
-        let t92 = T::fused(t5, t88, t9 * t91);
-        let t93 = k(2.0) * (t57 + t56);
-        let t94 = T::fused(-t13, t88, T::fused(t14, t91, t18 * t93));
-        let t95 = T::fused(-t5, t58, t9 * t55);
-        let t96 = k(1.0) / T::fused(-t92, t87, t95 * t94);
-        let t97 = T::fused(
-            -T::fused(t88, t36, -T::fused(-t93, t24, t91 * t30)),
-            t50,
-            T::fused(t88, t67, -T::fused(-t91, t63, t93 * t61)) * t75,
+        let t88 = T::fused(k(2e-6), outer_ring_dwx, -t87);
+        let t89 = T::fused(t13, t65, T::fused(-t18, t59, t14 * t62));
+        let t90 = outer_ring_e1 * t57;
+        let t91 = k(2.0) * outer_ring_e2;
+        let t92 = outer_ring_e3 * t91;
+        let t93 = t92 - t90;
+        let t94 = T::fused(-outer_ring_e3, k(2.0) * outer_ring_e3, t58);
+        let t95 = T::fused(t9, t93, t5 * t94);
+        let t96 = T::fused(-t9, t62, t5 * t65);
+        let t97 = t64 + t63;
+        let t98 = T::fused(t13, t94, -T::fused(t18, t97, t14 * t93));
+        let t99 = k(1.0) / T::fused(-t95, t89, t98 * t96);
+        let t100 = T::fused(
+            -T::fused(t94, t40, -T::fused(-t97, t28, t93 * t34)),
+            t55,
+            T::fused(t94, t72, T::fused(-t97, t67, t93 * t69)) * t80,
         );
-        let t98 = T::fused(T::fused(t88, t79, T::fused(t91, t78, t93 * t77)), t84, -t97);
-        let t99 = T::fused(
+        let t101 = T::fused(
+            T::fused(t94, t78, T::fused(t97, t76, t93 * t77)),
+            t86,
+            -t100,
+        );
+        let t102 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t98,
+            -t101,
         );
-        let t100 = T::fused(-(t87 * t96), t86, t94 * t96 * t99);
-        let t101 = T::fused(-(t95 * t96), t86, t92 * t96 * t99);
-        let t102 = T::fused(-t92, t100, t94 * t101);
-        let t103 = T::fused(-t95, t100, t87 * t101);
-        let t104 = T::fused(-t55, t102, t91 * t103);
-        let t105 = T::fused(t58, t102, t88 * t103);
-        let t106 = T::fused(t52, t102, t93 * t103);
-        let t107 = k(2.0) * (t54 - t53);
-        let t108 = k(2.0) * (k(0.5) - T::fused(outer_ring_e2, outer_ring_e2, t51));
-        let t109 = k(2.0) * (t90 + t89);
-        let t110 = T::fused(t109, t36, -T::fused(t107, t24, t108 * t30));
-        let t111 = T::fused(t109, t67, T::fused(t108, t63, t107 * t61));
-        let t112 = k(1.0) / T::fused(-t76, t110, t59 * t111);
-        let t113 = T::fused(-(t110 * t112), t50, t111 * t112 * t75);
-        let t114 = T::fused(-(t59 * t112), t50, t76 * t112 * t75);
-        let t115 = T::fused(-t76, t113, t111 * t114);
-        let t116 = T::fused(-t59, t113, t110 * t114);
-        let t117 = T::fused(t24, t115, t61 * t116);
-        let t118 = T::fused(t30, t115, t63 * t116);
-        let t119 = T::fused(-t36, t115, t67 * t116);
-        let t120 = k(1.0) / T::fused(-t70, t80, t68 * t82);
-        let t121 = T::fused(t43, t80 * t120, t48 * (t82 * t120));
-        let t122 = T::fused(t43, t68 * t120, t48 * (t70 * t120));
-        let t123 = T::fused(-t70, t121, t82 * t122);
-        let t124 = T::fused(-t68, t121, t80 * t122);
-        let t125 = T::fused(t38, t123, t45 * t124);
-        let t126 = T::fused(-t39, t123, t46 * t124);
-        let t127 = T::fused(-t42, t123, t47 * t124);
-        let t128 = T::fused(k(0.002), inner_ring_wx, k(0.01) * inner_ring_wz);
-        let t129 = T::fused(-k(0.01), inner_ring_wy, k(0.005) * inner_ring_wx);
-        let t130 = T::fused(k(0.005), inner_ring_dwz, k(0.002) * inner_ring_dwy)
-            - T::fused(-inner_ring_wz, t128, inner_ring_wy * t129);
-        let t131 = T::fused(k(0.005), inner_ring_wz, k(0.002) * inner_ring_wy);
-        let t132 = T::fused(k(0.002), inner_ring_dwx, k(0.01) * inner_ring_dwz)
-            - T::fused(inner_ring_wx, t129, inner_ring_wz * t131);
-        let t133 = T::fused(-k(0.01), inner_ring_dwy, k(0.005) * inner_ring_dwx)
-            + T::fused(inner_ring_wy, t131, inner_ring_wx * t128);
-        let t134 = inner_ring_dsx + T::fused(t77, t133, T::fused(t24, t130, t61 * t132));
-        let t135 = k(10.0)
-            + (inner_ring_dsy + T::fused(t78, t133, -T::fused(t30, t130, t63 * t132)));
-        let t136 = inner_ring_dsz
-            - T::fused(t79, t133, -T::fused(-t36, t130, t67 * t132));
-        let t137 = k(1.2566370614359172) * t3.cos();
-        let t138 = t137 * t9;
-        let t139 = t137 * t5;
-        let t140 = k(0.9424777960769379) * t10.cos();
-        let t141 = t140 * t18;
-        let t142 = T::fused(-t108, T::fused(-t5, t141, t12 * t138), t107 * (t140 * t12));
-        let t143 = T::fused(
-            T::fused(-t109, t138, t108 * t139),
-            t100,
-            T::fused(t109, T::fused(t9, t141, t12 * t139), -t142) * t101,
+        let t103 = T::fused(t89 * t99, t88, t98 * t99 * t102);
+        let t104 = T::fused(t96 * t99, t88, t95 * t99 * t102);
+        let t105 = T::fused(-t95, t103, t98 * t104);
+        let t106 = T::fused(-t96, t103, t89 * t104);
+        let t107 = T::fused(t62, t105, t93 * t106);
+        let t108 = T::fused(-t65, t105, t94 * t106);
+        let t109 = T::fused(-t59, t105, t97 * t106);
+        let t110 = t61 - t60;
+        let t111 = T::fused(-outer_ring_e2, t91, t58);
+        let t112 = t92 + t90;
+        let t113 = T::fused(t112, t40, -T::fused(t110, t28, t111 * t34));
+        let t114 = T::fused(t112, t72, T::fused(t110, t67, t111 * t69));
+        let t115 = k(1.0) / T::fused(-t113, t81, t114 * t66);
+        let t116 = T::fused(-(t113 * t115), t55, t114 * t115 * t80);
+        let t117 = T::fused(-(t66 * t115), t55, t81 * t115 * t80);
+        let t118 = T::fused(-t81, t116, t114 * t117);
+        let t119 = T::fused(-t66, t116, t113 * t117);
+        let t120 = T::fused(t28, t118, t67 * t119);
+        let t121 = T::fused(t34, t118, t69 * t119);
+        let t122 = T::fused(-t40, t118, t72 * t119);
+        let t123 = k(1.0) / T::fused(-t82, t75, t84 * t73);
+        let t124 = T::fused(t48, t82 * t123, t53 * (t84 * t123));
+        let t125 = T::fused(t48, t73 * t123, t53 * (t75 * t123));
+        let t126 = T::fused(-t75, t124, t84 * t125);
+        let t127 = T::fused(-t73, t124, t82 * t125);
+        let t128 = T::fused(t42, t126, t50 * t127);
+        let t129 = T::fused(-t44, t126, t51 * t127);
+        let t130 = T::fused(-t47, t126, t52 * t127);
+        let t131 = T::fused(k(0.002), inner_ring_wx, k(0.01) * inner_ring_wz);
+        let t132 = T::fused(-k(0.01), inner_ring_wy, k(0.005) * inner_ring_wx);
+        let t133 = T::fused(k(0.005), inner_ring_dwz, k(0.002) * inner_ring_dwy)
+            - T::fused(-inner_ring_wz, t131, inner_ring_wy * t132);
+        let t134 = T::fused(k(0.005), inner_ring_wz, k(0.002) * inner_ring_wy);
+        let t135 = T::fused(k(0.002), inner_ring_dwx, k(0.01) * inner_ring_dwz)
+            - T::fused(inner_ring_wx, t132, inner_ring_wz * t134);
+        let t136 = T::fused(-k(0.01), inner_ring_dwy, k(0.005) * inner_ring_dwx)
+            + T::fused(inner_ring_wy, t134, inner_ring_wx * t131);
+        let t137 = inner_ring_dsx + T::fused(t136, t76, T::fused(t133, t28, t135 * t67));
+        let t138 = k(10.0)
+            + (inner_ring_dsy + T::fused(t136, t77, -T::fused(t133, t34, t135 * t69)));
+        let t139 = inner_ring_dsz
+            - T::fused(t136, t78, -T::fused(-t133, t40, t135 * t72));
+        let t140 = k(1.2566370614359172) * t3.cos();
+        let t141 = t140 * t9;
+        let t142 = t140 * t5;
+        let t143 = k(0.9424777960769379) * t10.cos();
+        let t144 = t143 * t18;
+        let t145 = T::fused(-T::fused(-t5, t144, t12 * t141), t111, t143 * t12 * t110);
+        let t146 = T::fused(
+            T::fused(-t141, t112, t142 * t111),
+            t103,
+            T::fused(-T::fused(t9, t144, t12 * t142), t112, t145) * t104,
         );
         *out = [
             T::fused(-t9, t8, t5 * t2),
             T::fused(t13, t2, T::fused(t14, t8, t18 * t17)),
             T::fused(t19, t2, -T::fused(-t20, t8, t12 * t17)),
-            -T::fused(t9, t104, t5 * t105),
-            T::fused(-t13, t105, T::fused(t18, t106, t14 * t104)),
-            T::fused(-t19, t105, T::fused(-t12, t106, t20 * t104)),
-            T::fused(t58, t1, T::fused(-t52, t16, t55 * t7)),
-            T::fused(t109, t1, -T::fused(-t107, t16, t108 * t7)),
-            T::fused(-t88, t1, T::fused(t93, t16, t91 * t7)),
-            T::fused(-t58, t119, T::fused(t52, t117, t55 * t118)),
-            -T::fused(t109, t119, T::fused(t107, t117, t108 * t118)),
-            T::fused(t88, t119, T::fused(-t93, t117, t91 * t118)),
-            T::fused(t67, t0, -T::fused(-t61, t15, t63 * t6)),
-            T::fused(-t79, t0, T::fused(t77, t15, t78 * t6)),
-            T::fused(t36, t0, T::fused(-t24, t15, t30 * t6)),
-            -T::fused(t67, t127, T::fused(-t61, t125, t63 * t126)),
-            T::fused(t79, t127, T::fused(t77, t125, t78 * t126)),
-            T::fused(-t36, t127, T::fused(-t24, t125, t30 * t126)),
-            T::fused(t36, t136, T::fused(-t24, t134, t30 * t135)),
-            T::fused(t67, t136, -T::fused(-t61, t134, t63 * t135)),
-            T::fused(-t79, t136, T::fused(t77, t134, t78 * t135)),
+            -T::fused(t9, t107, t5 * t108),
+            T::fused(-t13, t108, T::fused(t18, t109, t14 * t107)),
+            T::fused(-t19, t108, T::fused(-t12, t109, t20 * t107)),
+            T::fused(t1, t65, T::fused(-t16, t59, t7 * t62)),
+            T::fused(t1, t112, -T::fused(-t16, t110, t7 * t111)),
+            T::fused(-t1, t94, T::fused(t16, t97, t7 * t93)),
+            T::fused(-t65, t122, T::fused(t59, t120, t62 * t121)),
+            -T::fused(t112, t122, T::fused(t110, t120, t111 * t121)),
+            T::fused(t94, t122, T::fused(-t97, t120, t93 * t121)),
+            T::fused(t0, t72, -T::fused(-t15, t67, t6 * t69)),
+            T::fused(-t0, t78, T::fused(t15, t76, t6 * t77)),
+            T::fused(t0, t40, T::fused(-t15, t28, t6 * t34)),
+            -T::fused(t72, t130, T::fused(-t67, t128, t69 * t129)),
+            T::fused(t78, t130, T::fused(t76, t128, t77 * t129)),
+            T::fused(-t40, t130, T::fused(-t28, t128, t34 * t129)),
+            T::fused(t40, t139, T::fused(-t28, t137, t34 * t138)),
+            T::fused(t72, t139, -T::fused(-t67, t137, t69 * t138)),
+            T::fused(-t78, t139, T::fused(t76, t137, t77 * t138)),
             inner_ring_wx,
             inner_ring_wy,
             inner_ring_wz,
             k(0.0),
-            t143,
+            -t146,
         ];
     }
     fn n_outputs(&self) -> usize {

@@ -11,11 +11,11 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 154 operations by rotations of the bodies; 154 operations by relative Euler parameters
-//! * project: 122 operations by rotations of the bodies; 122 operations by relative Euler parameters
+//! * accelerations: 152 operations by rotations of the bodies, doubled; 152 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 120 operations by rotations of the bodies, doubled; 120 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 40 operations by normal form; 77 operations by recursion
 //! * joint_accelerations_at: 44 operations by normal form; 81 operations by recursion; 1 more compared
-//! * corrected_accelerations: 130 operations by normal form in the bodies' frames; 154 operations by elimination in maximal coordinates; 5 more compared
+//! * corrected_accelerations: 130 operations by normal form in the bodies' frames; 152 operations by elimination in maximal coordinates; 5 more compared
 //! * joint_jacobian: 94 operations by derivatives of u̇, from its leaves; 94 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -24,18 +24,18 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 13 | 13 | 0 | 26 | 0 of 4 | 32 | 26 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 12 | 0 | 18 | 0 of 17 | 28 | 18 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 13 | 20 | 0 | 33 | 0 of 8 | 47 | 33 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 20 | 0 | 31 | 0 of 8 | 63 | 31 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 27 | 43 | 0 | 70 | 0 of 3 | 120 | 70 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 18 | 30 | 0 | 48 | 0 of 3 | 65 | 48 |
+//! | gamma | γ | 25 | 38 | 0 | 63 | 0 of 3 | 135 | 63 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 27 | 0 | 43 | 0 of 3 | 75 | 43 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 0 of 6 | 6 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 63 | 89 | 2 | 154 | 0 of 6 | 2399 | 156 |
-//! | multipliers | λ, the accelerations being known | 32 | 51 | 1 | 84 | 0 of 3 | 298 | 84 |
-//! | project | (δr, δπ') that changes the rows as given | 45 | 75 | 2 | 122 | 0 of 6 | 2491 | 123 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 61 | 89 | 2 | 152 | 0 of 6 | 3002 | 154 |
+//! | multipliers | λ, the accelerations being known | 30 | 51 | 1 | 82 | 0 of 3 | 366 | 82 |
+//! | project | (δr, δπ') that changes the rows as given | 43 | 75 | 2 | 120 | 0 of 6 | 3103 | 121 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 7 | 14 | 0 | 21 | 0 of 2 | 21 | 21 |
 //! | read_joints | joint coordinates and rates | 30 | 40 | 0 | 70 | 0 of 7 | 132 | 70 |
-//! | outputs | outputs, the accelerations being known | 53 | 80 | 1 | 134 | 2 of 6 | 2066 | 134 |
+//! | outputs | outputs, the accelerations being known | 51 | 75 | 1 | 127 | 2 of 6 | 2543 | 127 |
 //! | joint_accelerations | u̇ in joint coordinates | 14 | 24 | 2 | 40 | 0 of 3 | 474 | 41 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 11 | 17 | 0 | 28 | 5 of 13 | 63 | 28 |
@@ -250,7 +250,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
             t4 + T::fused(block_e2, block_e2, T::fused(block_e1, block_e1, t5)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 48 operations (18 ±, 30 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 43 operations (16 ±, 27 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -261,31 +261,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = k(2.0) * T::fused(-block_e0, block_e2, block_e1 * block_e3);
-        let t1 = k(2.0) * T::fused(block_e0, block_e1, block_e2 * block_e3);
-        let t2 = block_e0 * block_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(block_e3, block_e3, t2));
-        let t4 = T::fused(
-            k(0.1),
-            T::fused(t0, block_wz, t3 * block_wx),
-            k(0.2) * T::fused(t1, block_wz, t3 * block_wy),
-        );
-        let t5 = block_e0 * block_e3;
-        let t6 = block_e1 * block_e2;
+        let t0 = k(2.0) * block_e0;
+        let t1 = k(2.0) * block_e1;
+        let t2 = T::fused(-block_e2, t0, block_e3 * t1);
+        let t3 = k(2.0) * block_e2;
+        let t4 = T::fused(block_e1, t0, block_e3 * t3);
+        let t5 = T::fused(-block_e0, t0, k(1.0));
+        let t6 = T::fused(-block_e3, k(2.0) * block_e3, t5);
         let t7 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t2)),
-            block_wy,
-            k(2.0) * (t6 - t5) * block_wx,
+            k(0.1),
+            T::fused(block_wz, t2, block_wx * t6),
+            k(0.2) * T::fused(block_wz, t4, block_wy * t6),
         );
-        let t8 = T::fused(
-            k(2.0) * (t6 + t5),
-            block_wy,
-            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t2)) * block_wx,
-        );
+        let t8 = block_e3 * t0;
+        let t9 = block_e2 * t1;
         *out = [
-            block_sz + T::fused(-k(0.05), T::fused(-t0, block_wy, t1 * block_wx), t4),
-            -t7,
-            t8,
+            block_sz + T::fused(-k(0.05), T::fused(-block_wy, t2, block_wx * t4), t7),
+            -T::fused(block_wy, T::fused(-block_e1, t1, t5), block_wx * (t9 - t8)),
+            T::fused(block_wy, t9 + t8, block_wx * T::fused(-block_e2, t3, t5)),
         ];
     }
     /// Kinetic and potential energy: 21 operations (7 ±, 14 ×, 0 ÷).
@@ -540,28 +533,31 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
             t3,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 33 operations (13 ±, 20 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 31 operations (11 ±, 20 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let block_e0 = y[3];
         let block_e1 = y[4];
         let block_e2 = y[5];
         let block_e3 = y[6];
-        let t0 = T::fused(block_e0, block_e1, block_e2 * block_e3);
-        let t1 = block_e0 * block_e0;
-        let t2 = k(0.5) - T::fused(block_e3, block_e3, t1);
-        let t3 = T::fused(-block_e0, block_e2, block_e1 * block_e3);
-        let t4 = block_e0 * block_e3;
-        let t5 = block_e1 * block_e2;
+        let t0 = k(2.0) * block_e0;
+        let t1 = k(2.0) * block_e2;
+        let t2 = T::fused(block_e1, t0, block_e3 * t1);
+        let t3 = T::fused(-block_e0, t0, k(1.0));
+        let t4 = T::fused(-block_e3, k(2.0) * block_e3, t3);
+        let t5 = k(2.0) * block_e1;
+        let t6 = T::fused(-block_e2, t0, block_e3 * t5);
+        let t7 = block_e3 * t0;
+        let t8 = block_e2 * t5;
         *out = [
             k(1.0),
-            T::fused(-k(0.1), t0, k(0.2) * t2),
-            T::fused(k(0.1), t3, k(0.4) * t2),
-            T::fused(k(0.2), t3, k(0.4) * t0),
-            -(k(2.0) * (t5 - t4)),
-            -(k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t1))),
-            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t1)),
-            k(2.0) * (t5 + t4),
+            T::fused(-k(0.05), t2, k(0.1) * t4),
+            T::fused(k(0.05), t6, k(0.2) * t4),
+            T::fused(k(0.1), t6, k(0.2) * t2),
+            t7 - t8,
+            T::fused(block_e1, t5, -t3),
+            T::fused(-block_e2, t1, t3),
+            t8 + t7,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -569,7 +565,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 70 operations (27 ±, 43 ×, 0 ÷).
+    /// Writes γ: 63 operations (25 ±, 38 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -579,44 +575,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = block_wy * block_wy;
-        let t1 = block_wz * block_wz;
-        let t2 = block_e0 * block_e2;
-        let t3 = block_e1 * block_e3;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = block_wx * block_wy;
-        let t6 = block_e0 * block_e1;
-        let t7 = block_e2 * block_e3;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = block_wx * block_wz;
-        let t10 = block_e0 * block_e0;
-        let t11 = k(2.0) * (k(0.5) - T::fused(block_e3, block_e3, t10));
-        let t12 = block_wx * block_wx;
-        let t13 = block_wy * block_wz;
-        let t14 = T::fused(
+        let t0 = k(2.0) * block_e0;
+        let t1 = block_e2 * t0;
+        let t2 = k(2.0) * block_e1;
+        let t3 = block_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = block_wy * block_wy;
+        let t6 = block_wz * block_wz;
+        let t7 = block_e1 * t0;
+        let t8 = k(2.0) * block_e2;
+        let t9 = block_e3 * t8;
+        let t10 = t9 + t7;
+        let t11 = block_wx * block_wy;
+        let t12 = T::fused(-block_e0, t0, k(1.0));
+        let t13 = T::fused(-block_e3, k(2.0) * block_e3, t12);
+        let t14 = block_wx * block_wz;
+        let t15 = block_wx * block_wx;
+        let t16 = block_wy * block_wz;
+        let t17 = T::fused(
             -k(0.2),
-            T::fused(t11, t9, -T::fused(-t4, t1 + t0, t8 * t5)),
-            k(0.1) * T::fused(t11, t13, T::fused(-t4, t5, t8 * (t1 + t12))),
+            T::fused(t14, t13, -T::fused(-(t6 + t5), t4, t11 * t10)),
+            k(0.1) * T::fused(t16, t13, T::fused(-t11, t4, (t6 + t15) * t10)),
         );
-        let t15 = t0 + t12;
-        let t16 = T::fused(k(0.05), T::fused(t11, t15, T::fused(t4, t9, t8 * t13)), t14);
-        let t17 = block_e0 * block_e3;
-        let t18 = block_e1 * block_e2;
+        let t18 = t5 + t15;
         let t19 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(block_e1, block_e1, t10))),
-            t9,
-            k(2.0) * (t18 - t17) * t13,
+            k(0.05),
+            T::fused(t18, t13, T::fused(t14, t4, t16 * t10)),
+            t17,
         );
-        let t20 = T::fused(
-            -(k(2.0) * (t18 + t17)),
-            t9,
-            k(2.0) * (k(0.5) - T::fused(block_e2, block_e2, t10)) * t13,
+        let t20 = block_e3 * t0;
+        let t21 = block_e2 * t2;
+        let t22 = T::fused(
+            t18,
+            t3 + t1,
+            -T::fused(-t14, T::fused(-block_e1, t2, t12), t16 * (t21 - t20)),
         );
-        *out = [
-            -t16,
-            T::fused(k(2.0) * (t3 + t2), t15, -t19),
-            T::fused(k(2.0) * (t7 - t6), t15, t20),
-        ];
+        let t23 = T::fused(
+            t18,
+            t9 - t7,
+            T::fused(-t14, t21 + t20, t16 * T::fused(-block_e2, t8, t12)),
+        );
+        *out = [-t19, t22, t23];
     }
     /// Writes (f, n' − w̃'J'w'): 6 operations (0 ±, 6 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
@@ -633,7 +632,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
             -(k(0.01) * (block_wx * block_wy)),
         ];
     }
-    /// Solves eq. (17): 154 operations (63 ±, 89 ×, 2 ÷).
+    /// Solves eq. (17): 152 operations (61 ±, 89 ×, 2 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let block_e0 = y[3];
@@ -643,89 +642,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_wx = y[10];
         let block_wy = y[11];
         let block_wz = y[12];
-        let t0 = block_e0 * block_e3;
-        let t1 = block_e1 * block_e2;
-        let t2 = t1 - t0;
-        let t3 = block_e0 * block_e2;
-        let t4 = block_e1 * block_e3;
-        let t5 = t4 + t3;
-        let t6 = T::fused(k(0.1), t2, k(0.2) * t5);
-        let t7 = block_e0 * block_e0;
-        let t8 = k(0.5) - T::fused(block_e3, block_e3, t7);
-        let t9 = block_wx * block_wx;
-        let t10 = block_wy * block_wy;
-        let t11 = t10 + t9;
-        let t12 = t11 * (k(0.5) / t8);
-        let t13 = block_e0 * block_e1;
-        let t14 = block_e2 * block_e3;
-        let t15 = t14 + t13;
-        let t16 = k(2.0) * t15;
-        let t17 = block_wy * block_wz;
-        let t18 = T::fused(-t16, t12, t17);
-        let t19 = k(0.5) - T::fused(block_e1, block_e1, t7);
-        let t20 = T::fused(k(0.1), t19, k(0.4) * t5);
-        let t21 = t4 - t3;
-        let t22 = k(2.0) * t21;
-        let t23 = block_wx * block_wz;
-        let t24 = T::fused(-t22, t12, t23);
-        let t25 = T::fused(-k(0.2), t19, k(0.4) * t2);
-        let t26 = k(0.8) * t25;
-        let t27 = t1 + t0;
-        let t28 = k(0.5) - T::fused(block_e2, block_e2, t7);
-        let t29 = T::fused(-k(0.2), t27, k(0.4) * t28);
-        let t30 = k(0.8) * t29;
-        let t31 = k(1.2) * t25;
-        let t32 = k(3.2) * t29;
-        let t33 = T::fused(k(0.2), t21, k(0.4) * t15);
-        let t34 = block_wx * block_wy;
-        let t35 = t32
-            + (t31 - T::fused(k(0.01), t34, -T::fused(k(6.4), t33, -(t32 + t31))));
-        let t36 = block_wz * block_wz;
-        let t37 = k(2.0) * t8;
+        let t0 = k(2.0) * block_e0;
+        let t1 = block_e3 * t0;
+        let t2 = k(2.0) * block_e1;
+        let t3 = block_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = block_e2 * t0;
+        let t6 = block_e3 * t2;
+        let t7 = t6 + t5;
+        let t8 = T::fused(k(0.05), t4, k(0.1) * t7);
+        let t9 = T::fused(-block_e0, t0, k(1.0));
+        let t10 = T::fused(-block_e3, k(2.0) * block_e3, t9);
+        let t11 = block_wx * block_wx;
+        let t12 = block_wy * block_wy;
+        let t13 = t12 + t11;
+        let t14 = t13 / t10;
+        let t15 = block_e1 * t0;
+        let t16 = k(2.0) * block_e2;
+        let t17 = block_e3 * t16;
+        let t18 = t17 + t15;
+        let t19 = block_wy * block_wz;
+        let t20 = T::fused(-t18, t14, t19);
+        let t21 = T::fused(-block_e1, t2, t9);
+        let t22 = T::fused(k(0.05), t21, k(0.2) * t7);
+        let t23 = t6 - t5;
+        let t24 = block_wx * block_wz;
+        let t25 = T::fused(-t23, t14, t24);
+        let t26 = T::fused(-k(0.1), t21, k(0.2) * t4);
+        let t27 = k(0.8) * t26;
+        let t28 = t3 + t1;
+        let t29 = T::fused(-block_e2, t16, t9);
+        let t30 = T::fused(-k(0.1), t28, k(0.2) * t29);
+        let t31 = k(0.8) * t30;
+        let t32 = k(1.2) * t26;
+        let t33 = k(3.2) * t30;
+        let t34 = T::fused(k(0.1), t23, k(0.2) * t18);
+        let t35 = block_wx * block_wy;
+        let t36 = t33
+            + (t32 - T::fused(k(0.01), t35, -T::fused(k(6.4), t34, -(t33 + t32))));
+        let t37 = block_wz * block_wz;
         let t38 = T::fused(
             -k(0.2),
-            T::fused(t37, t23, -T::fused(-t22, t36 + t10, t16 * t34)),
-            k(0.1) * T::fused(t37, t17, T::fused(-t22, t34, t16 * (t36 + t9))),
+            T::fused(t24, t10, -T::fused(-(t37 + t12), t23, t35 * t18)),
+            k(0.1) * T::fused(t19, t10, T::fused(-t35, t23, (t37 + t11) * t18)),
         );
         let t39 = T::fused(
             k(0.05),
-            T::fused(t37, t11, T::fused(t22, t23, t16 * t17)),
+            T::fused(t13, t10, T::fused(t24, t23, t19 * t18)),
             t38,
         );
-        let t40 = t14 - t13;
-        let t41 = T::fused(-k(0.1), t28, k(0.2) * t40);
-        let t42 = T::fused(-k(0.1), t27, k(0.4) * t40);
+        let t40 = t17 - t15;
+        let t41 = T::fused(-k(0.05), t29, k(0.1) * t40);
+        let t42 = T::fused(-k(0.05), t28, k(0.2) * t40);
         let t43 = T::fused(
-            -T::fused(t41, t30, T::fused(-t6, t26, k(0.008))),
-            t18,
-            T::fused(t42, t30, -T::fused(t20, t26, k(0.004))) * t24,
+            -T::fused(t31, t41, T::fused(-t27, t8, k(0.008))),
+            t20,
+            T::fused(t31, t42, -T::fused(t27, t22, k(0.004))) * t25,
         );
-        let t44 = (T::fused(k(0.8) * t33, t39, t43) - t35)
-            / T::fused(t29, t30, -T::fused(-t25, t26, k(0.065)));
-        let t45 = T::fused(t26, t44, T::fused(-t18, k(0.8) * t6, t24 * (k(0.8) * t20)));
+        let t44 = (T::fused(k(0.8) * t34, t39, t43) - t36)
+            / T::fused(t30, t31, -T::fused(-t26, t27, k(0.065)));
+        let t45 = T::fused(t27, t44, T::fused(-t20, k(0.8) * t8, t25 * (k(0.8) * t22)));
         let t46 = T::fused(
             -k(1.25),
             k(1.2) + t45,
-            T::fused(t25, t44, T::fused(-t6, t18, t20 * t24)),
+            T::fused(t26, t44, T::fused(-t8, t20, t22 * t25)),
         );
         let t47 = T::fused(
-            t30,
+            t31,
             t44,
-            -T::fused(-t18, k(0.8) * t41, t24 * (k(0.8) * t42)),
+            -T::fused(-t20, k(0.8) * t41, t25 * (k(0.8) * t42)),
         );
         let t48 = T::fused(
             -k(1.25),
             k(3.2) + t47,
-            T::fused(t29, t44, -T::fused(-t41, t18, t42 * t24)),
+            T::fused(t30, t44, -T::fused(-t41, t20, t42 * t25)),
         );
         let t49 = T::fused(
-            -T::fused(-k(0.1), t15, k(0.2) * t8),
-            t18,
-            T::fused(k(0.1), t21, k(0.4) * t8) * t24,
+            -t20,
+            T::fused(-k(0.05), t18, k(0.1) * t10),
+            t25 * T::fused(k(0.05), t23, k(0.2) * t10),
         );
-        *out = [-t46, t48, -(t39 + T::fused(t33, t44, -t49)), t18, -t24, t44];
+        *out = [-t46, t48, -(t39 + T::fused(t34, t44, -t49)), t20, -t25, t44];
     }
-    /// Writes λ: 84 operations (32 ±, 51 ×, 1 ÷).
+    /// Writes λ: 82 operations (30 ±, 51 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -747,50 +746,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Planar<T> {
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
         let t0 = T::fused(k(0.8), block_dsz, k(6.4));
-        let t1 = block_e0 * block_e3;
-        let t2 = block_e1 * block_e2;
-        let t3 = t2 + t1;
-        let t4 = k(2.0) * t3;
-        let t5 = t2 - t1;
-        let t6 = k(2.0) * t5;
-        let t7 = block_e0 * block_e0;
-        let t8 = k(0.5) - T::fused(block_e2, block_e2, t7);
-        let t9 = k(2.0) * t8;
-        let t10 = k(0.5) - T::fused(block_e1, block_e1, t7);
-        let t11 = k(2.0) * t10;
-        let t12 = k(1.0) / T::fused(-t6, t4, t11 * t9);
-        let t13 = block_e0 * block_e2;
-        let t14 = block_e1 * block_e3;
-        let t15 = t14 + t13;
-        let t16 = T::fused(-k(0.8), block_dsx, k(1.2));
-        let t17 = block_e0 * block_e1;
-        let t18 = block_e2 * block_e3;
-        let t19 = t18 - t17;
-        let t20 = T::fused(k(0.8), block_dsy, k(3.2));
-        let t21 = T::fused(
-            -t16,
-            T::fused(k(0.1), t5, k(0.2) * t15),
-            t20 * T::fused(-k(0.1), t8, k(0.2) * t19),
+        let t1 = k(2.0) * block_e0;
+        let t2 = block_e3 * t1;
+        let t3 = k(2.0) * block_e1;
+        let t4 = block_e2 * t3;
+        let t5 = t4 - t2;
+        let t6 = block_e2 * t1;
+        let t7 = block_e3 * t3;
+        let t8 = t7 + t6;
+        let t9 = T::fused(-k(0.8), block_dsx, k(1.2));
+        let t10 = k(2.0) * block_e2;
+        let t11 = T::fused(-block_e0, t1, k(1.0));
+        let t12 = T::fused(-block_e2, t10, t11);
+        let t13 = block_e1 * t1;
+        let t14 = block_e3 * t10;
+        let t15 = t14 - t13;
+        let t16 = T::fused(k(0.8), block_dsy, k(3.2));
+        let t17 = T::fused(
+            -t9,
+            T::fused(k(0.05), t5, k(0.1) * t8),
+            t16 * T::fused(-k(0.05), t12, k(0.1) * t15),
         );
-        let t22 = k(0.5) - T::fused(block_e3, block_e3, t7);
-        let t23 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
-            - T::fused(t0, T::fused(-k(0.1), t18 + t17, k(0.2) * t22), -t21);
-        let t24 = T::fused(
-            -t16,
-            T::fused(k(0.1), t10, k(0.4) * t15),
-            t20 * T::fused(-k(0.1), t3, k(0.4) * t19),
+        let t18 = T::fused(-block_e3, k(2.0) * block_e3, t11);
+        let t19 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
+            - T::fused(t0, T::fused(-k(0.05), t14 + t13, k(0.1) * t18), -t17);
+        let t20 = t4 + t2;
+        let t21 = T::fused(-block_e1, t3, t11);
+        let t22 = k(1.0) / T::fused(-t5, t20, t21 * t12);
+        let t23 = T::fused(
+            -t9,
+            T::fused(k(0.05), t21, k(0.2) * t8),
+            t16 * T::fused(-k(0.05), t20, k(0.2) * t15),
         );
-        let t25 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
-            + T::fused(t0, T::fused(k(0.1), t14 - t13, k(0.4) * t22), -t24);
+        let t24 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
+            + T::fused(t0, T::fused(k(0.05), t7 - t6, k(0.2) * t18), -t23);
         *lambda = [
             -t0,
-            -T::fused(t23, t4 * t12, t25 * (t9 * t12)),
-            -T::fused(t23, t11 * t12, t25 * (t6 * t12)),
+            -T::fused(t20 * t22, t19, t12 * t22 * t24),
+            -T::fused(t21 * t22, t19, t5 * t22 * t24),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Planar<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 122 operations (45 ±, 75 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 120 operations (43 ±, 75 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -806,67 +804,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Planar<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = block_e0 * block_e3;
-        let t1 = block_e1 * block_e2;
-        let t2 = t1 + t0;
-        let t3 = k(2.0) * t2;
-        let t4 = t1 - t0;
-        let t5 = k(2.0) * t4;
-        let t6 = block_e0 * block_e0;
-        let t7 = k(0.5) - T::fused(block_e2, block_e2, t6);
-        let t8 = k(2.0) * t7;
-        let t9 = k(0.5) - T::fused(block_e1, block_e1, t6);
-        let t10 = k(2.0) * t9;
-        let t11 = k(1.0) / T::fused(-t5, t3, t10 * t8);
-        let t12 = T::fused(row1, t3 * t11, row2 * (t10 * t11));
-        let t13 = block_e0 * block_e2;
-        let t14 = block_e1 * block_e3;
-        let t15 = t14 + t13;
-        let t16 = T::fused(k(0.1), t4, k(0.2) * t15);
-        let t17 = T::fused(row1, t8 * t11, row2 * (t5 * t11));
-        let t18 = T::fused(k(0.1), t9, k(0.4) * t15);
-        let t19 = t14 - t13;
-        let t20 = block_e0 * block_e1;
-        let t21 = block_e2 * block_e3;
-        let t22 = t21 + t20;
-        let t23 = T::fused(k(0.2), t19, k(0.4) * t22);
-        let t24 = T::fused(-k(0.2), t9, k(0.4) * t4);
-        let t25 = k(0.8) * t24;
-        let t26 = T::fused(-k(0.2), t2, k(0.4) * t7);
-        let t27 = k(0.8) * t26;
-        let t28 = t21 - t20;
-        let t29 = T::fused(-k(0.1), t7, k(0.2) * t28);
-        let t30 = T::fused(-k(0.1), t2, k(0.4) * t28);
-        let t31 = T::fused(
-            -T::fused(t29, t27, T::fused(-t16, t25, k(0.008))),
-            t12,
-            T::fused(t30, t27, -T::fused(t18, t25, k(0.004))) * t17,
+        let t0 = k(2.0) * block_e0;
+        let t1 = block_e3 * t0;
+        let t2 = k(2.0) * block_e1;
+        let t3 = block_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = t3 - t1;
+        let t6 = k(2.0) * block_e2;
+        let t7 = T::fused(-block_e0, t0, k(1.0));
+        let t8 = T::fused(-block_e2, t6, t7);
+        let t9 = T::fused(-block_e1, t2, t7);
+        let t10 = k(1.0) / T::fused(-t5, t4, t9 * t8);
+        let t11 = T::fused(row1, t4 * t10, row2 * (t9 * t10));
+        let t12 = block_e2 * t0;
+        let t13 = block_e3 * t2;
+        let t14 = t13 + t12;
+        let t15 = T::fused(k(0.05), t5, k(0.1) * t14);
+        let t16 = T::fused(row1, t8 * t10, row2 * (t5 * t10));
+        let t17 = T::fused(k(0.05), t9, k(0.2) * t14);
+        let t18 = t13 - t12;
+        let t19 = block_e1 * t0;
+        let t20 = block_e3 * t6;
+        let t21 = t20 + t19;
+        let t22 = T::fused(k(0.1), t18, k(0.2) * t21);
+        let t23 = T::fused(-k(0.1), t9, k(0.2) * t5);
+        let t24 = k(0.8) * t23;
+        let t25 = t20 - t19;
+        let t26 = T::fused(-k(0.05), t8, k(0.1) * t25);
+        let t27 = T::fused(-k(0.1), t4, k(0.2) * t8);
+        let t28 = k(0.8) * t27;
+        let t29 = T::fused(-k(0.05), t4, k(0.2) * t25);
+        let t30 = T::fused(
+            -T::fused(t28, t26, T::fused(-t24, t15, k(0.008))),
+            t11,
+            T::fused(t28, t29, -T::fused(t24, t17, k(0.004))) * t16,
         );
-        let t32 = T::fused(-(k(0.8) * t23), row0, t31)
-            / T::fused(t26, t27, -T::fused(-t24, t25, k(0.065)));
-        let t33 = T::fused(t25, t32, T::fused(-(k(0.8) * t16), t12, k(0.8) * t18 * t17));
-        let t34 = T::fused(
+        let t31 = T::fused(-(k(0.8) * t22), row0, t30)
+            / T::fused(t27, t28, -T::fused(-t23, t24, k(0.065)));
+        let t32 = T::fused(t24, t31, T::fused(-(k(0.8) * t15), t11, k(0.8) * t17 * t16));
+        let t33 = T::fused(
             -k(1.25),
-            t33,
-            T::fused(t24, t32, T::fused(-t16, t12, t18 * t17)),
+            t32,
+            T::fused(t23, t31, T::fused(-t15, t11, t17 * t16)),
+        );
+        let t34 = T::fused(
+            t28,
+            t31,
+            -T::fused(-(k(0.8) * t26), t11, k(0.8) * t29 * t16),
         );
         let t35 = T::fused(
-            t27,
-            t32,
-            -T::fused(-(k(0.8) * t29), t12, k(0.8) * t30 * t17),
-        );
-        let t36 = T::fused(
             -k(1.25),
-            t35,
-            T::fused(t26, t32, -T::fused(-t29, t12, t30 * t17)),
+            t34,
+            T::fused(t27, t31, -T::fused(-t26, t11, t29 * t16)),
         );
-        let t37 = k(0.5) - T::fused(block_e3, block_e3, t6);
-        let t38 = T::fused(
-            -T::fused(-k(0.1), t22, k(0.2) * t37),
-            t12,
-            T::fused(k(0.1), t19, k(0.4) * t37) * t17,
+        let t36 = T::fused(-block_e3, k(2.0) * block_e3, t7);
+        let t37 = T::fused(
+            -T::fused(-k(0.05), t21, k(0.1) * t36),
+            t11,
+            T::fused(k(0.05), t18, k(0.2) * t36) * t16,
         );
-        *out = [-t34, t36, row0 - T::fused(t23, t32, -t38), t12, -t17, t32];
+        *out = [-t33, t35, row0 - T::fused(t22, t31, -t37), t11, -t16, t31];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Planar<T> {
@@ -1397,7 +1394,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 134 operations (53 ±, 80 ×, 1 ÷).
+    /// Writes the outputs: 127 operations (51 ±, 75 ×, 1 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -1417,70 +1414,67 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Planar<T> {
         let block_dwx = accelerations[3];
         let block_dwy = accelerations[4];
         let t0 = T::fused(k(0.8), block_dsz, k(6.4));
-        let t1 = block_e0 * block_e3;
-        let t2 = block_e1 * block_e2;
-        let t3 = t2 + t1;
-        let t4 = k(2.0) * t3;
-        let t5 = t2 - t1;
-        let t6 = k(2.0) * t5;
-        let t7 = block_e0 * block_e0;
-        let t8 = k(0.5) - T::fused(block_e2, block_e2, t7);
-        let t9 = k(2.0) * t8;
-        let t10 = k(0.5) - T::fused(block_e1, block_e1, t7);
-        let t11 = k(2.0) * t10;
-        let t12 = k(1.0) / T::fused(-t6, t4, t11 * t9);
-        let t13 = block_e0 * block_e2;
-        let t14 = block_e1 * block_e3;
-        let t15 = t14 + t13;
-        let t16 = T::fused(-k(0.8), block_dsx, k(1.2));
-        let t17 = block_e0 * block_e1;
-        let t18 = block_e2 * block_e3;
-        let t19 = t18 - t17;
-        let t20 = T::fused(k(0.8), block_dsy, k(3.2));
-        let t21 = T::fused(
-            -t16,
-            T::fused(k(0.1), t5, k(0.2) * t15),
-            t20 * T::fused(-k(0.1), t8, k(0.2) * t19),
+        let t1 = k(2.0) * block_e0;
+        let t2 = block_e3 * t1;
+        let t3 = k(2.0) * block_e1;
+        let t4 = block_e2 * t3;
+        let t5 = t4 - t2;
+        let t6 = block_e2 * t1;
+        let t7 = block_e3 * t3;
+        let t8 = t7 + t6;
+        let t9 = T::fused(-k(0.8), block_dsx, k(1.2));
+        let t10 = k(2.0) * block_e2;
+        let t11 = T::fused(-block_e0, t1, k(1.0));
+        let t12 = T::fused(-block_e2, t10, t11);
+        let t13 = block_e1 * t1;
+        let t14 = block_e3 * t10;
+        let t15 = t14 - t13;
+        let t16 = T::fused(k(0.8), block_dsy, k(3.2));
+        let t17 = T::fused(
+            -t9,
+            T::fused(k(0.05), t5, k(0.1) * t8),
+            t16 * T::fused(-k(0.05), t12, k(0.1) * t15),
         );
-        let t22 = t18 + t17;
-        let t23 = k(0.5) - T::fused(block_e3, block_e3, t7);
-        let t24 = t0 * T::fused(-k(0.1), t22, k(0.2) * t23);
-        let t25 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
-            - (t24 - t21);
-        let t26 = T::fused(
-            -t16,
-            T::fused(k(0.1), t10, k(0.4) * t15),
-            t20 * T::fused(-k(0.1), t3, k(0.4) * t19),
+        let t18 = t14 + t13;
+        let t19 = T::fused(-block_e3, k(2.0) * block_e3, t11);
+        let t20 = t0 * T::fused(-k(0.05), t18, k(0.1) * t19);
+        let t21 = T::fused(k(0.01), block_dwx, k(0.005) * (block_wy * block_wz))
+            - (t20 - t17);
+        let t22 = t4 + t2;
+        let t23 = T::fused(-block_e1, t3, t11);
+        let t24 = k(1.0) / T::fused(-t5, t22, t23 * t12);
+        let t25 = T::fused(
+            -t9,
+            T::fused(k(0.05), t23, k(0.2) * t8),
+            t16 * T::fused(-k(0.05), t22, k(0.2) * t15),
         );
-        let t27 = t14 - t13;
-        let t28 = t0 * T::fused(k(0.1), t27, k(0.4) * t23);
-        let t29 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
-            + (t28 - t26);
-        let t30 = T::fused(t25, t4 * t12, t29 * (t9 * t12));
-        let t31 = T::fused(t25, t11 * t12, t29 * (t6 * t12));
-        let t32 = T::fused(t9, t31, T::fused(-t6, t30, t24));
-        let t33 = T::fused(t4, t31, T::fused(-t11, t30, t28));
-        let t34 = t0 * T::fused(k(0.2), t27, k(0.4) * t22);
-        let t35 = block_ry
-            - (block_ry + T::fused(k(0.1), t19, T::fused(k(0.4), t3, k(0.2) * t8)));
-        let t36 = T::fused(
+        let t26 = t7 - t6;
+        let t27 = t0 * T::fused(k(0.05), t26, k(0.2) * t19);
+        let t28 = T::fused(-k(0.02), block_dwy, k(0.015) * (block_wx * block_wz))
+            + (t27 - t25);
+        let t29 = T::fused(t22 * t24, t21, t12 * t24 * t28);
+        let t30 = T::fused(t23 * t24, t21, t5 * t24 * t28);
+        let t31 = T::fused(t12, t30, T::fused(-t5, t29, t20));
+        let t32 = T::fused(t22, t30, T::fused(-t23, t29, t27));
+        let t33 = t0 * T::fused(k(0.1), t26, k(0.2) * t18);
+        let t34 = block_ry
+            - (block_ry + T::fused(k(0.05), t15, T::fused(k(0.2), t22, k(0.1) * t12)));
+        let t35 = T::fused(t0, t34, T::fused(t8, t33, T::fused(-t23, t31, t5 * t32)));
+        let t36 = block_rx
+            - (block_rx + T::fused(k(0.05), t8, -T::fused(k(0.2), t23, k(0.1) * t5)));
+        let t37 = T::fused(
+            t0,
+            t36,
+            -T::fused(t15, t33, -T::fused(-t22, t31, t12 * t32)),
+        );
+        *out = [
+            k(0.0),
+            k(0.0),
             t0,
             t35,
-            T::fused(k(2.0) * t15, t34, T::fused(-t11, t32, t6 * t33)),
-        );
-        let t37 = block_rx
-            - (block_rx + T::fused(k(0.1), t15, -T::fused(k(0.4), t10, k(0.2) * t5)));
-        let t38 = T::fused(
-            t0,
-            t37,
-            -T::fused(k(2.0) * t19, t34, -T::fused(-t4, t32, t9 * t33)),
-        );
-        let t39 = T::fused(
-            k(2.0) * t23,
-            t34,
-            -T::fused(k(2.0) * t27, t32, k(2.0) * t22 * t33),
-        );
-        *out = [k(0.0), k(0.0), t0, t36, -t38, -t39];
+            -t37,
+            T::fused(-t19, t33, T::fused(t26, t31, t18 * t32)),
+        ];
     }
     fn n_outputs(&self) -> usize {
         6

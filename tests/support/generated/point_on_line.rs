@@ -11,8 +11,8 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 6 operations by rotations of the bodies; 6 operations by relative Euler parameters
-//! * project: 18 operations by rotations of the bodies; 18 operations by relative Euler parameters
+//! * accelerations: 6 operations by rotations of the bodies; 6 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 18 operations by rotations of the bodies; 18 operations by rotations of the bodies, doubled; 2 more compared
 //! * joint_accelerations: 6 operations by normal form; 66 operations by recursion
 //! * joint_accelerations_at: 6 operations by normal form; 66 operations by recursion; 1 more compared
 //! * corrected_accelerations: 6 operations by elimination in maximal coordinates; 70 operations by normal form in the bodies' frames; 5 more compared

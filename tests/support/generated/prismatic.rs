@@ -11,8 +11,8 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 267 operations by rotations of the bodies; 267 operations by relative Euler parameters
-//! * project: 158 operations by rotations of the bodies; 158 operations by relative Euler parameters
+//! * accelerations: 260 operations by rotations of the bodies, doubled; 260 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 158 operations by rotations of the bodies; 158 operations by relative Euler parameters; 2 more compared
 //! * joint_accelerations: 2 operations by normal form; 4 operations by recursion
 //! * joint_accelerations_at: 34 operations by normal form; 36 operations by recursion; 1 more compared
 //! * corrected_accelerations: 85 operations by normal form in the bodies' frames; 86 operations by recursion in the bodies' frames; 5 more compared
@@ -26,24 +26,24 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 35 | 48 | 0 | 83 | 0 of 27 | 108 | 83 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 32 | 50 | 0 | 82 | 0 of 17 | 176 | 82 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 45 | 73 | 0 | 118 | 0 of 5 | 424 | 118 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 36 | 58 | 0 | 94 | 0 of 5 | 235 | 94 |
-//! | applied_force | (f, n' − w̃'J'w') | 38 | 53 | 0 | 91 | 1 of 6 | 295 | 91 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 99 | 167 | 1 | 267 | 0 of 6 | 48548 | 267 |
-//! | multipliers | λ, the accelerations being known | 92 | 143 | 1 | 236 | 0 of 5 | 3265 | 236 |
+//! | gamma | γ | 43 | 68 | 0 | 111 | 0 of 5 | 475 | 111 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 34 | 53 | 0 | 87 | 0 of 5 | 269 | 87 |
+//! | applied_force | (f, n' − w̃'J'w') | 38 | 52 | 0 | 90 | 1 of 6 | 295 | 90 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 97 | 162 | 1 | 260 | 0 of 6 | 62307 | 260 |
+//! | multipliers | λ, the accelerations being known | 92 | 142 | 1 | 235 | 0 of 5 | 3265 | 235 |
 //! | project | (δr, δπ') that changes the rows as given | 57 | 100 | 1 | 158 | 0 of 6 | 8853 | 158 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 28 | 38 | 0 | 66 | 0 of 2 | 105 | 66 |
-//! | read_joints | joint coordinates and rates | 28 | 43 | 0 | 71 | 0 of 2 | 120 | 71 |
-//! | outputs | outputs, the accelerations being known | 126 | 193 | 1 | 320 | 1 of 6 | 45421 | 320 |
+//! | read_joints | joint coordinates and rates | 27 | 40 | 0 | 67 | 0 of 2 | 144 | 67 |
+//! | outputs | outputs, the accelerations being known | 124 | 187 | 1 | 312 | 1 of 6 | 59864 | 312 |
 //! | joint_accelerations | u̇ in joint coordinates | 1 | 1 | 0 | 2 | 0 of 1 | 2 | 2 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 2 | 4 | 0 | 6 | 7 of 13 | 6 | 6 |
 //! | to_joints | (x, u) of a maximal state | 28 | 43 | 0 | 71 | 0 of 2 | 120 | 71 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 18 | 0 | 34 | 0 of 1 | 37 | 34 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 34 | 51 | 0 | 85 | 3 of 6 | 369 | 85 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 74 | 99 | 0 | 173 | 0 of 5 | 1060 | 173 |
-//! | corrected_solution | both | 80 | 123 | 0 | 203 | 3 of 11 | 3613 | 203 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 74 | 98 | 0 | 172 | 0 of 5 | 1060 | 172 |
+//! | corrected_solution | both | 80 | 122 | 0 | 202 | 3 of 11 | 3613 | 202 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 0 | 0 | 0 | 4 of 6 | 0 | 0 |
 //!
 //! # Proof
@@ -265,20 +265,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
             T::fused(k(0.2), t16, k(0.1) * t17),
         );
         let t20 = T::fused(
-            k(0.6),
+            -k(0.6),
             T::fused(-k(1.6), t2, k(1.2) * t5),
-            k(0.8) * T::fused(-k(1.6), t9, k(1.2) * t11),
+            k(0.8) * T::fused(-k(1.2), t11, k(1.6) * t9),
         );
         *out = [
             t15,
             carriage_rz + t19,
-            -t20,
+            t20,
             T::fused(k(1.6), t16, k(1.2) * t17),
             T::fused(-k(1.2), t8, k(1.6) * t14),
             t18 + (t1 + t10) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 94 operations (36 ±, 58 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 87 operations (34 ±, 53 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let carriage_e0 = y[3];
@@ -291,53 +291,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_e0 * carriage_e3;
-        let t1 = carriage_e1 * carriage_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = carriage_e0 * carriage_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t3));
-        let t5 = T::fused(t2, carriage_wy, t4 * carriage_wx);
-        let t6 = carriage_e0 * carriage_e1;
-        let t7 = carriage_e2 * carriage_e3;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = T::fused(-t2, carriage_wz, t8 * carriage_wx);
-        let t10 = T::fused(t4, carriage_wz, t8 * carriage_wy);
-        let t11 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t3));
-        let t12 = k(2.0) * (t1 - t0);
-        let t13 = T::fused(t11, carriage_wy, t12 * carriage_wx);
-        let t14 = carriage_e0 * carriage_e2;
-        let t15 = carriage_e1 * carriage_e3;
-        let t16 = k(2.0) * (t15 + t14);
-        let t17 = T::fused(t11, carriage_wz, t16 * carriage_wx);
-        let t18 = T::fused(-t12, carriage_wz, t16 * carriage_wy);
-        let t19 = T::fused(
+        let t0 = k(2.0) * carriage_e0;
+        let t1 = carriage_e3 * t0;
+        let t2 = k(2.0) * carriage_e1;
+        let t3 = carriage_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = k(2.0) * carriage_e2;
+        let t6 = T::fused(-carriage_e0, t0, k(1.0));
+        let t7 = T::fused(-carriage_e2, t5, t6);
+        let t8 = T::fused(carriage_wy, t4, carriage_wx * t7);
+        let t9 = carriage_e1 * t0;
+        let t10 = carriage_e3 * t5;
+        let t11 = t10 - t9;
+        let t12 = T::fused(-carriage_wz, t4, carriage_wx * t11);
+        let t13 = T::fused(carriage_wz, t7, carriage_wy * t11);
+        let t14 = T::fused(-carriage_e1, t2, t6);
+        let t15 = t3 - t1;
+        let t16 = T::fused(carriage_wy, t14, carriage_wx * t15);
+        let t17 = carriage_e2 * t0;
+        let t18 = carriage_e3 * t2;
+        let t19 = t18 + t17;
+        let t20 = T::fused(carriage_wz, t14, carriage_wx * t19);
+        let t21 = T::fused(-carriage_wz, t15, carriage_wy * t19);
+        let t22 = T::fused(
             -k(0.8),
-            carriage_sy - T::fused(k(0.02), t5, T::fused(-k(0.05), t9, k(0.1) * t10)),
+            carriage_sy - T::fused(k(0.02), t8, T::fused(-k(0.05), t12, k(0.1) * t13)),
             k(0.6)
                 * (carriage_sx
-                    - T::fused(-k(0.02), t13, T::fused(-k(0.05), t17, k(0.1) * t18))),
+                    - T::fused(-k(0.02), t16, T::fused(-k(0.05), t20, k(0.1) * t21))),
         );
-        let t20 = k(2.0) * (t15 - t14);
-        let t21 = k(2.0) * (t7 + t6);
-        let t22 = k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t3));
-        let t23 = T::fused(t20, carriage_wz, t22 * carriage_wx);
-        let t24 = T::fused(t21, carriage_wz, t22 * carriage_wy);
-        let t25 = T::fused(
+        let t23 = t18 - t17;
+        let t24 = t10 + t9;
+        let t25 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t6);
+        let t26 = T::fused(carriage_wz, t23, carriage_wx * t25);
+        let t27 = T::fused(carriage_wz, t24, carriage_wy * t25);
+        let t28 = T::fused(
             k(0.02),
-            T::fused(-t20, carriage_wy, t21 * carriage_wx),
-            T::fused(-k(0.05), t23, k(0.1) * t24),
+            T::fused(-carriage_wy, t23, carriage_wx * t24),
+            T::fused(-k(0.05), t26, k(0.1) * t27),
         );
-        let t26 = T::fused(
+        let t29 = T::fused(
             -k(0.8),
-            T::fused(-k(0.6), t9, k(0.8) * t10),
-            k(0.6) * T::fused(-k(0.6), t17, k(0.8) * t18),
+            T::fused(-k(0.6), t12, k(0.8) * t13),
+            k(0.6) * T::fused(-k(0.6), t20, k(0.8) * t21),
         );
         *out = [
-            -t19,
-            carriage_sz + t25,
-            t26,
-            T::fused(-k(0.6), t23, k(0.8) * t24),
-            T::fused(k(0.8), t5, k(0.6) * t13),
+            -t22,
+            carriage_sz + t28,
+            t29,
+            T::fused(-k(0.6), t26, k(0.8) * t27),
+            T::fused(k(0.8), t8, k(0.6) * t16),
         ];
     }
     /// Kinetic and potential energy: 66 operations (28 ±, 38 ×, 0 ÷).
@@ -422,7 +425,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
             potential: T::fused(k(0.5), t9 * (k(37.0) * t9), k(12.753) * carriage_ry),
         }
     }
-    /// Writes the joint readings: 71 operations (28 ±, 43 ×, 0 ÷).
+    /// Writes the joint readings: 67 operations (27 ±, 40 ×, 0 ÷).
     fn read_joints(&self, _t: T, y: &Self::State, out: &mut Self::Readings) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -436,51 +439,48 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = T::fused(carriage_e0, carriage_e2, carriage_e1 * carriage_e3);
-        let t6 = t3 + t2;
-        let t7 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t8 = T::fused(-carriage_e0, carriage_e1, carriage_e2 * carriage_e3);
-        let t9 = T::fused(
+        let t0 = k(2.0) * carriage_e1;
+        let t1 = k(2.0) * carriage_e0;
+        let t2 = T::fused(-carriage_e0, t1, k(1.0));
+        let t3 = T::fused(-carriage_e1, t0, t2);
+        let t4 = carriage_e3 * t1;
+        let t5 = carriage_e2 * t0;
+        let t6 = t5 - t4;
+        let t7 = T::fused(carriage_e2, t1, carriage_e3 * t0);
+        let t8 = t5 + t4;
+        let t9 = k(2.0) * carriage_e2;
+        let t10 = T::fused(-carriage_e2, t9, t2);
+        let t11 = T::fused(-carriage_e1, t1, carriage_e3 * t9);
+        let t12 = T::fused(
             k(0.8),
-            carriage_rx - T::fused(k(0.04), t5, -T::fused(-k(0.2), t1, k(0.1) * t4)),
+            carriage_rx - T::fused(k(0.02), t7, -T::fused(-k(0.1), t3, k(0.05) * t6)),
             k(0.6)
                 * (carriage_ry
-                    - T::fused(k(0.04), t8, T::fused(-k(0.2), t6, k(0.1) * t7))),
+                    - T::fused(k(0.02), t11, T::fused(-k(0.1), t8, k(0.05) * t10))),
         );
-        let t10 = k(2.0) * t6;
-        let t11 = k(2.0) * t7;
-        let t12 = k(2.0) * t8;
         let t13 = T::fused(
             -k(0.05),
-            T::fused(-t10, carriage_wz, t12 * carriage_wx),
-            k(0.1) * T::fused(t11, carriage_wz, t12 * carriage_wy),
+            T::fused(-carriage_wz, t8, carriage_wx * t11),
+            k(0.1) * T::fused(carriage_wz, t10, carriage_wy * t11),
         );
-        let t14 = k(2.0) * t1;
-        let t15 = k(2.0) * t4;
-        let t16 = k(2.0) * t5;
-        let t17 = T::fused(
+        let t14 = T::fused(
             -k(0.05),
-            T::fused(t14, carriage_wz, t16 * carriage_wx),
-            k(0.1) * T::fused(-t15, carriage_wz, t16 * carriage_wy),
+            T::fused(carriage_wz, t3, carriage_wx * t7),
+            k(0.1) * T::fused(-carriage_wz, t6, carriage_wy * t7),
         );
-        let t18 = T::fused(
+        let t15 = T::fused(
             k(0.6),
             carriage_sy
-                - T::fused(k(0.02), T::fused(t10, carriage_wy, t11 * carriage_wx), t13),
+                - T::fused(k(0.02), T::fused(carriage_wy, t8, carriage_wx * t10), t13),
             k(0.8)
                 * (carriage_sx
                     - T::fused(
                         -k(0.02),
-                        T::fused(t14, carriage_wy, t15 * carriage_wx),
-                        t17,
+                        T::fused(carriage_wy, t3, carriage_wx * t6),
+                        t14,
                     )),
         );
-        *out = [t9, t18];
+        *out = [t12, t15];
     }
     fn n_bodies(&self) -> usize {
         1
@@ -793,7 +793,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 118 operations (45 ±, 73 ×, 0 ÷).
+    /// Writes γ: 111 operations (43 ±, 68 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let carriage_e0 = y[3];
@@ -803,63 +803,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_wy * carriage_wy;
-        let t1 = carriage_wz * carriage_wz;
-        let t2 = t1 + t0;
-        let t3 = carriage_e0 * carriage_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(carriage_e1, carriage_e1, t3));
-        let t5 = carriage_wx * carriage_wy;
-        let t6 = carriage_e0 * carriage_e3;
-        let t7 = carriage_e1 * carriage_e2;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = carriage_wx * carriage_wz;
-        let t10 = carriage_e0 * carriage_e2;
-        let t11 = carriage_e1 * carriage_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = T::fused(t12, t9, T::fused(t4, t2, t8 * t5));
-        let t14 = carriage_wx * carriage_wx;
-        let t15 = t1 + t14;
-        let t16 = carriage_wy * carriage_wz;
-        let t17 = T::fused(t12, t16, -T::fused(t4, t5, t8 * t15));
-        let t18 = t0 + t14;
-        let t19 = T::fused(t12, t18, -T::fused(-t4, t9, t8 * t16));
-        let t20 = k(2.0) * (t7 + t6);
-        let t21 = k(2.0) * (k(0.5) - T::fused(carriage_e2, carriage_e2, t3));
-        let t22 = carriage_e0 * carriage_e1;
-        let t23 = carriage_e2 * carriage_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = T::fused(t24, t9, -T::fused(t20, t2, t21 * t5));
-        let t26 = T::fused(t24, t16, T::fused(t20, t5, t21 * t15));
-        let t27 = T::fused(t24, t18, T::fused(-t20, t9, t21 * t16));
-        let t28 = T::fused(
+        let t0 = k(2.0) * carriage_e1;
+        let t1 = k(2.0) * carriage_e0;
+        let t2 = T::fused(-carriage_e0, t1, k(1.0));
+        let t3 = T::fused(-carriage_e1, t0, t2);
+        let t4 = carriage_wy * carriage_wy;
+        let t5 = carriage_wz * carriage_wz;
+        let t6 = t5 + t4;
+        let t7 = carriage_e3 * t1;
+        let t8 = carriage_e2 * t0;
+        let t9 = t8 - t7;
+        let t10 = carriage_wx * carriage_wy;
+        let t11 = carriage_e2 * t1;
+        let t12 = carriage_e3 * t0;
+        let t13 = t12 + t11;
+        let t14 = carriage_wx * carriage_wz;
+        let t15 = T::fused(t14, t13, T::fused(t6, t3, t10 * t9));
+        let t16 = carriage_wx * carriage_wx;
+        let t17 = t5 + t16;
+        let t18 = carriage_wy * carriage_wz;
+        let t19 = T::fused(t18, t13, -T::fused(t10, t3, t17 * t9));
+        let t20 = t4 + t16;
+        let t21 = T::fused(t20, t13, -T::fused(-t14, t3, t18 * t9));
+        let t22 = t8 + t7;
+        let t23 = k(2.0) * carriage_e2;
+        let t24 = T::fused(-carriage_e2, t23, t2);
+        let t25 = carriage_e1 * t1;
+        let t26 = carriage_e3 * t23;
+        let t27 = t26 - t25;
+        let t28 = T::fused(t14, t27, -T::fused(t6, t22, t10 * t24));
+        let t29 = T::fused(t18, t27, T::fused(t10, t22, t17 * t24));
+        let t30 = T::fused(t20, t27, T::fused(-t14, t22, t18 * t24));
+        let t31 = T::fused(
             -k(0.6),
-            T::fused(k(0.02), t19, T::fused(k(0.1), t13, k(0.05) * t17)),
-            k(0.8) * T::fused(k(0.02), t27, T::fused(k(0.1), t25, k(0.05) * t26)),
+            T::fused(k(0.02), t21, T::fused(k(0.1), t15, k(0.05) * t19)),
+            k(0.8) * T::fused(k(0.02), t30, T::fused(k(0.1), t28, k(0.05) * t29)),
         );
-        let t29 = k(2.0) * (t11 - t10);
-        let t30 = k(2.0) * (t23 + t22);
-        let t31 = k(2.0) * (k(0.5) - T::fused(carriage_e3, carriage_e3, t3));
-        let t32 = T::fused(t31, t9, -T::fused(-t29, t2, t30 * t5));
-        let t33 = T::fused(t31, t16, T::fused(-t29, t5, t30 * t15));
-        let t34 = T::fused(
+        let t32 = t12 - t11;
+        let t33 = t26 + t25;
+        let t34 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t2);
+        let t35 = T::fused(t14, t34, -T::fused(-t6, t32, t10 * t33));
+        let t36 = T::fused(t18, t34, T::fused(-t10, t32, t17 * t33));
+        let t37 = T::fused(
             k(0.02),
-            T::fused(t31, t18, T::fused(t29, t9, t30 * t16)),
-            T::fused(k(0.1), t32, k(0.05) * t33),
+            T::fused(t20, t34, T::fused(t14, t32, t18 * t33)),
+            T::fused(k(0.1), t35, k(0.05) * t36),
         );
-        let t35 = T::fused(
+        let t38 = T::fused(
             -k(0.6),
-            T::fused(k(0.8), t13, k(0.6) * t17),
-            k(0.8) * T::fused(k(0.8), t25, k(0.6) * t26),
+            T::fused(k(0.8), t15, k(0.6) * t19),
+            k(0.8) * T::fused(k(0.8), t28, k(0.6) * t29),
         );
         *out = [
-            -t28,
-            t34,
-            -t35,
-            T::fused(k(0.8), t32, k(0.6) * t33),
-            T::fused(-k(0.6), t19, k(0.8) * t27),
+            -t31,
+            t37,
+            -t38,
+            T::fused(k(0.8), t35, k(0.6) * t36),
+            T::fused(-k(0.6), t21, k(0.8) * t30),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 91 operations (38 ±, 53 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 90 operations (38 ±, 52 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -888,41 +891,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
                     - T::fused(k(0.04), t8, T::fused(-k(0.2), t6, k(0.1) * t7))),
         );
         let t10 = k(0.2) - t9;
-        let t11 = T::fused(k(1.2), t8, k(1.6) * t5);
-        let t12 = T::fused(-k(1.6), t4, k(1.2) * t7);
-        let t13 = k(37.0) * t10;
-        let t14 = carriage_wy * carriage_wy;
-        let t15 = carriage_wz * carriage_wz;
-        let t16 = k(0.001) * carriage_wz;
-        let t17 = k(0.002) * carriage_wy;
-        let t18 = T::fused(
+        let t11 = k(0.005) * carriage_wz;
+        let t12 = carriage_wy * carriage_wy;
+        let t13 = carriage_wz * carriage_wz;
+        let t14 = k(0.001) * carriage_wz;
+        let t15 = k(0.002) * carriage_wy;
+        let t16 = T::fused(
             carriage_wx,
-            t17 + t16,
-            T::fused(k(0.003), t15 - t14, k(0.005) * (carriage_wy * carriage_wz)),
+            t15 + t14,
+            T::fused(carriage_wy, t11, k(0.003) * (t13 - t12)),
         );
-        let t19 = T::fused(-k(1.2), t6, k(1.6) * t1);
+        let t17 = T::fused(k(1.2), t8, k(1.6) * t5);
+        let t18 = T::fused(-k(1.2), t7, k(1.6) * t4);
+        let t19 = k(37.0) * t10;
         let t20 = carriage_wx * carriage_wx;
         let t21 = k(0.003) * carriage_wx;
         let t22 = T::fused(
             carriage_wy,
-            t16 - t21,
-            -T::fused(k(0.002), t15 - t20, k(0.005) * (carriage_wx * carriage_wz)),
+            t14 - t21,
+            -T::fused(carriage_wx, t11, k(0.002) * (t13 - t20)),
         );
-        let t23 = T::fused(
+        let t23 = T::fused(-k(1.6), t1, k(1.2) * t6);
+        let t24 = T::fused(
             carriage_wz,
-            t17 + t21,
-            T::fused(-k(0.001), t14 - t20, k(0.01) * (carriage_wx * carriage_wy)),
+            t15 + t21,
+            T::fused(-k(0.001), t12 - t20, k(0.01) * (carriage_wx * carriage_wy)),
         );
         *out = [
             k(29.6) * t10,
             T::fused(k(22.2), t10, -k(12.753)),
             k(0.0),
-            T::fused(-t13, T::fused(-k(0.05), t11, k(0.02) * t12), t18),
-            -T::fused(t13, T::fused(-k(0.02), t19, k(0.1) * t11), t22),
-            T::fused(t13, T::fused(-k(0.1), t12, k(0.05) * t19), -t23),
+            T::fused(t19, T::fused(k(0.05), t17, k(0.02) * t18), t16),
+            -T::fused(t19, T::fused(k(0.02), t23, k(0.1) * t17), t22),
+            -T::fused(t19, T::fused(-k(0.1), t18, k(0.05) * t23), t24),
         ];
     }
-    /// Solves eq. (17): 267 operations (99 ±, 167 ×, 1 ÷).
+    /// Solves eq. (17): 260 operations (97 ±, 162 ×, 1 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -934,114 +938,108 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let carriage_wx = y[10];
         let carriage_wy = y[11];
         let carriage_wz = y[12];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = carriage_e0 * carriage_e2;
-        let t6 = carriage_e1 * carriage_e3;
-        let t7 = t6 + t5;
-        let t8 = T::fused(k(0.04), t7, -T::fused(-k(0.2), t1, k(0.1) * t4));
-        let t9 = t3 + t2;
-        let t10 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t11 = carriage_e0 * carriage_e1;
-        let t12 = carriage_e2 * carriage_e3;
-        let t13 = t12 - t11;
-        let t14 = T::fused(k(0.04), t13, T::fused(-k(0.2), t9, k(0.1) * t10));
-        let t15 = k(0.2)
-            - T::fused(k(0.8), carriage_rx - t8, k(0.6) * (carriage_ry - t14));
-        let t16 = carriage_wy * carriage_wy;
-        let t17 = carriage_wz * carriage_wz;
-        let t18 = t17 + t16;
-        let t19 = k(2.0) * t1;
-        let t20 = carriage_wx * carriage_wy;
-        let t21 = k(2.0) * t4;
-        let t22 = carriage_wx * carriage_wz;
-        let t23 = k(2.0) * t7;
-        let t24 = T::fused(t23, t22, T::fused(t19, t18, t21 * t20));
+        let t0 = k(2.0) * carriage_e1;
+        let t1 = k(2.0) * carriage_e0;
+        let t2 = T::fused(-carriage_e0, t1, k(1.0));
+        let t3 = T::fused(-carriage_e1, t0, t2);
+        let t4 = carriage_e3 * t1;
+        let t5 = carriage_e2 * t0;
+        let t6 = t5 - t4;
+        let t7 = carriage_e2 * t1;
+        let t8 = carriage_e3 * t0;
+        let t9 = t8 + t7;
+        let t10 = T::fused(k(0.02), t9, -T::fused(-k(0.1), t3, k(0.05) * t6));
+        let t11 = t5 + t4;
+        let t12 = k(2.0) * carriage_e2;
+        let t13 = T::fused(-carriage_e2, t12, t2);
+        let t14 = carriage_e1 * t1;
+        let t15 = carriage_e3 * t12;
+        let t16 = t15 - t14;
+        let t17 = T::fused(k(0.02), t16, T::fused(-k(0.1), t11, k(0.05) * t13));
+        let t18 = k(0.2)
+            - T::fused(k(0.8), carriage_rx - t10, k(0.6) * (carriage_ry - t17));
+        let t19 = carriage_wy * carriage_wy;
+        let t20 = carriage_wz * carriage_wz;
+        let t21 = t20 + t19;
+        let t22 = carriage_wx * carriage_wy;
+        let t23 = carriage_wx * carriage_wz;
+        let t24 = T::fused(t23, t9, T::fused(t21, t3, t22 * t6));
         let t25 = carriage_wx * carriage_wx;
-        let t26 = t17 + t25;
+        let t26 = t20 + t25;
         let t27 = carriage_wy * carriage_wz;
-        let t28 = T::fused(t23, t27, -T::fused(t19, t20, t21 * t26));
-        let t29 = t16 + t25;
-        let t30 = T::fused(t23, t29, -T::fused(-t19, t22, t21 * t27));
-        let t31 = k(2.0) * t9;
-        let t32 = k(2.0) * t10;
-        let t33 = k(2.0) * t13;
-        let t34 = T::fused(t33, t22, -T::fused(t31, t18, t32 * t20));
-        let t35 = T::fused(t33, t27, T::fused(t31, t20, t32 * t26));
-        let t36 = T::fused(t33, t29, T::fused(-t31, t22, t32 * t27));
-        let t37 = T::fused(
+        let t28 = T::fused(t27, t9, -T::fused(t22, t3, t26 * t6));
+        let t29 = t19 + t25;
+        let t30 = T::fused(t29, t9, -T::fused(-t23, t3, t27 * t6));
+        let t31 = T::fused(t23, t16, -T::fused(t21, t11, t22 * t13));
+        let t32 = T::fused(t27, t16, T::fused(t22, t11, t26 * t13));
+        let t33 = T::fused(t29, t16, T::fused(-t23, t11, t27 * t13));
+        let t34 = T::fused(
             -k(0.6),
             T::fused(k(0.02), t30, T::fused(k(0.1), t24, k(0.05) * t28)),
-            k(0.8) * T::fused(k(0.02), t36, T::fused(k(0.1), t34, k(0.05) * t35)),
+            k(0.8) * T::fused(k(0.02), t33, T::fused(k(0.1), t31, k(0.05) * t32)),
         );
-        let t38 = k(1.6) * t10;
-        let t39 = T::fused(k(1.2), t4, t38);
-        let t40 = T::fused(-k(1.28), t13, k(0.96) * t7);
-        let t41 = t6 - t5;
-        let t42 = t12 + t11;
-        let t43 = T::fused(-k(1.2), t41, k(1.6) * t42);
-        let t44 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
-        let t45 = k(1.6) * t44;
-        let t46 = k(1.2) * t1;
-        let t47 = T::fused(
+        let t35 = k(0.8) * t13;
+        let t36 = T::fused(k(0.6), t6, t35);
+        let t37 = T::fused(-k(0.64), t16, k(0.48) * t9);
+        let t38 = t8 - t7;
+        let t39 = t15 + t14;
+        let t40 = T::fused(-k(0.6), t38, k(0.8) * t39);
+        let t41 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t2);
+        let t42 = k(0.8) * t41;
+        let t43 = k(0.6) * t3;
+        let t44 = T::fused(
             k(0.8),
-            T::fused(k(1.2), t9, t38),
-            k(0.6) * T::fused(k(1.6), t4, t46),
+            T::fused(k(0.6), t11, t35),
+            k(0.6) * T::fused(k(0.8), t6, t43),
         );
-        let t48 = T::fused(t43, t40, t47 * t45);
-        let t49 = T::fused(k(1.6), t9, t46);
-        let t50 = k(1.2) * t44;
-        let t51 = T::fused(-k(0.96), t13, k(0.72) * t7);
-        let t52 = T::fused(t47, t50, t43 * t51);
-        let t53 = k(1.0) / T::fused(t48, t39, t52 * t49);
-        let t54 = T::fused(-k(0.6), t30, k(0.8) * t36);
-        let t55 = T::fused(
+        let t45 = T::fused(t40, t37, t44 * t42);
+        let t46 = T::fused(k(0.8), t11, t43);
+        let t47 = k(0.6) * t41;
+        let t48 = T::fused(-k(0.48), t16, k(0.36) * t9);
+        let t49 = T::fused(t44, t47, t40 * t48);
+        let t50 = k(1.0) / T::fused(t45, t36, t49 * t46);
+        let t51 = T::fused(-k(0.6), t30, k(0.8) * t33);
+        let t52 = T::fused(
             -k(0.6),
             T::fused(k(0.8), t24, k(0.6) * t28),
-            k(0.8) * T::fused(k(0.8), t34, k(0.6) * t35),
+            k(0.8) * T::fused(k(0.8), t31, k(0.6) * t32),
         );
-        let t56 = k(2.0) * t41;
-        let t57 = k(2.0) * t42;
-        let t58 = k(2.0) * t44;
-        let t59 = T::fused(t58, t22, -T::fused(-t56, t18, t57 * t20));
-        let t60 = T::fused(t58, t27, T::fused(-t56, t20, t57 * t26));
-        let t61 = T::fused(k(0.8), t59, k(0.6) * t60);
-        let t62 = T::fused(-t55, t53 * (t43 * t49), t61 * (t53 * (t47 * t49)));
-        let t63 = T::fused(-t54, t48 * t53, t62);
-        let t64 = T::fused(-t55, t53 * (t43 * t39), t61 * (t53 * (t47 * t39)));
-        let t65 = T::fused(t54, t52 * t53, t64);
-        let t66 = T::fused(
-            t53 * T::fused(t50, t49, t45 * t39),
-            t55,
-            t53 * T::fused(t40, t39, t51 * t49) * t61,
+        let t53 = T::fused(t23, t41, -T::fused(-t21, t38, t22 * t39));
+        let t54 = T::fused(t27, t41, T::fused(-t22, t38, t26 * t39));
+        let t55 = T::fused(k(0.8), t53, k(0.6) * t54);
+        let t56 = T::fused(-t52, t50 * (t40 * t46), t55 * (t50 * (t44 * t46)));
+        let t57 = T::fused(-t51, t45 * t50, t56);
+        let t58 = T::fused(-t52, t50 * (t40 * t36), t55 * (t50 * (t44 * t36)));
+        let t59 = T::fused(t51, t49 * t50, t58);
+        let t60 = T::fused(
+            t50 * T::fused(t47, t46, t42 * t36),
+            t52,
+            t50 * T::fused(t37, t36, t48 * t46) * t55,
         );
-        let t67 = T::fused(t53 * T::fused(-t51, t45, t50 * t40), t54, t66);
-        let t68 = T::fused(t58, t67, -T::fused(-t56, t63, t57 * t65));
-        let t69 = T::fused(t33, t67, -T::fused(t31, t63, t32 * t65));
-        let t70 = T::fused(k(0.04), t44, T::fused(k(0.2), t41, k(0.1) * t42));
-        let t71 = T::fused(-k(0.6), t37, T::fused(-t14, t68, t70 * t69));
-        let t72 = T::fused(t23, t67, T::fused(t19, t63, t21 * t65));
-        let t73 = T::fused(k(0.8), t37, T::fused(-t72, t70, t8 * t68));
-        let t74 = T::fused(k(1.04), t71, k(0.78) * t73)
-            - T::fused(-k(23.68), t15, k(0.6) * T::fused(-k(22.2), t15, k(12.753)));
-        let t75 = T::fused(
+        let t61 = T::fused(t50 * T::fused(-t48, t42, t47 * t37), t51, t60);
+        let t62 = T::fused(t41, t61, -T::fused(-t38, t57, t39 * t59));
+        let t63 = T::fused(t16, t61, -T::fused(t11, t57, t13 * t59));
+        let t64 = T::fused(k(0.02), t41, T::fused(k(0.1), t38, k(0.05) * t39));
+        let t65 = T::fused(-k(0.6), t34, T::fused(-t62, t17, t64 * t63));
+        let t66 = T::fused(t9, t61, T::fused(t3, t57, t6 * t59));
+        let t67 = T::fused(k(0.8), t34, T::fused(-t66, t64, t62 * t10));
+        let t68 = T::fused(k(1.04), t65, k(0.78) * t67)
+            - T::fused(-k(23.68), t18, k(0.6) * T::fused(-k(22.2), t18, k(12.753)));
+        let t69 = T::fused(
             k(0.02),
-            T::fused(t58, t29, T::fused(t56, t22, t57 * t27)),
-            T::fused(k(0.1), t59, k(0.05) * t60),
+            T::fused(t29, t41, T::fused(t23, t38, t27 * t39)),
+            T::fused(k(0.1), t53, k(0.05) * t54),
         );
         *out = [
-            T::fused(k(0.6153846153846154), t74, -t71),
-            T::fused(k(0.46153846153846156), t74, -t73),
-            T::fused(-t8, t69, t14 * t72) + t75,
-            T::fused(-t56, t68, T::fused(-t19, t72, t31 * t69)),
-            -T::fused(t57, t68, T::fused(-t21, t72, t32 * t69)),
-            T::fused(t58, t68, T::fused(t23, t72, t33 * t69)),
+            T::fused(k(0.6153846153846154), t68, -t65),
+            T::fused(k(0.46153846153846156), t68, -t67),
+            T::fused(-t10, t63, t66 * t17) + t69,
+            T::fused(-t38, t62, T::fused(-t3, t66, t11 * t63)),
+            -T::fused(t39, t62, T::fused(-t6, t66, t13 * t63)),
+            T::fused(t41, t62, T::fused(t9, t66, t16 * t63)),
         ];
     }
-    /// Writes λ: 236 operations (92 ±, 143 ×, 1 ÷).
+    /// Writes λ: 235 operations (92 ±, 142 ×, 1 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1089,95 +1087,96 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Prismatic<T> {
         let t15 = T::fused(-k(29.6), t14, k(1.3) * carriage_dsx);
         let t16 = T::fused(k(1.3), carriage_dsy, T::fused(-k(22.2), t14, k(12.753)));
         let t17 = k(1.3) * carriage_dsz;
-        let t18 = T::fused(k(1.2), t12, k(1.6) * t7);
-        let t19 = k(1.6) * t4;
-        let t20 = T::fused(k(1.2), t9, -t19);
-        let t21 = k(37.0) * t14;
-        let t22 = carriage_wy * carriage_wy;
-        let t23 = carriage_wz * carriage_wz;
-        let t24 = k(0.001) * carriage_wz;
-        let t25 = k(0.002) * carriage_wy;
-        let t26 = T::fused(
-            carriage_wx,
-            t25 + t24,
-            T::fused(k(0.003), t23 - t22, k(0.005) * (carriage_wy * carriage_wz)),
-        );
-        let t27 = T::fused(
-            -k(0.002),
-            carriage_dwz,
-            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
-        ) - T::fused(-t21, T::fused(-k(0.05), t18, k(0.02) * t20), t26);
-        let t28 = T::fused(
-            t15,
-            T::fused(k(0.04), t4, k(0.1) * t7),
-            t16 * T::fused(-k(0.04), t9, k(0.1) * t12),
-        );
-        let t29 = t11 + t10;
-        let t30 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
-        let t31 = T::fused(t17, T::fused(-k(0.04), t29, k(0.1) * t30), -t28) + t27;
-        let t32 = k(1.2) * t1;
-        let t33 = T::fused(k(1.6), t8, t32);
-        let t34 = t6 - t5;
-        let t35 = T::fused(-k(1.2), t34, k(1.6) * t29);
-        let t36 = k(1.6) * t9;
-        let t37 = T::fused(k(1.2), t4, t36);
-        let t38 = T::fused(-k(1.28), t12, k(0.96) * t7);
-        let t39 = k(1.6) * t30;
-        let t40 = k(1.2) * t8;
-        let t41 = T::fused(k(0.8), t40 + t36, k(0.6) * (t19 + t32));
-        let t42 = T::fused(t35, t38, t41 * t39);
-        let t43 = k(1.2) * t30;
-        let t44 = T::fused(-k(0.96), t12, k(0.72) * t7);
-        let t45 = T::fused(t41, t43, t35 * t44);
-        let t46 = k(1.0) / T::fused(t42, t37, t45 * t33);
-        let t47 = T::fused(k(1.6), t1, -t40);
-        let t48 = carriage_wx * carriage_wx;
-        let t49 = k(0.003) * carriage_wx;
-        let t50 = T::fused(
+        let t18 = k(0.005) * carriage_wz;
+        let t19 = carriage_wx * carriage_wx;
+        let t20 = carriage_wz * carriage_wz;
+        let t21 = k(0.003) * carriage_wx;
+        let t22 = k(0.001) * carriage_wz;
+        let t23 = T::fused(
             carriage_wy,
-            t24 - t49,
-            -T::fused(k(0.002), t23 - t48, k(0.005) * (carriage_wx * carriage_wz)),
+            t22 - t21,
+            -T::fused(carriage_wx, t18, k(0.002) * (t20 - t19)),
         );
-        let t51 = T::fused(
+        let t24 = k(1.2) * t8;
+        let t25 = T::fused(-k(1.6), t1, t24);
+        let t26 = T::fused(k(1.2), t12, k(1.6) * t7);
+        let t27 = k(37.0) * t14;
+        let t28 = T::fused(
             k(0.003),
             carriage_dwz,
             T::fused(k(0.02), carriage_dwy, k(0.001) * carriage_dwx),
-        ) + T::fused(t21, T::fused(-k(0.02), t47, k(0.1) * t18), t50);
-        let t52 = T::fused(
+        ) + T::fused(t27, T::fused(k(0.02), t25, k(0.1) * t26), t23);
+        let t29 = T::fused(
             t15,
             T::fused(-k(0.04), t1, k(0.2) * t7),
             t16 * T::fused(k(0.04), t8, k(0.2) * t12),
         );
-        let t53 = T::fused(t17, T::fused(-k(0.04), t34, k(0.2) * t30), -t52) - t51;
-        let t54 = T::fused(t46 * (t35 * t33), t31, t46 * (t35 * t37) * t53);
-        let t55 = T::fused(
-            carriage_wz,
-            t25 + t49,
-            T::fused(-k(0.001), t22 - t48, k(0.01) * (carriage_wx * carriage_wy)),
+        let t30 = t6 - t5;
+        let t31 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
+        let t32 = T::fused(t17, T::fused(-k(0.04), t30, k(0.2) * t31), -t29) - t28;
+        let t33 = k(1.6) * t9;
+        let t34 = T::fused(k(1.2), t4, t33);
+        let t35 = t11 + t10;
+        let t36 = T::fused(-k(1.2), t30, k(1.6) * t35);
+        let t37 = T::fused(-k(1.28), t12, k(0.96) * t7);
+        let t38 = k(1.6) * t31;
+        let t39 = k(1.2) * t1;
+        let t40 = k(1.6) * t4;
+        let t41 = T::fused(k(0.8), t24 + t33, k(0.6) * (t40 + t39));
+        let t42 = T::fused(t36, t37, t41 * t38);
+        let t43 = T::fused(k(1.6), t8, t39);
+        let t44 = k(1.2) * t31;
+        let t45 = T::fused(-k(0.96), t12, k(0.72) * t7);
+        let t46 = T::fused(t41, t44, t36 * t45);
+        let t47 = k(1.0) / T::fused(t42, t34, t46 * t43);
+        let t48 = carriage_wy * carriage_wy;
+        let t49 = k(0.002) * carriage_wy;
+        let t50 = T::fused(
+            carriage_wx,
+            t49 + t22,
+            T::fused(carriage_wy, t18, k(0.003) * (t20 - t48)),
         );
+        let t51 = T::fused(-k(1.2), t9, t40);
+        let t52 = T::fused(
+            -k(0.002),
+            carriage_dwz,
+            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
+        ) - T::fused(t27, T::fused(k(0.05), t26, k(0.02) * t51), t50);
+        let t53 = T::fused(
+            t15,
+            T::fused(k(0.04), t4, k(0.1) * t7),
+            t16 * T::fused(-k(0.04), t9, k(0.1) * t12),
+        );
+        let t54 = T::fused(t17, T::fused(-k(0.04), t35, k(0.1) * t31), -t53) + t52;
+        let t55 = T::fused(t47 * (t36 * t34), t32, t47 * (t36 * t43) * t54);
         let t56 = T::fused(
+            carriage_wz,
+            t49 + t21,
+            T::fused(-k(0.001), t48 - t19, k(0.01) * (carriage_wx * carriage_wy)),
+        );
+        let t57 = T::fused(
             -k(0.015),
             carriage_dwz,
             T::fused(-k(0.003), carriage_dwy, k(0.002) * carriage_dwx),
-        ) - T::fused(-t21, T::fused(-k(0.1), t20, k(0.05) * t47), t55);
-        let t57 = T::fused(
+        ) - T::fused(t27, T::fused(-k(0.1), t51, k(0.05) * t25), t56);
+        let t58 = T::fused(
             -t15,
             T::fused(k(0.1), t1, k(0.2) * t4),
             t16 * T::fused(k(0.1), t8, k(0.2) * t9),
         );
-        let t58 = T::fused(t17, T::fused(-k(0.1), t34, k(0.2) * t29), -t57) + t56;
-        let t59 = T::fused(t46 * (t41 * t33), t31, t46 * (t41 * t37) * t53);
-        let t60 = T::fused(
-            t46 * T::fused(-t44, t39, t43 * t38),
-            t58,
-            T::fused(-(t42 * t46), t31, t45 * t46 * t53),
+        let t59 = T::fused(t17, T::fused(-k(0.1), t30, k(0.2) * t35), -t58) + t57;
+        let t60 = T::fused(t47 * (t41 * t34), t32, t47 * (t41 * t43) * t54);
+        let t61 = T::fused(
+            t47 * T::fused(-t45, t38, t44 * t37),
+            t59,
+            -T::fused(-(t46 * t47), t32, t42 * t47 * t54),
         );
         *lambda = [
             T::fused(-k(0.8), t16, k(0.6) * t15),
             -t17,
-            T::fused(-(t46 * T::fused(t43, t33, t39 * t37)), t58, t54),
-            T::fused(t46 * T::fused(t38, t37, t44 * t33), t58, t59),
-            t60,
+            T::fused(-(t47 * T::fused(t44, t43, t38 * t34)), t59, t55),
+            T::fused(t47 * T::fused(t37, t34, t45 * t43), t59, t60),
+            t61,
         ];
     }
 }
@@ -1491,7 +1490,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             k(0.0),
         ];
     }
-    /// Writes λ: 173 operations (74 ±, 99 ×, 0 ÷).
+    /// Writes λ: 172 operations (74 ±, 98 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1539,8 +1538,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
         let t15 = T::fused(-k(29.6), t14, k(1.3) * carriage_dsx);
         let t16 = T::fused(k(1.3), carriage_dsy, T::fused(-k(22.2), t14, k(12.753)));
         let t17 = k(1.3) * carriage_dsz;
-        let t18 = T::fused(-k(1.6), t4, k(1.2) * t9);
-        let t19 = T::fused(-k(1.2), t8, k(1.6) * t1);
+        let t18 = T::fused(-k(1.2), t9, k(1.6) * t4);
+        let t19 = T::fused(-k(1.6), t1, k(1.2) * t8);
         let t20 = k(37.0) * t14;
         let t21 = carriage_wx * carriage_wx;
         let t22 = carriage_wy * carriage_wy;
@@ -1555,7 +1554,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             -k(0.015),
             carriage_dwz,
             T::fused(-k(0.003), carriage_dwy, k(0.002) * carriage_dwx),
-        ) - T::fused(-t20, T::fused(-k(0.1), t18, k(0.05) * t19), t25);
+        ) - T::fused(t20, T::fused(-k(0.1), t18, k(0.05) * t19), t25);
         let t27 = T::fused(
             -t15,
             T::fused(k(0.1), t1, k(0.2) * t4),
@@ -1563,51 +1562,52 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
         );
         let t28 = t6 - t5;
         let t29 = t11 + t10;
-        let t30 = T::fused(k(1.2), t12, k(1.6) * t7);
+        let t30 = k(0.005) * carriage_wz;
         let t31 = carriage_wz * carriage_wz;
         let t32 = k(0.001) * carriage_wz;
         let t33 = T::fused(
-            carriage_wx,
-            t24 + t32,
-            T::fused(k(0.003), t31 - t22, k(0.005) * (carriage_wy * carriage_wz)),
-        );
-        let t34 = T::fused(
-            -k(0.002),
-            carriage_dwz,
-            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
-        ) - T::fused(-t20, T::fused(-k(0.05), t30, k(0.02) * t18), t33);
-        let t35 = T::fused(
-            t15,
-            T::fused(k(0.04), t4, k(0.1) * t7),
-            t16 * T::fused(-k(0.04), t9, k(0.1) * t12),
-        );
-        let t36 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
-        let t37 = T::fused(t17, T::fused(-k(0.04), t29, k(0.1) * t36), -t35) + t34;
-        let t38 = T::fused(
             carriage_wy,
             t32 - t23,
-            -T::fused(k(0.002), t31 - t21, k(0.005) * (carriage_wx * carriage_wz)),
+            -T::fused(carriage_wx, t30, k(0.002) * (t31 - t21)),
         );
-        let t39 = T::fused(
+        let t34 = T::fused(k(1.2), t12, k(1.6) * t7);
+        let t35 = T::fused(
             k(0.003),
             carriage_dwz,
             T::fused(k(0.02), carriage_dwy, k(0.001) * carriage_dwx),
-        ) + T::fused(t20, T::fused(-k(0.02), t19, k(0.1) * t30), t38);
-        let t40 = T::fused(
+        ) + T::fused(t20, T::fused(k(0.02), t19, k(0.1) * t34), t33);
+        let t36 = T::fused(
             t15,
             T::fused(-k(0.04), t1, k(0.2) * t7),
             t16 * T::fused(k(0.04), t8, k(0.2) * t12),
         );
-        let t41 = T::fused(t17, T::fused(-k(0.04), t28, k(0.2) * t36), -t40) - t39;
+        let t37 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
+        let t38 = T::fused(t17, T::fused(-k(0.04), t28, k(0.2) * t37), -t36) - t35;
+        let t39 = T::fused(
+            carriage_wx,
+            t24 + t32,
+            T::fused(carriage_wy, t30, k(0.003) * (t31 - t22)),
+        );
+        let t40 = T::fused(
+            -k(0.002),
+            carriage_dwz,
+            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
+        ) - T::fused(t20, T::fused(k(0.05), t34, k(0.02) * t18), t39);
+        let t41 = T::fused(
+            t15,
+            T::fused(k(0.04), t4, k(0.1) * t7),
+            t16 * T::fused(-k(0.04), t9, k(0.1) * t12),
+        );
+        let t42 = T::fused(t17, T::fused(-k(0.04), t29, k(0.1) * t37), -t41) + t40;
         *lambda = [
             T::fused(-k(0.8), t16, k(0.6) * t15),
             -t17,
             T::fused(t17, T::fused(-k(0.1), t28, k(0.2) * t29), -t27) + t26,
-            -T::fused(k(0.6), t37, k(0.8) * t41),
-            T::fused(-k(0.6), t41, k(0.8) * t37),
+            -T::fused(k(0.8), t38, k(0.6) * t42),
+            T::fused(-k(0.6), t38, k(0.8) * t42),
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 203 operations (80 ±, 123 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 202 operations (80 ±, 122 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let carriage_rx = y[0];
@@ -1673,8 +1673,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             t28,
             T::fused(k(0.1), t1, k(0.2) * t4) * t29,
         );
-        let t32 = T::fused(-k(1.6), t4, k(1.2) * t9);
-        let t33 = T::fused(-k(1.2), t8, k(1.6) * t1);
+        let t32 = T::fused(-k(1.2), t9, k(1.6) * t4);
+        let t33 = T::fused(-k(1.6), t1, k(1.2) * t8);
         let t34 = k(37.0) * t27;
         let t35 = carriage_wx * carriage_wx;
         let t36 = carriage_wy * carriage_wy;
@@ -1685,35 +1685,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             t38 + t37,
             T::fused(-k(0.001), t36 - t35, k(0.01) * (carriage_wx * carriage_wy)),
         );
-        let t40 = T::fused(-t34, T::fused(-k(0.1), t32, k(0.05) * t33), t39)
+        let t40 = T::fused(t34, T::fused(-k(0.1), t32, k(0.05) * t33), t39)
             + T::fused(-T::fused(-k(0.1), t23, k(0.2) * t24), t30, t31);
-        let t41 = T::fused(
-            -T::fused(k(0.04), t8, k(0.2) * t12),
-            t28,
-            T::fused(-k(0.04), t1, k(0.2) * t7) * t29,
+        let t41 = k(0.005) * carriage_wz;
+        let t42 = carriage_wz * carriage_wz;
+        let t43 = k(0.001) * carriage_wz;
+        let t44 = T::fused(
+            carriage_wx,
+            t38 + t43,
+            T::fused(carriage_wy, t41, k(0.003) * (t42 - t36)),
         );
-        let t42 = T::fused(k(1.2), t12, k(1.6) * t7);
-        let t43 = carriage_wz * carriage_wz;
-        let t44 = k(0.001) * carriage_wz;
-        let t45 = T::fused(
-            carriage_wy,
-            t44 - t37,
-            -T::fused(k(0.002), t43 - t35, k(0.005) * (carriage_wx * carriage_wz)),
-        );
-        let t46 = T::fused(t34, T::fused(-k(0.02), t33, k(0.1) * t42), t45)
-            - T::fused(T::fused(-k(0.04), t23, k(0.2) * t25), t30, t41);
-        let t47 = T::fused(
+        let t45 = T::fused(k(1.2), t12, k(1.6) * t7);
+        let t46 = T::fused(
             -T::fused(-k(0.04), t9, k(0.1) * t12),
             t28,
             T::fused(k(0.04), t4, k(0.1) * t7) * t29,
         );
+        let t47 = T::fused(T::fused(-k(0.04), t24, k(0.1) * t25), t30, t46)
+            - T::fused(t34, T::fused(k(0.05), t45, k(0.02) * t32), t44);
         let t48 = T::fused(
-            carriage_wx,
-            t38 + t44,
-            T::fused(k(0.003), t43 - t36, k(0.005) * (carriage_wy * carriage_wz)),
+            carriage_wy,
+            t43 - t37,
+            -T::fused(carriage_wx, t41, k(0.002) * (t42 - t35)),
         );
-        let t49 = T::fused(-t34, T::fused(-k(0.05), t42, k(0.02) * t32), t48)
-            - T::fused(T::fused(-k(0.04), t24, k(0.1) * t25), t30, t47);
+        let t49 = T::fused(
+            -T::fused(k(0.04), t8, k(0.2) * t12),
+            t28,
+            T::fused(-k(0.04), t1, k(0.2) * t7) * t29,
+        );
+        let t50 = T::fused(T::fused(-k(0.04), t23, k(0.2) * t25), t30, t49)
+            - T::fused(t34, T::fused(k(0.02), t33, k(0.1) * t45), t48);
         *out = [
             -t21,
             -t22,
@@ -1724,8 +1725,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Prismatic<T> {
             -T::fused(k(0.8), t28, k(0.6) * t29),
             -t30,
             -t40,
-            T::fused(k(0.8), t46, k(0.6) * t49),
-            T::fused(-k(0.8), t49, k(0.6) * t46),
+            -T::fused(k(0.6), t47, k(0.8) * t50),
+            T::fused(-k(0.6), t50, k(0.8) * t47),
         ];
     }
 }
@@ -1762,7 +1763,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 320 operations (126 ±, 193 ×, 1 ÷).
+    /// Writes the outputs: 312 operations (124 ±, 187 ×, 1 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -1783,156 +1784,149 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Prismatic<T> {
         let carriage_dwx = accelerations[3];
         let carriage_dwy = accelerations[4];
         let carriage_dwz = accelerations[5];
-        let t0 = carriage_e0 * carriage_e0;
-        let t1 = k(0.5) - T::fused(carriage_e1, carriage_e1, t0);
-        let t2 = carriage_e0 * carriage_e3;
-        let t3 = carriage_e1 * carriage_e2;
-        let t4 = t3 - t2;
-        let t5 = carriage_e0 * carriage_e2;
-        let t6 = carriage_e1 * carriage_e3;
-        let t7 = t6 + t5;
-        let t8 = carriage_rx
-            - T::fused(k(0.04), t7, -T::fused(-k(0.2), t1, k(0.1) * t4));
-        let t9 = t3 + t2;
-        let t10 = k(0.5) - T::fused(carriage_e2, carriage_e2, t0);
-        let t11 = carriage_e0 * carriage_e1;
-        let t12 = carriage_e2 * carriage_e3;
-        let t13 = t12 - t11;
-        let t14 = carriage_ry
-            - T::fused(k(0.04), t13, T::fused(-k(0.2), t9, k(0.1) * t10));
-        let t15 = k(0.2) - T::fused(k(0.8), t8, k(0.6) * t14);
-        let t16 = T::fused(-k(29.6), t15, k(1.3) * carriage_dsx);
-        let t17 = T::fused(k(1.3), carriage_dsy, T::fused(-k(22.2), t15, k(12.753)));
-        let t18 = T::fused(-k(0.6), t16, k(0.8) * t17);
-        let t19 = k(1.3) * carriage_dsz;
-        let t20 = T::fused(-k(0.04), t10, k(0.1) * t13);
-        let t21 = T::fused(k(0.04), t4, k(0.1) * t7);
-        let t22 = t12 + t11;
-        let t23 = k(0.5) - T::fused(carriage_e3, carriage_e3, t0);
-        let t24 = t19 * T::fused(-k(0.04), t22, k(0.1) * t23);
-        let t25 = T::fused(k(1.2), t13, k(1.6) * t7);
-        let t26 = k(1.6) * t4;
-        let t27 = T::fused(k(1.2), t10, -t26);
-        let t28 = k(37.0) * t15;
-        let t29 = carriage_wy * carriage_wy;
-        let t30 = carriage_wz * carriage_wz;
-        let t31 = k(0.001) * carriage_wz;
-        let t32 = k(0.002) * carriage_wy;
-        let t33 = T::fused(
-            carriage_wx,
-            t32 + t31,
-            T::fused(k(0.003), t30 - t29, k(0.005) * (carriage_wy * carriage_wz)),
-        );
-        let t34 = T::fused(
-            -k(0.002),
-            carriage_dwz,
-            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
-        ) - T::fused(-t28, T::fused(-k(0.05), t25, k(0.02) * t27), t33);
-        let t35 = t24 - T::fused(t16, t21, t17 * t20) + t34;
-        let t36 = k(1.2) * t1;
-        let t37 = T::fused(k(1.6), t9, t36);
-        let t38 = t6 - t5;
-        let t39 = T::fused(-k(1.2), t38, k(1.6) * t22);
-        let t40 = k(1.6) * t10;
-        let t41 = T::fused(k(1.2), t4, t40);
-        let t42 = T::fused(-k(1.28), t13, k(0.96) * t7);
-        let t43 = k(1.6) * t23;
-        let t44 = k(1.2) * t9;
-        let t45 = T::fused(k(0.8), t44 + t40, k(0.6) * (t26 + t36));
-        let t46 = T::fused(t39, t42, t45 * t43);
-        let t47 = k(1.2) * t23;
-        let t48 = T::fused(-k(0.96), t13, k(0.72) * t7);
-        let t49 = T::fused(t45, t47, t39 * t48);
-        let t50 = k(1.0) / T::fused(t46, t41, t49 * t37);
-        let t51 = T::fused(k(1.6), t1, -t44);
-        let t52 = carriage_wx * carriage_wx;
-        let t53 = k(0.003) * carriage_wx;
-        let t54 = T::fused(
+        let t0 = k(2.0) * carriage_e1;
+        let t1 = k(2.0) * carriage_e0;
+        let t2 = T::fused(-carriage_e0, t1, k(1.0));
+        let t3 = T::fused(-carriage_e1, t0, t2);
+        let t4 = carriage_e3 * t1;
+        let t5 = carriage_e2 * t0;
+        let t6 = t5 - t4;
+        let t7 = carriage_e2 * t1;
+        let t8 = carriage_e3 * t0;
+        let t9 = t8 + t7;
+        let t10 = carriage_rx
+            - T::fused(k(0.02), t9, -T::fused(-k(0.1), t3, k(0.05) * t6));
+        let t11 = t5 + t4;
+        let t12 = k(2.0) * carriage_e2;
+        let t13 = T::fused(-carriage_e2, t12, t2);
+        let t14 = carriage_e1 * t1;
+        let t15 = carriage_e3 * t12;
+        let t16 = t15 - t14;
+        let t17 = carriage_ry
+            - T::fused(k(0.02), t16, T::fused(-k(0.1), t11, k(0.05) * t13));
+        let t18 = k(0.2) - T::fused(k(0.8), t10, k(0.6) * t17);
+        let t19 = T::fused(-k(29.6), t18, k(1.3) * carriage_dsx);
+        let t20 = T::fused(k(1.3), carriage_dsy, T::fused(-k(22.2), t18, k(12.753)));
+        let t21 = T::fused(-k(0.6), t19, k(0.8) * t20);
+        let t22 = k(1.3) * carriage_dsz;
+        let t23 = k(0.005) * carriage_wz;
+        let t24 = carriage_wx * carriage_wx;
+        let t25 = carriage_wz * carriage_wz;
+        let t26 = k(0.003) * carriage_wx;
+        let t27 = k(0.001) * carriage_wz;
+        let t28 = T::fused(
             carriage_wy,
-            t31 - t53,
-            -T::fused(k(0.002), t30 - t52, k(0.005) * (carriage_wx * carriage_wz)),
+            t27 - t26,
+            -T::fused(carriage_wx, t23, k(0.002) * (t25 - t24)),
         );
-        let t55 = T::fused(
+        let t29 = k(0.6) * t11;
+        let t30 = T::fused(-k(0.8), t3, t29);
+        let t31 = T::fused(k(0.6), t16, k(0.8) * t9);
+        let t32 = k(37.0) * t18;
+        let t33 = T::fused(
             k(0.003),
             carriage_dwz,
             T::fused(k(0.02), carriage_dwy, k(0.001) * carriage_dwx),
-        ) + T::fused(t28, T::fused(-k(0.02), t51, k(0.1) * t25), t54);
-        let t56 = T::fused(-k(0.04), t1, k(0.2) * t7);
-        let t57 = T::fused(k(0.04), t9, k(0.2) * t13);
-        let t58 = t19 * T::fused(-k(0.04), t38, k(0.2) * t23);
-        let t59 = t58 - T::fused(t16, t56, t17 * t57) - t55;
-        let t60 = T::fused(t50 * (t39 * t37), t35, t50 * (t39 * t41) * t59);
-        let t61 = T::fused(
-            carriage_wz,
-            t32 + t53,
-            T::fused(-k(0.001), t29 - t52, k(0.01) * (carriage_wx * carriage_wy)),
+        ) + T::fused(t32, T::fused(k(0.02), t30, k(0.1) * t31), t28);
+        let t34 = T::fused(-k(0.02), t3, k(0.1) * t9);
+        let t35 = T::fused(k(0.02), t11, k(0.1) * t16);
+        let t36 = t8 - t7;
+        let t37 = T::fused(-carriage_e3, k(2.0) * carriage_e3, t2);
+        let t38 = t22 * T::fused(-k(0.02), t36, k(0.1) * t37);
+        let t39 = t38 - T::fused(t34, t19, t35 * t20) - t33;
+        let t40 = k(0.8) * t13;
+        let t41 = T::fused(k(0.6), t6, t40);
+        let t42 = k(0.6) * t3;
+        let t43 = k(0.8) * t6;
+        let t44 = T::fused(k(0.8), t29 + t40, k(0.6) * (t43 + t42));
+        let t45 = T::fused(-k(0.64), t16, k(0.48) * t9);
+        let t46 = t15 + t14;
+        let t47 = T::fused(-k(0.6), t36, k(0.8) * t46);
+        let t48 = k(0.8) * t37;
+        let t49 = T::fused(t47, t45, t44 * t48);
+        let t50 = T::fused(k(0.8), t11, t42);
+        let t51 = k(0.6) * t37;
+        let t52 = T::fused(-k(0.48), t16, k(0.36) * t9);
+        let t53 = T::fused(t44, t51, t47 * t52);
+        let t54 = k(1.0) / T::fused(t49, t41, t53 * t50);
+        let t55 = carriage_wy * carriage_wy;
+        let t56 = k(0.002) * carriage_wy;
+        let t57 = T::fused(
+            carriage_wx,
+            t56 + t27,
+            T::fused(carriage_wy, t23, k(0.003) * (t25 - t55)),
         );
-        let t62 = T::fused(
+        let t58 = T::fused(-k(0.6), t13, t43);
+        let t59 = T::fused(
+            -k(0.002),
+            carriage_dwz,
+            T::fused(k(0.001), carriage_dwy, k(0.01) * carriage_dwx),
+        ) - T::fused(t32, T::fused(k(0.05), t31, k(0.02) * t58), t57);
+        let t60 = T::fused(k(0.02), t6, k(0.05) * t9);
+        let t61 = T::fused(-k(0.02), t13, k(0.05) * t16);
+        let t62 = t22 * T::fused(-k(0.02), t46, k(0.05) * t37);
+        let t63 = t62 - T::fused(t60, t19, t61 * t20) + t59;
+        let t64 = T::fused(t54 * (t44 * t41), t39, t54 * (t44 * t50) * t63);
+        let t65 = T::fused(
+            carriage_wz,
+            t56 + t26,
+            T::fused(-k(0.001), t55 - t24, k(0.01) * (carriage_wx * carriage_wy)),
+        );
+        let t66 = T::fused(
             -k(0.015),
             carriage_dwz,
             T::fused(-k(0.003), carriage_dwy, k(0.002) * carriage_dwx),
-        ) - T::fused(-t28, T::fused(-k(0.1), t27, k(0.05) * t51), t61);
-        let t63 = T::fused(k(0.1), t1, k(0.2) * t4);
-        let t64 = T::fused(k(0.1), t9, k(0.2) * t10);
-        let t65 = t19 * T::fused(-k(0.1), t38, k(0.2) * t22);
-        let t66 = t65 - T::fused(-t16, t63, t17 * t64) + t62;
-        let t67 = T::fused(t50 * T::fused(t47, t37, t43 * t41), t66, -t60);
-        let t68 = T::fused(
-            t48,
-            t67,
-            T::fused(t18, T::fused(-k(0.8), t20, k(0.6) * t21), t24),
+        ) - T::fused(t32, T::fused(-k(0.1), t58, k(0.05) * t30), t65);
+        let t67 = T::fused(k(0.05), t3, k(0.1) * t6);
+        let t68 = T::fused(k(0.05), t11, k(0.1) * t13);
+        let t69 = t22 * T::fused(-k(0.05), t36, k(0.1) * t46);
+        let t70 = t69 - T::fused(-t67, t19, t68 * t20) + t66;
+        let t71 = T::fused(t54 * T::fused(t45, t41, t52 * t50), t70, t64);
+        let t72 = T::fused(t54 * (t47 * t41), t39, t54 * (t47 * t50) * t63);
+        let t73 = T::fused(t54 * T::fused(t51, t50, t48 * t41), t70, -t72);
+        let t74 = T::fused(
+            -t44,
+            t73,
+            T::fused(-T::fused(k(0.8), t68, k(0.6) * t67), t21, t69),
         );
-        let t69 = T::fused(t50 * (t45 * t37), t35, t50 * (t45 * t41) * t59);
-        let t70 = T::fused(t50 * T::fused(t42, t41, t48 * t37), t66, t69);
-        let t71 = T::fused(
-            t50 * T::fused(-t48, t43, t47 * t42),
-            t66,
-            T::fused(-(t46 * t50), t35, t49 * t50 * t59),
+        let t75 = T::fused(-t47, t71, t74);
+        let t76 = T::fused(
+            t54 * T::fused(-t52, t48, t51 * t45),
+            t70,
+            -T::fused(-(t53 * t54), t39, t49 * t54 * t63),
         );
-        let t72 = T::fused(t41, t71, -T::fused(t47, t70, -t68));
-        let t73 = T::fused(
-            t42,
-            t67,
-            T::fused(t18, T::fused(-k(0.8), t57, k(0.6) * t56), t58),
-        );
-        let t74 = T::fused(t37, t71, T::fused(t43, t70, -t73));
-        let t75 = T::fused(
-            t45,
-            t67,
-            -T::fused(-t18, T::fused(k(0.8), t64, k(0.6) * t63), t65),
-        );
-        let t76 = T::fused(t39, t70, t75);
         let t77 = T::fused(
-            k(2.0) * t7,
-            t76,
-            T::fused(-(k(2.0) * t1), t72, k(2.0) * t4 * t74),
+            t45,
+            t73,
+            T::fused(T::fused(-k(0.8), t35, k(0.6) * t34), t21, t38),
         );
-        let t78 = carriage_ry - t14;
-        let t79 = k(0.8) * t18;
-        let t80 = carriage_rz
+        let t78 = T::fused(-t50, t76, T::fused(-t48, t71, t77));
+        let t79 = T::fused(
+            t52,
+            t73,
+            T::fused(T::fused(-k(0.8), t61, k(0.6) * t60), t21, t62),
+        );
+        let t80 = T::fused(t41, t76, T::fused(-t51, t71, t79));
+        let t81 = k(0.6) * t21;
+        let t82 = carriage_rz
             - (carriage_rz
-                + T::fused(k(0.04), t23, T::fused(k(0.2), t38, k(0.1) * t22)));
-        let t81 = T::fused(-t19, t78, t80 * t79) + t77;
-        let t82 = T::fused(
-            k(2.0) * t13,
-            t76,
-            -T::fused(-(k(2.0) * t9), t72, k(2.0) * t10 * t74),
-        );
-        let t83 = k(0.6) * t18;
-        let t84 = carriage_rx - t8;
-        let t85 = T::fused(t80, t83, t19 * t84) + t82;
-        let t86 = T::fused(
-            k(2.0) * t23,
-            t76,
-            -T::fused(k(2.0) * t38, t72, k(2.0) * t22 * t74),
-        );
+                + T::fused(k(0.02), t37, T::fused(k(0.1), t36, k(0.05) * t46)));
+        let t83 = carriage_rx - t10;
+        let t84 = T::fused(t82, t81, t22 * t83)
+            + T::fused(-t16, t75, T::fused(t13, t78, t11 * t80));
+        let t85 = carriage_ry - t17;
+        let t86 = k(0.8) * t21;
+        let t87 = T::fused(-t22, t85, t82 * t86)
+            - T::fused(t9, t75, T::fused(t6, t78, t3 * t80));
+        let t88 = T::fused(t83, t86, t81 * t85)
+            - T::fused(t37, t75, T::fused(-t46, t78, t36 * t80));
         *out = [
-            t18,
-            t19,
+            t21,
+            t22,
             k(0.0),
-            T::fused(-k(0.8), t85, k(0.6) * t81),
-            T::fused(t84, t79, t83 * t78) + t86,
-            -T::fused(k(0.8), t81, k(0.6) * t85),
+            T::fused(-k(0.8), t84, k(0.6) * t87),
+            t88,
+            -T::fused(k(0.6), t84, k(0.8) * t87),
         ];
     }
     fn n_outputs(&self) -> usize {

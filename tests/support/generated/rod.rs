@@ -12,8 +12,8 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 30 operations by rotations of the bodies; 30 operations by relative Euler parameters
-//! * project: 15 operations by rotations of the bodies; 15 operations by relative Euler parameters
+//! * accelerations: 30 operations by rotations of the bodies; 30 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 15 operations by rotations of the bodies; 15 operations by rotations of the bodies, doubled; 2 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!

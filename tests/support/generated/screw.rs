@@ -11,8 +11,8 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 118 operations by rotations of the bodies; 118 operations by relative Euler parameters
-//! * project: 61 operations by rotations of the bodies; 61 operations by relative Euler parameters
+//! * accelerations: 114 operations by rotations of the bodies, doubled; 114 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 57 operations by rotations of the bodies, doubled; 57 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 0 operations by recursion; 0 operations by normal form
 //! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 1 more compared
 //! * corrected_accelerations: 15 operations by recursion in the bodies' frames; 15 operations by recursion in the global frame; 5 more compared
@@ -23,19 +23,19 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 12 | 19 | 0 | 31 | 0 of 6 | 43 | 31 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 28 | 1 | 35 | 0 of 19 | 150 | 35 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 25 | 1 | 37 | 0 of 9 | 107 | 37 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 6 | 22 | 1 | 29 | 0 of 19 | 172 | 30 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 10 | 20 | 1 | 31 | 0 of 9 | 127 | 32 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 5 of 5 | 0 | 0 |
-//! | gamma | γ | 27 | 52 | 1 | 80 | 2 of 5 | 297 | 80 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 15 | 28 | 1 | 44 | 0 of 5 | 84 | 45 |
-//! | applied_force | (f, n' − w̃'J'w') | 0 | 6 | 0 | 6 | 2 of 6 | 6 | 6 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 37 | 78 | 3 | 118 | 2 of 6 | 1971 | 119 |
-//! | multipliers | λ, the accelerations being known | 18 | 43 | 2 | 63 | 0 of 5 | 289 | 64 |
-//! | project | (δr, δπ') that changes the rows as given | 17 | 41 | 3 | 61 | 0 of 6 | 890 | 62 |
+//! | gamma | γ | 26 | 49 | 1 | 76 | 2 of 5 | 343 | 76 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 14 | 25 | 1 | 40 | 0 of 5 | 98 | 41 |
+//! | applied_force | (f, n' − w̃'J'w') | 0 | 5 | 0 | 5 | 2 of 6 | 6 | 5 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 36 | 75 | 3 | 114 | 2 of 6 | 2291 | 115 |
+//! | multipliers | λ, the accelerations being known | 17 | 40 | 2 | 59 | 0 of 5 | 335 | 60 |
+//! | project | (δr, δπ') that changes the rows as given | 16 | 38 | 3 | 57 | 0 of 6 | 1044 | 58 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 8 | 24 | 24 |
 //! | energy | T and V | 5 | 12 | 0 | 17 | 0 of 2 | 17 | 17 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 3 | 18 | 15 |
-//! | outputs | outputs, the accelerations being known | 31 | 65 | 2 | 98 | 0 of 6 | 2128 | 98 |
+//! | outputs | outputs, the accelerations being known | 29 | 58 | 2 | 89 | 0 of 6 | 2473 | 90 |
 //! | joint_accelerations | u̇ in joint coordinates | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 1 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 0 | 3 | 0 | 3 | 8 of 14 | 4 | 3 |
@@ -221,7 +221,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
             T::fused(nut_e3, nut_e3, T::fused(nut_e2, nut_e2, t1)) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 44 operations (15 ±, 28 ×, 1 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 40 operations (14 ±, 25 ×, 1 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let nut_e0 = y[3];
@@ -234,30 +234,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
-        let t2 = T::fused(
-            t1,
-            nut_wz,
-            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3) * nut_wy,
+        let t0 = k(2.0) * nut_e2;
+        let t1 = k(2.0) * nut_e0;
+        let t2 = T::fused(-nut_e0, t1, k(1.0));
+        let t3 = T::fused(-nut_e2, t0, t2);
+        let t4 = k(2.0) * nut_e1;
+        let t5 = T::fused(-nut_e1, t4, t2);
+        let t6 = nut_e3 * t1;
+        let t7 = nut_e2 * t4;
+        let t8 = t7 - t6;
+        let t9 = t7 + t6;
+        let t10 = T::fused(
+            t5,
+            T::fused(nut_wz, t3, nut_wy * T::fused(-nut_e1, t1, nut_e3 * t0)),
+            t9 * T::fused(-nut_wz, t8, nut_wy * T::fused(nut_e2, t1, nut_e3 * t4)),
         );
-        let t3 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
-        let t4 = nut_e0 * nut_e3;
-        let t5 = nut_e1 * nut_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = T::fused(
-            -t6,
-            nut_wz,
-            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * nut_wy,
-        );
-        let t8 = k(2.0) * (t5 + t4);
-        let t9 = T::fused(t3, t2, t8 * t7) / T::fused(t3, t3, t8 * t8);
+        let t11 = T::fused(-k(0.02), t10 / T::fused(t5, t5, t9 * t9), nut_sz);
         *out = [
             nut_sx,
             nut_sy,
-            T::fused(-k(0.02), t9, nut_sz),
-            -T::fused(t3, nut_wy, t6 * nut_wx),
-            T::fused(t8, nut_wy, t1 * nut_wx),
+            t11,
+            -T::fused(nut_wy, t5, nut_wx * t8),
+            T::fused(nut_wy, t9, nut_wx * t3),
         ];
     }
     /// Kinetic and potential energy: 17 operations (5 ±, 12 ×, 0 ÷).
@@ -440,72 +438,75 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
     fn phi_pi_pattern(&self) -> &[(u16, u16)] {
         &[(0, 0), (1, 1), (2, 2), (2, 4), (2, 5), (3, 3), (3, 4), (4, 3), (4, 4)]
     }
-    /// Writes the non-zeros of Φ_q: 35 operations (6 ±, 28 ×, 1 ÷).
+    /// Writes the non-zeros of Φ_q: 29 operations (6 ±, 22 ×, 1 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let nut_e0 = y[3];
         let nut_e1 = y[4];
         let nut_e2 = y[5];
         let nut_e3 = y[6];
-        let t0 = k(2.0) * nut_e3;
-        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, nut_e0 * nut_e0));
-        let t2 = k(2.0) * T::fused(nut_e0, nut_e3, nut_e1 * nut_e2);
-        let t3 = k(1.0) / T::fused(t1, t1, t2 * t2);
-        let t4 = k(2.0) * nut_e2;
-        let t5 = k(2.0) * nut_e1;
-        let t6 = k(2.0) * nut_e0;
+        let t0 = k(2.0) * nut_e1;
+        let t1 = k(2.0) * nut_e0;
+        let t2 = T::fused(-nut_e1, t0, T::fused(-nut_e0, t1, k(1.0)));
+        let t3 = T::fused(nut_e3, t1, nut_e2 * t0);
+        let t4 = k(0.02) / T::fused(t2, t2, t3 * t3);
+        let t5 = k(2.0) * nut_e3;
+        let t6 = k(2.0) * nut_e2;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            k(0.02) * (t3 * T::fused(t1, t0, t2 * (k(4.0) * nut_e0))),
-            k(0.02) * (t3 * T::fused(t1, t4, t2 * (k(4.0) * nut_e1))),
-            k(0.02) * (t3 * (t1 * t5)),
-            k(0.02) * (t3 * (t1 * t6)),
-            t4,
+            T::fused(t5, t2, k(4.0) * nut_e0 * t3) * t4,
+            T::fused(t6, t2, k(4.0) * nut_e1 * t3) * t4,
+            t0 * t2 * t4,
+            t1 * t2 * t4,
+            t6,
+            t5,
+            t1,
+            t0,
+            -t0,
+            -t1,
+            t5,
+            t6,
+            t1,
             t0,
             t6,
             t5,
-            -t5,
-            -t6,
-            t0,
-            t4,
-            t6,
-            t5,
-            t4,
-            t0,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 37 operations (11 ±, 25 ×, 1 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 31 operations (10 ±, 20 ×, 1 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let nut_e0 = y[3];
         let nut_e1 = y[4];
         let nut_e2 = y[5];
         let nut_e3 = y[6];
-        let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
-        let t2 = nut_e0 * nut_e3;
-        let t3 = nut_e1 * nut_e2;
-        let t4 = k(2.0) * (t3 + t2);
-        let t5 = T::fused(
-            t1,
-            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
-            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t4,
+        let t0 = k(2.0) * nut_e1;
+        let t1 = k(2.0) * nut_e0;
+        let t2 = T::fused(-nut_e0, t1, k(1.0));
+        let t3 = T::fused(-nut_e1, t0, t2);
+        let t4 = nut_e3 * t1;
+        let t5 = nut_e2 * t0;
+        let t6 = t5 + t4;
+        let t7 = k(0.02) / T::fused(t3, t3, t6 * t6);
+        let t8 = k(2.0) * nut_e2;
+        let t9 = T::fused(
+            t3,
+            T::fused(-nut_e1, t1, nut_e3 * t8),
+            T::fused(nut_e2, t1, nut_e3 * t0) * t6,
         );
-        let t6 = k(1.0) / T::fused(t1, t1, t4 * t4);
-        let t7 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
-        let t8 = k(2.0) * (t3 - t2);
+        let t10 = T::fused(-nut_e2, t8, t2);
+        let t11 = t5 - t4;
         *out = [
             k(1.0),
             k(1.0),
             k(1.0),
-            -(k(0.02) * (t6 * t5)),
-            k(0.02) * (T::fused(-t1, t7, t8 * t4) * t6),
-            -t8,
-            -t1,
-            t7,
-            t4,
+            -(t9 * t7),
+            T::fused(-t3, t10, t11 * t6) * t7,
+            -t11,
+            -t3,
+            t10,
+            t6,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -513,7 +514,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 80 operations (27 ±, 52 ×, 1 ÷).
+    /// Writes γ: 76 operations (26 ±, 49 ×, 1 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let nut_e0 = y[3];
@@ -523,56 +524,60 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
-        let t2 = k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3);
-        let t3 = T::fused(t1, nut_wz, t2 * nut_wy);
-        let t4 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
-        let t5 = nut_e0 * nut_e3;
-        let t6 = nut_e1 * nut_e2;
-        let t7 = k(2.0) * (t6 - t5);
-        let t8 = k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3);
-        let t9 = T::fused(-t7, nut_wz, t8 * nut_wy);
-        let t10 = k(2.0) * (t6 + t5);
-        let t11 = k(1.0) / T::fused(t4, t4, t10 * t10);
-        let t12 = nut_wy * nut_wy;
-        let t13 = T::fused(nut_wz, nut_wz, t12);
-        let t14 = nut_wx * nut_wy;
-        let t15 = nut_wx * nut_wz;
-        let t16 = t3 * t9;
-        let t17 = T::fused(t10, T::fused(t8, t15, T::fused(t4, t13, t7 * t14)), t16);
-        let t18 = T::fused(t4, T::fused(t2, t15, -T::fused(t10, t13, t1 * t14)), -t16);
-        let t19 = T::fused(
-            t11 * t11 * (k(2.0) * T::fused(-t10, t3, t4 * t9)),
-            T::fused(t4, t3, t10 * t9),
-            t11 * (t18 + t17),
+        let t0 = k(2.0) * nut_e2;
+        let t1 = k(2.0) * nut_e0;
+        let t2 = T::fused(-nut_e0, t1, k(1.0));
+        let t3 = T::fused(-nut_e2, t0, t2);
+        let t4 = T::fused(-nut_e1, t1, nut_e3 * t0);
+        let t5 = T::fused(nut_wz, t3, nut_wy * t4);
+        let t6 = k(2.0) * nut_e1;
+        let t7 = T::fused(-nut_e1, t6, t2);
+        let t8 = nut_e3 * t1;
+        let t9 = nut_e2 * t6;
+        let t10 = t9 - t8;
+        let t11 = T::fused(nut_e2, t1, nut_e3 * t6);
+        let t12 = T::fused(-nut_wz, t10, nut_wy * t11);
+        let t13 = t9 + t8;
+        let t14 = k(1.0) / T::fused(t7, t7, t13 * t13);
+        let t15 = nut_wy * nut_wy;
+        let t16 = T::fused(nut_wz, nut_wz, t15);
+        let t17 = nut_wx * nut_wy;
+        let t18 = nut_wx * nut_wz;
+        let t19 = t5 * t12;
+        let t20 = T::fused(t13, T::fused(t18, t11, T::fused(t16, t7, t17 * t10)), t19);
+        let t21 = T::fused(t7, T::fused(t18, t4, -T::fused(t16, t13, t17 * t3)), -t19);
+        let t22 = T::fused(
+            t14 * t14 * (k(2.0) * T::fused(-t13, t5, t7 * t12)),
+            T::fused(t7, t5, t13 * t12),
+            t14 * (t21 + t20),
         );
-        let t20 = nut_wy * nut_wz;
-        let t21 = T::fused(nut_wx, nut_wx, t12);
+        let t23 = nut_wy * nut_wz;
+        let t24 = T::fused(nut_wx, nut_wx, t15);
         *out = [
             k(0.0),
             k(0.0),
-            -(k(0.02) * t19),
-            T::fused(t8, t21, -T::fused(-t4, t15, t7 * t20)),
-            T::fused(t2, t21, T::fused(-t10, t15, t1 * t20)),
+            -(k(0.02) * t22),
+            T::fused(t24, t11, -T::fused(-t18, t7, t23 * t10)),
+            T::fused(t24, t4, T::fused(-t18, t13, t23 * t3)),
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 6 operations (0 ±, 6 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 5 operations (0 ±, 5 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
+        let t0 = k(0.0005) * nut_wy;
         *out = [
             k(0.0),
             k(0.0),
             k(-19.62),
-            -(k(0.0005) * (nut_wy * nut_wz)),
+            -(nut_wz * t0),
             k(0.001) * (nut_wx * nut_wz),
-            -(k(0.0005) * (nut_wx * nut_wy)),
+            -(nut_wx * t0),
         ];
     }
-    /// Solves eq. (17): 118 operations (37 ±, 78 ×, 3 ÷).
+    /// Solves eq. (17): 114 operations (36 ±, 75 ×, 3 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let nut_e0 = y[3];
@@ -582,55 +587,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_wx = y[10];
         let nut_wy = y[11];
         let nut_wz = y[12];
-        let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
-        let t2 = nut_e0 * nut_e3;
-        let t3 = nut_e1 * nut_e2;
-        let t4 = k(2.0) * (t3 + t2);
-        let t5 = k(1.0) / T::fused(t1, t1, t4 * t4);
-        let t6 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
-        let t7 = k(2.0) * (t3 - t2);
-        let t8 = T::fused(-t1, t6, t7 * t4);
-        let t9 = t8 * t5;
-        let t10 = k(0.02) * t9;
-        let t11 = k(0.04) * t9;
-        let t12 = nut_wx * nut_wy;
-        let t13 = nut_wx * nut_wz;
-        let t14 = nut_wy * nut_wz;
-        let t15 = nut_wy * nut_wy;
-        let t16 = T::fused(nut_wx, nut_wx, t15);
-        let t17 = k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3);
-        let t18 = T::fused(t17, t16, T::fused(-t4, t13, t6 * t14));
-        let t19 = k(1.0) / t8;
-        let t20 = t7 * t19;
-        let t21 = k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3);
-        let t22 = k(0.02) * (t5 * T::fused(t1, t17, t21 * t4));
-        let t23 = T::fused(t6, nut_wz, t17 * nut_wy);
-        let t24 = T::fused(-t7, nut_wz, t21 * nut_wy);
-        let t25 = T::fused(nut_wz, nut_wz, t15);
-        let t26 = t23 * t24;
-        let t27 = T::fused(t4, T::fused(t21, t13, T::fused(t1, t25, t7 * t12)), t26);
-        let t28 = T::fused(t1, T::fused(t17, t13, -T::fused(t4, t25, t6 * t12)), -t26);
-        let t29 = T::fused(
-            t5 * t5 * (k(2.0) * T::fused(-t4, t23, t1 * t24)),
-            T::fused(t1, t23, t4 * t24),
-            t5 * (t28 + t27),
+        let t0 = k(2.0) * nut_e1;
+        let t1 = k(2.0) * nut_e0;
+        let t2 = T::fused(-nut_e0, t1, k(1.0));
+        let t3 = T::fused(-nut_e1, t0, t2);
+        let t4 = nut_e3 * t1;
+        let t5 = nut_e2 * t0;
+        let t6 = t5 + t4;
+        let t7 = k(1.0) / T::fused(t3, t3, t6 * t6);
+        let t8 = k(2.0) * nut_e2;
+        let t9 = T::fused(-nut_e2, t8, t2);
+        let t10 = t5 - t4;
+        let t11 = T::fused(-t3, t9, t10 * t6);
+        let t12 = t11 * t7;
+        let t13 = k(0.02) * t12;
+        let t14 = k(0.04) * t12;
+        let t15 = nut_wx * nut_wy;
+        let t16 = nut_wx * nut_wz;
+        let t17 = nut_wy * nut_wz;
+        let t18 = T::fused(-nut_e1, t1, nut_e3 * t8);
+        let t19 = nut_wy * nut_wy;
+        let t20 = T::fused(nut_wx, nut_wx, t19);
+        let t21 = T::fused(t20, t18, T::fused(-t16, t6, t17 * t9));
+        let t22 = k(1.0) / t11;
+        let t23 = t10 * t22;
+        let t24 = T::fused(nut_e2, t1, nut_e3 * t0);
+        let t25 = k(0.02) * (t7 * T::fused(t3, t18, t24 * t6));
+        let t26 = T::fused(nut_wz, t9, nut_wy * t18);
+        let t27 = T::fused(-nut_wz, t10, nut_wy * t24);
+        let t28 = T::fused(nut_wz, nut_wz, t19);
+        let t29 = t26 * t27;
+        let t30 = T::fused(t6, T::fused(t16, t24, T::fused(t28, t3, t15 * t10)), t29);
+        let t31 = T::fused(t3, T::fused(t16, t18, -T::fused(t28, t6, t15 * t9)), -t29);
+        let t32 = T::fused(
+            t7 * t7 * (k(2.0) * T::fused(-t6, t26, t3 * t27)),
+            T::fused(t3, t26, t6 * t27),
+            t7 * (t31 + t30),
         );
-        let t30 = T::fused(t21, t16, -T::fused(-t1, t13, t7 * t14));
-        let t31 = t6 * t19;
-        let t32 = T::fused(t22 * t20, t18, T::fused(-k(0.02), t29, t31 * t22 * t30));
-        let t33 = T::fused(t11, t32, -T::fused(-k(0.3924), t9, k(0.0005) * t12))
-            / T::fused(t11, t10, k(0.003));
+        let t33 = T::fused(t20, t24, -T::fused(-t16, t3, t17 * t10));
+        let t34 = t9 * t22;
+        let t35 = T::fused(t25 * t23, t21, T::fused(-k(0.02), t32, t34 * t25 * t33));
+        let t36 = T::fused(t14, t35, -T::fused(-k(0.3924), t12, k(0.0005) * t15))
+            / T::fused(t14, t13, k(0.003));
         *out = [
             k(0.0),
             k(0.0),
-            T::fused(-t10, t33, t32),
-            -T::fused(t30, t4 * t19, t18 * (t1 * t19)),
-            T::fused(t31, t30, t20 * t18),
-            t33,
+            T::fused(-t13, t36, t35),
+            -T::fused(t33, t6 * t22, t21 * (t3 * t22)),
+            T::fused(t34, t33, t23 * t21),
+            t36,
         ];
     }
-    /// Writes λ: 63 operations (18 ±, 43 ×, 2 ÷).
+    /// Writes λ: 59 operations (17 ±, 40 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -652,31 +660,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Screw<T> {
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
         let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
-        let t1 = nut_e0 * nut_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t1));
-        let t3 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t1));
-        let t4 = nut_e0 * nut_e3;
-        let t5 = nut_e1 * nut_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = k(2.0) * (t5 - t4);
-        let t8 = k(1.0) / T::fused(-t3, t2, t7 * t6);
-        let t9 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
-        let t10 = t2 * t8;
-        let t11 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
-        let t12 = T::fused(
-            t3,
-            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
-            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t6,
+        let t1 = k(2.0) * nut_e0;
+        let t2 = k(2.0) * nut_e2;
+        let t3 = k(2.0) * nut_e1;
+        let t4 = T::fused(-nut_e0, t1, k(1.0));
+        let t5 = T::fused(-nut_e1, t3, t4);
+        let t6 = nut_e3 * t1;
+        let t7 = nut_e2 * t3;
+        let t8 = t7 + t6;
+        let t9 = T::fused(
+            t5,
+            T::fused(-nut_e1, t1, nut_e3 * t2),
+            T::fused(nut_e2, t1, nut_e3 * t3) * t8,
         );
-        let t13 = k(0.02) * (t12 / T::fused(t3, t3, t6 * t6));
-        let t14 = T::fused(t0, t10 * t13, -T::fused(t9, t6 * t8, t11 * t10));
-        let t15 = t7 * t8;
-        let t16 = T::fused(t0, t13 * t15, -T::fused(t9, t3 * t8, t11 * t15));
-        *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, -t14, -t16];
+        let t10 = k(0.02) * (t9 / T::fused(t5, t5, t8 * t8));
+        let t11 = T::fused(-nut_e2, t2, t4);
+        let t12 = t7 - t6;
+        let t13 = k(1.0) / T::fused(-t5, t11, t12 * t8);
+        let t14 = t11 * t13;
+        let t15 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
+        let t16 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
+        let t17 = T::fused(-t0, t14 * t10, T::fused(t15, t8 * t13, t16 * t14));
+        let t18 = t12 * t13;
+        let t19 = T::fused(-t0, t10 * t18, T::fused(t15, t5 * t13, t16 * t18));
+        *lambda = [-(k(2.0) * nut_dsx), -(k(2.0) * nut_dsy), -t0, t17, t19];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Screw<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 61 operations (17 ±, 41 ×, 3 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 57 operations (16 ±, 38 ×, 3 ÷).
     fn project(
         &self,
         _t: T,
@@ -694,36 +705,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Screw<T> {
         let row2 = rows[2];
         let row3 = rows[3];
         let row4 = rows[4];
-        let t0 = nut_e0 * nut_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t0));
-        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t0));
-        let t3 = nut_e0 * nut_e3;
-        let t4 = nut_e1 * nut_e2;
-        let t5 = k(2.0) * (t4 + t3);
-        let t6 = k(2.0) * (t4 - t3);
-        let t7 = T::fused(-t2, t1, t6 * t5);
-        let t8 = k(1.0) / t7;
-        let t9 = t6 * t8;
-        let t10 = T::fused(
-            t2,
-            k(2.0) * T::fused(-nut_e0, nut_e1, nut_e2 * nut_e3),
-            k(2.0) * T::fused(nut_e0, nut_e2, nut_e1 * nut_e3) * t5,
+        let t0 = k(2.0) * nut_e2;
+        let t1 = k(2.0) * nut_e0;
+        let t2 = T::fused(-nut_e0, t1, k(1.0));
+        let t3 = T::fused(-nut_e2, t0, t2);
+        let t4 = k(2.0) * nut_e1;
+        let t5 = T::fused(-nut_e1, t4, t2);
+        let t6 = nut_e3 * t1;
+        let t7 = nut_e2 * t4;
+        let t8 = t7 + t6;
+        let t9 = t7 - t6;
+        let t10 = T::fused(-t5, t3, t9 * t8);
+        let t11 = k(1.0) / t10;
+        let t12 = t9 * t11;
+        let t13 = T::fused(
+            t5,
+            T::fused(-nut_e1, t1, nut_e3 * t0),
+            T::fused(nut_e2, t1, nut_e3 * t4) * t8,
         );
-        let t11 = k(1.0) / T::fused(t2, t2, t5 * t5);
-        let t12 = k(0.02) * (t11 * t10);
-        let t13 = t1 * t8;
-        let t14 = T::fused(t12 * t9, row4, T::fused(t13 * t12, row3, row2));
-        let t15 = t7 * t11;
-        let t16 = k(0.04) * t15;
-        let t17 = k(0.02) * t15;
-        let t18 = t16 * t14 / T::fused(t16, t17, k(0.003));
+        let t14 = k(1.0) / T::fused(t5, t5, t8 * t8);
+        let t15 = k(0.02) * (t14 * t13);
+        let t16 = t3 * t11;
+        let t17 = T::fused(t15 * t12, row4, T::fused(t16 * t15, row3, row2));
+        let t18 = t10 * t14;
+        let t19 = k(0.04) * t18;
+        let t20 = k(0.02) * t18;
+        let t21 = t19 * t17 / T::fused(t19, t20, k(0.003));
         *out = [
             row0,
             row1,
-            T::fused(-t17, t18, t14),
-            -T::fused(t5 * t8, row3, t2 * t8 * row4),
-            T::fused(t13, row3, t9 * row4),
-            t18,
+            T::fused(-t20, t21, t17),
+            -T::fused(t8 * t11, row3, t5 * t11 * row4),
+            T::fused(t16, row3, t12 * row4),
+            t21,
         ];
     }
 }
@@ -954,7 +968,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 98 operations (31 ±, 65 ×, 2 ÷).
+    /// Writes the outputs: 89 operations (29 ±, 58 ×, 2 ÷).
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -972,40 +986,47 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Screw<T> {
         let nut_dwx = accelerations[3];
         let nut_dwy = accelerations[4];
         let t0 = T::fused(k(2.0), nut_dsz, k(19.62));
-        let t1 = nut_e0 * nut_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(nut_e2, nut_e2, t1));
-        let t3 = k(2.0) * (k(0.5) - T::fused(nut_e1, nut_e1, t1));
-        let t4 = nut_e0 * nut_e3;
-        let t5 = nut_e1 * nut_e2;
-        let t6 = k(2.0) * (t5 + t4);
-        let t7 = k(2.0) * (t5 - t4);
-        let t8 = T::fused(-t3, t2, t7 * t6);
-        let t9 = k(1.0) / t8;
-        let t10 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
-        let t11 = t2 * t9;
-        let t12 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
-        let t13 = nut_e0 * nut_e1;
-        let t14 = nut_e2 * nut_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = nut_e0 * nut_e2;
-        let t17 = nut_e1 * nut_e3;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = k(1.0) / T::fused(t3, t3, t6 * t6);
-        let t20 = k(0.02) * (t19 * T::fused(t3, t15, t18 * t6));
-        let t21 = T::fused(t0, t11 * t20, -T::fused(t10, t6 * t9, t12 * t11));
-        let t22 = t7 * t9;
-        let t23 = T::fused(t0, t20 * t22, -T::fused(t10, t3 * t9, t12 * t22));
-        let t24 = T::fused(-t7, t21, t2 * t23);
-        let t25 = T::fused(t6, t23, -T::fused(t0, t20, t3 * t21));
-        let t26 = t0 * (k(0.02) * (t8 * t19));
-        let t27 = T::fused(k(2.0) * (t17 - t16), t24, k(2.0) * (t14 + t13) * t25);
+        let t1 = k(2.0) * nut_e1;
+        let t2 = k(2.0) * nut_e0;
+        let t3 = T::fused(-nut_e0, t2, k(1.0));
+        let t4 = T::fused(-nut_e1, t1, t3);
+        let t5 = nut_e3 * t2;
+        let t6 = nut_e2 * t1;
+        let t7 = t6 + t5;
+        let t8 = k(0.02) / T::fused(t4, t4, t7 * t7);
+        let t9 = k(2.0) * nut_e2;
+        let t10 = T::fused(-nut_e2, t9, t3);
+        let t11 = t6 - t5;
+        let t12 = T::fused(-t4, t10, t11 * t7);
+        let t13 = t0 * (t12 * t8);
+        let t14 = nut_e2 * t2;
+        let t15 = nut_e3 * t1;
+        let t16 = t15 + t14;
+        let t17 = nut_e1 * t2;
+        let t18 = nut_e3 * t9;
+        let t19 = t18 - t17;
+        let t20 = T::fused(t4, t19, t16 * t7) * t8;
+        let t21 = k(1.0) / t12;
+        let t22 = t11 * t21;
+        let t23 = T::fused(k(0.002), nut_dwx, k(0.0005) * (nut_wy * nut_wz));
+        let t24 = T::fused(-k(0.0025), nut_dwy, k(0.001) * (nut_wx * nut_wz));
+        let t25 = T::fused(-t0, t22 * t20, T::fused(t23, t4 * t21, t24 * t22));
+        let t26 = t10 * t21;
+        let t27 = T::fused(-t0, t26 * t20, T::fused(t23, t7 * t21, t24 * t26));
+        let t28 = T::fused(t7, t25, T::fused(-t4, t27, t0 * t20));
+        let t29 = T::fused(-t10, t25, t11 * t27);
+        let t30 = T::fused(
+            -T::fused(-nut_e3, k(2.0) * nut_e3, t3),
+            t13,
+            T::fused(-(t18 + t17), t28, (t15 - t14) * t29),
+        );
         *out = [
             k(2.0) * nut_dsx,
             k(2.0) * nut_dsy,
             t0,
-            T::fused(t18, t26, T::fused(-t3, t24, t7 * t25)),
-            T::fused(t15, t26, -T::fused(-t6, t24, t2 * t25)),
-            T::fused(-(k(2.0) * (k(0.5) - T::fused(nut_e3, nut_e3, t1))), t26, t27),
+            T::fused(t16, t13, -T::fused(t11, t28, t4 * t29)),
+            T::fused(t19, t13, T::fused(t10, t28, t7 * t29)),
+            t30,
         ];
     }
     fn n_outputs(&self) -> usize {

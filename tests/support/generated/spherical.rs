@@ -10,8 +10,8 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 209 operations by rotations of the bodies; 209 operations by relative Euler parameters
-//! * project: 95 operations by rotations of the bodies; 95 operations by relative Euler parameters
+//! * accelerations: 202 operations by rotations of the bodies, doubled; 202 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 88 operations by rotations of the bodies, doubled; 88 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 61 operations by normal form; 95 operations by recursion
 //! * joint_accelerations_at: 61 operations by normal form; 95 operations by recursion; 1 more compared
 //! * corrected_accelerations: 129 operations by normal form in the bodies' frames; 143 operations by recursion in the bodies' frames; 5 more compared
@@ -25,12 +25,12 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 16 | 0 | 34 | 0 of 19 | 44 | 34 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 22 | 0 | 43 | 0 of 12 | 81 | 43 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 3 of 3 | 0 | 0 |
-//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 3 | 222 | 100 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 3 | 123 | 76 |
-//! | applied_force | (f, n' − w̃'J'w') | 12 | 18 | 0 | 30 | 2 of 6 | 36 | 30 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 89 | 120 | 0 | 209 | 0 of 6 | 39738 | 209 |
+//! | gamma | γ | 37 | 56 | 0 | 93 | 0 of 3 | 249 | 93 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 41 | 0 | 69 | 0 of 3 | 141 | 69 |
+//! | applied_force | (f, n' − w̃'J'w') | 12 | 17 | 0 | 29 | 2 of 6 | 36 | 29 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 87 | 115 | 0 | 202 | 0 of 6 | 44805 | 202 |
 //! | multipliers | λ, the accelerations being known | 1 | 3 | 0 | 4 | 0 of 3 | 4 | 4 |
-//! | project | (δr, δπ') that changes the rows as given | 38 | 57 | 0 | 95 | 0 of 6 | 3062 | 95 |
+//! | project | (δr, δπ') that changes the rows as given | 36 | 52 | 0 | 88 | 0 of 6 | 3518 | 88 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 8 | 16 | 0 | 24 | 0 of 7 | 24 | 24 |
 //! | energy | T and V | 11 | 18 | 0 | 29 | 0 of 2 | 29 | 29 |
 //! | read_joints | joint coordinates and rates | 0 | 0 | 0 | 0 | 0 of 7 | 0 | 0 |
@@ -229,7 +229,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         );
         *out = [top_rx + t6, top_ry + t10, top_rz - t12, t11 + (t1 + t7) - k(1.0)];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 76 operations (30 ±, 46 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 69 operations (28 ±, 41 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -242,41 +242,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_e0 * top_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t0));
-        let t2 = top_e0 * top_e3;
-        let t3 = top_e1 * top_e2;
-        let t4 = k(2.0) * (t3 - t2);
-        let t5 = top_e0 * top_e2;
-        let t6 = top_e1 * top_e3;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = T::fused(
+        let t0 = k(2.0) * top_e1;
+        let t1 = k(2.0) * top_e0;
+        let t2 = T::fused(-top_e0, t1, k(1.0));
+        let t3 = T::fused(-top_e1, t0, t2);
+        let t4 = top_e3 * t1;
+        let t5 = top_e2 * t0;
+        let t6 = t5 - t4;
+        let t7 = top_e2 * t1;
+        let t8 = top_e3 * t0;
+        let t9 = t8 + t7;
+        let t10 = T::fused(
             -k(0.5),
-            T::fused(t1, top_wz, t7 * top_wx),
-            k(0.3) * T::fused(-t4, top_wz, t7 * top_wy),
+            T::fused(top_wz, t3, top_wx * t9),
+            k(0.3) * T::fused(-top_wz, t6, top_wy * t9),
         );
-        let t9 = k(2.0) * (t3 + t2);
-        let t10 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t0));
-        let t11 = top_e0 * top_e1;
-        let t12 = top_e2 * top_e3;
-        let t13 = k(2.0) * (t12 - t11);
-        let t14 = T::fused(
+        let t11 = t5 + t4;
+        let t12 = k(2.0) * top_e2;
+        let t13 = T::fused(-top_e2, t12, t2);
+        let t14 = top_e1 * t1;
+        let t15 = top_e3 * t12;
+        let t16 = t15 - t14;
+        let t17 = T::fused(
             -k(0.5),
-            T::fused(-t9, top_wz, t13 * top_wx),
-            k(0.3) * T::fused(t10, top_wz, t13 * top_wy),
+            T::fused(-top_wz, t11, top_wx * t16),
+            k(0.3) * T::fused(top_wz, t13, top_wy * t16),
         );
-        let t15 = k(2.0) * (t6 - t5);
-        let t16 = k(2.0) * (t12 + t11);
-        let t17 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t0));
-        let t18 = T::fused(
+        let t18 = t8 - t7;
+        let t19 = t15 + t14;
+        let t20 = T::fused(-top_e3, k(2.0) * top_e3, t2);
+        let t21 = T::fused(
             -k(0.5),
-            T::fused(t15, top_wz, t17 * top_wx),
-            k(0.3) * T::fused(t16, top_wz, t17 * top_wy),
+            T::fused(top_wz, t18, top_wx * t20),
+            k(0.3) * T::fused(top_wz, t19, top_wy * t20),
         );
         *out = [
-            top_sx + T::fused(-k(0.2), T::fused(t1, top_wy, t4 * top_wx), t8),
-            top_sy + T::fused(k(0.2), T::fused(t9, top_wy, t10 * top_wx), t14),
-            top_sz - T::fused(k(0.2), T::fused(-t15, top_wy, t16 * top_wx), t18),
+            top_sx + T::fused(-k(0.2), T::fused(top_wy, t3, top_wx * t6), t10),
+            top_sy + T::fused(k(0.2), T::fused(top_wy, t11, top_wx * t13), t17),
+            top_sz - T::fused(k(0.2), T::fused(-top_wy, t18, top_wx * t19), t21),
         ];
     }
     /// Kinetic and potential energy: 29 operations (11 ±, 18 ×, 0 ÷).
@@ -671,7 +674,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 100 operations (39 ±, 61 ×, 0 ÷).
+    /// Writes γ: 93 operations (37 ±, 56 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -681,93 +684,89 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wy * top_wy;
-        let t1 = top_wz * top_wz;
-        let t2 = t1 + t0;
-        let t3 = top_e0 * top_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t3));
-        let t5 = top_wx * top_wy;
-        let t6 = top_e0 * top_e3;
-        let t7 = top_e1 * top_e2;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = top_wx * top_wz;
-        let t10 = top_e0 * top_e2;
-        let t11 = top_e1 * top_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = top_wx * top_wx;
-        let t14 = t1 + t13;
-        let t15 = top_wy * top_wz;
-        let t16 = T::fused(
-            k(0.3),
-            T::fused(t12, t9, T::fused(t4, t2, t8 * t5)),
-            k(0.5) * T::fused(t12, t15, -T::fused(t4, t5, t8 * t14)),
-        );
-        let t17 = t0 + t13;
+        let t0 = k(2.0) * top_e1;
+        let t1 = k(2.0) * top_e0;
+        let t2 = T::fused(-top_e0, t1, k(1.0));
+        let t3 = T::fused(-top_e1, t0, t2);
+        let t4 = top_wy * top_wy;
+        let t5 = top_wz * top_wz;
+        let t6 = t5 + t4;
+        let t7 = top_e3 * t1;
+        let t8 = top_e2 * t0;
+        let t9 = t8 - t7;
+        let t10 = top_wx * top_wy;
+        let t11 = top_e2 * t1;
+        let t12 = top_e3 * t0;
+        let t13 = t12 + t11;
+        let t14 = top_wx * top_wz;
+        let t15 = top_wx * top_wx;
+        let t16 = t5 + t15;
+        let t17 = top_wy * top_wz;
         let t18 = T::fused(
-            k(0.2),
-            T::fused(t12, t17, -T::fused(-t4, t9, t8 * t15)),
-            t16,
-        );
-        let t19 = k(2.0) * (t7 + t6);
-        let t20 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t3));
-        let t21 = top_e0 * top_e1;
-        let t22 = top_e2 * top_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = T::fused(
             k(0.3),
-            T::fused(t23, t9, -T::fused(t19, t2, t20 * t5)),
-            k(0.5) * T::fused(t23, t15, T::fused(t19, t5, t20 * t14)),
+            T::fused(t14, t13, T::fused(t6, t3, t10 * t9)),
+            k(0.5) * T::fused(t17, t13, -T::fused(t10, t3, t16 * t9)),
         );
-        let t25 = T::fused(
+        let t19 = t4 + t15;
+        let t20 = T::fused(
             k(0.2),
-            T::fused(t23, t17, T::fused(-t19, t9, t20 * t15)),
-            t24,
+            T::fused(t19, t13, -T::fused(-t14, t3, t17 * t9)),
+            t18,
         );
-        let t26 = k(2.0) * (t11 - t10);
-        let t27 = k(2.0) * (t22 + t21);
-        let t28 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t3));
-        let t29 = T::fused(
+        let t21 = t8 + t7;
+        let t22 = k(2.0) * top_e2;
+        let t23 = T::fused(-top_e2, t22, t2);
+        let t24 = top_e1 * t1;
+        let t25 = top_e3 * t22;
+        let t26 = t25 - t24;
+        let t27 = T::fused(
             k(0.3),
-            T::fused(t28, t9, -T::fused(-t26, t2, t27 * t5)),
-            k(0.5) * T::fused(t28, t15, T::fused(-t26, t5, t27 * t14)),
+            T::fused(t14, t26, -T::fused(t6, t21, t10 * t23)),
+            k(0.5) * T::fused(t17, t26, T::fused(t10, t21, t16 * t23)),
         );
-        let t30 = T::fused(
+        let t28 = T::fused(
             k(0.2),
-            T::fused(t28, t17, T::fused(t26, t9, t27 * t15)),
-            t29,
+            T::fused(t19, t26, T::fused(-t14, t21, t17 * t23)),
+            t27,
         );
-        *out = [t18, t25, -t30];
+        let t29 = t12 - t11;
+        let t30 = t25 + t24;
+        let t31 = T::fused(-top_e3, k(2.0) * top_e3, t2);
+        let t32 = T::fused(
+            k(0.3),
+            T::fused(t14, t31, -T::fused(-t6, t29, t10 * t30)),
+            k(0.5) * T::fused(t17, t31, T::fused(-t10, t29, t16 * t30)),
+        );
+        let t33 = T::fused(
+            k(0.2),
+            T::fused(t19, t31, T::fused(t14, t29, t17 * t30)),
+            t32,
+        );
+        *out = [t20, t28, -t33];
     }
-    /// Writes (f, n' − w̃'J'w'): 30 operations (12 ±, 18 ×, 0 ÷).
+    /// Writes (f, n' − w̃'J'w'): 29 operations (12 ±, 17 ×, 0 ÷).
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wy * top_wy;
-        let t1 = top_wz * top_wz;
-        let t2 = k(0.01) * top_wz;
-        let t3 = k(0.02) * top_wy;
-        let t4 = T::fused(
-            top_wx,
-            t3 + t2,
-            T::fused(k(0.03), t1 - t0, k(0.125) * (top_wy * top_wz)),
-        );
-        let t5 = top_wx * top_wx;
-        let t6 = k(0.03) * top_wx;
-        let t7 = T::fused(
-            top_wy,
-            t2 - t6,
-            -T::fused(k(0.02), t1 - t5, k(0.125) * (top_wx * top_wz)),
-        );
-        let t8 = T::fused(
+        let t0 = k(0.125) * top_wz;
+        let t1 = top_wy * top_wy;
+        let t2 = top_wz * top_wz;
+        let t3 = k(0.01) * top_wz;
+        let t4 = k(0.02) * top_wy;
+        let t5 = T::fused(top_wx, t4 + t3, T::fused(top_wy, t0, k(0.03) * (t2 - t1)));
+        let t6 = top_wx * top_wx;
+        let t7 = k(0.03) * top_wx;
+        let t8 = T::fused(top_wy, t3 - t7, -T::fused(top_wx, t0, k(0.02) * (t2 - t6)));
+        let t9 = T::fused(
             top_wz,
-            t3 + t6,
-            T::fused(-k(0.01), t0 - t5, k(0.25) * (top_wx * top_wy)),
+            t4 + t7,
+            T::fused(-k(0.01), t1 - t6, k(0.25) * (top_wx * top_wy)),
         );
-        *out = [k(0.0), k(0.0), k(-147.15), t4, -t7, -t8];
+        *out = [k(0.0), k(0.0), k(-147.15), t5, -t8, -t9];
     }
-    /// Solves eq. (17): 209 operations (89 ±, 120 ×, 0 ÷).
+    /// Solves eq. (17): 202 operations (87 ±, 115 ×, 0 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let top_e0 = y[3];
@@ -777,90 +776,90 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let top_wx = y[10];
         let top_wy = y[11];
         let top_wz = y[12];
-        let t0 = top_wy * top_wy;
-        let t1 = top_wz * top_wz;
-        let t2 = t1 + t0;
-        let t3 = top_e0 * top_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t3));
-        let t5 = top_wx * top_wy;
-        let t6 = top_e0 * top_e3;
-        let t7 = top_e1 * top_e2;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = top_wx * top_wz;
-        let t10 = top_e0 * top_e2;
-        let t11 = top_e1 * top_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = top_wx * top_wx;
-        let t14 = t1 + t13;
-        let t15 = top_wy * top_wz;
-        let t16 = T::fused(
-            k(0.3),
-            T::fused(t12, t9, T::fused(t4, t2, t8 * t5)),
-            k(0.5) * T::fused(t12, t15, -T::fused(t4, t5, t8 * t14)),
-        );
-        let t17 = t0 + t13;
+        let t0 = k(2.0) * top_e1;
+        let t1 = k(2.0) * top_e0;
+        let t2 = T::fused(-top_e0, t1, k(1.0));
+        let t3 = T::fused(-top_e1, t0, t2);
+        let t4 = top_wy * top_wy;
+        let t5 = top_wz * top_wz;
+        let t6 = t5 + t4;
+        let t7 = top_e3 * t1;
+        let t8 = top_e2 * t0;
+        let t9 = t8 - t7;
+        let t10 = top_wx * top_wy;
+        let t11 = top_e2 * t1;
+        let t12 = top_e3 * t0;
+        let t13 = t12 + t11;
+        let t14 = top_wx * top_wz;
+        let t15 = top_wx * top_wx;
+        let t16 = t5 + t15;
+        let t17 = top_wy * top_wz;
         let t18 = T::fused(
-            k(0.2),
-            T::fused(t12, t17, -T::fused(-t4, t9, t8 * t15)),
-            t16,
-        );
-        let t19 = k(2.0) * (t7 + t6);
-        let t20 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t3));
-        let t21 = top_e0 * top_e1;
-        let t22 = top_e2 * top_e3;
-        let t23 = k(2.0) * (t22 - t21);
-        let t24 = T::fused(
             k(0.3),
-            T::fused(t23, t9, -T::fused(t19, t2, t20 * t5)),
-            k(0.5) * T::fused(t23, t15, T::fused(t19, t5, t20 * t14)),
+            T::fused(t14, t13, T::fused(t6, t3, t10 * t9)),
+            k(0.5) * T::fused(t17, t13, -T::fused(t10, t3, t16 * t9)),
         );
-        let t25 = T::fused(
+        let t19 = t4 + t15;
+        let t20 = T::fused(
             k(0.2),
-            T::fused(t23, t17, T::fused(-t19, t9, t20 * t15)),
-            t24,
+            T::fused(t19, t13, -T::fused(-t14, t3, t17 * t9)),
+            t18,
         );
-        let t26 = t11 - t10;
-        let t27 = k(2.0) * t26;
-        let t28 = t22 + t21;
-        let t29 = k(2.0) * t28;
-        let t30 = k(0.5) - T::fused(top_e3, top_e3, t3);
-        let t31 = k(2.0) * t30;
+        let t21 = t8 + t7;
+        let t22 = k(2.0) * top_e2;
+        let t23 = T::fused(-top_e2, t22, t2);
+        let t24 = top_e1 * t1;
+        let t25 = top_e3 * t22;
+        let t26 = t25 - t24;
+        let t27 = T::fused(
+            k(0.3),
+            T::fused(t14, t26, -T::fused(t6, t21, t10 * t23)),
+            k(0.5) * T::fused(t17, t26, T::fused(t10, t21, t16 * t23)),
+        );
+        let t28 = T::fused(
+            k(0.2),
+            T::fused(t19, t26, T::fused(-t14, t21, t17 * t23)),
+            t27,
+        );
+        let t29 = t12 - t11;
+        let t30 = t25 + t24;
+        let t31 = T::fused(-top_e3, k(2.0) * top_e3, t2);
         let t32 = T::fused(
             k(0.3),
-            T::fused(t31, t9, -T::fused(-t27, t2, t29 * t5)),
-            k(0.5) * T::fused(t31, t15, T::fused(-t27, t5, t29 * t14)),
+            T::fused(t14, t31, -T::fused(-t6, t29, t10 * t30)),
+            k(0.5) * T::fused(t17, t31, T::fused(-t10, t29, t16 * t30)),
         );
         let t33 = T::fused(
             k(0.2),
-            T::fused(t31, t17, T::fused(t27, t9, t29 * t15)),
+            T::fused(t19, t31, T::fused(t14, t29, t17 * t30)),
             t32,
         );
-        let t34 = T::fused(t27, t33, -T::fused(-t4, t18, t19 * t25));
-        let t35 = T::fused(t29, t33, T::fused(-t8, t18, t20 * t25));
-        let t36 = T::fused(t31, t33, T::fused(t12, t18, t23 * t25));
+        let t34 = T::fused(t29, t33, -T::fused(-t3, t20, t21 * t28));
+        let t35 = T::fused(t30, t33, T::fused(-t9, t20, t23 * t28));
+        let t36 = T::fused(t31, t33, T::fused(t13, t20, t26 * t28));
         let t37 = k(0.03) * top_wx;
         let t38 = k(0.02) * top_wy;
         let t39 = T::fused(
             top_wz,
             t38 + t37,
-            T::fused(-k(0.01), t0 - t13, k(0.25) * t5),
+            T::fused(-k(0.01), t4 - t15, k(0.25) * t10),
         );
         let t40 = k(0.01) * top_wz;
         let t41 = T::fused(
             top_wx,
             t38 + t40,
-            T::fused(k(0.03), t1 - t0, k(0.125) * t15),
+            T::fused(k(0.03), t5 - t4, k(0.125) * t17),
         );
-        let t42 = t41 - T::fused(-k(147.15), t30, k(58.86) * t28);
+        let t42 = t41 + T::fused(-k(29.43), t30, k(73.575) * t31);
         let t43 = T::fused(
             top_wy,
             t40 - t37,
-            -T::fused(k(0.02), t1 - t13, k(0.125) * t9),
+            -T::fused(k(0.02), t5 - t15, k(0.125) * t14),
         );
         let t44 = T::fused(
             k(0.48695652173913045),
             t42,
-            -(t43 - T::fused(-k(88.29), t30, k(58.86) * t26)),
+            -(t43 + T::fused(-k(29.43), t29, k(44.145) * t31)),
         );
         let t45 = T::fused(
             k(1.440918687224106),
@@ -868,7 +867,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
             T::fused(
                 k(0.19130434782608696),
                 t42,
-                t39 - T::fused(-k(88.29), t28, k(147.15) * t26),
+                t39 + T::fused(-k(73.575), t29, k(44.145) * t30),
             ),
         );
         let t46 = T::fused(
@@ -896,9 +895,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
         let t53 = t36
             - T::fused(-k(0.10869565217391304), t51, k(0.2207152453457872) * t48);
         *out = [
-            T::fused(t12, t53, -T::fused(-t4, t49, t8 * t52)),
-            T::fused(t23, t53, T::fused(-t19, t49, t20 * t52)),
-            -T::fused(t31, t53, T::fused(t27, t49, t29 * t52)),
+            T::fused(t13, t53, -T::fused(-t3, t49, t9 * t52)),
+            T::fused(t26, t53, T::fused(-t21, t49, t23 * t52)),
+            -T::fused(t31, t53, T::fused(t29, t49, t30 * t52)),
             k(0.21739130434782608) * t51,
             k(0.7357174844859574) * t48,
             k(0.4024822528397581) * t46,
@@ -924,7 +923,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Spherical<T> {
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Spherical<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 95 operations (38 ±, 57 ×, 0 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 88 operations (36 ±, 52 ×, 0 ÷).
     fn project(
         &self,
         _t: T,
@@ -940,54 +939,57 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Spherical<T> {
         let row0 = rows[0];
         let row1 = rows[1];
         let row2 = rows[2];
-        let t0 = top_e0 * top_e2;
-        let t1 = top_e1 * top_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = top_e0 * top_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(top_e1, top_e1, t3));
-        let t5 = top_e0 * top_e3;
-        let t6 = top_e1 * top_e2;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = T::fused(t2, row2, T::fused(-t4, row0, t7 * row1));
-        let t9 = top_e0 * top_e1;
-        let t10 = top_e2 * top_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = k(2.0) * (t6 - t5);
-        let t13 = k(2.0) * (k(0.5) - T::fused(top_e2, top_e2, t3));
-        let t14 = T::fused(-t11, row2, T::fused(-t12, row0, t13 * row1));
-        let t15 = k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t3));
-        let t16 = k(2.0) * (t1 + t0);
-        let t17 = k(2.0) * (t10 - t9);
-        let t18 = T::fused(-t15, row2, T::fused(t16, row0, t17 * row1));
-        let t19 = T::fused(
+        let t0 = k(2.0) * top_e0;
+        let t1 = top_e2 * t0;
+        let t2 = k(2.0) * top_e1;
+        let t3 = top_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-top_e0, t0, k(1.0));
+        let t6 = T::fused(-top_e1, t2, t5);
+        let t7 = top_e3 * t0;
+        let t8 = top_e2 * t2;
+        let t9 = t8 + t7;
+        let t10 = T::fused(t4, row2, T::fused(-t6, row0, t9 * row1));
+        let t11 = top_e1 * t0;
+        let t12 = k(2.0) * top_e2;
+        let t13 = top_e3 * t12;
+        let t14 = t13 + t11;
+        let t15 = t8 - t7;
+        let t16 = T::fused(-top_e2, t12, t5);
+        let t17 = T::fused(-t14, row2, T::fused(-t15, row0, t16 * row1));
+        let t18 = T::fused(-top_e3, k(2.0) * top_e3, t5);
+        let t19 = t3 + t1;
+        let t20 = t13 - t11;
+        let t21 = T::fused(-t18, row2, T::fused(t19, row0, t20 * row1));
+        let t22 = T::fused(
             k(0.21313415648391018),
-            t18,
-            T::fused(k(3.177243938327682), t8, k(1.8210927004030453) * t14),
+            t21,
+            T::fused(k(3.177243938327682), t10, k(1.8210927004030453) * t17),
         );
-        let t20 = T::fused(
+        let t23 = T::fused(
             k(0.7882702418008584),
-            t19,
+            t22,
             -T::fused(
                 k(0.8478260869565217),
-                t18,
-                T::fused(k(3.0), t8, k(1.4608695652173913) * t14),
+                t21,
+                T::fused(k(3.0), t10, k(1.4608695652173913) * t17),
             ),
         );
-        let t21 = t8
-            - T::fused(-k(0.14714349689719147), t20, k(0.20124112641987904) * t19);
-        let t22 = T::fused(k(1.6480071652485446), t20, k(0.3541843824989871) * t19)
-            + T::fused(-k(3.0), t14, k(7.5) * t18);
-        let t23 = t14
-            - T::fused(-k(0.043478260869565216), t22, k(0.12074467585192743) * t19);
-        let t24 = t18
-            + T::fused(-k(0.10869565217391304), t22, k(0.2207152453457872) * t20);
+        let t24 = t10
+            - T::fused(-k(0.14714349689719147), t23, k(0.20124112641987904) * t22);
+        let t25 = T::fused(k(1.6480071652485446), t23, k(0.3541843824989871) * t22)
+            + T::fused(-k(3.0), t17, k(7.5) * t21);
+        let t26 = t17
+            - T::fused(-k(0.043478260869565216), t25, k(0.12074467585192743) * t22);
+        let t27 = t21
+            + T::fused(-k(0.10869565217391304), t25, k(0.2207152453457872) * t23);
         *out = [
-            T::fused(t16, t24, -T::fused(t4, t21, t12 * t23)),
-            T::fused(t17, t24, T::fused(t7, t21, t13 * t23)),
-            -T::fused(t15, t24, T::fused(-t2, t21, t11 * t23)),
-            -(k(0.21739130434782608) * t22),
-            -(k(0.7357174844859574) * t20),
-            k(0.4024822528397581) * t19,
+            T::fused(t19, t27, -T::fused(t6, t24, t15 * t26)),
+            T::fused(t20, t27, T::fused(t9, t24, t16 * t26)),
+            -T::fused(t18, t27, T::fused(-t4, t24, t14 * t26)),
+            -(k(0.21739130434782608) * t25),
+            -(k(0.7357174844859574) * t23),
+            k(0.4024822528397581) * t22,
         ];
     }
 }
@@ -1164,36 +1166,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let top_wz = y[12];
         let t0 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
         let t1 = k(0.5) - T::fused(top_e2, top_e2, top_e1 * top_e1);
-        let t2 = T::fused(top_e0, top_e1, top_e2 * top_e3);
-        let t3 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
+        let t2 = T::fused(k(0.88), top_wx, k(1.53) * top_wy);
+        let t3 = T::fused(top_e0, top_e1, top_e2 * top_e3);
         let t4 = T::fused(
             -top_wz,
             T::fused(-k(3.025), top_wy, t0),
-            T::fused(k(147.15), t1, T::fused(k(58.86), t2, top_wy * t3)),
+            T::fused(k(147.15), t1, T::fused(top_wy, t2, k(58.86) * t3)),
         );
         let t5 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
         let t6 = T::fused(-top_e0, top_e2, top_e1 * top_e3);
         let t7 = T::fused(
-            top_wx,
+            -top_wx,
             T::fused(k(2.15), top_wy, -t0),
-            T::fused(-top_wy, t5, T::fused(-k(88.29), t2, k(147.15) * t6)),
+            T::fused(top_wy, t5, T::fused(-k(147.15), t6, k(88.29) * t3)),
         );
         let t8 = T::fused(
             top_wx,
-            T::fused(k(0.875), top_wz, t3),
-            T::fused(k(88.29), t1, T::fused(k(58.86), t6, top_wz * t5)),
+            T::fused(k(0.875), top_wz, t2),
+            T::fused(k(88.29), t1, T::fused(top_wz, t5, k(58.86) * t6)),
         );
-        let t9 = T::fused(k(0.27945205479452057), t7, -t8);
+        let t9 = T::fused(k(0.27945205479452057), t7, t8);
         let t10 = T::fused(
             k(1.2291686422194827),
             t9,
-            T::fused(k(0.16073059360730593), t7, t4),
+            T::fused(k(0.16073059360730593), t7, -t4),
         );
         let t11 = T::fused(k(0.49445264769232855), t9, k(0.876134676932097) * t10);
         *out = [
-            -(k(0.7127863881640194) * t10),
-            -t11,
-            T::fused(
+            k(0.7127863881640194) * t10,
+            t11,
+            -T::fused(
                 k(0.27945205479452057),
                 t11,
                 T::fused(k(0.182648401826484), t7, k(0.11456657928481043) * t10),
@@ -1219,34 +1221,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t1 = top_e2 * top_e2;
         let t2 = top_e1 * top_e1;
         let t3 = k(0.5) - (t2 + t1);
-        let t4 = top_e0 * top_e2;
-        let t5 = top_e1 * top_e3;
-        let t6 = t5 - t4;
-        let t7 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t4 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t5 = top_e0 * top_e2;
+        let t6 = top_e1 * top_e3;
+        let t7 = t6 - t5;
         let t8 = T::fused(
             top_wx,
             T::fused(k(0.875), top_wz, t0),
-            T::fused(k(88.29), t3, T::fused(k(58.86), t6, top_wz * t7)),
+            T::fused(k(88.29), t3, T::fused(top_wz, t4, k(58.86) * t7)),
         );
         let t9 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
         let t10 = top_e0 * top_e1;
         let t11 = top_e2 * top_e3;
         let t12 = t11 + t10;
         let t13 = T::fused(
-            top_wx,
+            -top_wx,
             T::fused(k(2.15), top_wy, -t9),
-            T::fused(-top_wy, t7, T::fused(-k(88.29), t12, k(147.15) * t6)),
+            T::fused(top_wy, t4, T::fused(-k(147.15), t7, k(88.29) * t12)),
         );
-        let t14 = T::fused(k(0.27945205479452057), t13, -t8);
+        let t14 = T::fused(k(0.27945205479452057), t13, t8);
         let t15 = T::fused(
             -top_wz,
             T::fused(-k(3.025), top_wy, t9),
-            T::fused(k(147.15), t3, T::fused(k(58.86), t12, top_wy * t0)),
+            T::fused(k(147.15), t3, T::fused(top_wy, t0, k(58.86) * t12)),
         );
         let t16 = T::fused(
             k(1.2291686422194827),
             t14,
-            T::fused(k(0.16073059360730593), t13, t15),
+            T::fused(k(0.16073059360730593), t13, -t15),
         );
         let t17 = T::fused(k(0.49445264769232855), t14, k(0.876134676932097) * t16);
         let t18 = T::fused(
@@ -1257,11 +1259,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t19 = T::fused(k(0.2), top_wx, k(0.3) * top_wz);
         let t20 = T::fused(-k(0.3), top_wy, k(0.5) * top_wx);
         let t21 = T::fused(-top_wz, t19, top_wy * t20)
-            - T::fused(-k(0.2), t17, k(0.5) * t18);
+            + T::fused(-k(0.2), t17, k(0.5) * t18);
         let t22 = top_e0 * top_e0;
         let t23 = T::fused(k(0.5), top_wz, k(0.2) * top_wy);
         let t24 = T::fused(top_wx, t20, top_wz * t23)
-            - T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
+            + T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
         let t25 = top_e0 * top_e3;
         let t26 = top_e1 * top_e2;
         let t27 = T::fused(
@@ -1270,7 +1272,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             k(2.0) * (t26 - t25) * t24,
         );
         let t28 = T::fused(top_wy, t23, top_wx * t19)
-            + T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
+            - T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
         let t29 = T::fused(
             k(2.0) * (t26 + t25),
             t21,
@@ -1279,15 +1281,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t30 = T::fused(
             k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t22)),
             t28,
-            T::fused(-(k(2.0) * t6), t21, k(2.0) * t12 * t24),
+            T::fused(-(k(2.0) * t7), t21, k(2.0) * t12 * t24),
         );
         *out = [
-            T::fused(k(2.0) * (t5 + t4), t28, -t27),
+            T::fused(k(2.0) * (t6 + t5), t28, -t27),
             T::fused(k(2.0) * (t11 - t10), t28, t29),
             -t30,
-            -(k(0.7127863881640194) * t16),
-            -t17,
-            t18,
+            k(0.7127863881640194) * t16,
+            t17,
+            -t18,
         ];
     }
     /// Writes λ: 4 operations (1 ±, 3 ×, 0 ÷).
@@ -1322,34 +1324,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t1 = top_e2 * top_e2;
         let t2 = top_e1 * top_e1;
         let t3 = k(0.5) - (t2 + t1);
-        let t4 = top_e0 * top_e2;
-        let t5 = top_e1 * top_e3;
-        let t6 = t5 - t4;
-        let t7 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t4 = T::fused(-k(0.88), top_wz, k(2.24) * top_wy);
+        let t5 = top_e0 * top_e2;
+        let t6 = top_e1 * top_e3;
+        let t7 = t6 - t5;
         let t8 = T::fused(
             top_wx,
             T::fused(k(0.875), top_wz, t0),
-            T::fused(k(88.29), t3, T::fused(k(58.86), t6, top_wz * t7)),
+            T::fused(k(88.29), t3, T::fused(top_wz, t4, k(58.86) * t7)),
         );
         let t9 = T::fused(-k(2.24), top_wx, k(1.53) * top_wz);
         let t10 = top_e0 * top_e1;
         let t11 = top_e2 * top_e3;
         let t12 = t11 + t10;
         let t13 = T::fused(
-            top_wx,
+            -top_wx,
             T::fused(k(2.15), top_wy, -t9),
-            T::fused(-top_wy, t7, T::fused(-k(88.29), t12, k(147.15) * t6)),
+            T::fused(top_wy, t4, T::fused(-k(147.15), t7, k(88.29) * t12)),
         );
-        let t14 = T::fused(k(0.27945205479452057), t13, -t8);
+        let t14 = T::fused(k(0.27945205479452057), t13, t8);
         let t15 = T::fused(
             -top_wz,
             T::fused(-k(3.025), top_wy, t9),
-            T::fused(k(147.15), t3, T::fused(k(58.86), t12, top_wy * t0)),
+            T::fused(k(147.15), t3, T::fused(top_wy, t0, k(58.86) * t12)),
         );
         let t16 = T::fused(
             k(1.2291686422194827),
             t14,
-            T::fused(k(0.16073059360730593), t13, t15),
+            T::fused(k(0.16073059360730593), t13, -t15),
         );
         let t17 = T::fused(k(0.49445264769232855), t14, k(0.876134676932097) * t16);
         let t18 = T::fused(
@@ -1360,11 +1362,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t19 = T::fused(k(0.2), top_wx, k(0.3) * top_wz);
         let t20 = T::fused(-k(0.3), top_wy, k(0.5) * top_wx);
         let t21 = T::fused(-top_wz, t19, top_wy * t20)
-            - T::fused(-k(0.2), t17, k(0.5) * t18);
+            + T::fused(-k(0.2), t17, k(0.5) * t18);
         let t22 = top_e0 * top_e0;
         let t23 = T::fused(k(0.5), top_wz, k(0.2) * top_wy);
         let t24 = T::fused(top_wx, t20, top_wz * t23)
-            - T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
+            + T::fused(-k(0.14255727763280387), t16, k(0.3) * t18);
         let t25 = top_e0 * top_e3;
         let t26 = top_e1 * top_e2;
         let t27 = T::fused(
@@ -1373,8 +1375,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
             k(2.0) * (t26 - t25) * t24,
         );
         let t28 = T::fused(top_wy, t23, top_wx * t19)
-            + T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
-        let t29 = T::fused(k(2.0) * (t5 + t4), t28, -t27);
+            - T::fused(-k(0.3563931940820097), t16, k(0.3) * t17);
+        let t29 = T::fused(k(2.0) * (t6 + t5), t28, -t27);
         let t30 = T::fused(
             k(2.0) * (t26 + t25),
             t21,
@@ -1384,15 +1386,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Spherical<T> {
         let t32 = T::fused(
             k(2.0) * (k(0.5) - T::fused(top_e3, top_e3, t22)),
             t28,
-            T::fused(-(k(2.0) * t6), t21, k(2.0) * t12 * t24),
+            T::fused(-(k(2.0) * t7), t21, k(2.0) * t12 * t24),
         );
         *out = [
             t29,
             t31,
             -t32,
-            -(k(0.7127863881640194) * t16),
-            -t17,
-            t18,
+            k(0.7127863881640194) * t16,
+            t17,
+            -t18,
             -(k(15.0) * t29),
             -(k(15.0) * t31),
             T::fused(k(15.0), t32, -k(147.15)),

@@ -12,8 +12,8 @@
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 150 operations by rotations of the bodies; 150 operations by relative Euler parameters
-//! * project: 76 operations by rotations of the bodies; 76 operations by relative Euler parameters
+//! * accelerations: 144 operations by rotations of the bodies, doubled; 144 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 71 operations by rotations of the bodies, doubled; 71 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 38 operations by recursion; 38 operations by normal form
 //! * joint_accelerations_at: 54 operations by recursion; 54 operations by normal form; 1 more compared
 //! * corrected_accelerations: 72 operations by recursion in the bodies' frames; 72 operations by recursion in the global frame; 5 more compared
@@ -25,14 +25,14 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 14 | 23 | 0 | 37 | 0 of 12 | 37 | 37 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 8 | 0 | 8 | 0 of 33 | 28 | 8 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 13 | 21 | 0 | 34 | 0 of 15 | 45 | 34 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 11 | 18 | 0 | 29 | 0 of 15 | 55 | 29 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 10 of 10 | 0 | 0 |
-//! | gamma | γ | 29 | 55 | 0 | 84 | 5 of 10 | 115 | 84 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 18 | 31 | 0 | 49 | 0 of 10 | 60 | 49 |
-//! | applied_force | (f, n' − w̃'J'w') | 26 | 27 | 3 | 56 | 7 of 12 | 286 | 59 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 54 | 91 | 5 | 150 | 5 of 12 | 775 | 154 |
-//! | multipliers | λ, the accelerations being known | 24 | 65 | 2 | 91 | 0 of 10 | 437 | 91 |
-//! | project | (δr, δπ') that changes the rows as given | 21 | 53 | 2 | 76 | 2 of 12 | 412 | 76 |
+//! | gamma | γ | 27 | 49 | 0 | 76 | 5 of 10 | 130 | 76 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 16 | 28 | 0 | 44 | 0 of 10 | 70 | 44 |
+//! | applied_force | (f, n' − w̃'J'w') | 26 | 26 | 3 | 55 | 7 of 12 | 286 | 58 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 52 | 87 | 5 | 144 | 5 of 12 | 887 | 148 |
+//! | multipliers | λ, the accelerations being known | 22 | 62 | 2 | 86 | 0 of 10 | 508 | 86 |
+//! | project | (δr, δπ') that changes the rows as given | 19 | 50 | 2 | 71 | 2 of 12 | 483 | 71 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 42 | 59 | 3 | 104 | 0 of 16 | 334 | 107 |
 //! | energy | T and V | 12 | 23 | 0 | 35 | 0 of 2 | 35 | 35 |
 //! | read_joints | joint coordinates and rates | 7 | 8 | 0 | 15 | 0 of 5 | 18 | 15 |
@@ -426,7 +426,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
             t1 - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 49 operations (18 ±, 31 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 44 operations (16 ±, 28 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let hammer_e0 = y[3];
@@ -447,44 +447,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Stops<T> {
         let hammer_wz = y[19];
         let disc_wx = y[23];
         let disc_wy = y[24];
-        let t0 = hammer_e0 * hammer_e0;
-        let t1 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t0));
-        let t2 = hammer_e0 * hammer_e3;
-        let t3 = hammer_e1 * hammer_e2;
-        let t4 = T::fused(
-            k(2.0) * (t3 + t2),
+        let t0 = k(2.0) * hammer_e1;
+        let t1 = k(2.0) * hammer_e0;
+        let t2 = T::fused(-hammer_e0, t1, k(1.0));
+        let t3 = T::fused(-hammer_e1, t0, t2);
+        let t4 = hammer_e3 * t1;
+        let t5 = hammer_e2 * t0;
+        let t6 = T::fused(
             hammer_wy,
-            k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t0)) * hammer_wx,
+            t5 + t4,
+            hammer_wx * T::fused(-hammer_e2, k(2.0) * hammer_e2, t2),
         );
-        let t5 = T::fused(
-            t1,
-            hammer_wz,
-            k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3) * hammer_wx,
-        );
-        let t6 = disc_e0 * disc_e0;
-        let t7 = disc_e0 * disc_e3;
-        let t8 = disc_e1 * disc_e2;
-        let t9 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t6)),
+        let t7 = k(2.0) * disc_e1;
+        let t8 = k(2.0) * disc_e0;
+        let t9 = T::fused(-disc_e0, t8, k(1.0));
+        let t10 = disc_e3 * t8;
+        let t11 = disc_e2 * t7;
+        let t12 = T::fused(
             disc_wy,
-            k(2.0) * (t8 - t7) * disc_wx,
-        );
-        let t10 = T::fused(
-            k(2.0) * (t8 + t7),
-            disc_wy,
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t6)) * disc_wx,
+            t11 + t10,
+            disc_wx * T::fused(-disc_e2, k(2.0) * disc_e2, t9),
         );
         *out = [
             hammer_sx,
             hammer_sy,
-            -T::fused(t1, hammer_wy, k(2.0) * (t3 - t2) * hammer_wx),
-            t4,
-            t5,
+            -T::fused(hammer_wy, t3, hammer_wx * (t5 - t4)),
+            t6,
+            T::fused(hammer_wz, t3, hammer_wx * T::fused(hammer_e2, t1, hammer_e3 * t0)),
             disc_sx,
             disc_sy,
             disc_sz,
-            -t9,
-            t10,
+            -T::fused(disc_wy, T::fused(-disc_e1, t7, t9), disc_wx * (t11 - t10)),
+            t12,
         ];
     }
     /// Kinetic and potential energy: 35 operations (12 ±, 23 ×, 0 ÷).
@@ -805,7 +799,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             t5,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 34 operations (13 ±, 21 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 29 operations (11 ±, 18 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let hammer_e0 = y[3];
@@ -816,29 +810,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_e1 = y[11];
         let disc_e2 = y[12];
         let disc_e3 = y[13];
-        let t0 = hammer_e0 * hammer_e3;
-        let t1 = hammer_e1 * hammer_e2;
-        let t2 = hammer_e0 * hammer_e0;
-        let t3 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t2));
-        let t4 = disc_e0 * disc_e3;
-        let t5 = disc_e1 * disc_e2;
-        let t6 = disc_e0 * disc_e0;
+        let t0 = k(2.0) * hammer_e0;
+        let t1 = hammer_e3 * t0;
+        let t2 = k(2.0) * hammer_e1;
+        let t3 = hammer_e2 * t2;
+        let t4 = T::fused(-hammer_e0, t0, k(1.0));
+        let t5 = T::fused(-hammer_e1, t2, t4);
+        let t6 = k(2.0) * disc_e0;
+        let t7 = disc_e3 * t6;
+        let t8 = k(2.0) * disc_e1;
+        let t9 = disc_e2 * t8;
+        let t10 = T::fused(-disc_e0, t6, k(1.0));
         *out = [
             k(1.0),
             k(1.0),
-            -(k(2.0) * (t1 - t0)),
-            -t3,
-            k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t2)),
-            k(2.0) * (t1 + t0),
-            k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3),
-            t3,
+            t1 - t3,
+            -t5,
+            T::fused(-hammer_e2, k(2.0) * hammer_e2, t4),
+            t3 + t1,
+            T::fused(hammer_e2, t0, hammer_e3 * t2),
+            t5,
             k(1.0),
             k(1.0),
             k(1.0),
-            -(k(2.0) * (t5 - t4)),
-            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t6))),
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t6)),
-            k(2.0) * (t5 + t4),
+            t7 - t9,
+            T::fused(disc_e1, t8, -t10),
+            T::fused(-disc_e2, k(2.0) * disc_e2, t10),
+            t9 + t7,
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -857,7 +855,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 84 operations (29 ±, 55 ×, 0 ÷).
+    /// Writes γ: 76 operations (27 ±, 49 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let hammer_e0 = y[3];
@@ -874,60 +872,66 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_wx = y[23];
         let disc_wy = y[24];
         let disc_wz = y[25];
-        let t0 = hammer_wx * hammer_wz;
-        let t1 = hammer_e0 * hammer_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t1));
-        let t3 = hammer_wy * hammer_wz;
-        let t4 = hammer_e0 * hammer_e3;
-        let t5 = hammer_e1 * hammer_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = hammer_wx * hammer_wx;
-        let t8 = T::fused(hammer_wy, hammer_wy, t7);
-        let t9 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
-        let t10 = T::fused(
-            -(k(2.0) * (t5 + t4)),
-            t0,
-            k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t1)) * t3,
+        let t0 = k(2.0) * hammer_e1;
+        let t1 = k(2.0) * hammer_e0;
+        let t2 = T::fused(-hammer_e0, t1, k(1.0));
+        let t3 = T::fused(-hammer_e1, t0, t2);
+        let t4 = hammer_wx * hammer_wz;
+        let t5 = hammer_e3 * t1;
+        let t6 = hammer_e2 * t0;
+        let t7 = t6 - t5;
+        let t8 = hammer_wy * hammer_wz;
+        let t9 = T::fused(hammer_e2, t1, hammer_e3 * t0);
+        let t10 = hammer_wx * hammer_wx;
+        let t11 = T::fused(hammer_wy, hammer_wy, t10);
+        let t12 = k(2.0) * hammer_e2;
+        let t13 = T::fused(
+            t11,
+            T::fused(-hammer_e1, t1, hammer_e3 * t12),
+            T::fused(-t4, t6 + t5, t8 * T::fused(-hammer_e2, t12, t2)),
         );
-        let t11 = T::fused(
+        let t14 = T::fused(
+            t8,
             t9,
-            t3,
-            -T::fused(t2, hammer_wx * hammer_wy, t6 * T::fused(hammer_wz, hammer_wz, t7)),
+            -T::fused(
+                hammer_wx * hammer_wy,
+                t3,
+                T::fused(hammer_wz, hammer_wz, t10) * t7,
+            ),
         );
-        let t12 = disc_wx * disc_wz;
-        let t13 = disc_e0 * disc_e0;
-        let t14 = disc_wy * disc_wz;
-        let t15 = disc_e0 * disc_e3;
-        let t16 = disc_e1 * disc_e2;
-        let t17 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t13))),
-            t12,
-            k(2.0) * (t16 - t15) * t14,
+        let t15 = k(2.0) * disc_e1;
+        let t16 = k(2.0) * disc_e0;
+        let t17 = T::fused(-disc_e0, t16, k(1.0));
+        let t18 = disc_wx * disc_wz;
+        let t19 = disc_e3 * t16;
+        let t20 = disc_e2 * t15;
+        let t21 = disc_wy * disc_wz;
+        let t22 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
+        let t23 = T::fused(
+            t22,
+            T::fused(disc_e2, t16, disc_e3 * t15),
+            -T::fused(-t18, T::fused(-disc_e1, t15, t17), t21 * (t20 - t19)),
         );
-        let t18 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy);
-        let t19 = T::fused(
-            -(k(2.0) * (t16 + t15)),
-            t12,
-            k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t13)) * t14,
+        let t24 = k(2.0) * disc_e2;
+        let t25 = T::fused(
+            t22,
+            T::fused(-disc_e1, t16, disc_e3 * t24),
+            T::fused(-t18, t20 + t19, t21 * T::fused(-disc_e2, t24, t17)),
         );
         *out = [
             k(0.0),
             k(0.0),
-            T::fused(t9, t8, -T::fused(-t2, t0, t6 * t3)),
-            T::fused(
-                k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3),
-                t8,
-                t10,
-            ),
-            -t11,
+            T::fused(t11, t9, -T::fused(-t4, t3, t8 * t7)),
+            t13,
+            -t14,
             k(0.0),
             k(0.0),
             k(0.0),
-            T::fused(k(2.0) * T::fused(disc_e0, disc_e2, disc_e1 * disc_e3), t18, -t17),
-            T::fused(k(2.0) * T::fused(-disc_e0, disc_e1, disc_e2 * disc_e3), t18, t19),
+            t23,
+            t25,
         ];
     }
-    /// Writes (f, n' − w̃'J'w'): 56 operations (26 ±, 27 ×, 3 ÷) and 7 functions.
+    /// Writes (f, n' − w̃'J'w'): 55 operations (26 ±, 26 ×, 3 ÷) and 7 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let hammer_rz = y[2];
@@ -949,20 +953,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             k(2.5) * (k(1.0) - hammer_rz / t3),
             k(2000.0) * (hammer_rz - t3),
         );
-        let t5 = turn0.cos();
-        let t6 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
-        let t7 = turn0.sin();
-        let t8 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t9 = T::fused(t6, t7, t8 * t5).atan2(T::fused(-t6, t5, t8 * t7));
-        let t10 = turn0 + t9;
-        let t11 = k(15.7) - t10;
-        let t12 = T::fused(t11, t11, k(0.0025)).sqrt();
-        let t13 = T::fused(
+        let t5 = k(0.01) * disc_wz;
+        let t6 = turn0.cos();
+        let t7 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, disc_e0 * disc_e0));
+        let t8 = turn0.sin();
+        let t9 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
+        let t10 = T::fused(t7, t8, t9 * t6).atan2(T::fused(-t7, t6, t9 * t8));
+        let t11 = turn0 + t10;
+        let t12 = k(15.7) - t11;
+        let t13 = T::fused(t12, t12, k(0.0025)).sqrt();
+        let t14 = T::fused(
             -k(25.0),
-            t11 - t12,
-            disc_wz * (k(0.05) * (k(1.0) - t11 / t12)),
+            t12 - t13,
+            disc_wz * (k(0.05) * (k(1.0) - t12 / t13)),
         );
-        let t14 = k(9.5) + t10;
+        let t15 = k(9.5) + t11;
         *out = [
             k(0.0),
             k(0.0),
@@ -973,12 +978,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             k(0.0),
             k(0.0),
             k(-39.24),
-            -(k(0.01) * (disc_wy * disc_wz)),
-            k(0.01) * (disc_wx * disc_wz),
-            -T::fused(k(20.0), t14 - T::fused(t14, t14, k(0.0025)).sqrt(), t13),
+            -(disc_wy * t5),
+            disc_wx * t5,
+            -T::fused(k(20.0), t15 - T::fused(t15, t15, k(0.0025)).sqrt(), t14),
         ];
     }
-    /// Solves eq. (17): 150 operations (54 ±, 91 ×, 5 ÷) and 7 functions.
+    /// Solves eq. (17): 144 operations (52 ±, 87 ×, 5 ÷) and 7 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let hammer_rz = y[2];
@@ -1007,83 +1012,83 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
             k(2.5) * (k(1.0) - hammer_rz / t3),
             k(2000.0) * (hammer_rz - t3),
         );
-        let t5 = hammer_wx * hammer_wz;
-        let t6 = hammer_e0 * hammer_e0;
-        let t7 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t6));
-        let t8 = hammer_wy * hammer_wz;
-        let t9 = hammer_e0 * hammer_e3;
-        let t10 = hammer_e1 * hammer_e2;
-        let t11 = k(2.0) * (t10 - t9);
-        let t12 = hammer_wx * hammer_wx;
-        let t13 = T::fused(hammer_wy, hammer_wy, t12);
-        let t14 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
-        let t15 = T::fused(t14, t13, -T::fused(-t7, t5, t11 * t8));
-        let t16 = k(2.0) * (t10 + t9);
-        let t17 = k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t6));
-        let t18 = t7 * t17;
-        let t19 = T::fused(t11, t16, -t18);
-        let t20 = k(1.0) / (t7 * t19);
-        let t21 = T::fused(
-            k(2.0) * T::fused(-hammer_e0, hammer_e1, hammer_e2 * hammer_e3),
-            t13,
-            T::fused(-t16, t5, t17 * t8),
+        let t5 = k(2.0) * hammer_e1;
+        let t6 = k(2.0) * hammer_e0;
+        let t7 = T::fused(-hammer_e0, t6, k(1.0));
+        let t8 = T::fused(-hammer_e1, t5, t7);
+        let t9 = hammer_wx * hammer_wz;
+        let t10 = hammer_e3 * t6;
+        let t11 = hammer_e2 * t5;
+        let t12 = t11 - t10;
+        let t13 = hammer_wy * hammer_wz;
+        let t14 = T::fused(hammer_e2, t6, hammer_e3 * t5);
+        let t15 = hammer_wx * hammer_wx;
+        let t16 = T::fused(hammer_wy, hammer_wy, t15);
+        let t17 = T::fused(t16, t14, -T::fused(-t9, t8, t13 * t12));
+        let t18 = t11 + t10;
+        let t19 = k(2.0) * hammer_e2;
+        let t20 = T::fused(-hammer_e2, t19, t7);
+        let t21 = t8 * t20;
+        let t22 = T::fused(t12, t18, -t21);
+        let t23 = k(1.0) / (t8 * t22);
+        let t24 = T::fused(
+            t16,
+            T::fused(-hammer_e1, t6, hammer_e3 * t19),
+            T::fused(-t9, t18, t13 * t20),
         );
-        let t22 = T::fused(t20 * (t7 * t16), t15, t20 * (t7 * t7) * t21);
-        let t23 = T::fused(
+        let t25 = T::fused(t23 * (t8 * t18), t17, t23 * (t8 * t8) * t24);
+        let t26 = T::fused(
+            t13,
             t14,
-            t8,
             -T::fused(
-                t7,
                 hammer_wx * hammer_wy,
-                t11 * T::fused(hammer_wz, hammer_wz, t12),
+                t8,
+                T::fused(hammer_wz, hammer_wz, t15) * t12,
             ),
         );
-        let t24 = T::fused(t15, t20 * (t14 * t16), t21 * (t20 * (t7 * t14)));
-        let t25 = disc_e0 * disc_e0;
-        let t26 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
-            * (k(0.5) / (k(0.5) - T::fused(disc_e3, disc_e3, t25)));
-        let t27 = T::fused(
-            -(k(2.0) * T::fused(disc_e0, disc_e1, disc_e2 * disc_e3)),
-            t26,
+        let t27 = T::fused(t17, t23 * (t14 * t18), t24 * (t23 * (t8 * t14)));
+        let t28 = k(2.0) * disc_e0;
+        let t29 = T::fused(-disc_e0, t28, k(1.0));
+        let t30 = T::fused(disc_wx, disc_wx, disc_wy * disc_wy)
+            / T::fused(-disc_e3, k(2.0) * disc_e3, t29);
+        let t31 = T::fused(
+            -T::fused(disc_e1, t28, disc_e3 * (k(2.0) * disc_e2)),
+            t30,
             disc_wy * disc_wz,
         );
-        let t28 = T::fused(
-            -(k(2.0) * T::fused(-disc_e0, disc_e2, disc_e1 * disc_e3)),
-            t26,
-            disc_wx * disc_wz,
-        );
-        let t29 = turn0.cos();
-        let t30 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t25));
-        let t31 = turn0.sin();
-        let t32 = k(2.0) * T::fused(disc_e0, disc_e3, disc_e1 * disc_e2);
-        let t33 = T::fused(t30, t31, t32 * t29).atan2(T::fused(-t30, t29, t32 * t31));
-        let t34 = turn0 + t33;
-        let t35 = k(15.7) - t34;
-        let t36 = T::fused(t35, t35, k(0.0025)).sqrt();
-        let t37 = T::fused(
+        let t32 = k(2.0) * disc_e1;
+        let t33 = T::fused(-disc_e1, t32, t29);
+        let t34 = turn0.cos();
+        let t35 = T::fused(disc_e3, t28, disc_e2 * t32);
+        let t36 = turn0.sin();
+        let t37 = T::fused(t36, t33, t34 * t35).atan2(T::fused(-t34, t33, t36 * t35));
+        let t38 = turn0 + t37;
+        let t39 = k(15.7) - t38;
+        let t40 = T::fused(t39, t39, k(0.0025)).sqrt();
+        let t41 = T::fused(
             -k(25.0),
-            t35 - t36,
-            disc_wz * (k(0.05) * (k(1.0) - t35 / t36)),
+            t39 - t40,
+            disc_wz * (k(0.05) * (k(1.0) - t39 / t40)),
         );
-        let t38 = k(9.5) + t34;
-        let t39 = k(50.0)
-            * T::fused(k(20.0), t38 - T::fused(t38, t38, k(0.0025)).sqrt(), t37);
+        let t42 = k(9.5) + t38;
+        let t43 = k(50.0)
+            * T::fused(k(20.0), t42 - T::fused(t42, t42, k(0.0025)).sqrt(), t41);
         *out = [
             k(0.0),
             k(0.0),
             -(k(2.0) * (t4 + t2 + k(4.905))),
-            -t22,
-            T::fused(t15, t18 * t20, t21 * (t20 * (t7 * t11))),
-            T::fused(-(t19 * t20), t23, t24),
+            -t25,
+            T::fused(t17, t21 * t23, t24 * (t23 * (t8 * t12))),
+            T::fused(-(t22 * t23), t26, t27),
             k(0.0),
             k(0.0),
             k(0.0),
-            t27,
-            -t28,
-            -t39,
+            t31,
+            T::fused(-disc_wx, disc_wz, T::fused(-disc_e2, t28, disc_e3 * t32) * t30),
+            -t43,
         ];
     }
-    /// Writes λ: 91 operations (24 ±, 65 ×, 2 ÷).
+    /// Writes λ: 86 operations (22 ±, 62 ×, 2 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -1113,51 +1118,55 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Stops<T> {
         let disc_dsz = accelerations[8];
         let disc_dwx = accelerations[9];
         let disc_dwy = accelerations[10];
-        let t0 = hammer_e0 * hammer_e3;
-        let t1 = hammer_e1 * hammer_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = hammer_e0 * hammer_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t3));
-        let t5 = t4 * (k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t3)));
-        let t6 = k(2.0) * (t1 - t0);
-        let t7 = T::fused(t6, t2, -t5);
-        let t8 = k(1.0) / (t4 * t7);
-        let t9 = k(0.001) * hammer_dwx;
-        let t10 = k(0.001) * hammer_dwy;
-        let t11 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
-        let t12 = k(0.001) * hammer_dwz;
-        let t13 = T::fused(
-            t12,
-            t8 * (t11 * t2),
-            T::fused(-t9, t8 * (t4 * t2), t10 * (t5 * t8)),
+        let t0 = k(2.0) * hammer_e0;
+        let t1 = hammer_e3 * t0;
+        let t2 = k(2.0) * hammer_e1;
+        let t3 = hammer_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = T::fused(-hammer_e0, t0, k(1.0));
+        let t6 = T::fused(-hammer_e1, t2, t5);
+        let t7 = t6 * T::fused(-hammer_e2, k(2.0) * hammer_e2, t5);
+        let t8 = t3 - t1;
+        let t9 = T::fused(t8, t4, -t7);
+        let t10 = k(1.0) / (t6 * t9);
+        let t11 = k(0.001) * hammer_dwx;
+        let t12 = k(0.001) * hammer_dwy;
+        let t13 = T::fused(hammer_e2, t0, hammer_e3 * t2);
+        let t14 = k(0.001) * hammer_dwz;
+        let t15 = T::fused(
+            t14,
+            t10 * (t13 * t4),
+            T::fused(-t11, t10 * (t6 * t4), t12 * (t7 * t10)),
         );
-        let t14 = T::fused(-t9, t8 * (t4 * t4), t10 * (t8 * (t4 * t6)));
-        let t15 = disc_e0 * disc_e3;
-        let t16 = disc_e1 * disc_e2;
-        let t17 = k(2.0) * (t16 + t15);
-        let t18 = k(2.0) * (t16 - t15);
-        let t19 = disc_e0 * disc_e0;
-        let t20 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t19));
-        let t21 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t19));
-        let t22 = k(1.0) / T::fused(-t18, t17, t21 * t20);
-        let t23 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
-        let t24 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
+        let t16 = T::fused(-t11, t10 * (t6 * t6), t12 * (t10 * (t6 * t8)));
+        let t17 = k(2.0) * disc_e0;
+        let t18 = disc_e3 * t17;
+        let t19 = k(2.0) * disc_e1;
+        let t20 = disc_e2 * t19;
+        let t21 = t20 + t18;
+        let t22 = t20 - t18;
+        let t23 = T::fused(-disc_e0, t17, k(1.0));
+        let t24 = T::fused(-disc_e2, k(2.0) * disc_e2, t23);
+        let t25 = T::fused(-disc_e1, t19, t23);
+        let t26 = k(1.0) / T::fused(-t22, t21, t25 * t24);
+        let t27 = k(0.01) * T::fused(disc_wy, disc_wz, disc_dwx);
+        let t28 = k(0.01) * T::fused(disc_wx, disc_wz, -disc_dwy);
         *lambda = [
             -(k(0.5) * hammer_dsx),
             -(k(0.5) * hammer_dsy),
-            -t13,
-            -T::fused(t12, t8 * (t4 * t11), t14),
-            -(t12 * (t7 * t8)),
+            -t15,
+            -T::fused(t14, t10 * (t6 * t13), t16),
+            -(t14 * (t9 * t10)),
             -(k(4.0) * disc_dsx),
             -(k(4.0) * disc_dsy),
             -T::fused(k(4.0), disc_dsz, k(39.24)),
-            -T::fused(t23, t17 * t22, t24 * (t20 * t22)),
-            -T::fused(t23, t21 * t22, t24 * (t18 * t22)),
+            -T::fused(t27, t21 * t26, t28 * (t24 * t26)),
+            -T::fused(t27, t25 * t26, t28 * (t22 * t26)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Stops<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 76 operations (21 ±, 53 ×, 2 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 71 operations (19 ±, 50 ×, 2 ÷).
     fn project(
         &self,
         _t: T,
@@ -1184,38 +1193,42 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Stops<T> {
         let row7 = rows[7];
         let row8 = rows[8];
         let row9 = rows[9];
-        let t0 = hammer_e0 * hammer_e3;
-        let t1 = hammer_e1 * hammer_e2;
-        let t2 = k(2.0) * (t1 + t0);
-        let t3 = hammer_e0 * hammer_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(hammer_e1, hammer_e1, t3));
-        let t5 = t4 * (k(2.0) * (k(0.5) - T::fused(hammer_e2, hammer_e2, t3)));
-        let t6 = k(2.0) * (t1 - t0);
-        let t7 = T::fused(t6, t2, -t5);
-        let t8 = k(1.0) / (t4 * t7);
-        let t9 = T::fused(t8 * (t4 * t2), row2, t8 * (t4 * t4) * row3);
-        let t10 = k(2.0) * T::fused(hammer_e0, hammer_e2, hammer_e1 * hammer_e3);
-        let t11 = T::fused(t8 * (t10 * t2), row2, t8 * (t4 * t10) * row3);
-        let t12 = disc_e0 * disc_e3;
-        let t13 = disc_e1 * disc_e2;
-        let t14 = k(2.0) * (t13 + t12);
-        let t15 = k(2.0) * (t13 - t12);
-        let t16 = disc_e0 * disc_e0;
-        let t17 = k(2.0) * (k(0.5) - T::fused(disc_e2, disc_e2, t16));
-        let t18 = k(2.0) * (k(0.5) - T::fused(disc_e1, disc_e1, t16));
-        let t19 = k(1.0) / T::fused(-t15, t14, t18 * t17);
+        let t0 = k(2.0) * hammer_e0;
+        let t1 = hammer_e3 * t0;
+        let t2 = k(2.0) * hammer_e1;
+        let t3 = hammer_e2 * t2;
+        let t4 = t3 + t1;
+        let t5 = T::fused(-hammer_e0, t0, k(1.0));
+        let t6 = T::fused(-hammer_e1, t2, t5);
+        let t7 = t6 * T::fused(-hammer_e2, k(2.0) * hammer_e2, t5);
+        let t8 = t3 - t1;
+        let t9 = T::fused(t8, t4, -t7);
+        let t10 = k(1.0) / (t6 * t9);
+        let t11 = T::fused(t10 * (t6 * t4), row2, t10 * (t6 * t6) * row3);
+        let t12 = T::fused(hammer_e2, t0, hammer_e3 * t2);
+        let t13 = T::fused(t10 * (t12 * t4), row2, t10 * (t6 * t12) * row3);
+        let t14 = k(2.0) * disc_e0;
+        let t15 = disc_e3 * t14;
+        let t16 = k(2.0) * disc_e1;
+        let t17 = disc_e2 * t16;
+        let t18 = t17 + t15;
+        let t19 = t17 - t15;
+        let t20 = T::fused(-disc_e0, t14, k(1.0));
+        let t21 = T::fused(-disc_e2, k(2.0) * disc_e2, t20);
+        let t22 = T::fused(-disc_e1, t16, t20);
+        let t23 = k(1.0) / T::fused(-t19, t18, t22 * t21);
         *out = [
             row0,
             row1,
             k(0.0),
-            -t9,
-            T::fused(t5 * t8, row2, t8 * (t4 * t6) * row3),
-            T::fused(t7 * t8, row4, t11),
+            -t11,
+            T::fused(t7 * t10, row2, t10 * (t6 * t8) * row3),
+            T::fused(t9 * t10, row4, t13),
             row5,
             row6,
             row7,
-            T::fused(row8, t14 * t19, row9 * (t18 * t19)),
-            -T::fused(row8, t17 * t19, row9 * (t15 * t19)),
+            T::fused(row8, t18 * t23, row9 * (t22 * t23)),
+            -T::fused(row8, t21 * t23, row9 * (t19 * t23)),
             k(0.0),
         ];
     }

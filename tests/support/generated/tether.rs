@@ -10,8 +10,8 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 31 operations by rotations of the bodies; 31 operations by relative Euler parameters
-//! * project: 0 operations by rotations of the bodies; 0 operations by relative Euler parameters
+//! * accelerations: 31 operations by rotations of the bodies; 31 operations by rotations of the bodies, doubled; 2 more compared
+//! * project: 0 operations by rotations of the bodies; 0 operations by rotations of the bodies, doubled; 2 more compared
 //! * joint_accelerations_at: 215 operations by recursion; 215 operations by recursion on the bodies' spins
 //! * corrected_accelerations: 31 operations by elimination in maximal coordinates; 239 operations by recursion in the bodies' frames; 3 more compared
 //! * joint_jacobian: 1397 operations by derivatives of u̇, from its roots; 1875 operations by derivatives of u̇, from its leaves
@@ -22,8 +22,8 @@
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 4 | 4 | 0 | 8 | 0 of 1 | 8 | 8 |
 //! | phi_q | Φ_q, non-zeros in (r, p) | 0 | 4 | 0 | 4 | 0 of 4 | 4 | 4 |
-//! | applied_force | (f, n' − w̃'J'w') | 7 | 20 | 1 | 28 | 0 of 6 | 136 | 28 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 7 | 23 | 1 | 31 | 0 of 6 | 139 | 31 |
+//! | applied_force | (f, n' − w̃'J'w') | 7 | 19 | 1 | 27 | 0 of 6 | 136 | 27 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
 //! | project | (δr, δπ') that changes the rows as given | 0 | 0 | 0 | 0 | 6 of 6 | 0 | 0 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 12 | 27 | 1 | 40 | 0 of 8 | 78 | 40 |
 //! | energy | T and V | 9 | 18 | 0 | 27 | 0 of 2 | 33 | 27 |
@@ -35,9 +35,9 @@
 //! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 81 | 130 | 4 | 215 | 0 of 6 | 377970 | 216 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 23 | 1 | 31 | 0 of 6 | 139 | 31 |
-//! | corrected_solution | both | 7 | 23 | 1 | 31 | 0 of 6 | 139 | 31 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 584 | 809 | 4 | 1397 | 141 of 210 | 9.2e8 | 1397 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
+//! | corrected_solution | both | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 584 | 805 | 4 | 1393 | 141 of 210 | 9.2e8 | 1393 |
 //!
 //! # Proof
 //!
@@ -427,7 +427,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
     fn gamma(&self, _t: T, _y: &Self::State, out: &mut Self::Rows) {
         *out = [];
     }
-    /// Writes (f, n' − w̃'J'w'): 28 operations (7 ±, 20 ×, 1 ÷) and 1 functions.
+    /// Writes (f, n' − w̃'J'w'): 27 operations (7 ±, 19 ×, 1 ÷) and 1 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -450,16 +450,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
             T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
             k(40.0) * (k(0.6) - t0),
         );
+        let t6 = k(0.001) * bob_wy;
         *out = [
             t4 * t5,
             t3 * t5,
             T::fused(t2, t5, -k(4.905)),
-            -(k(0.001) * (bob_wy * bob_wz)),
+            -(bob_wz * t6),
             k(0.002) * (bob_wx * bob_wz),
-            -(k(0.001) * (bob_wx * bob_wy)),
+            -(bob_wx * t6),
         ];
     }
-    /// Solves eq. (17): 31 operations (7 ±, 23 ×, 1 ÷) and 1 functions.
+    /// Solves eq. (17): 30 operations (7 ±, 22 ×, 1 ÷) and 1 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -482,9 +483,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Tether<T> {
             T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
             k(40.0) * (k(0.6) - t0),
         );
+        let t6 = k(2.0) * t5;
         *out = [
-            k(2.0) * (t4 * t5),
-            k(2.0) * (t3 * t5),
+            t4 * t6,
+            t3 * t6,
             k(2.0) * T::fused(t2, t5, -k(4.905)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
@@ -863,7 +865,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
             -(k(0.25) * (bob_wx * bob_wy)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 31 operations (7 ±, 23 ×, 1 ÷) and 1 functions.
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 30 operations (7 ±, 22 ×, 1 ÷) and 1 functions.
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -891,9 +893,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
             T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
             k(40.0) * (k(0.6) - t0),
         );
+        let t6 = k(2.0) * t5;
         *out = [
-            k(2.0) * (t4 * t5),
-            k(2.0) * (t3 * t5),
+            t4 * t6,
+            t3 * t6,
             k(2.0) * T::fused(t2, t5, -k(4.905)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
@@ -910,7 +913,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
     ) {
         *lambda = [];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 31 operations (7 ±, 23 ×, 1 ÷) and 1 functions.
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 30 operations (7 ±, 22 ×, 1 ÷) and 1 functions.
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -933,9 +936,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
             T::fused(bob_sz, t2, T::fused(bob_sy, t3, bob_sx * t4)),
             k(40.0) * (k(0.6) - t0),
         );
+        let t6 = k(2.0) * t5;
         *out = [
-            k(2.0) * (t4 * t5),
-            k(2.0) * (t3 * t5),
+            t4 * t6,
+            t3 * t6,
             k(2.0) * T::fused(t2, t5, -k(4.905)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
@@ -952,7 +956,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1397 operations (584 ±, 809 ×, 4 ÷) and 1 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1393 operations (584 ±, 805 ×, 4 ÷) and 1 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -1375,15 +1379,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t189,
                 T::fused(x3, t181, t192 - T::fused(x6, t193, -t192)),
             );
-            let t195 = T::fused(
-                -x3,
+            let t195 = k(2.0) * x6;
+            let t196 = T::fused(
+                x3,
                 t176,
-                T::fused(-x4, t190, T::fused(x5, t193, k(2.0) * (x6 * t170))),
+                T::fused(x4, t190, -T::fused(t195, t170, x5 * t193)),
             );
-            let t196 = T::fused(-t44, t56, T::fused(t47, t54, t50 * t52));
-            let t197 = t64 * t196;
-            let t198 = t44 * t197;
-            let t199 = t47 * t197;
+            let t197 = T::fused(-t44, t56, T::fused(t47, t54, t50 * t52));
+            let t198 = t64 * t197;
+            let t199 = t44 * t198;
             (
                 t0,
                 t1,
@@ -1485,463 +1489,465 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             )
         };
         let (
-            t215,
             t216,
             t217,
             t218,
-            t221,
+            t219,
             t222,
             t223,
-            t278,
-            t282,
-            t285,
+            t224,
+            t279,
+            t283,
             t286,
-            t304,
+            t287,
             t305,
             t306,
             t307,
-            t310,
+            t308,
             t311,
             t312,
-            t366,
-            t370,
-            t373,
-            t374,
+            t313,
+            t368,
+            t372,
             t375,
             t376,
             t377,
             t378,
+            t379,
             t380,
-            t381,
             t382,
+            t383,
+            t384,
         ) = {
-            let t200 = t50 * t197;
-            let t201 = T::fused(-t39, t198, T::fused(t37, t199, t34 * t200));
-            let t202 = T::fused(t40, t201, t40);
-            let t203 = T::fused(t21, t202, t198);
-            let t204 = T::fused(-t24, t202, t199);
-            let t205 = T::fused(-t29, t202, t200);
-            let t206 = T::fused(t16, t203, T::fused(-t13, t204, t9 * t205));
-            let t207 = t18 * t206;
-            let t208 = T::fused(-t17, t207, t203);
-            let t209 = T::fused(t14, t207, t204);
-            let t210 = T::fused(-t10, t207, t205);
-            let t211 = T::fused(t17, t208, T::fused(-t14, t209, t10 * t210));
-            let t212 = T::fused(-t21, t208, T::fused(t24, t209, t29 * t210));
-            let t213 = T::fused(t44, t208, T::fused(t47, t209, t50 * t210));
-            let t214 = T::fused(-t82, t211, T::fused(-t84, t212, t86 * t213));
-            let t215 = k(0.3) * t214;
-            let t216 = T::fused(-u0, t215, t90 * t211);
-            let t217 = T::fused(-u1, t215, t90 * t212);
-            let t218 = T::fused(u2, t215, t90 * t213);
-            let t219 = T::fused(
+            let t200 = t47 * t198;
+            let t201 = t50 * t198;
+            let t202 = T::fused(-t39, t199, T::fused(t37, t200, t34 * t201));
+            let t203 = T::fused(t40, t202, t40);
+            let t204 = T::fused(t21, t203, t199);
+            let t205 = T::fused(-t24, t203, t200);
+            let t206 = T::fused(-t29, t203, t201);
+            let t207 = T::fused(t16, t204, T::fused(-t13, t205, t9 * t206));
+            let t208 = t18 * t207;
+            let t209 = T::fused(-t17, t208, t204);
+            let t210 = T::fused(t14, t208, t205);
+            let t211 = T::fused(-t10, t208, t206);
+            let t212 = T::fused(t17, t209, T::fused(-t14, t210, t10 * t211));
+            let t213 = T::fused(-t21, t209, T::fused(t24, t210, t29 * t211));
+            let t214 = T::fused(t44, t209, T::fused(t47, t210, t50 * t211));
+            let t215 = T::fused(-t82, t212, T::fused(-t84, t213, t86 * t214));
+            let t216 = k(0.3) * t215;
+            let t217 = T::fused(-u0, t216, t90 * t212);
+            let t218 = T::fused(-u1, t216, t90 * t213);
+            let t219 = T::fused(u2, t216, t90 * t214);
+            let t220 = T::fused(
                 -k(40.0),
-                t214,
-                t94 * T::fused(-x0, t216, T::fused(-x1, t217, x2 * t218)),
+                t215,
+                t94 * T::fused(-x0, t217, T::fused(-x1, t218, x2 * t219)),
             );
-            let t220 = t96 * t219;
-            let t221 = x0 * t220;
-            let t222 = x1 * t220;
-            let t223 = x2 * t220;
-            let t224 = t121 * (t120 * t196);
-            let t225 = T::fused(-t113, t197, t50 * t224);
-            let t226 = t50 * t225;
-            let t227 = t34 * t226;
-            let t228 = T::fused(-t118, t197, t47 * t224);
-            let t229 = T::fused(t47, t225, t50 * t228);
-            let t230 = t47 * t228;
-            let t231 = T::fused(t34, t229, t37 * t230);
-            let t232 = T::fused(-t119, t197, t44 * t224);
-            let t233 = T::fused(t44, t225, t50 * t232);
-            let t234 = T::fused(t44, t228, t47 * t232);
-            let t235 = t44 * t232;
-            let t236 = T::fused(-t34, t233, T::fused(-t37, t234, t39 * t235));
-            let t237 = T::fused(
+            let t221 = t96 * t220;
+            let t222 = x0 * t221;
+            let t223 = x1 * t221;
+            let t224 = x2 * t221;
+            let t225 = t121 * (t120 * t197);
+            let t226 = T::fused(-t113, t198, t50 * t225);
+            let t227 = t50 * t226;
+            let t228 = t34 * t227;
+            let t229 = T::fused(-t118, t198, t47 * t225);
+            let t230 = T::fused(t47, t226, t50 * t229);
+            let t231 = t47 * t229;
+            let t232 = T::fused(t34, t230, t37 * t231);
+            let t233 = T::fused(-t119, t198, t44 * t225);
+            let t234 = T::fused(t44, t226, t50 * t233);
+            let t235 = T::fused(t44, t229, t47 * t233);
+            let t236 = t44 * t233;
+            let t237 = T::fused(-t34, t234, T::fused(-t37, t235, t39 * t236));
+            let t238 = T::fused(
                 t112,
-                t201,
-                T::fused(-t34, t227, T::fused(-t37, t231, T::fused(-t39, t236, t139))),
+                t202,
+                T::fused(-t34, t228, T::fused(-t37, t232, T::fused(-t39, t237, t139))),
             );
-            let t238 = t141 * t237;
-            let t239 = T::fused(
-                -t52,
-                t226,
-                T::fused(-t54, t229, T::fused(t56, t233, t40 * t138)),
-            );
+            let t239 = t141 * t238;
             let t240 = T::fused(
+                -t52,
+                t227,
+                T::fused(-t54, t230, T::fused(t56, t234, t40 * t138)),
+            );
+            let t241 = T::fused(
                 -t29,
-                t238,
-                T::fused(t114, t200, T::fused(-t40, t227, t239)),
+                t239,
+                T::fused(t114, t201, T::fused(-t40, t228, t240)),
             );
-            let t241 = T::fused(t29, t240, t226);
-            let t242 = t9 * t241;
-            let t243 = T::fused(
+            let t242 = T::fused(t29, t241, t227);
+            let t243 = t9 * t242;
+            let t244 = T::fused(
                 -t40,
-                t231,
-                T::fused(-t54, t230, T::fused(t56, t234, t40 * t137)),
+                t232,
+                T::fused(-t54, t231, T::fused(t56, t235, t40 * t137)),
             );
-            let t244 = T::fused(-t24, t238, T::fused(t114, t199, t243));
-            let t245 = T::fused(t24, t240, T::fused(t29, t244, t229));
-            let t246 = T::fused(t24, t244, t230);
-            let t247 = T::fused(-t9, t245, t13 * t246);
-            let t248 = T::fused(
+            let t245 = T::fused(-t24, t239, T::fused(t114, t200, t244));
+            let t246 = T::fused(t24, t241, T::fused(t29, t245, t230));
+            let t247 = T::fused(t24, t245, t231);
+            let t248 = T::fused(-t9, t246, t13 * t247);
+            let t249 = T::fused(
                 t114,
-                t198,
-                T::fused(t40, t236, T::fused(t56, t235, t40 * t136)),
+                t199,
+                T::fused(t40, t237, T::fused(t56, t236, t40 * t136)),
             );
-            let t249 = T::fused(t21, t238, t248);
-            let t250 = T::fused(-t21, t240, T::fused(t29, t249, t233));
-            let t251 = T::fused(-t21, t244, T::fused(t24, t249, t234));
-            let t252 = T::fused(-t21, t249, t235);
-            let t253 = T::fused(t9, t250, T::fused(-t13, t251, t16 * t252));
-            let t254 = T::fused(
+            let t250 = T::fused(t21, t239, t249);
+            let t251 = T::fused(-t21, t241, T::fused(t29, t250, t234));
+            let t252 = T::fused(-t21, t245, T::fused(t24, t250, t235));
+            let t253 = T::fused(-t21, t250, t236);
+            let t254 = T::fused(t9, t251, T::fused(-t13, t252, t16 * t253));
+            let t255 = T::fused(
                 -t107,
-                t206,
-                T::fused(t9, t242, T::fused(t13, t247, t16 * t253)),
+                t207,
+                T::fused(t9, t243, T::fused(t13, t248, t16 * t254)),
             );
-            let t255 = t163 * t254;
-            let t256 = T::fused(
-                -t17,
-                t255,
-                T::fused(-t108, t203, T::fused(t18, t253, t19 * t252)),
-            );
+            let t256 = t163 * t255;
             let t257 = T::fused(
-                -k(2.0),
-                T::fused(t101, t208, T::fused(t104, t207, t16 * t255)),
+                -t17,
                 t256,
+                T::fused(-t108, t204, T::fused(t18, t254, t19 * t253)),
             );
             let t258 = T::fused(
-                t32,
-                t240,
-                T::fused(-t35, t244, T::fused(-t37, t238, t36 * t249)),
+                -k(2.0),
+                T::fused(t101, t209, T::fused(t104, t208, t16 * t256)),
+                t257,
             );
             let t259 = T::fused(
-                k(2.0),
-                T::fused(t102, t209, T::fused(t110, t202, t258)),
-                t244,
+                t32,
+                t241,
+                T::fused(-t35, t245, T::fused(-t37, t239, t36 * t250)),
             );
             let t260 = T::fused(
-                -t55,
-                t228,
-                T::fused(t57, t232, T::fused(-t58, t224, t52 * t135)),
+                k(2.0),
+                T::fused(t102, t210, T::fused(t110, t203, t259)),
+                t245,
             );
             let t261 = T::fused(
+                -t55,
+                t229,
+                T::fused(t57, t233, T::fused(-t58, t225, t52 * t135)),
+            );
+            let t262 = T::fused(
                 -k(2.0),
-                T::fused(t103, t210, T::fused(t117, t197, T::fused(t53, t225, t260))),
-                T::fused(k(19.62), T::fused(-t58, t197, t52), t225),
+                T::fused(t103, t211, T::fused(t117, t198, T::fused(t53, t226, t261))),
+                T::fused(k(19.62), T::fused(-t58, t198, t52), t226),
             );
-            let t262 = x3 * (t261 + t259 - t257);
-            let t263 = T::fused(
-                -t33,
-                t240,
-                T::fused(t36, t244, T::fused(-t38, t249, t39 * t238)),
-            );
+            let t263 = x3 * (t262 + t260 - t258);
             let t264 = T::fused(
-                k(2.0),
-                T::fused(t102, t208, T::fused(t109, t202, t263)),
-                t249,
+                -t33,
+                t241,
+                T::fused(t36, t245, T::fused(-t38, t250, t39 * t239)),
             );
             let t265 = T::fused(
-                -t108,
-                t204,
-                T::fused(-t18, t247, T::fused(-t22, t246, t19 * t251)),
+                k(2.0),
+                T::fused(t102, t209, T::fused(t109, t203, t264)),
+                t250,
             );
             let t266 = T::fused(
+                -t108,
+                t205,
+                T::fused(-t18, t248, T::fused(-t22, t247, t19 * t252)),
+            );
+            let t267 = T::fused(
                 k(2.0),
-                T::fused(-t101, t209, T::fused(-t105, t207, t13 * t255)),
-                T::fused(t14, t255, t265),
+                T::fused(-t101, t210, T::fused(-t105, t208, t13 * t256)),
+                T::fused(t14, t256, t266),
             );
-            let t267 = t266 + t264;
-            let t268 = T::fused(
-                t60,
-                t228,
-                T::fused(-t62, t232, T::fused(t63, t224, t56 * t135)),
-            );
+            let t268 = t267 + t265;
             let t269 = T::fused(
-                k(2.0),
-                T::fused(-t103, t208, T::fused(-t115, t197, T::fused(-t57, t225, t268))),
-                T::fused(-k(19.62), T::fused(t63, t197, t56), t232),
+                t60,
+                t229,
+                T::fused(-t62, t233, T::fused(t63, t225, t56 * t135)),
             );
             let t270 = T::fused(
-                t18,
-                t242,
-                T::fused(t25, t241, T::fused(-t22, t245, t19 * t250)),
+                k(2.0),
+                T::fused(-t103, t209, T::fused(-t115, t198, T::fused(-t57, t226, t269))),
+                T::fused(-k(19.62), T::fused(t63, t198, t56), t233),
             );
             let t271 = T::fused(
+                t18,
+                t243,
+                T::fused(t25, t242, T::fused(-t22, t246, t19 * t251)),
+            );
+            let t272 = T::fused(
                 -k(2.0),
-                T::fused(t101, t210, T::fused(t106, t207, t9 * t255)),
-                T::fused(-t10, t255, T::fused(-t108, t205, t270)),
+                T::fused(t101, t211, T::fused(t106, t208, t9 * t256)),
+                T::fused(-t10, t256, T::fused(-t108, t206, t271)),
             );
-            let t272 = t271 + t269;
-            let t273 = T::fused(
-                t59,
-                t228,
-                T::fused(-t60, t232, T::fused(-t61, t224, t54 * t135)),
-            );
+            let t273 = t272 + t270;
             let t274 = T::fused(
-                -k(2.0),
-                T::fused(t103, t209, T::fused(t116, t197, T::fused(-t55, t225, t273))),
-                T::fused(k(19.62), T::fused(-t61, t197, t54), t228),
+                t59,
+                t229,
+                T::fused(-t60, t233, T::fused(-t61, t225, t54 * t135)),
             );
             let t275 = T::fused(
-                t31,
-                t240,
-                T::fused(t34, t238, T::fused(-t32, t244, t33 * t249)),
+                -k(2.0),
+                T::fused(t103, t210, T::fused(t116, t198, T::fused(-t55, t226, t274))),
+                T::fused(k(19.62), T::fused(-t61, t198, t54), t229),
             );
             let t276 = T::fused(
+                t31,
+                t241,
+                T::fused(t34, t239, T::fused(-t32, t245, t33 * t250)),
+            );
+            let t277 = T::fused(
                 -k(2.0),
-                T::fused(-t102, t210, T::fused(-t111, t202, t275)),
-                t240,
+                T::fused(-t102, t211, T::fused(-t111, t203, t276)),
+                t241,
             );
-            let t277 = t276 - t274;
-            let t278 = t262 + (T::fused(x6, t267, T::fused(x5, t272, x4 * t277)) + t262);
-            let t279 = x4 * t257;
-            let t280 = t266 - t264;
-            let t281 = t271 - t269;
-            let t282 = t279
-                - (T::fused(-x5, t280, T::fused(x6, t281, x3 * t277)) - t279);
-            let t283 = x5 * t259;
-            let t284 = t276 + t274;
-            let t285 = T::fused(
-                -x4,
-                t280,
-                T::fused(x3, t272, t283 - T::fused(x6, t284, -t283)),
-            );
+            let t278 = t277 - t275;
+            let t279 = t263 + (T::fused(x6, t268, T::fused(x5, t273, x4 * t278)) + t263);
+            let t280 = x4 * t258;
+            let t281 = t267 - t265;
+            let t282 = t272 - t270;
+            let t283 = t280
+                - (T::fused(-x5, t281, T::fused(x6, t282, x3 * t278)) - t280);
+            let t284 = x5 * t260;
+            let t285 = t277 + t275;
             let t286 = T::fused(
+                -x4,
+                t281,
+                T::fused(x3, t273, t284 - T::fused(x6, t285, -t284)),
+            );
+            let t287 = T::fused(
                 x3,
-                t267,
-                T::fused(x4, t281, T::fused(-x5, t284, k(2.0) * (x6 * t261))),
+                t268,
+                T::fused(x4, t282, -T::fused(-t195, t262, x5 * t285)),
             );
-            let t287 = t44 * t64;
-            let t288 = t47 * t64;
-            let t289 = t50 * t64;
-            let t290 = T::fused(-t39, t287, T::fused(t37, t288, t34 * t289));
-            let t291 = t40 * t290;
-            let t292 = T::fused(t21, t291, t287);
-            let t293 = T::fused(-t24, t291, t288);
-            let t294 = T::fused(-t29, t291, t289);
-            let t295 = T::fused(t16, t292, T::fused(-t13, t293, t9 * t294));
-            let t296 = t18 * t295;
-            let t297 = T::fused(-t17, t296, t292);
-            let t298 = T::fused(t14, t296, t293);
-            let t299 = T::fused(-t10, t296, t294);
-            let t300 = T::fused(t17, t297, T::fused(-t14, t298, t10 * t299));
-            let t301 = T::fused(-t21, t297, T::fused(t24, t298, t29 * t299));
-            let t302 = T::fused(t44, t297, T::fused(t47, t298, t50 * t299));
-            let t303 = T::fused(-t82, t300, T::fused(-t84, t301, t86 * t302));
-            let t304 = k(0.3) * t303;
-            let t305 = T::fused(-u0, t304, t90 * t300);
-            let t306 = T::fused(-u1, t304, t90 * t301);
-            let t307 = T::fused(u2, t304, t90 * t302);
-            let t308 = T::fused(
+            let t288 = t44 * t64;
+            let t289 = t47 * t64;
+            let t290 = t50 * t64;
+            let t291 = T::fused(-t39, t288, T::fused(t37, t289, t34 * t290));
+            let t292 = t40 * t291;
+            let t293 = T::fused(t21, t292, t288);
+            let t294 = T::fused(-t24, t292, t289);
+            let t295 = T::fused(-t29, t292, t290);
+            let t296 = T::fused(t16, t293, T::fused(-t13, t294, t9 * t295));
+            let t297 = t18 * t296;
+            let t298 = T::fused(-t17, t297, t293);
+            let t299 = T::fused(t14, t297, t294);
+            let t300 = T::fused(-t10, t297, t295);
+            let t301 = T::fused(t17, t298, T::fused(-t14, t299, t10 * t300));
+            let t302 = T::fused(-t21, t298, T::fused(t24, t299, t29 * t300));
+            let t303 = T::fused(t44, t298, T::fused(t47, t299, t50 * t300));
+            let t304 = T::fused(-t82, t301, T::fused(-t84, t302, t86 * t303));
+            let t305 = k(0.3) * t304;
+            let t306 = T::fused(-u0, t305, t90 * t301);
+            let t307 = T::fused(-u1, t305, t90 * t302);
+            let t308 = T::fused(u2, t305, t90 * t303);
+            let t309 = T::fused(
                 -k(40.0),
-                t303,
-                t94 * T::fused(-x0, t305, T::fused(-x1, t306, x2 * t307)),
+                t304,
+                t94 * T::fused(-x0, t306, T::fused(-x1, t307, x2 * t308)),
             );
-            let t309 = t96 * t308;
-            let t310 = x0 * t309;
-            let t311 = x1 * t309;
-            let t312 = x2 * t309;
-            let t313 = t120 * t121;
-            let t314 = T::fused(-t113, t64, t50 * t313);
-            let t315 = t50 * t314;
-            let t316 = t34 * t315;
-            let t317 = T::fused(-t118, t64, t47 * t313);
-            let t318 = T::fused(t47, t314, t50 * t317);
-            let t319 = t47 * t317;
-            let t320 = T::fused(t34, t318, t37 * t319);
-            let t321 = T::fused(-t119, t64, t44 * t313);
-            let t322 = T::fused(t44, t314, t50 * t321);
-            let t323 = T::fused(t44, t317, t47 * t321);
-            let t324 = t44 * t321;
-            let t325 = T::fused(-t34, t322, T::fused(-t37, t323, t39 * t324));
-            let t326 = T::fused(
-                -t112,
-                t290,
-                T::fused(t34, t316, T::fused(t37, t320, t39 * t325)),
+            let t310 = t96 * t309;
+            let t311 = x0 * t310;
+            let t312 = x1 * t310;
+            let t313 = x2 * t310;
+            let t314 = k(19.62) * t64;
+            let t315 = t120 * t121;
+            let t316 = T::fused(-t118, t64, t47 * t315);
+            let t317 = T::fused(-t113, t64, t50 * t315);
+            let t318 = T::fused(-t119, t64, t44 * t315);
+            let t319 = T::fused(
+                t55,
+                t317,
+                T::fused(-t59, t316, T::fused(t60, t318, t61 * t315)),
             );
-            let t327 = t141 * t326;
-            let t328 = T::fused(
-                -t40,
-                t316,
-                T::fused(-t52, t315, T::fused(-t54, t318, t56 * t322)),
-            );
-            let t329 = T::fused(t29, t327, T::fused(t114, t289, t328));
-            let t330 = T::fused(t29, t329, t315);
-            let t331 = t9 * t330;
-            let t332 = T::fused(
-                t114,
-                t288,
-                T::fused(-t40, t320, T::fused(-t54, t319, t56 * t323)),
-            );
-            let t333 = T::fused(t24, t327, t332);
-            let t334 = T::fused(t24, t329, T::fused(t29, t333, t318));
-            let t335 = T::fused(t24, t333, t319);
-            let t336 = T::fused(-t9, t334, t13 * t335);
-            let t337 = T::fused(
-                -t21,
-                t327,
-                T::fused(t114, t287, T::fused(t40, t325, t56 * t324)),
-            );
-            let t338 = T::fused(-t21, t329, T::fused(t29, t337, t322));
-            let t339 = T::fused(-t21, t333, T::fused(t24, t337, t323));
-            let t340 = T::fused(-t21, t337, t324);
-            let t341 = T::fused(t9, t338, T::fused(-t13, t339, t16 * t340));
-            let t342 = T::fused(
-                -t107,
-                t295,
-                T::fused(t9, t331, T::fused(t13, t336, t16 * t341)),
-            );
-            let t343 = t163 * t342;
-            let t344 = T::fused(
-                -t17,
-                t343,
-                T::fused(-t108, t292, T::fused(t18, t341, t19 * t340)),
-            );
-            let t345 = T::fused(
-                -k(2.0),
-                T::fused(t101, t297, T::fused(t104, t296, t16 * t343)),
-                t344,
-            );
-            let t346 = T::fused(
-                t32,
-                t329,
-                T::fused(-t35, t333, T::fused(t37, t327, t36 * t337)),
-            );
-            let t347 = T::fused(
+            let t320 = T::fused(
                 k(2.0),
-                T::fused(t102, t298, T::fused(t110, t291, t346)),
+                T::fused(-t103, t299, T::fused(-t64, t116, t319)),
+                T::fused(-t61, t314, t316),
+            );
+            let t321 = t50 * t317;
+            let t322 = t34 * t321;
+            let t323 = T::fused(t47, t317, t50 * t316);
+            let t324 = t47 * t316;
+            let t325 = T::fused(t34, t323, t37 * t324);
+            let t326 = T::fused(t44, t317, t50 * t318);
+            let t327 = T::fused(t44, t316, t47 * t318);
+            let t328 = t44 * t318;
+            let t329 = T::fused(-t34, t326, T::fused(-t37, t327, t39 * t328));
+            let t330 = T::fused(
+                -t112,
+                t291,
+                T::fused(t34, t322, T::fused(t37, t325, t39 * t329)),
+            );
+            let t331 = t141 * t330;
+            let t332 = T::fused(
+                -t40,
+                t322,
+                T::fused(-t52, t321, T::fused(-t54, t323, t56 * t326)),
+            );
+            let t333 = T::fused(t29, t331, T::fused(t114, t290, t332));
+            let t334 = T::fused(
+                t114,
+                t289,
+                T::fused(-t40, t325, T::fused(-t54, t324, t56 * t327)),
+            );
+            let t335 = T::fused(t24, t331, t334);
+            let t336 = T::fused(
+                -t21,
+                t331,
+                T::fused(t114, t288, T::fused(t40, t329, t56 * t328)),
+            );
+            let t337 = T::fused(
+                t31,
+                t333,
+                T::fused(-t34, t331, T::fused(-t32, t335, t33 * t336)),
+            );
+            let t338 = T::fused(
+                -k(2.0),
+                T::fused(-t102, t300, T::fused(-t111, t292, t337)),
                 t333,
             );
-            let t348 = T::fused(
-                -t53,
-                t314,
-                T::fused(t55, t317, T::fused(-t57, t321, t58 * t313)),
+            let t339 = t338 - t320;
+            let t340 = T::fused(
+                -t57,
+                t317,
+                T::fused(t60, t316, T::fused(-t62, t318, t63 * t315)),
             );
-            let t349 = T::fused(
+            let t341 = T::fused(
                 k(2.0),
-                T::fused(-t103, t299, T::fused(-t64, t117, t348)),
-                T::fused(-k(19.62), t58 * t64, t314),
+                T::fused(-t103, t298, T::fused(-t64, t115, t340)),
+                T::fused(-t63, t314, t318),
             );
-            let t350 = x3 * (t349 + t347 - t345);
+            let t342 = T::fused(t29, t333, t321);
+            let t343 = t9 * t342;
+            let t344 = T::fused(t24, t333, T::fused(t29, t335, t323));
+            let t345 = T::fused(t24, t335, t324);
+            let t346 = T::fused(-t9, t344, t13 * t345);
+            let t347 = T::fused(-t21, t333, T::fused(t29, t336, t326));
+            let t348 = T::fused(-t21, t335, T::fused(t24, t336, t327));
+            let t349 = T::fused(-t21, t336, t328);
+            let t350 = T::fused(t9, t347, T::fused(-t13, t348, t16 * t349));
             let t351 = T::fused(
-                t33,
-                t329,
-                T::fused(-t36, t333, T::fused(t38, t337, t39 * t327)),
+                -t107,
+                t296,
+                T::fused(t9, t343, T::fused(t13, t346, t16 * t350)),
             );
-            let t352 = T::fused(
-                -k(2.0),
-                T::fused(-t102, t297, T::fused(-t109, t291, t351)),
-                t337,
-            );
+            let t352 = t163 * t351;
             let t353 = T::fused(
-                -t108,
-                t293,
-                T::fused(-t18, t336, T::fused(-t22, t335, t19 * t339)),
+                t18,
+                t343,
+                T::fused(t25, t342, T::fused(-t22, t344, t19 * t347)),
             );
             let t354 = T::fused(
-                k(2.0),
-                T::fused(-t101, t298, T::fused(-t105, t296, t13 * t343)),
-                T::fused(t14, t343, t353),
+                -k(2.0),
+                T::fused(t101, t300, T::fused(t106, t297, t9 * t352)),
+                T::fused(-t10, t352, T::fused(-t108, t295, t353)),
             );
-            let t355 = t354 + t352;
+            let t355 = t354 + t341;
             let t356 = T::fused(
-                -t57,
-                t314,
-                T::fused(t60, t317, T::fused(-t62, t321, t63 * t313)),
+                t33,
+                t333,
+                T::fused(-t36, t335, T::fused(t38, t336, t39 * t331)),
             );
             let t357 = T::fused(
-                k(2.0),
-                T::fused(-t103, t297, T::fused(-t64, t115, t356)),
-                T::fused(-k(19.62), t63 * t64, t321),
+                -k(2.0),
+                T::fused(-t102, t298, T::fused(-t109, t292, t356)),
+                t336,
             );
             let t358 = T::fused(
-                t18,
-                t331,
-                T::fused(t25, t330, T::fused(-t22, t334, t19 * t338)),
+                -t108,
+                t294,
+                T::fused(-t18, t346, T::fused(-t22, t345, t19 * t348)),
             );
             let t359 = T::fused(
-                -k(2.0),
-                T::fused(t101, t299, T::fused(t106, t296, t9 * t343)),
-                T::fused(-t10, t343, T::fused(-t108, t294, t358)),
+                k(2.0),
+                T::fused(-t101, t299, T::fused(-t105, t297, t13 * t352)),
+                T::fused(t14, t352, t358),
             );
             let t360 = t359 + t357;
             let t361 = T::fused(
-                t55,
-                t314,
-                T::fused(-t59, t317, T::fused(t60, t321, t61 * t313)),
+                -t53,
+                t317,
+                T::fused(t55, t316, T::fused(-t57, t318, t58 * t315)),
             );
             let t362 = T::fused(
                 k(2.0),
-                T::fused(-t103, t298, T::fused(-t64, t116, t361)),
-                T::fused(-k(19.62), t61 * t64, t317),
+                T::fused(-t103, t300, T::fused(-t64, t117, t361)),
+                T::fused(-t58, t314, t317),
             );
             let t363 = T::fused(
-                t31,
-                t329,
-                T::fused(-t34, t327, T::fused(-t32, t333, t33 * t337)),
+                t32,
+                t333,
+                T::fused(-t35, t335, T::fused(t37, t331, t36 * t336)),
             );
             let t364 = T::fused(
+                k(2.0),
+                T::fused(t102, t299, T::fused(t110, t292, t363)),
+                t335,
+            );
+            let t365 = T::fused(
+                -t17,
+                t352,
+                T::fused(-t108, t293, T::fused(t18, t350, t19 * t349)),
+            );
+            let t366 = T::fused(
                 -k(2.0),
-                T::fused(-t102, t299, T::fused(-t111, t291, t363)),
-                t329,
+                T::fused(t101, t298, T::fused(t104, t297, t16 * t352)),
+                t365,
             );
-            let t365 = t364 - t362;
-            let t366 = t350 + (T::fused(x6, t355, T::fused(x5, t360, x4 * t365)) + t350);
-            let t367 = x4 * t345;
-            let t368 = t354 - t352;
-            let t369 = t359 - t357;
-            let t370 = t367
-                - (T::fused(-x5, t368, T::fused(x6, t369, x3 * t365)) - t367);
-            let t371 = x5 * t347;
-            let t372 = t364 + t362;
-            let t373 = T::fused(
-                -x4,
-                t368,
-                T::fused(x3, t360, t371 - T::fused(x6, t372, -t371)),
+            let t367 = x3 * (t366 - (t364 + t362));
+            let t368 = t367 + (t367 - T::fused(x6, t360, T::fused(x4, t339, x5 * t355)));
+            let t369 = t354 - t341;
+            let t370 = t359 - t357;
+            let t371 = x4 * t366;
+            let t372 = t371
+                + (t371 + T::fused(x5, t370, -T::fused(x3, t339, x6 * t369)));
+            let t373 = t338 + t320;
+            let t374 = x5 * t364;
+            let t375 = T::fused(
+                x4,
+                t370,
+                -T::fused(x3, t355, t374 + T::fused(-x6, t373, t374)),
             );
-            let t374 = T::fused(
+            let t376 = T::fused(
                 x3,
-                t355,
-                T::fused(x4, t369, T::fused(-x5, t372, k(2.0) * (x6 * t349))),
+                t360,
+                T::fused(x4, t369, -T::fused(-t195, t362, x5 * t373)),
             );
-            let t375 = k(0.6) * t89;
-            let t376 = u0 * t375;
-            let t377 = u1 * t375;
-            let t378 = u2 * t375;
-            let t379 = t96 * (t94 * T::fused(x0, t376, T::fused(x1, t377, x2 * t378)));
-            let t380 = x0 * t379;
-            let t381 = x1 * t379;
-            let t382 = x2 * t379;
+            let t377 = k(0.6) * t89;
+            let t378 = u0 * t377;
+            let t379 = u1 * t377;
+            let t380 = u2 * t377;
+            let t381 = t96 * (t94 * T::fused(x0, t378, T::fused(x1, t379, x2 * t380)));
+            let t382 = x0 * t381;
+            let t383 = x1 * t381;
+            let t384 = x2 * t381;
             (
-                t215,
                 t216,
                 t217,
                 t218,
-                t221,
+                t219,
                 t222,
                 t223,
-                t278,
-                t282,
-                t285,
+                t224,
+                t279,
+                t283,
                 t286,
-                t304,
+                t287,
                 t305,
                 t306,
                 t307,
-                t310,
+                t308,
                 t311,
                 t312,
-                t366,
-                t370,
-                t373,
-                t374,
+                t313,
+                t368,
+                t372,
                 t375,
                 t376,
                 t377,
                 t378,
+                t379,
                 t380,
-                t381,
                 t382,
+                t383,
+                t384,
             )
         };
         *dfdx = [
@@ -2049,7 +2055,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             -t187,
             -t191,
             t194,
-            -t195,
+            t196,
             -(t82 * t88),
             -(t84 * t88),
             -(t86 * t88),
@@ -2057,30 +2063,30 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             k(0.0),
             k(0.0),
             k(0.0),
-            t221 + T::fused(t81, t216, t221),
             t222 + T::fused(t81, t217, t222),
-            t223 - T::fused(t81, t218, -t223),
-            -t278,
-            t282,
-            -t285,
+            t223 + T::fused(t81, t218, t223),
+            t224 - T::fused(t81, t219, -t224),
+            -t279,
+            t283,
             -t286,
-            -(t82 * t215),
-            -(t84 * t215),
-            -(t86 * t215),
+            -t287,
+            -(t82 * t216),
+            -(t84 * t216),
+            -(t86 * t216),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t310 + T::fused(t81, t305, t310),
             t311 + T::fused(t81, t306, t311),
-            t312 - T::fused(t81, t307, -t312),
-            -t366,
-            t370,
-            -t373,
-            -t374,
-            -(t82 * t304),
-            -(t84 * t304),
-            -(t86 * t304),
+            t312 + T::fused(t81, t307, t312),
+            t313 - T::fused(t81, t308, -t313),
+            t368,
+            t372,
+            t375,
+            -t376,
+            -(t82 * t305),
+            -(t84 * t305),
+            -(t86 * t305),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -2127,16 +2133,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             -(k(0.25) * u3),
             k(0.0),
             k(0.0),
-            t380 - T::fused(t81, t376, -t380),
-            t381 - T::fused(t81, t377, -t381),
             t382 - T::fused(t81, t378, -t382),
+            t383 - T::fused(t81, t379, -t383),
+            t384 - T::fused(t81, t380, -t384),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t82 * t375),
-            -(t84 * t375),
-            -(t86 * t375),
+            -(t82 * t377),
+            -(t84 * t377),
+            -(t86 * t377),
             k(0.0),
             k(0.0),
             k(0.0),

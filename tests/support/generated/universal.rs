@@ -10,8 +10,8 @@
 //! * left out: coordinates of `ground` (fixed: folded into constants)
 //! * left out: charts (for trees of revolute, spherical and fixed joints: the run time pivots)
 //! * left out: parameters (all numbers are folded)
-//! * accelerations: 287 operations by rotations of the bodies; 287 operations by relative Euler parameters
-//! * project: 155 operations by rotations of the bodies; 155 operations by relative Euler parameters
+//! * accelerations: 280 operations by rotations of the bodies, doubled; 280 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 148 operations by rotations of the bodies, doubled; 148 operations by relative Euler parameters, doubled; 2 more compared
 //! * joint_accelerations: 48 operations by normal form; 136 operations by recursion
 //! * joint_accelerations_at: 81 operations by normal form; 169 operations by recursion; 1 more compared
 //! * corrected_accelerations: 163 operations by normal form in the bodies' frames; 196 operations by normal form in the global frame; 5 more compared
@@ -25,16 +25,16 @@
 //! | phi_q | Φ_q, non-zeros in (r, p) | 18 | 22 | 0 | 40 | 0 of 23 | 56 | 40 |
 //! | phi_pi | (Φ_r, Φ_π'), non-zeros | 21 | 30 | 0 | 51 | 0 of 14 | 96 | 51 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 4 of 4 | 0 | 0 |
-//! | gamma | γ | 39 | 61 | 0 | 100 | 0 of 4 | 245 | 100 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 30 | 46 | 0 | 76 | 0 of 4 | 135 | 76 |
-//! | applied_force | (f, n' − w̃'J'w') | 27 | 41 | 0 | 68 | 2 of 6 | 138 | 68 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 117 | 167 | 3 | 287 | 0 of 6 | 75890 | 288 |
-//! | multipliers | λ, the accelerations being known | 47 | 68 | 1 | 116 | 0 of 4 | 243 | 116 |
-//! | project | (δr, δπ') that changes the rows as given | 59 | 93 | 3 | 155 | 0 of 6 | 25501 | 156 |
-//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 30 | 0 | 44 | 0 of 9 | 44 | 44 |
+//! | gamma | γ | 37 | 56 | 0 | 93 | 0 of 4 | 275 | 93 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 28 | 41 | 0 | 69 | 0 of 4 | 155 | 69 |
+//! | applied_force | (f, n' − w̃'J'w') | 26 | 39 | 0 | 65 | 2 of 6 | 153 | 65 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 115 | 162 | 3 | 280 | 0 of 6 | 90421 | 281 |
+//! | multipliers | λ, the accelerations being known | 45 | 68 | 1 | 114 | 0 of 4 | 287 | 114 |
+//! | project | (δr, δπ') that changes the rows as given | 57 | 88 | 3 | 148 | 0 of 6 | 33006 | 149 |
+//! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 14 | 29 | 0 | 43 | 0 of 9 | 47 | 43 |
 //! | energy | T and V | 19 | 31 | 0 | 50 | 0 of 2 | 85 | 50 |
 //! | read_joints | joint coordinates and rates | 14 | 18 | 0 | 32 | 0 of 6 | 54 | 32 |
-//! | outputs | outputs, the accelerations being known | 78 | 108 | 1 | 187 | 0 of 6 | 1995 | 187 |
+//! | outputs | outputs, the accelerations being known | 76 | 103 | 1 | 180 | 0 of 6 | 2418 | 180 |
 //! | joint_accelerations | u̇ in joint coordinates | 18 | 29 | 1 | 48 | 0 of 2 | 137 | 49 |
 //! | joint_derivative | ẋ but for u̇ | 0 | 2 | 0 | 2 | 0 of 3 | 2 | 2 |
 //! | to_maximal | (q, v) of a joint state | 28 | 54 | 0 | 82 | 0 of 14 | 431 | 82 |
@@ -43,7 +43,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 63 | 99 | 1 | 163 | 0 of 6 | 7444 | 164 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 46 | 64 | 0 | 110 | 0 of 4 | 197 | 110 |
 //! | corrected_solution | both | 94 | 142 | 1 | 237 | 0 of 10 | 28934 | 238 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 44 | 85 | 1 | 130 | 19 of 30 | 681 | 130 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 44 | 80 | 1 | 125 | 19 of 30 | 681 | 125 |
 //!
 //! # Proof
 //!
@@ -109,7 +109,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
             k(0.9),
         ]
     }
-    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 44 operations (14 ±, 30 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`Equations::accelerations`] takes: 43 operations (14 ±, 29 ×, 0 ÷).
     fn derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -124,10 +124,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, bob_e0 * bob_e0))),
-            bob_wx,
-            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+        let t0 = k(2.0) * bob_e1;
+        let t1 = k(2.0) * bob_e0;
+        let t2 = T::fused(
+            -bob_wx,
+            T::fused(-bob_e1, t0, T::fused(-bob_e0, t1, k(1.0))),
+            bob_wy * T::fused(-bob_e3, t1, bob_e2 * t0),
         );
         *dy = [
             bob_sx,
@@ -148,7 +150,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ode for Universal<T> {
             accelerations[4],
             accelerations[5],
             -(bob_wy * (k(0.05) * bob_wy)),
-            T::fused(k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3), bob_wz, t0),
+            T::fused(bob_wz, T::fused(bob_e2, t1, bob_e3 * t0), t2),
         ];
     }
 }
@@ -165,7 +167,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
     fn readings(&self) -> Self::Readings {
         [T::constant(0.0); 6]
     }
-    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 44 operations (14 ±, 30 ×, 0 ÷).
+    /// Writes ẏ; beyond what [`JointSpace::corrected_accelerations`] takes: 43 operations (14 ±, 29 ×, 0 ÷).
     fn corrected_derivative(&self, t: T, y: &Self::State, dy: &mut Self::State) {
         let mut accelerations = gyro_sim::Equations::velocities(self);
         gyro_sim::JointSpace::corrected_accelerations(self, t, y, &mut accelerations);
@@ -180,10 +182,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, bob_e0 * bob_e0))),
-            bob_wx,
-            k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2) * bob_wy,
+        let t0 = k(2.0) * bob_e1;
+        let t1 = k(2.0) * bob_e0;
+        let t2 = T::fused(
+            -bob_wx,
+            T::fused(-bob_e1, t0, T::fused(-bob_e0, t1, k(1.0))),
+            bob_wy * T::fused(-bob_e3, t1, bob_e2 * t0),
         );
         *dy = [
             bob_sx,
@@ -204,7 +208,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
             accelerations[4],
             accelerations[5],
             -(bob_wy * (k(0.05) * bob_wy)),
-            T::fused(k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3), bob_wz, t0),
+            T::fused(bob_wz, T::fused(bob_e2, t1, bob_e3 * t0), t2),
         ];
     }
     /// Writes Φ: 44 operations (24 ±, 20 ×, 0 ÷).
@@ -247,7 +251,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
             t12 + (t1 + t8) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 76 operations (30 ±, 46 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 69 operations (28 ±, 41 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -260,43 +264,46 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_e0 * bob_e3;
-        let t1 = bob_e1 * bob_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = bob_e0 * bob_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t3));
-        let t5 = bob_e0 * bob_e2;
-        let t6 = bob_e1 * bob_e3;
-        let t7 = k(2.0) * (t6 + t5);
-        let t8 = T::fused(t4, bob_wz, t7 * bob_wx);
-        let t9 = T::fused(
+        let t0 = k(2.0) * bob_e1;
+        let t1 = k(2.0) * bob_e0;
+        let t2 = T::fused(-bob_e0, t1, k(1.0));
+        let t3 = T::fused(-bob_e1, t0, t2);
+        let t4 = bob_e3 * t1;
+        let t5 = bob_e2 * t0;
+        let t6 = t5 - t4;
+        let t7 = bob_e2 * t1;
+        let t8 = bob_e3 * t0;
+        let t9 = t8 + t7;
+        let t10 = T::fused(bob_wz, t3, bob_wx * t9);
+        let t11 = T::fused(
             -k(0.4),
-            T::fused(t2, bob_wx, t4 * bob_wy),
-            T::fused(k(0.02), t8, k(0.03) * T::fused(-t2, bob_wz, t7 * bob_wy)),
+            T::fused(bob_wy, t3, bob_wx * t6),
+            T::fused(k(0.02), t10, k(0.03) * T::fused(-bob_wz, t6, bob_wy * t9)),
         );
-        let t10 = k(2.0) * (t1 + t0);
-        let t11 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
-        let t12 = bob_e0 * bob_e1;
-        let t13 = bob_e2 * bob_e3;
-        let t14 = k(2.0) * (t13 - t12);
-        let t15 = T::fused(
+        let t12 = t5 + t4;
+        let t13 = k(2.0) * bob_e2;
+        let t14 = T::fused(-bob_e2, t13, t2);
+        let t15 = bob_e1 * t1;
+        let t16 = bob_e3 * t13;
+        let t17 = t16 - t15;
+        let t18 = T::fused(
             k(0.02),
-            T::fused(-t10, bob_wz, t14 * bob_wx),
-            k(0.03) * T::fused(t11, bob_wz, t14 * bob_wy),
+            T::fused(-bob_wz, t12, bob_wx * t17),
+            k(0.03) * T::fused(bob_wz, t14, bob_wy * t17),
         );
-        let t16 = k(2.0) * (t6 - t5);
-        let t17 = k(2.0) * (t13 + t12);
-        let t18 = k(2.0) * (k(0.5) - T::fused(bob_e3, bob_e3, t3));
-        let t19 = T::fused(
+        let t19 = t8 - t7;
+        let t20 = t16 + t15;
+        let t21 = T::fused(-bob_e3, k(2.0) * bob_e3, t2);
+        let t22 = T::fused(
             k(0.02),
-            T::fused(t16, bob_wz, t18 * bob_wx),
-            k(0.03) * T::fused(t17, bob_wz, t18 * bob_wy),
+            T::fused(bob_wz, t19, bob_wx * t21),
+            k(0.03) * T::fused(bob_wz, t20, bob_wy * t21),
         );
         *out = [
-            bob_sx + t9,
-            bob_sy + T::fused(k(0.4), T::fused(t10, bob_wy, t11 * bob_wx), t15),
-            bob_sz - T::fused(k(0.4), T::fused(-t16, bob_wy, t17 * bob_wx), t19),
-            t8,
+            bob_sx + t11,
+            bob_sy + T::fused(k(0.4), T::fused(bob_wy, t12, bob_wx * t14), t18),
+            bob_sz - T::fused(k(0.4), T::fused(-bob_wy, t19, bob_wx * t20), t22),
+            t10,
         ];
     }
     /// Kinetic and potential energy: 50 operations (19 ±, 31 ×, 0 ÷) and 3 functions.
@@ -623,7 +630,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let k = T::constant;
         *out = [k(0.0), k(0.0), k(0.0), k(0.0)];
     }
-    /// Writes γ: 100 operations (39 ±, 61 ×, 0 ÷).
+    /// Writes γ: 93 operations (37 ±, 56 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -633,65 +640,68 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_wy * bob_wy;
-        let t1 = bob_wz * bob_wz;
-        let t2 = t1 + t0;
-        let t3 = bob_e0 * bob_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t3));
-        let t5 = bob_wx * bob_wy;
-        let t6 = bob_e0 * bob_e3;
-        let t7 = bob_e1 * bob_e2;
-        let t8 = k(2.0) * (t7 - t6);
-        let t9 = bob_wx * bob_wz;
-        let t10 = bob_e0 * bob_e2;
-        let t11 = bob_e1 * bob_e3;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = bob_wx * bob_wx;
-        let t14 = t1 + t13;
-        let t15 = bob_wy * bob_wz;
-        let t16 = T::fused(t12, t15, -T::fused(t4, t5, t8 * t14));
-        let t17 = T::fused(
-            -k(0.03),
-            T::fused(t12, t9, T::fused(t4, t2, t8 * t5)),
-            k(0.02) * t16,
-        );
-        let t18 = t0 + t13;
+        let t0 = k(2.0) * bob_e1;
+        let t1 = k(2.0) * bob_e0;
+        let t2 = T::fused(-bob_e0, t1, k(1.0));
+        let t3 = T::fused(-bob_e1, t0, t2);
+        let t4 = bob_wy * bob_wy;
+        let t5 = bob_wz * bob_wz;
+        let t6 = t5 + t4;
+        let t7 = bob_e3 * t1;
+        let t8 = bob_e2 * t0;
+        let t9 = t8 - t7;
+        let t10 = bob_wx * bob_wy;
+        let t11 = bob_e2 * t1;
+        let t12 = bob_e3 * t0;
+        let t13 = t12 + t11;
+        let t14 = bob_wx * bob_wz;
+        let t15 = bob_wx * bob_wx;
+        let t16 = t5 + t15;
+        let t17 = bob_wy * bob_wz;
+        let t18 = T::fused(t17, t13, -T::fused(t10, t3, t16 * t9));
         let t19 = T::fused(
-            k(0.4),
-            T::fused(t12, t18, -T::fused(-t4, t9, t8 * t15)),
-            -t17,
-        );
-        let t20 = k(2.0) * (t7 + t6);
-        let t21 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
-        let t22 = bob_e0 * bob_e1;
-        let t23 = bob_e2 * bob_e3;
-        let t24 = k(2.0) * (t23 - t22);
-        let t25 = T::fused(
             -k(0.03),
-            T::fused(t24, t9, -T::fused(t20, t2, t21 * t5)),
-            k(0.02) * T::fused(t24, t15, T::fused(t20, t5, t21 * t14)),
+            T::fused(t14, t13, T::fused(t6, t3, t10 * t9)),
+            k(0.02) * t18,
         );
-        let t26 = T::fused(
+        let t20 = t4 + t15;
+        let t21 = T::fused(
             k(0.4),
-            T::fused(t24, t18, T::fused(-t20, t9, t21 * t15)),
-            -t25,
+            T::fused(t20, t13, -T::fused(-t14, t3, t17 * t9)),
+            -t19,
         );
-        let t27 = k(2.0) * (t11 - t10);
-        let t28 = k(2.0) * (t23 + t22);
-        let t29 = k(2.0) * (k(0.5) - T::fused(bob_e3, bob_e3, t3));
-        let t30 = T::fused(
+        let t22 = t8 + t7;
+        let t23 = k(2.0) * bob_e2;
+        let t24 = T::fused(-bob_e2, t23, t2);
+        let t25 = bob_e1 * t1;
+        let t26 = bob_e3 * t23;
+        let t27 = t26 - t25;
+        let t28 = T::fused(
             -k(0.03),
-            T::fused(t29, t9, -T::fused(-t27, t2, t28 * t5)),
-            k(0.02) * T::fused(t29, t15, T::fused(-t27, t5, t28 * t14)),
+            T::fused(t14, t27, -T::fused(t6, t22, t10 * t24)),
+            k(0.02) * T::fused(t17, t27, T::fused(t10, t22, t16 * t24)),
         );
-        let t31 = T::fused(
+        let t29 = T::fused(
             k(0.4),
-            T::fused(t29, t18, T::fused(t27, t9, t28 * t15)),
-            -t30,
+            T::fused(t20, t27, T::fused(-t14, t22, t17 * t24)),
+            -t28,
         );
-        *out = [t19, t26, -t31, -t16];
+        let t30 = t12 - t11;
+        let t31 = t26 + t25;
+        let t32 = T::fused(-bob_e3, k(2.0) * bob_e3, t2);
+        let t33 = T::fused(
+            -k(0.03),
+            T::fused(t14, t32, -T::fused(-t6, t30, t10 * t31)),
+            k(0.02) * T::fused(t17, t32, T::fused(-t10, t30, t16 * t31)),
+        );
+        let t34 = T::fused(
+            k(0.4),
+            T::fused(t20, t32, T::fused(t14, t30, t17 * t31)),
+            -t33,
+        );
+        *out = [t21, t29, -t34, -t18];
     }
-    /// Writes (f, n' − w̃'J'w'): 68 operations (27 ±, 41 ×, 0 ÷) and 3 functions.
+    /// Writes (f, n' − w̃'J'w'): 65 operations (26 ±, 39 ×, 0 ÷) and 3 functions.
     fn applied_force(&self, _t: T, y: &Self::State, out: &mut Self::Velocities) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -702,49 +712,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let turn0 = y[14];
-        let t0 = turn0.cos();
-        let t1 = bob_e0 * bob_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t1));
-        let t3 = turn0.sin();
-        let t4 = k(2.0) * T::fused(bob_e0, bob_e1, bob_e2 * bob_e3);
-        let t5 = T::fused(t2, t3, t4 * t0).atan2(T::fused(-t2, t0, t4 * t3));
-        let t6 = k(1.5) * (k(0.2) - (turn0 + t5));
-        let t7 = bob_wy * bob_wy;
-        let t8 = bob_wz * bob_wz;
-        let t9 = k(0.002) * bob_wz;
-        let t10 = k(0.004) * bob_wy;
-        let t11 = T::fused(
+        let t0 = k(2.0) * bob_e2;
+        let t1 = k(2.0) * bob_e0;
+        let t2 = T::fused(-bob_e0, t1, k(1.0));
+        let t3 = T::fused(-bob_e2, t0, t2);
+        let t4 = turn0.cos();
+        let t5 = T::fused(bob_e1, t1, bob_e3 * t0);
+        let t6 = turn0.sin();
+        let t7 = T::fused(t6, t3, t4 * t5).atan2(T::fused(-t4, t3, t6 * t5));
+        let t8 = k(1.5) * (k(0.2) - (turn0 + t7));
+        let t9 = k(2.0) * bob_e1;
+        let t10 = bob_wy * bob_wy;
+        let t11 = bob_wz * bob_wz;
+        let t12 = k(0.002) * bob_wz;
+        let t13 = k(0.004) * bob_wy;
+        let t14 = T::fused(
             bob_wx,
-            t10 + t9,
-            T::fused(k(0.003), t8 - t7, k(0.03) * (bob_wy * bob_wz)),
+            t13 + t12,
+            T::fused(k(0.003), t11 - t10, k(0.03) * (bob_wy * bob_wz)),
         );
-        let t12 = T::fused(
-            -(k(2.0) * T::fused(-bob_e0, bob_e3, bob_e1 * bob_e2)),
-            t6,
-            k(0.05) * bob_wy,
-        );
-        let t13 = bob_wx * bob_wx;
-        let t14 = k(0.003) * bob_wx;
-        let t15 = T::fused(
+        let t15 = bob_wx * bob_wx;
+        let t16 = k(0.003) * bob_wx;
+        let t17 = T::fused(
             bob_wy,
-            t9 - t14,
-            T::fused(-k(0.004), t8 - t13, k(0.02) * (bob_wx * bob_wz)),
+            t12 - t16,
+            T::fused(-k(0.004), t11 - t15, k(0.02) * (bob_wx * bob_wz)),
         );
-        let t16 = T::fused(
+        let t18 = t17
+            + T::fused(-T::fused(-bob_e3, t1, bob_e2 * t9), t8, k(0.05) * bob_wy);
+        let t19 = T::fused(
             bob_wz,
-            t10 + t14,
-            T::fused(-k(0.002), t7 - t13, k(0.01) * (bob_wx * bob_wy)),
+            t13 + t16,
+            T::fused(-k(0.002), t10 - t15, k(0.01) * (bob_wx * bob_wy)),
         );
         *out = [
             k(0.0),
             k(0.0),
             k(-19.62),
-            T::fused(-(k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t1))), t6, t11),
-            -(t15 + t12),
-            T::fused(k(2.0) * T::fused(bob_e0, bob_e2, bob_e1 * bob_e3), t6, -t16),
+            T::fused(-T::fused(-bob_e1, t9, t2), t8, t14),
+            -t18,
+            T::fused(T::fused(bob_e2, t1, bob_e3 * t9), t8, -t19),
         ];
     }
-    /// Solves eq. (17): 287 operations (117 ±, 167 ×, 3 ÷) and 3 functions.
+    /// Solves eq. (17): 280 operations (115 ±, 162 ×, 3 ÷) and 3 functions.
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let bob_e0 = y[3];
@@ -755,148 +765,145 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let bob_wy = y[11];
         let bob_wz = y[12];
         let turn0 = y[14];
-        let t0 = bob_wy * bob_wy;
-        let t1 = bob_wz * bob_wz;
-        let t2 = t1 + t0;
-        let t3 = bob_e0 * bob_e0;
-        let t4 = k(0.5) - T::fused(bob_e1, bob_e1, t3);
-        let t5 = k(2.0) * t4;
-        let t6 = bob_wx * bob_wy;
-        let t7 = bob_e0 * bob_e3;
-        let t8 = bob_e1 * bob_e2;
+        let t0 = k(2.0) * bob_e1;
+        let t1 = k(2.0) * bob_e0;
+        let t2 = T::fused(-bob_e0, t1, k(1.0));
+        let t3 = T::fused(-bob_e1, t0, t2);
+        let t4 = bob_wy * bob_wy;
+        let t5 = bob_wz * bob_wz;
+        let t6 = t5 + t4;
+        let t7 = bob_e3 * t1;
+        let t8 = bob_e2 * t0;
         let t9 = t8 - t7;
-        let t10 = k(2.0) * t9;
-        let t11 = bob_wx * bob_wz;
-        let t12 = bob_e0 * bob_e2;
-        let t13 = bob_e1 * bob_e3;
-        let t14 = t13 + t12;
-        let t15 = k(2.0) * t14;
-        let t16 = bob_wx * bob_wx;
-        let t17 = t1 + t16;
-        let t18 = bob_wy * bob_wz;
-        let t19 = T::fused(t15, t18, -T::fused(t5, t6, t10 * t17));
-        let t20 = T::fused(
+        let t10 = bob_wx * bob_wy;
+        let t11 = bob_e2 * t1;
+        let t12 = bob_e3 * t0;
+        let t13 = t12 + t11;
+        let t14 = bob_wx * bob_wz;
+        let t15 = bob_wx * bob_wx;
+        let t16 = t5 + t15;
+        let t17 = bob_wy * bob_wz;
+        let t18 = T::fused(t17, t13, -T::fused(t10, t3, t16 * t9));
+        let t19 = T::fused(
             -k(0.03),
-            T::fused(t15, t11, T::fused(t5, t2, t10 * t6)),
-            k(0.02) * t19,
+            T::fused(t14, t13, T::fused(t6, t3, t10 * t9)),
+            k(0.02) * t18,
         );
-        let t21 = t0 + t16;
-        let t22 = T::fused(
+        let t20 = t4 + t15;
+        let t21 = T::fused(
             k(0.4),
-            T::fused(t15, t21, -T::fused(-t5, t11, t10 * t18)),
-            -t20,
+            T::fused(t20, t13, -T::fused(-t14, t3, t17 * t9)),
+            -t19,
         );
-        let t23 = k(2.0) * (t8 + t7);
-        let t24 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
-        let t25 = bob_e0 * bob_e1;
-        let t26 = bob_e2 * bob_e3;
-        let t27 = k(2.0) * (t26 - t25);
+        let t22 = t8 + t7;
+        let t23 = k(2.0) * bob_e2;
+        let t24 = T::fused(-bob_e2, t23, t2);
+        let t25 = bob_e1 * t1;
+        let t26 = bob_e3 * t23;
+        let t27 = t26 - t25;
         let t28 = T::fused(
             -k(0.03),
-            T::fused(t27, t11, -T::fused(t23, t2, t24 * t6)),
-            k(0.02) * T::fused(t27, t18, T::fused(t23, t6, t24 * t17)),
+            T::fused(t14, t27, -T::fused(t6, t22, t10 * t24)),
+            k(0.02) * T::fused(t17, t27, T::fused(t10, t22, t16 * t24)),
         );
         let t29 = T::fused(
             k(0.4),
-            T::fused(t27, t21, T::fused(-t23, t11, t24 * t18)),
+            T::fused(t20, t27, T::fused(-t14, t22, t17 * t24)),
             -t28,
         );
-        let t30 = t13 - t12;
-        let t31 = k(2.0) * t30;
-        let t32 = t26 + t25;
-        let t33 = k(2.0) * t32;
-        let t34 = k(0.5) - T::fused(bob_e3, bob_e3, t3);
-        let t35 = k(2.0) * t34;
-        let t36 = T::fused(
+        let t30 = t12 - t11;
+        let t31 = t26 + t25;
+        let t32 = T::fused(-bob_e3, k(2.0) * bob_e3, t2);
+        let t33 = T::fused(
             -k(0.03),
-            T::fused(t35, t11, -T::fused(-t31, t2, t33 * t6)),
-            k(0.02) * T::fused(t35, t18, T::fused(-t31, t6, t33 * t17)),
+            T::fused(t14, t32, -T::fused(-t6, t30, t10 * t31)),
+            k(0.02) * T::fused(t17, t32, T::fused(-t10, t30, t16 * t31)),
         );
-        let t37 = T::fused(
+        let t34 = T::fused(
             k(0.4),
-            T::fused(t35, t21, T::fused(t31, t11, t33 * t18)),
-            -t36,
+            T::fused(t20, t32, T::fused(t14, t30, t17 * t31)),
+            -t33,
         );
-        let t38 = T::fused(t31, t37, -T::fused(-t5, t22, t23 * t29));
-        let t39 = T::fused(-k(1.6), t9, k(0.08) * t14);
-        let t40 = T::fused(t33, t37, T::fused(-t10, t22, t24 * t29));
-        let t41 = T::fused(-k(1.6), t4, k(0.12) * t14);
-        let t42 = T::fused(t35, t37, T::fused(t15, t22, t27 * t29));
-        let t43 = T::fused(-k(0.12), t9, k(0.08) * t4);
-        let t44 = k(1.0) / T::fused(t15, t15, t5 * t5);
-        let t45 = t19 * (t5 * t44);
-        let t46 = T::fused(k(0.0652), t14, -T::fused(k(0.026), t9, k(0.04) * t4));
-        let t47 = t19 * (t15 * t44);
-        let t48 = T::fused(k(0.04), t14, -T::fused(-k(0.0064), t9, k(0.7416) * t4));
-        let t49 = T::fused(k(0.026), t14, T::fused(-k(0.7636), t9, k(0.0064) * t4));
-        let t50 = k(1.0) / T::fused(t15, t46, -T::fused(t5, t48, t10 * t49));
-        let t51 = t49 * t50;
-        let t52 = turn0.cos();
-        let t53 = turn0.sin();
-        let t54 = T::fused(t24, t53, t33 * t52).atan2(T::fused(-t24, t52, t33 * t53));
-        let t55 = k(1.5) * (k(0.2) - (turn0 + t54));
-        let t56 = k(0.002) * bob_wz;
-        let t57 = k(0.004) * bob_wy;
-        let t58 = T::fused(
+        let t35 = T::fused(t30, t34, -T::fused(-t3, t21, t22 * t29));
+        let t36 = T::fused(-k(0.8), t9, k(0.04) * t13);
+        let t37 = T::fused(t31, t34, T::fused(-t9, t21, t24 * t29));
+        let t38 = T::fused(-k(0.8), t3, k(0.06) * t13);
+        let t39 = T::fused(t32, t34, T::fused(t13, t21, t27 * t29));
+        let t40 = T::fused(-k(0.04), t3, k(0.06) * t9);
+        let t41 = k(1.0) / T::fused(t13, t13, t3 * t3);
+        let t42 = t18 * (t3 * t41);
+        let t43 = T::fused(k(0.0326), t13, -T::fused(k(0.02), t3, k(0.013) * t9));
+        let t44 = t18 * (t13 * t41);
+        let t45 = T::fused(k(0.02), t13, T::fused(-k(0.3708), t3, k(0.0032) * t9));
+        let t46 = T::fused(k(0.013), t13, -T::fused(-k(0.0032), t3, k(0.3818) * t9));
+        let t47 = k(1.0) / T::fused(t13, t43, -T::fused(t3, t45, t9 * t46));
+        let t48 = t46 * t47;
+        let t49 = turn0.cos();
+        let t50 = turn0.sin();
+        let t51 = T::fused(t50, t24, t49 * t31).atan2(T::fused(-t49, t24, t50 * t31));
+        let t52 = k(1.5) * (k(0.2) - (turn0 + t51));
+        let t53 = k(0.002) * bob_wz;
+        let t54 = k(0.004) * bob_wy;
+        let t55 = T::fused(
             bob_wx,
-            t57 + t56,
-            T::fused(k(0.003), t1 - t0, k(0.03) * t18),
+            t54 + t53,
+            T::fused(k(0.003), t5 - t4, k(0.03) * t17),
         );
-        let t59 = k(0.003) * bob_wx;
-        let t60 = T::fused(
+        let t56 = k(0.003) * bob_wx;
+        let t57 = T::fused(
             bob_wy,
-            t56 - t59,
-            T::fused(-k(0.004), t1 - t16, k(0.02) * t11),
+            t53 - t56,
+            T::fused(-k(0.004), t5 - t15, k(0.02) * t14),
         );
-        let t61 = T::fused(-k(15.696), t30, k(1.1772) * t34)
-            + (t60 + T::fused(-t10, t55, k(0.05) * bob_wy));
+        let t58 = T::fused(-k(7.848), t30, k(0.5886) * t32)
+            + (t57 + T::fused(-t9, t52, k(0.05) * bob_wy));
+        let t59 = T::fused(
+            -t3,
+            T::fused(k(7.848), t31, k(0.3924) * t32) - T::fused(-t3, t52, t55),
+            t9 * t58,
+        );
+        let t60 = T::fused(
+            bob_wz,
+            t54 + t56,
+            T::fused(-k(0.002), t4 - t15, k(0.01) * t10),
+        );
+        let t61 = T::fused(
+            t13,
+            T::fused(k(0.3924), t30, k(0.5886) * t31) + T::fused(-t13, t52, t60),
+            t59,
+        );
         let t62 = T::fused(
-            -t5,
-            T::fused(k(15.696), t32, k(0.7848) * t34) - T::fused(-t5, t55, t58),
-            t10 * t61,
+            -T::fused(t46, t45 * t47, k(0.0032)),
+            t44,
+            T::fused(-t43, t48, k(0.013)) * t42,
         );
         let t63 = T::fused(
-            bob_wz,
-            t57 + t59,
-            T::fused(-k(0.002), t0 - t16, k(0.01) * t6),
+            -T::fused(-t46, t47 * t36, k(0.8)),
+            t35,
+            t46 * (t47 * t38) * t37,
         );
-        let t64 = T::fused(
-            t15,
-            T::fused(k(0.7848), t30, k(1.1772) * t32) + T::fused(-t15, t55, t63),
-            t62,
-        );
-        let t65 = T::fused(
-            -T::fused(t49, t48 * t50, k(0.0032)),
-            t47,
-            T::fused(-t46, t51, k(0.013)) * t45,
-        );
-        let t66 = T::fused(
-            -T::fused(-t49, t50 * t39, k(0.8)),
-            t38,
-            t49 * (t41 * t50) * t40,
-        );
-        let t67 = T::fused(T::fused(-t49, t43 * t50, k(0.06)), t42, t66) - t65
-            - T::fused(t49, t50 * t64, t61);
-        let t68 = t67 / T::fused(-t49, t51, k(0.3818));
-        let t69 = T::fused(t46, t45, T::fused(t48, t47, t49 * t68))
-            - T::fused(t43, t42, -T::fused(t39, t38, t41 * t40));
-        let t70 = t50 * (t64 - t69);
-        let t71 = T::fused(-t10, t70, t68);
-        let t72 = T::fused(t15, t70, t45);
-        let t73 = t38 + T::fused(k(0.4), t71, k(0.02) * t72);
-        let t74 = T::fused(-t5, t70, t47);
-        let t75 = t40 + T::fused(k(0.4), t74, k(0.03) * t72);
-        let t76 = t42 - T::fused(-k(0.02), t74, k(0.03) * t71);
+        let t64 = T::fused(T::fused(t46, t40 * t47, k(0.06)), t39, t63) - t62
+            - T::fused(t46, t47 * t61, t58);
+        let t65 = t64 / T::fused(-t46, t48, k(0.3818));
+        let t66 = T::fused(t43, t42, T::fused(t45, t44, t46 * t65))
+            + T::fused(t40, t39, T::fused(t36, t35, t38 * t37));
+        let t67 = t47 * (t61 - t66);
+        let t68 = T::fused(-t9, t67, t65);
+        let t69 = T::fused(t13, t67, t42);
+        let t70 = t35 + T::fused(k(0.4), t68, k(0.02) * t69);
+        let t71 = T::fused(-t3, t67, t44);
+        let t72 = t37 + T::fused(k(0.4), t71, k(0.03) * t69);
+        let t73 = t39 - T::fused(-k(0.02), t71, k(0.03) * t68);
         *out = [
-            T::fused(t15, t76, -T::fused(-t5, t73, t10 * t75)),
-            T::fused(t27, t76, T::fused(-t23, t73, t24 * t75)),
-            -T::fused(t35, t76, T::fused(t31, t73, t33 * t75)),
-            -t74,
-            t71,
-            -t72,
+            T::fused(t13, t73, -T::fused(-t3, t70, t9 * t72)),
+            T::fused(t27, t73, T::fused(-t22, t70, t24 * t72)),
+            -T::fused(t32, t73, T::fused(t30, t70, t31 * t72)),
+            -t71,
+            t68,
+            -t69,
         ];
     }
-    /// Writes λ: 116 operations (47 ±, 68 ×, 1 ÷) and 3 functions.
+    /// Writes λ: 114 operations (45 ±, 68 ×, 1 ÷) and 3 functions.
     fn multipliers(
         &self,
         _t: T,
@@ -922,19 +929,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
         let t0 = k(2.0) * bob_dsx;
         let t1 = k(2.0) * bob_dsy;
         let t2 = T::fused(k(2.0), bob_dsz, k(19.62));
-        let t3 = turn0.cos();
-        let t4 = bob_e0 * bob_e0;
-        let t5 = k(0.5) - T::fused(bob_e2, bob_e2, t4);
-        let t6 = k(2.0) * t5;
-        let t7 = turn0.sin();
-        let t8 = bob_e0 * bob_e1;
-        let t9 = bob_e2 * bob_e3;
+        let t3 = k(2.0) * bob_e2;
+        let t4 = k(2.0) * bob_e0;
+        let t5 = T::fused(-bob_e0, t4, k(1.0));
+        let t6 = T::fused(-bob_e2, t3, t5);
+        let t7 = turn0.cos();
+        let t8 = bob_e1 * t4;
+        let t9 = bob_e3 * t3;
         let t10 = t9 + t8;
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(t6, t7, t11 * t3).atan2(T::fused(-t6, t3, t11 * t7));
+        let t11 = turn0.sin();
+        let t12 = T::fused(t11, t6, t7 * t10).atan2(T::fused(-t7, t6, t11 * t10));
         let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(0.5) - T::fused(bob_e1, bob_e1, t4);
-        let t15 = k(2.0) * t14;
+        let t14 = k(2.0) * bob_e1;
+        let t15 = T::fused(-bob_e1, t14, t5);
         let t16 = bob_wy * bob_wy;
         let t17 = k(0.004) * bob_wy;
         let t18 = T::fused(
@@ -951,25 +958,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
             bob_dwz,
             T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
         ) - T::fused(-t15, t13, t18);
-        let t20 = bob_e0 * bob_e3;
-        let t21 = bob_e1 * bob_e2;
+        let t20 = bob_e3 * t4;
+        let t21 = bob_e2 * t14;
         let t22 = t21 - t20;
-        let t23 = bob_e0 * bob_e2;
-        let t24 = bob_e1 * bob_e3;
+        let t23 = bob_e2 * t4;
+        let t24 = bob_e3 * t14;
         let t25 = t24 + t23;
         let t26 = T::fused(
             t0,
-            T::fused(-k(0.8), t22, k(0.04) * t25),
-            t1 * T::fused(k(0.8), t5, k(0.04) * (t9 - t8)),
+            T::fused(-k(0.4), t22, k(0.02) * t25),
+            t1 * T::fused(k(0.4), t6, k(0.02) * (t9 - t8)),
         );
         let t27 = T::fused(
             t2,
-            T::fused(k(0.8), t10, k(0.04) * (k(0.5) - T::fused(bob_e3, bob_e3, t4))),
+            T::fused(k(0.4), t10, k(0.02) * T::fused(-bob_e3, k(2.0) * bob_e3, t5)),
             -t26,
         );
-        let t28 = k(2.0) * t25;
-        let t29 = k(1.0) / T::fused(t28, t28, t15 * t15);
-        let t30 = T::fused(
+        let t28 = k(1.0) / T::fused(t25, t25, t15 * t15);
+        let t29 = T::fused(
             bob_wz,
             T::fused(k(0.003), bob_wx, t17),
             T::fused(
@@ -978,22 +984,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Universal<T> {
                 k(0.01) * (bob_wx * bob_wy),
             ),
         );
-        let t31 = T::fused(
+        let t30 = T::fused(
             -k(0.03),
             bob_dwz,
             T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
-        ) - T::fused(-t28, t13, t30);
-        let t32 = T::fused(
+        ) - T::fused(-t25, t13, t29);
+        let t31 = T::fused(
             t0,
-            T::fused(-k(0.06), t22, k(0.04) * t14),
-            t1 * T::fused(-k(0.04), t21 + t20, k(0.06) * t5),
+            T::fused(-k(0.03), t22, k(0.02) * t15),
+            t1 * T::fused(-k(0.02), t21 + t20, k(0.03) * t6),
         );
-        let t33 = T::fused(t2, T::fused(k(0.04), t24 - t23, k(0.06) * t10), -t32) - t31;
-        *lambda = [-t0, -t1, -t2, -T::fused(t28 * t29, t27 + t19, t15 * t29 * t33)];
+        let t32 = T::fused(t2, T::fused(k(0.02), t24 - t23, k(0.03) * t10), -t31) - t30;
+        *lambda = [-t0, -t1, -t2, -T::fused(t25 * t28, t27 + t19, t15 * t28 * t32)];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Universal<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 155 operations (59 ±, 93 ×, 3 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 148 operations (57 ±, 88 ×, 3 ÷).
     fn project(
         &self,
         _t: T,
@@ -1010,38 +1016,38 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Universal<T> {
         let row1 = rows[1];
         let row2 = rows[2];
         let row3 = rows[3];
-        let t0 = bob_e0 * bob_e2;
-        let t1 = bob_e1 * bob_e3;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = bob_e0 * bob_e0;
-        let t4 = k(0.5) - T::fused(bob_e1, bob_e1, t3);
-        let t5 = k(2.0) * t4;
-        let t6 = bob_e0 * bob_e3;
-        let t7 = bob_e1 * bob_e2;
-        let t8 = k(2.0) * (t7 + t6);
-        let t9 = T::fused(t2, row2, T::fused(-t5, row0, t8 * row1));
-        let t10 = t7 - t6;
-        let t11 = t1 + t0;
-        let t12 = T::fused(-k(1.6), t10, k(0.08) * t11);
-        let t13 = bob_e0 * bob_e1;
-        let t14 = bob_e2 * bob_e3;
-        let t15 = k(2.0) * (t14 + t13);
-        let t16 = k(2.0) * t10;
-        let t17 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
-        let t18 = T::fused(-t15, row2, T::fused(-t16, row0, t17 * row1));
-        let t19 = T::fused(-k(1.6), t4, k(0.12) * t11);
-        let t20 = k(2.0) * (k(0.5) - T::fused(bob_e3, bob_e3, t3));
-        let t21 = k(2.0) * t11;
-        let t22 = k(2.0) * (t14 - t13);
-        let t23 = T::fused(-t20, row2, T::fused(t21, row0, t22 * row1));
-        let t24 = T::fused(-k(0.12), t10, k(0.08) * t4);
-        let t25 = k(1.0) / T::fused(t21, t21, t5 * t5);
-        let t26 = t5 * t25 * row3;
-        let t27 = T::fused(k(0.0652), t11, -T::fused(k(0.026), t10, k(0.04) * t4));
-        let t28 = t21 * t25 * row3;
-        let t29 = T::fused(k(0.04), t11, -T::fused(-k(0.0064), t10, k(0.7416) * t4));
-        let t30 = T::fused(k(0.026), t11, T::fused(-k(0.7636), t10, k(0.0064) * t4));
-        let t31 = k(1.0) / T::fused(t21, t27, -T::fused(t5, t29, t16 * t30));
+        let t0 = k(2.0) * bob_e0;
+        let t1 = bob_e2 * t0;
+        let t2 = k(2.0) * bob_e1;
+        let t3 = bob_e3 * t2;
+        let t4 = t3 - t1;
+        let t5 = T::fused(-bob_e0, t0, k(1.0));
+        let t6 = T::fused(-bob_e1, t2, t5);
+        let t7 = bob_e3 * t0;
+        let t8 = bob_e2 * t2;
+        let t9 = t8 + t7;
+        let t10 = T::fused(t4, row2, T::fused(-t6, row0, t9 * row1));
+        let t11 = t8 - t7;
+        let t12 = t3 + t1;
+        let t13 = T::fused(-k(0.8), t11, k(0.04) * t12);
+        let t14 = bob_e1 * t0;
+        let t15 = k(2.0) * bob_e2;
+        let t16 = bob_e3 * t15;
+        let t17 = t16 + t14;
+        let t18 = T::fused(-bob_e2, t15, t5);
+        let t19 = T::fused(-t17, row2, T::fused(-t11, row0, t18 * row1));
+        let t20 = T::fused(-k(0.8), t6, k(0.06) * t12);
+        let t21 = T::fused(-bob_e3, k(2.0) * bob_e3, t5);
+        let t22 = t16 - t14;
+        let t23 = T::fused(-t21, row2, T::fused(t12, row0, t22 * row1));
+        let t24 = T::fused(-k(0.04), t6, k(0.06) * t11);
+        let t25 = k(1.0) / T::fused(t12, t12, t6 * t6);
+        let t26 = t6 * t25 * row3;
+        let t27 = T::fused(k(0.0326), t12, -T::fused(k(0.02), t6, k(0.013) * t11));
+        let t28 = t12 * t25 * row3;
+        let t29 = T::fused(k(0.02), t12, T::fused(-k(0.3708), t6, k(0.0032) * t11));
+        let t30 = T::fused(k(0.013), t12, -T::fused(-k(0.0032), t6, k(0.3818) * t11));
+        let t31 = k(1.0) / T::fused(t12, t27, -T::fused(t6, t29, t11 * t30));
         let t32 = t30 * t31;
         let t33 = T::fused(
             -T::fused(t30, t29 * t31, k(0.0032)),
@@ -1049,25 +1055,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Universal<T> {
             T::fused(-t27, t32, k(0.013)) * t26,
         );
         let t34 = T::fused(
-            T::fused(-t30, t31 * t12, k(0.8)),
-            t9,
-            t30 * (t19 * t31) * t18,
+            T::fused(-t30, t31 * t13, k(0.8)),
+            t10,
+            t30 * (t31 * t20) * t19,
         );
-        let t35 = (T::fused(T::fused(-t30, t24 * t31, k(0.06)), t23, t34) + t33)
+        let t35 = (T::fused(T::fused(t30, t24 * t31, k(0.06)), t23, t34) + t33)
             / T::fused(-t30, t32, k(0.3818));
         let t36 = T::fused(-t27, t26, T::fused(-t29, t28, t30 * t35))
-            - T::fused(t24, t23, -T::fused(-t12, t9, t19 * t18));
+            + T::fused(t24, t23, T::fused(-t13, t10, t20 * t19));
         let t37 = t31 * t36;
-        let t38 = T::fused(t16, t37, t35);
-        let t39 = T::fused(t21, t37, t26);
-        let t40 = t9 + T::fused(-k(0.4), t38, k(0.02) * t39);
-        let t41 = T::fused(-t5, t37, t28);
-        let t42 = t18 - T::fused(k(0.4), t41, k(0.03) * t39);
+        let t38 = T::fused(t11, t37, t35);
+        let t39 = T::fused(t12, t37, t26);
+        let t40 = t10 + T::fused(-k(0.4), t38, k(0.02) * t39);
+        let t41 = T::fused(-t6, t37, t28);
+        let t42 = t19 - T::fused(k(0.4), t41, k(0.03) * t39);
         let t43 = t23 - T::fused(k(0.02), t41, k(0.03) * t38);
         *out = [
-            T::fused(t21, t43, -T::fused(t5, t40, t16 * t42)),
-            T::fused(t22, t43, T::fused(t8, t40, t17 * t42)),
-            -T::fused(t20, t43, T::fused(-t2, t40, t15 * t42)),
+            T::fused(t12, t43, -T::fused(t6, t40, t11 * t42)),
+            T::fused(t22, t43, T::fused(t9, t40, t18 * t42)),
+            -T::fused(t21, t43, T::fused(-t4, t40, t17 * t42)),
             t41,
             t38,
             t39,
@@ -1687,7 +1693,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 130 operations (44 ±, 85 ×, 1 ÷) and 4 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 125 operations (44 ±, 80 ×, 1 ÷) and 4 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -1702,73 +1708,62 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
         let u1 = x[3];
         let t0 = x1.sin();
         let t1 = x1.cos();
-        let t2 = T::fused(-k(13.333333333333334), t0, t1);
-        let t3 = x0.sin();
-        let t4 = t3 * t2;
-        let t5 = T::fused(-k(0.0032), t1, k(0.013) * t0);
-        let t6 = k(2.6191723415400734) * t5;
-        let t7 = T::fused(k(0.075), t0, t1);
-        let t8 = x0.cos();
+        let t2 = k(7.848) * T::fused(k(0.075), t0, t1);
+        let t3 = x0.cos();
+        let t4 = x0.sin();
+        let t5 = T::fused(-k(13.333333333333334), t0, t1);
+        let t6 = t4 * t5;
+        let t7 = T::fused(-k(0.0032), t1, k(0.013) * t0);
+        let t8 = k(2.6191723415400734) * t7;
         let t9 = T::fused(
-            t6,
-            k(0.5886) * t4,
-            T::fused(k(7.848), t8 * t7, T::fused(k(0.3924), t3, k(1.5))),
+            t8,
+            k(0.5886) * t6,
+            T::fused(t3, t2, T::fused(k(0.3924), t4, k(1.5))),
         );
         let t10 = T::fused(k(0.11827321111768184), t0, t1);
-        let t11 = k(1.0) / T::fused(t5, t6, -T::fused(k(0.3382), t1 * t10, k(0.0326)));
+        let t11 = k(1.0) / T::fused(t7, t8, -T::fused(k(0.3382), t1 * t10, k(0.0326)));
         let t12 = t11 * t9;
-        let t13 = T::fused(-k(8.455), t0, t1);
-        let t14 = u0 * T::fused(t1, T::fused(k(8.455), t1, t0), t0 * t13);
-        let t15 = T::fused(
-            k(0.5886),
-            t8 * T::fused(k(13.333333333333334), t1, t0),
-            k(0.04) * (u0 * t14),
-        );
-        let t16 = T::fused(k(0.013), t1, k(0.0032) * t0);
-        let t17 = k(2.6191723415400734) * t16;
-        let t18 = T::fused(-t1, t13, k(0.5));
-        let t19 = u0 * t18;
-        let t20 = T::fused(
-            k(0.04),
-            u0 * t19,
-            T::fused(-k(0.5886), t8 * t2, k(0.05) * u1),
-        );
-        let t21 = T::fused(
-            -k(7.848),
-            t3 * T::fused(-k(0.075), t1, t0),
-            k(0.013)
-                * (u1
-                    * T::fused(
-                        -k(6.153846153846154),
-                        t14,
-                        u1 * T::fused(-k(0.24615384615384617), t1, t0),
-                    )),
-        );
+        let t13 = k(0.5886) * t3;
+        let t14 = k(0.04) * u0;
+        let t15 = T::fused(-k(8.455), t0, t1);
+        let t16 = T::fused(-t1, t15, k(0.5));
+        let t17 = u0 * t16;
+        let t18 = T::fused(t17, t14, T::fused(-t5, t13, k(0.05) * u1));
+        let t19 = k(0.013) * u1;
+        let t20 = u1 * T::fused(k(0.24615384615384617), t0, t1);
+        let t21 = T::fused(k(6.153846153846154), t17, t20);
         let t22 = T::fused(
+            t21,
+            t19,
+            -T::fused(t4, t2, T::fused(k(1.5), x0, -T::fused(k(0.3924), t3, k(0.3)))),
+        );
+        let t23 = T::fused(-t8, t18, t22);
+        let t24 = T::fused(k(0.013), t1, k(0.0032) * t0);
+        let t25 = k(2.6191723415400734) * t24;
+        let t26 = T::fused(
             k(0.3382),
             T::fused(t1, T::fused(-k(0.11827321111768184), t1, t0), t0 * t10),
-            T::fused(t5, t17, t6 * t16),
+            T::fused(t7, t25, t8 * t24),
         );
-        let t23 = u1 * T::fused(k(0.24615384615384617), t0, t1);
-        let t24 = T::fused(k(6.153846153846154), t19, t23);
-        let t25 = T::fused(
-            k(7.848),
-            t3 * t7,
-            T::fused(k(1.5), x0, -T::fused(k(0.3924), t8, k(0.3))),
+        let t27 = u0 * T::fused(t1, T::fused(k(8.455), t1, t0), t0 * t15);
+        let t28 = T::fused(
+            -T::fused(
+                -k(6.153846153846154),
+                t27,
+                u1 * T::fused(-k(0.24615384615384617), t1, t0),
+            ),
+            t19,
+            k(7.848) * (t4 * T::fused(-k(0.075), t1, t0)),
         );
-        let t26 = T::fused(t6, t20, T::fused(-k(0.013), u1 * t24, t25));
-        let t27 = T::fused(
-            -t11,
-            t21 + T::fused(t6, t15, t20 * t17),
-            t26 * (t11 * t11 * t22),
+        let t29 = T::fused(t27, t14, T::fused(k(13.333333333333334), t1, t0) * t13);
+        let t30 = T::fused(
+            t11 * t11 * t26,
+            t23,
+            t11 * (T::fused(t25, t18, t8 * t29) - t28),
         );
-        let t28 = t11
-            * T::fused(
-                -t6,
-                k(0.08) * t19,
-                k(0.013) * (u1 * (k(6.153846153846154) * t18)),
-            );
-        let t29 = t11 * T::fused(-k(0.13095861707700368), t5, k(0.013) * (t23 + t24));
+        let t31 = t11
+            * T::fused(-(k(6.153846153846154) * t16), t19, t8 * (k(0.08) * t17));
+        let t32 = t11 * T::fused(-k(0.13095861707700368), t7, k(0.013) * (t20 + t21));
         *dfdx = [
             k(0.0),
             k(0.0),
@@ -1781,14 +1776,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Universal<T> {
             k(1.0),
             k(0.0),
             t12,
-            -t27,
-            -t28,
-            -t29,
+            t30,
+            t31,
+            -t32,
             k(0.0),
-            T::fused(-k(1.5416448402304872), t4, t6 * t12),
-            T::fused(-k(2.6191723415400734), t15, T::fused(-t6, t27, t11 * t26 * t17)),
-            -T::fused(t6, t28, k(0.20953378732320588) * t19),
-            -T::fused(t6, t29, k(0.13095861707700368)),
+            T::fused(-k(1.5416448402304872), t6, t8 * t12),
+            T::fused(-k(2.6191723415400734), t29, T::fused(-t25, t11 * t23, t8 * t30)),
+            T::fused(-k(0.20953378732320588), t17, t8 * t31),
+            -T::fused(t8, t32, k(0.13095861707700368)),
             k(0.0),
             k(0.0),
             k(0.0),
@@ -1810,7 +1805,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
     fn outputs_buffer(&self) -> Self::Outputs {
         [T::constant(0.0); 6]
     }
-    /// Writes the outputs: 187 operations (78 ±, 108 ×, 1 ÷) and 3 functions.
+    /// Writes the outputs: 180 operations (76 ±, 103 ×, 1 ÷) and 3 functions.
     fn outputs(&self, t: T, y: &Self::State, out: &mut Self::Outputs) {
         let mut accelerations = gyro_sim::Equations::accelerations_buffer(self);
         gyro_sim::Equations::accelerations(self, t, y, &mut accelerations);
@@ -1835,19 +1830,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
         let t0 = k(2.0) * bob_dsy;
         let t1 = T::fused(k(2.0), bob_dsz, k(19.62));
         let t2 = k(2.0) * bob_dsx;
-        let t3 = turn0.cos();
-        let t4 = bob_e0 * bob_e0;
-        let t5 = k(0.5) - T::fused(bob_e2, bob_e2, t4);
-        let t6 = k(2.0) * t5;
-        let t7 = turn0.sin();
-        let t8 = bob_e0 * bob_e1;
-        let t9 = bob_e2 * bob_e3;
+        let t3 = k(2.0) * bob_e2;
+        let t4 = k(2.0) * bob_e0;
+        let t5 = T::fused(-bob_e0, t4, k(1.0));
+        let t6 = T::fused(-bob_e2, t3, t5);
+        let t7 = turn0.cos();
+        let t8 = bob_e1 * t4;
+        let t9 = bob_e3 * t3;
         let t10 = t9 + t8;
-        let t11 = k(2.0) * t10;
-        let t12 = T::fused(t6, t7, t11 * t3).atan2(T::fused(-t6, t3, t11 * t7));
+        let t11 = turn0.sin();
+        let t12 = T::fused(t11, t6, t7 * t10).atan2(T::fused(-t7, t6, t11 * t10));
         let t13 = k(1.5) * (k(0.2) - (turn0 + t12));
-        let t14 = k(0.5) - T::fused(bob_e1, bob_e1, t4);
-        let t15 = k(2.0) * t14;
+        let t14 = k(2.0) * bob_e1;
+        let t15 = T::fused(-bob_e1, t14, t5);
         let t16 = bob_wy * bob_wy;
         let t17 = k(0.004) * bob_wy;
         let t18 = T::fused(
@@ -1864,23 +1859,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
             bob_dwz,
             T::fused(k(0.002), bob_dwy, k(0.05) * bob_dwx),
         ) - T::fused(-t15, t13, t18);
-        let t20 = bob_e0 * bob_e3;
-        let t21 = bob_e1 * bob_e2;
+        let t20 = bob_e3 * t4;
+        let t21 = bob_e2 * t14;
         let t22 = t21 - t20;
-        let t23 = bob_e0 * bob_e2;
-        let t24 = bob_e1 * bob_e3;
+        let t23 = bob_e2 * t4;
+        let t24 = bob_e3 * t14;
         let t25 = t24 + t23;
         let t26 = t9 - t8;
         let t27 = T::fused(
             t2,
-            T::fused(-k(0.8), t22, k(0.04) * t25),
-            t0 * T::fused(k(0.8), t5, k(0.04) * t26),
+            T::fused(-k(0.4), t22, k(0.02) * t25),
+            t0 * T::fused(k(0.4), t6, k(0.02) * t26),
         );
-        let t28 = k(0.5) - T::fused(bob_e3, bob_e3, t4);
-        let t29 = T::fused(t1, T::fused(k(0.8), t10, k(0.04) * t28), -t27);
-        let t30 = k(2.0) * t25;
-        let t31 = k(1.0) / T::fused(t30, t30, t15 * t15);
-        let t32 = T::fused(
+        let t28 = T::fused(-bob_e3, k(2.0) * bob_e3, t5);
+        let t29 = T::fused(t1, T::fused(k(0.4), t10, k(0.02) * t28), -t27);
+        let t30 = k(1.0) / T::fused(t25, t25, t15 * t15);
+        let t31 = T::fused(
             bob_wz,
             T::fused(k(0.003), bob_wx, t17),
             T::fused(
@@ -1889,46 +1883,41 @@ impl<T: gyro_sim::Scalar> gyro_sim::Ports for Universal<T> {
                 k(0.01) * (bob_wx * bob_wy),
             ),
         );
-        let t33 = T::fused(
+        let t32 = T::fused(
             -k(0.03),
             bob_dwz,
             T::fused(-k(0.003), bob_dwy, k(0.004) * bob_dwx),
-        ) - T::fused(-t30, t13, t32);
-        let t34 = t21 + t20;
-        let t35 = T::fused(
+        ) - T::fused(-t25, t13, t31);
+        let t33 = t21 + t20;
+        let t34 = T::fused(
             t2,
-            T::fused(-k(0.06), t22, k(0.04) * t14),
-            t0 * T::fused(-k(0.04), t34, k(0.06) * t5),
+            T::fused(-k(0.03), t22, k(0.02) * t15),
+            t0 * T::fused(-k(0.02), t33, k(0.03) * t6),
         );
-        let t36 = t24 - t23;
-        let t37 = T::fused(t1, T::fused(k(0.04), t36, k(0.06) * t10), -t35);
-        let t38 = T::fused(t30 * t31, t29 + t19, t15 * t31 * (t37 - t33));
-        let t39 = T::fused(-t30, t38, t29);
-        let t40 = T::fused(
+        let t35 = t24 - t23;
+        let t36 = T::fused(t1, T::fused(k(0.02), t35, k(0.03) * t10), -t34);
+        let t37 = T::fused(t25 * t30, t29 + t19, t15 * t30 * (t36 - t32));
+        let t38 = T::fused(-t25, t37, t29);
+        let t39 = T::fused(
             t2,
-            T::fused(-k(0.8), t14, k(0.06) * t25),
-            t0 * T::fused(k(0.8), t34, k(0.06) * t26),
+            T::fused(-k(0.4), t15, k(0.03) * t25),
+            t0 * T::fused(k(0.4), t33, k(0.03) * t26),
         );
-        let t41 = T::fused(t1, T::fused(-k(0.8), t36, k(0.06) * t28), -t40);
-        let t42 = T::fused(-t15, t38, t37);
-        let t43 = T::fused(k(2.0) * t26, t42, -T::fused(-(k(2.0) * t34), t39, t6 * t41));
-        let t44 = bob_rz
-            - (bob_rz - T::fused(k(0.8), t28, -T::fused(-k(0.06), t36, k(0.04) * t10)));
-        let t45 = bob_rx
-            - (bob_rx + T::fused(k(0.8), t25, T::fused(k(0.06), t14, k(0.04) * t22)));
-        let t46 = T::fused(k(2.0) * t28, t42, -T::fused(k(2.0) * t36, t39, t11 * t41));
-        let t47 = bob_ry
-            - (bob_ry + T::fused(k(0.8), t26, -T::fused(k(0.06), t34, k(0.04) * t5)));
-        let t48 = T::fused(-t1, t47, t0 * t44)
-            + T::fused(t30, t42, T::fused(-t15, t39, k(2.0) * t22 * t41));
-        *out = [
-            t0,
-            t1,
-            t2,
-            -(T::fused(-t2, t44, t1 * t45) + t43),
-            t46 - T::fused(-t0, t45, t2 * t47),
-            -t48,
-        ];
+        let t40 = T::fused(t1, T::fused(-k(0.4), t35, k(0.03) * t28), -t39);
+        let t41 = T::fused(-t15, t37, t36);
+        let t42 = bob_rz
+            - (bob_rz - T::fused(k(0.4), t28, -T::fused(-k(0.03), t35, k(0.02) * t10)));
+        let t43 = bob_rx
+            - (bob_rx + T::fused(k(0.4), t25, T::fused(k(0.03), t15, k(0.02) * t22)));
+        let t44 = T::fused(-t2, t42, t1 * t43)
+            + T::fused(t26, t41, -T::fused(-t33, t38, t6 * t40));
+        let t45 = bob_ry
+            - (bob_ry + T::fused(k(0.4), t26, -T::fused(k(0.03), t33, k(0.02) * t6)));
+        let t46 = T::fused(-t0, t43, t2 * t45)
+            - T::fused(t28, t41, -T::fused(t35, t38, t10 * t40));
+        let t47 = T::fused(-t1, t45, t0 * t42)
+            + T::fused(t25, t41, T::fused(-t15, t38, t22 * t40));
+        *out = [t0, t1, t2, -t44, -t46, -t47];
     }
     fn n_outputs(&self) -> usize {
         6

@@ -11,8 +11,8 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 2651 operations by rotations of the bodies; 2726 operations by relative Euler parameters
-//! * project: 2254 operations by rotations of the bodies; 2286 operations by relative Euler parameters
+//! * accelerations: 2608 operations by rotations of the bodies, doubled; 2643 operations by relative Euler parameters, doubled; 2 more compared
+//! * project: 2215 operations by rotations of the bodies, doubled; 2254 operations by rotations of the bodies; 2 more compared
 //! * joint_accelerations_at: 1207 operations by recursion; 1244 operations by recursion on the bodies' spins
 //! * corrected_accelerations: 1625 operations by recursion on the bodies' spins in the bodies' frames; 1699 operations by recursion in the bodies' frames; 3 more compared
 //! * joint_jacobian: 5652 operations by derivatives of the balance, from its roots, by M⁻¹; 5776 operations by derivatives of the balance, from its leaves, by M⁻¹; 4 more compared
@@ -22,15 +22,15 @@
 //! | function | computes | + − | × | ÷ | total | zeros | written out | shared |
 //! |---|---|---|---|---|---|---|---|---|
 //! | phi | Φ | 137 | 141 | 0 | 278 | 0 of 36 | 557 | 278 |
-//! | phi_q | Φ_q, non-zeros in (r, p) | 164 | 341 | 0 | 505 | 0 of 255 | 1542 | 505 |
-//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 142 | 255 | 0 | 397 | 0 of 143 | 1544 | 397 |
+//! | phi_q | Φ_q, non-zeros in (r, p) | 159 | 308 | 0 | 467 | 0 of 255 | 1742 | 467 |
+//! | phi_pi | (Φ_r, Φ_π'), non-zeros | 130 | 225 | 0 | 355 | 0 of 143 | 1920 | 355 |
 //! | nu | ν | 0 | 0 | 0 | 0 | 30 of 30 | 0 | 0 |
-//! | gamma | γ | 314 | 483 | 0 | 797 | 0 of 30 | 4258 | 797 |
-//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 240 | 317 | 0 | 557 | 0 of 30 | 1800 | 557 |
+//! | gamma | γ | 302 | 453 | 0 | 755 | 0 of 30 | 4963 | 755 |
+//! | velocity_residual | Φ_r s + Φ_π' w' − ν | 228 | 287 | 0 | 515 | 0 of 30 | 2110 | 515 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 36 | 0 | 36 | 12 of 36 | 36 | 36 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 1172 | 1468 | 11 | 2651 | 0 of 36 | 2.2e17 | 2658 |
-//! | multipliers | λ, the accelerations being known | 318 | 510 | 6 | 834 | 0 of 30 | 131621 | 834 |
-//! | project | (δr, δπ') that changes the rows as given | 1025 | 1218 | 11 | 2254 | 0 of 36 | 6.3e16 | 2255 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 1160 | 1437 | 11 | 2608 | 0 of 36 | 2.7e17 | 2615 |
+//! | multipliers | λ, the accelerations being known | 306 | 480 | 6 | 792 | 0 of 30 | 156637 | 792 |
+//! | project | (δr, δπ') that changes the rows as given | 1013 | 1191 | 11 | 2215 | 0 of 36 | 8.1e16 | 2216 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 48 | 96 | 0 | 144 | 0 of 42 | 144 | 144 |
 //! | energy | T and V | 40 | 62 | 0 | 102 | 0 of 2 | 102 | 102 |
 //! | read_joints | joint coordinates and rates | 102 | 121 | 0 | 223 | 0 of 18 | 513 | 223 |
@@ -45,7 +45,7 @@
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 731 | 889 | 5 | 1625 | 0 of 36 | 4.9e12 | 1626 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 204 | 295 | 0 | 499 | 0 of 30 | 10703 | 499 |
 //! | corrected_solution | both | 853 | 1041 | 5 | 1899 | 0 of 66 | 8.5e14 | 1900 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2486 | 3161 | 5 | 5652 | 78 of 156 | 6.1e13 | 5652 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 2480 | 3154 | 5 | 5639 | 78 of 156 | 6.1e13 | 5639 |
 //!
 //! # Proof
 //!
@@ -918,7 +918,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
             t77 + T::fused(link_6_e2, link_6_e2, t79) - k(1.0),
         ];
     }
-    /// Writes Φ_r s + Φ_π' w' − ν: 557 operations (240 ±, 317 ×, 0 ÷).
+    /// Writes Φ_r s + Φ_π' w' − ν: 515 operations (228 ±, 287 ×, 0 ÷).
     fn velocity_residual(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -981,259 +981,277 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Chain<T> {
         let link_6_wx = y[75];
         let link_6_wy = y[76];
         let link_6_wz = y[77];
-        let t0 = link_1_e0 * link_1_e3;
-        let t1 = link_1_e1 * link_1_e2;
-        let t2 = k(2.0) * (t1 - t0);
-        let t3 = link_1_e0 * link_1_e0;
-        let t4 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t3));
-        let t5 = k(0.1) * T::fused(t2, link_1_wx, t4 * link_1_wy);
-        let t6 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t3));
-        let t7 = k(2.0) * (t1 + t0);
-        let t8 = k(0.1) * T::fused(t6, link_1_wx, t7 * link_1_wy);
-        let t9 = link_1_e0 * link_1_e1;
-        let t10 = link_1_e2 * link_1_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = link_1_e0 * link_1_e2;
-        let t13 = link_1_e1 * link_1_e3;
-        let t14 = k(2.0) * (t13 - t12);
-        let t15 = k(0.1) * T::fused(-t11, link_1_wx, t14 * link_1_wy);
-        let t16 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t3));
-        let t17 = k(2.0) * (t13 + t12);
-        let t18 = link_2_e0 * link_2_e0;
-        let t19 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t18));
-        let t20 = link_2_e0 * link_2_e3;
-        let t21 = link_2_e1 * link_2_e2;
-        let t22 = k(2.0) * (t21 - t20);
-        let t23 = k(0.1) * T::fused(t19, link_2_wy, t22 * link_2_wx);
-        let t24 = k(2.0) * (t21 + t20);
-        let t25 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t18));
-        let t26 = k(0.1) * T::fused(t24, link_2_wy, t25 * link_2_wx);
-        let t27 = link_2_e0 * link_2_e2;
-        let t28 = link_2_e1 * link_2_e3;
-        let t29 = k(2.0) * (t28 - t27);
-        let t30 = link_2_e0 * link_2_e1;
-        let t31 = link_2_e2 * link_2_e3;
-        let t32 = k(2.0) * (t31 + t30);
-        let t33 = k(0.1) * T::fused(-t29, link_2_wy, t32 * link_2_wx);
-        let t34 = T::fused(t14, t29, T::fused(t4, t19, t7 * t24));
-        let t35 = T::fused(
-            -link_1_wx,
-            T::fused(t11, t29, -T::fused(t2, t19, t6 * t24)),
-            link_1_wy * t34,
-        );
-        let t36 = k(2.0) * (t10 - t9);
-        let t37 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t18));
-        let t38 = k(2.0) * (t31 - t30);
-        let t39 = k(2.0) * (t28 + t27);
-        let t40 = T::fused(
-            link_2_wz,
-            T::fused(t16, t32, -T::fused(-t36, t25, t17 * t22)),
-            link_2_wy * T::fused(t16, t37, T::fused(t36, t38, t17 * t39)),
-        );
+        let t0 = k(2.0) * link_1_e1;
+        let t1 = k(2.0) * link_1_e0;
+        let t2 = T::fused(-link_1_e0, t1, k(1.0));
+        let t3 = T::fused(-link_1_e1, t0, t2);
+        let t4 = link_1_e3 * t1;
+        let t5 = link_1_e2 * t0;
+        let t6 = t5 - t4;
+        let t7 = k(0.1) * T::fused(link_1_wy, t3, link_1_wx * t6);
+        let t8 = t5 + t4;
+        let t9 = k(2.0) * link_1_e2;
+        let t10 = T::fused(-link_1_e2, t9, t2);
+        let t11 = k(0.1) * T::fused(link_1_wy, t8, link_1_wx * t10);
+        let t12 = link_1_e2 * t1;
+        let t13 = link_1_e3 * t0;
+        let t14 = t13 - t12;
+        let t15 = link_1_e1 * t1;
+        let t16 = link_1_e3 * t9;
+        let t17 = t16 + t15;
+        let t18 = k(0.1) * T::fused(-link_1_wy, t14, link_1_wx * t17);
+        let t19 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t2);
+        let t20 = t13 + t12;
+        let t21 = k(2.0) * link_2_e1;
+        let t22 = k(2.0) * link_2_e0;
+        let t23 = T::fused(-link_2_e0, t22, k(1.0));
+        let t24 = T::fused(-link_2_e1, t21, t23);
+        let t25 = link_2_e3 * t22;
+        let t26 = link_2_e2 * t21;
+        let t27 = t26 - t25;
+        let t28 = k(0.1) * T::fused(link_2_wy, t24, link_2_wx * t27);
+        let t29 = t26 + t25;
+        let t30 = k(2.0) * link_2_e2;
+        let t31 = T::fused(-link_2_e2, t30, t23);
+        let t32 = k(0.1) * T::fused(link_2_wy, t29, link_2_wx * t31);
+        let t33 = link_2_e2 * t22;
+        let t34 = link_2_e3 * t21;
+        let t35 = t34 - t33;
+        let t36 = link_2_e1 * t22;
+        let t37 = link_2_e3 * t30;
+        let t38 = t37 + t36;
+        let t39 = k(0.1) * T::fused(-link_2_wy, t35, link_2_wx * t38);
+        let t40 = T::fused(t14, t35, T::fused(t3, t24, t8 * t29));
         let t41 = T::fused(
+            -link_1_wy,
+            t40,
+            link_1_wx * T::fused(t17, t35, -T::fused(t6, t24, t10 * t29)),
+        );
+        let t42 = t16 - t15;
+        let t43 = t34 + t33;
+        let t44 = t37 - t36;
+        let t45 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t23);
+        let t46 = T::fused(
+            link_2_wz,
+            T::fused(t19, t38, T::fused(-t20, t27, t42 * t31)),
+            link_2_wy * T::fused(t19, t45, T::fused(t20, t43, t42 * t44)),
+        );
+        let t47 = T::fused(
             link_1_wz,
-            t34,
-            link_1_wx * T::fused(t16, t29, -T::fused(-t17, t19, t36 * t24)),
+            t40,
+            link_1_wx * T::fused(t19, t35, -T::fused(-t20, t24, t42 * t29)),
         );
-        let t42 = T::fused(
+        let t48 = T::fused(
             link_2_wz,
-            T::fused(t11, t32, T::fused(t6, t25, t2 * t22)),
-            link_2_wy * T::fused(t11, t37, -T::fused(-t6, t38, t2 * t39)),
+            T::fused(t17, t38, T::fused(t6, t27, t10 * t31)),
+            link_2_wy * T::fused(t17, t45, T::fused(-t6, t43, t10 * t44)),
         );
-        let t43 = link_3_e0 * link_3_e3;
-        let t44 = link_3_e1 * link_3_e2;
-        let t45 = k(2.0) * (t44 - t43);
-        let t46 = link_3_e0 * link_3_e0;
-        let t47 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t46));
-        let t48 = k(0.1) * T::fused(t45, link_3_wx, t47 * link_3_wy);
-        let t49 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t46));
-        let t50 = k(2.0) * (t44 + t43);
-        let t51 = k(0.1) * T::fused(t49, link_3_wx, t50 * link_3_wy);
-        let t52 = link_3_e0 * link_3_e1;
-        let t53 = link_3_e2 * link_3_e3;
-        let t54 = k(2.0) * (t53 + t52);
-        let t55 = link_3_e0 * link_3_e2;
-        let t56 = link_3_e1 * link_3_e3;
-        let t57 = k(2.0) * (t56 - t55);
-        let t58 = k(0.1) * T::fused(-t54, link_3_wx, t57 * link_3_wy);
-        let t59 = T::fused(t32, t54, T::fused(t25, t49, t22 * t45));
-        let t60 = T::fused(
+        let t49 = k(2.0) * link_3_e1;
+        let t50 = k(2.0) * link_3_e0;
+        let t51 = T::fused(-link_3_e0, t50, k(1.0));
+        let t52 = T::fused(-link_3_e1, t49, t51);
+        let t53 = link_3_e3 * t50;
+        let t54 = link_3_e2 * t49;
+        let t55 = t54 - t53;
+        let t56 = k(0.1) * T::fused(link_3_wy, t52, link_3_wx * t55);
+        let t57 = t54 + t53;
+        let t58 = k(2.0) * link_3_e2;
+        let t59 = T::fused(-link_3_e2, t58, t51);
+        let t60 = k(0.1) * T::fused(link_3_wy, t57, link_3_wx * t59);
+        let t61 = link_3_e2 * t50;
+        let t62 = link_3_e3 * t49;
+        let t63 = t62 - t61;
+        let t64 = link_3_e1 * t50;
+        let t65 = link_3_e3 * t58;
+        let t66 = t65 + t64;
+        let t67 = k(0.1) * T::fused(-link_3_wy, t63, link_3_wx * t66);
+        let t68 = T::fused(t38, t66, T::fused(t27, t55, t31 * t59));
+        let t69 = T::fused(
             -link_2_wy,
-            T::fused(t29, t54, -T::fused(t19, t45, t24 * t49)),
-            link_2_wx * t59,
+            T::fused(t35, t66, -T::fused(t24, t55, t29 * t59)),
+            link_2_wx * t68,
         );
-        let t61 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t46));
-        let t62 = k(2.0) * (t53 - t52);
-        let t63 = k(2.0) * (t56 + t55);
-        let t64 = T::fused(
+        let t70 = t62 + t61;
+        let t71 = t65 - t64;
+        let t72 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t51);
+        let t73 = T::fused(
             link_3_wz,
-            T::fused(t37, t57, -T::fused(-t39, t47, t38 * t50)),
-            link_3_wx * T::fused(t37, t61, T::fused(t38, t62, t39 * t63)),
+            T::fused(t45, t63, -T::fused(-t43, t52, t44 * t57)),
+            link_3_wx * T::fused(t45, t72, T::fused(t43, t70, t44 * t71)),
         );
-        let t65 = T::fused(
+        let t74 = T::fused(
             link_2_wz,
-            t59,
-            link_2_wy * T::fused(t37, t54, -T::fused(-t38, t49, t39 * t45)),
+            t68,
+            link_2_wy * T::fused(t45, t66, T::fused(-t43, t55, t44 * t59)),
         );
-        let t66 = T::fused(
+        let t75 = T::fused(
             link_3_wz,
-            T::fused(t29, t57, T::fused(t19, t47, t24 * t50)),
-            link_3_wx * T::fused(t29, t61, -T::fused(-t19, t63, t24 * t62)),
+            T::fused(t35, t63, T::fused(t24, t52, t29 * t57)),
+            link_3_wx * T::fused(t35, t72, -T::fused(-t24, t70, t29 * t71)),
         );
-        let t67 = link_4_e0 * link_4_e0;
-        let t68 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t67));
-        let t69 = link_4_e0 * link_4_e3;
-        let t70 = link_4_e1 * link_4_e2;
-        let t71 = k(2.0) * (t70 - t69);
-        let t72 = k(0.1) * T::fused(t68, link_4_wy, t71 * link_4_wx);
-        let t73 = k(2.0) * (t70 + t69);
-        let t74 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t67));
-        let t75 = k(0.1) * T::fused(t73, link_4_wy, t74 * link_4_wx);
-        let t76 = link_4_e0 * link_4_e2;
-        let t77 = link_4_e1 * link_4_e3;
-        let t78 = k(2.0) * (t77 - t76);
-        let t79 = link_4_e0 * link_4_e1;
-        let t80 = link_4_e2 * link_4_e3;
-        let t81 = k(2.0) * (t80 + t79);
-        let t82 = k(0.1) * T::fused(-t78, link_4_wy, t81 * link_4_wx);
-        let t83 = T::fused(t57, t78, T::fused(t47, t68, t50 * t73));
-        let t84 = T::fused(
-            -link_3_wx,
-            T::fused(t54, t78, -T::fused(t45, t68, t49 * t73)),
-            link_3_wy * t83,
+        let t76 = k(2.0) * link_4_e1;
+        let t77 = k(2.0) * link_4_e0;
+        let t78 = T::fused(-link_4_e0, t77, k(1.0));
+        let t79 = T::fused(-link_4_e1, t76, t78);
+        let t80 = link_4_e3 * t77;
+        let t81 = link_4_e2 * t76;
+        let t82 = t81 - t80;
+        let t83 = k(0.1) * T::fused(link_4_wy, t79, link_4_wx * t82);
+        let t84 = t81 + t80;
+        let t85 = k(2.0) * link_4_e2;
+        let t86 = T::fused(-link_4_e2, t85, t78);
+        let t87 = k(0.1) * T::fused(link_4_wy, t84, link_4_wx * t86);
+        let t88 = link_4_e2 * t77;
+        let t89 = link_4_e3 * t76;
+        let t90 = t89 - t88;
+        let t91 = link_4_e1 * t77;
+        let t92 = link_4_e3 * t85;
+        let t93 = t92 + t91;
+        let t94 = k(0.1) * T::fused(-link_4_wy, t90, link_4_wx * t93);
+        let t95 = T::fused(t63, t90, T::fused(t52, t79, t57 * t84));
+        let t96 = T::fused(
+            -link_3_wy,
+            t95,
+            link_3_wx * T::fused(t66, t90, -T::fused(t55, t79, t59 * t84)),
         );
-        let t85 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t67));
-        let t86 = k(2.0) * (t80 - t79);
-        let t87 = k(2.0) * (t77 + t76);
-        let t88 = T::fused(
+        let t97 = t89 + t88;
+        let t98 = t92 - t91;
+        let t99 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t78);
+        let t100 = T::fused(
             link_4_wz,
-            T::fused(t61, t81, -T::fused(-t62, t74, t63 * t71)),
-            link_4_wy * T::fused(t61, t85, T::fused(t62, t86, t63 * t87)),
+            T::fused(t72, t93, T::fused(-t70, t82, t71 * t86)),
+            link_4_wy * T::fused(t72, t99, T::fused(t70, t97, t71 * t98)),
         );
-        let t89 = T::fused(
+        let t101 = T::fused(
             link_3_wz,
-            t83,
-            link_3_wx * T::fused(t61, t78, -T::fused(-t63, t68, t62 * t73)),
+            t95,
+            link_3_wx * T::fused(t72, t90, -T::fused(-t70, t79, t71 * t84)),
         );
-        let t90 = T::fused(
+        let t102 = T::fused(
             link_4_wz,
-            T::fused(t54, t81, T::fused(t49, t74, t45 * t71)),
-            link_4_wy * T::fused(t54, t85, -T::fused(-t49, t86, t45 * t87)),
+            T::fused(t66, t93, T::fused(t55, t82, t59 * t86)),
+            link_4_wy * T::fused(t66, t99, T::fused(-t55, t97, t59 * t98)),
         );
-        let t91 = link_5_e0 * link_5_e3;
-        let t92 = link_5_e1 * link_5_e2;
-        let t93 = k(2.0) * (t92 - t91);
-        let t94 = link_5_e0 * link_5_e0;
-        let t95 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t94));
-        let t96 = k(0.1) * T::fused(t93, link_5_wx, t95 * link_5_wy);
-        let t97 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t94));
-        let t98 = k(2.0) * (t92 + t91);
-        let t99 = k(0.1) * T::fused(t97, link_5_wx, t98 * link_5_wy);
-        let t100 = link_5_e0 * link_5_e1;
-        let t101 = link_5_e2 * link_5_e3;
-        let t102 = k(2.0) * (t101 + t100);
-        let t103 = link_5_e0 * link_5_e2;
-        let t104 = link_5_e1 * link_5_e3;
-        let t105 = k(2.0) * (t104 - t103);
-        let t106 = k(0.1) * T::fused(-t102, link_5_wx, t105 * link_5_wy);
-        let t107 = T::fused(t81, t102, T::fused(t74, t97, t71 * t93));
-        let t108 = T::fused(
+        let t103 = k(2.0) * link_5_e1;
+        let t104 = k(2.0) * link_5_e0;
+        let t105 = T::fused(-link_5_e0, t104, k(1.0));
+        let t106 = T::fused(-link_5_e1, t103, t105);
+        let t107 = link_5_e3 * t104;
+        let t108 = link_5_e2 * t103;
+        let t109 = t108 - t107;
+        let t110 = k(0.1) * T::fused(link_5_wy, t106, link_5_wx * t109);
+        let t111 = t108 + t107;
+        let t112 = k(2.0) * link_5_e2;
+        let t113 = T::fused(-link_5_e2, t112, t105);
+        let t114 = k(0.1) * T::fused(link_5_wy, t111, link_5_wx * t113);
+        let t115 = link_5_e2 * t104;
+        let t116 = link_5_e3 * t103;
+        let t117 = t116 - t115;
+        let t118 = link_5_e1 * t104;
+        let t119 = link_5_e3 * t112;
+        let t120 = t119 + t118;
+        let t121 = k(0.1) * T::fused(-link_5_wy, t117, link_5_wx * t120);
+        let t122 = T::fused(t93, t120, T::fused(t82, t109, t86 * t113));
+        let t123 = T::fused(
             -link_4_wy,
-            T::fused(t78, t102, -T::fused(t68, t93, t73 * t97)),
-            link_4_wx * t107,
+            T::fused(t90, t120, -T::fused(t79, t109, t84 * t113)),
+            link_4_wx * t122,
         );
-        let t109 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t94));
-        let t110 = k(2.0) * (t101 - t100);
-        let t111 = k(2.0) * (t104 + t103);
-        let t112 = T::fused(
+        let t124 = t116 + t115;
+        let t125 = t119 - t118;
+        let t126 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t105);
+        let t127 = T::fused(
             link_5_wz,
-            T::fused(t85, t105, -T::fused(-t87, t95, t86 * t98)),
-            link_5_wx * T::fused(t85, t109, T::fused(t86, t110, t87 * t111)),
+            T::fused(t99, t117, -T::fused(-t97, t106, t98 * t111)),
+            link_5_wx * T::fused(t99, t126, T::fused(t97, t124, t98 * t125)),
         );
-        let t113 = T::fused(
+        let t128 = T::fused(
             link_4_wz,
-            t107,
-            link_4_wy * T::fused(t85, t102, -T::fused(-t86, t97, t87 * t93)),
+            t122,
+            link_4_wy * T::fused(t99, t120, T::fused(-t97, t109, t98 * t113)),
         );
-        let t114 = T::fused(
+        let t129 = T::fused(
             link_5_wz,
-            T::fused(t78, t105, T::fused(t68, t95, t73 * t98)),
-            link_5_wx * T::fused(t78, t109, -T::fused(-t68, t111, t73 * t110)),
+            T::fused(t90, t117, T::fused(t79, t106, t84 * t111)),
+            link_5_wx * T::fused(t90, t126, -T::fused(-t79, t124, t84 * t125)),
         );
-        let t115 = link_6_e0 * link_6_e0;
-        let t116 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t115));
-        let t117 = link_6_e0 * link_6_e3;
-        let t118 = link_6_e1 * link_6_e2;
-        let t119 = k(2.0) * (t118 - t117);
-        let t120 = link_5_sx + t96
-            - T::fused(-k(0.1), T::fused(t116, link_6_wy, t119 * link_6_wx), link_6_sx);
-        let t121 = k(2.0) * (t118 + t117);
-        let t122 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t115));
-        let t123 = link_5_sy - t99
-            - T::fused(k(0.1), T::fused(t121, link_6_wy, t122 * link_6_wx), link_6_sy);
-        let t124 = link_6_e0 * link_6_e2;
-        let t125 = link_6_e1 * link_6_e3;
-        let t126 = k(2.0) * (t125 - t124);
-        let t127 = link_6_e0 * link_6_e1;
-        let t128 = link_6_e2 * link_6_e3;
-        let t129 = k(2.0) * (t128 + t127);
-        let t130 = link_5_sz - t106
-            - T::fused(-k(0.1), T::fused(-t126, link_6_wy, t129 * link_6_wx), link_6_sz);
-        let t131 = T::fused(t105, t126, T::fused(t95, t116, t98 * t121));
-        let t132 = T::fused(
-            -link_5_wx,
-            T::fused(t102, t126, -T::fused(t93, t116, t97 * t121)),
-            link_5_wy * t131,
+        let t130 = k(2.0) * link_6_e1;
+        let t131 = k(2.0) * link_6_e0;
+        let t132 = T::fused(-link_6_e0, t131, k(1.0));
+        let t133 = T::fused(-link_6_e1, t130, t132);
+        let t134 = link_6_e3 * t131;
+        let t135 = link_6_e2 * t130;
+        let t136 = t135 - t134;
+        let t137 = link_5_sx + t110
+            - T::fused(-k(0.1), T::fused(link_6_wy, t133, link_6_wx * t136), link_6_sx);
+        let t138 = t135 + t134;
+        let t139 = k(2.0) * link_6_e2;
+        let t140 = T::fused(-link_6_e2, t139, t132);
+        let t141 = link_5_sy - t114
+            - T::fused(k(0.1), T::fused(link_6_wy, t138, link_6_wx * t140), link_6_sy);
+        let t142 = link_6_e2 * t131;
+        let t143 = link_6_e3 * t130;
+        let t144 = t143 - t142;
+        let t145 = link_6_e1 * t131;
+        let t146 = link_6_e3 * t139;
+        let t147 = t146 + t145;
+        let t148 = link_5_sz + t121
+            - T::fused(-k(0.1), T::fused(-link_6_wy, t144, link_6_wx * t147), link_6_sz);
+        let t149 = T::fused(t117, t144, T::fused(t106, t133, t111 * t138));
+        let t150 = T::fused(
+            -link_5_wy,
+            t149,
+            link_5_wx * T::fused(t120, t144, -T::fused(t109, t133, t113 * t138)),
         );
-        let t133 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t115));
-        let t134 = k(2.0) * (t128 - t127);
-        let t135 = k(2.0) * (t125 + t124);
-        let t136 = T::fused(
+        let t151 = t143 + t142;
+        let t152 = t146 - t145;
+        let t153 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t132);
+        let t154 = T::fused(
             link_6_wz,
-            T::fused(t109, t129, -T::fused(-t110, t122, t111 * t119)),
-            link_6_wy * T::fused(t109, t133, T::fused(t110, t134, t111 * t135)),
+            T::fused(t126, t147, T::fused(-t124, t136, t125 * t140)),
+            link_6_wy * T::fused(t126, t153, T::fused(t124, t151, t125 * t152)),
         );
-        let t137 = T::fused(
+        let t155 = T::fused(
             link_5_wz,
-            t131,
-            link_5_wx * T::fused(t109, t126, -T::fused(-t111, t116, t110 * t121)),
+            t149,
+            link_5_wx * T::fused(t126, t144, -T::fused(-t124, t133, t125 * t138)),
         );
-        let t138 = T::fused(
+        let t156 = T::fused(
             link_6_wz,
-            T::fused(t102, t129, T::fused(t97, t122, t93 * t119)),
-            link_6_wy * T::fused(t102, t133, -T::fused(-t97, t134, t93 * t135)),
+            T::fused(t120, t147, T::fused(t109, t136, t113 * t140)),
+            link_6_wy * T::fused(t120, t153, T::fused(-t109, t151, t113 * t152)),
         );
         *out = [
-            link_1_sx - t5,
-            link_1_sy + t8,
-            link_1_sz + t15,
-            -T::fused(t14, link_1_wz, t16 * link_1_wx),
-            T::fused(t4, link_1_wz, t17 * link_1_wx),
-            link_2_sx - t23 - (link_1_sx + t5),
-            link_2_sy + t26 - (link_1_sy - t8),
-            link_2_sz - t33 - (link_1_sz - t15),
-            t35 - t40,
-            t41 - t42,
-            link_3_sx - t48 - (link_2_sx + t23),
-            link_3_sy + t51 - (link_2_sy - t26),
-            link_3_sz + t58 - (link_2_sz + t33),
-            t64 - t60,
-            t65 - t66,
-            link_4_sx - t72 - (link_3_sx + t48),
-            link_4_sy + t75 - (link_3_sy - t51),
-            link_4_sz - t82 - (link_3_sz - t58),
-            t84 - t88,
-            t89 - t90,
-            link_5_sx - t96 - (link_4_sx + t72),
-            link_5_sy + t99 - (link_4_sy - t75),
-            link_5_sz + t106 - (link_4_sz + t82),
-            t112 - t108,
-            t113 - t114,
-            -t120,
-            -t123,
-            -t130,
-            t132 - t136,
-            t137 - t138,
+            link_1_sx - t7,
+            link_1_sy + t11,
+            link_1_sz - t18,
+            -T::fused(link_1_wz, t14, link_1_wx * t19),
+            T::fused(link_1_wz, t3, link_1_wx * t20),
+            link_2_sx - t28 - (link_1_sx + t7),
+            link_2_sy + t32 - (link_1_sy - t11),
+            link_2_sz - t39 - (link_1_sz + t18),
+            -(t46 + t41),
+            t47 - t48,
+            link_3_sx - t56 - (link_2_sx + t28),
+            link_3_sy + t60 - (link_2_sy - t32),
+            link_3_sz - t67 - (link_2_sz + t39),
+            t73 - t69,
+            t74 - t75,
+            link_4_sx - t83 - (link_3_sx + t56),
+            link_4_sy + t87 - (link_3_sy - t60),
+            link_4_sz - t94 - (link_3_sz + t67),
+            -(t100 + t96),
+            t101 - t102,
+            link_5_sx - t110 - (link_4_sx + t83),
+            link_5_sy + t114 - (link_4_sy - t87),
+            link_5_sz - t121 - (link_4_sz + t94),
+            t127 - t123,
+            t128 - t129,
+            -t137,
+            -t141,
+            -t148,
+            -(t154 + t150),
+            t155 - t156,
         ];
     }
     /// Kinetic and potential energy: 102 operations (40 ±, 62 ×, 0 ÷).
@@ -3369,7 +3387,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             (29, 35),
         ]
     }
-    /// Writes the non-zeros of Φ_q: 505 operations (164 ±, 341 ×, 0 ÷).
+    /// Writes the non-zeros of Φ_q: 467 operations (159 ±, 308 ×, 0 ÷).
     fn phi_q(&self, _t: T, y: &Self::State, out: &mut Self::PhiQ) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -3412,56 +3430,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t13 = k(0.2) * link_2_e1;
         let t14 = k(0.4) * link_2_e0;
         let t15 = k(0.4) * link_2_e3;
-        let t16 = k(4.0) * link_1_e0;
-        let t17 = link_2_e0 * link_2_e2;
-        let t18 = link_2_e1 * link_2_e3;
-        let t19 = k(2.0) * (t18 - t17);
-        let t20 = k(2.0) * T::fused(link_2_e0, link_2_e3, link_2_e1 * link_2_e2);
-        let t21 = link_2_e0 * link_2_e0;
-        let t22 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t21));
-        let t23 = t22 * t9;
-        let t24 = t22 * t8;
-        let t25 = t22 * t7;
-        let t26 = t22 * t6;
-        let t27 = k(2.0) * link_2_e2;
-        let t28 = link_1_e0 * link_1_e0;
-        let t29 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t28));
-        let t30 = k(2.0) * link_2_e3;
-        let t31 = link_1_e0 * link_1_e1;
-        let t32 = link_1_e2 * link_1_e3;
-        let t33 = k(2.0) * (t32 - t31);
-        let t34 = k(4.0) * link_2_e0;
-        let t35 = k(2.0) * T::fused(link_1_e0, link_1_e2, link_1_e1 * link_1_e3);
-        let t36 = k(4.0) * link_2_e1;
-        let t37 = k(2.0) * link_2_e0;
-        let t38 = k(2.0) * link_2_e1;
-        let t39 = k(2.0) * (t32 + t31);
-        let t40 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t28));
-        let t41 = k(2.0) * T::fused(-link_1_e0, link_1_e3, link_1_e1 * link_1_e2);
+        let t16 = k(2.0) * link_2_e0;
+        let t17 = link_2_e2 * t16;
+        let t18 = k(2.0) * link_2_e1;
+        let t19 = link_2_e3 * t18;
+        let t20 = t19 - t17;
+        let t21 = k(4.0) * link_1_e0;
+        let t22 = T::fused(link_2_e3, t16, link_2_e2 * t18);
+        let t23 = T::fused(-link_2_e0, t16, k(1.0));
+        let t24 = T::fused(-link_2_e1, t18, t23);
+        let t25 = t9 * t24;
+        let t26 = t8 * t24;
+        let t27 = t7 * t24;
+        let t28 = t6 * t24;
+        let t29 = T::fused(-link_1_e0, t7, k(1.0));
+        let t30 = T::fused(-link_1_e3, t8, t29);
+        let t31 = k(2.0) * link_2_e2;
+        let t32 = link_1_e1 * t7;
+        let t33 = link_1_e3 * t9;
+        let t34 = t33 - t32;
+        let t35 = k(2.0) * link_2_e3;
+        let t36 = T::fused(link_1_e2, t7, link_1_e3 * t6);
+        let t37 = k(4.0) * link_2_e0;
+        let t38 = k(4.0) * link_2_e1;
+        let t39 = t33 + t32;
+        let t40 = T::fused(-link_1_e2, t9, t29);
+        let t41 = T::fused(-link_1_e3, t7, link_1_e2 * t6);
         let t42 = k(0.2) * link_3_e2;
         let t43 = k(0.2) * link_3_e3;
         let t44 = k(0.2) * link_3_e0;
         let t45 = k(0.2) * link_3_e1;
         let t46 = k(0.4) * link_3_e0;
         let t47 = k(0.4) * link_3_e3;
-        let t48 = link_3_e0 * link_3_e1;
-        let t49 = link_3_e2 * link_3_e3;
-        let t50 = k(2.0) * (t49 + t48);
-        let t51 = link_3_e0 * link_3_e0;
-        let t52 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t51));
-        let t53 = t52 * t38;
-        let t54 = k(2.0) * T::fused(-link_3_e0, link_3_e3, link_3_e1 * link_3_e2);
-        let t55 = t52 * t37;
-        let t56 = t52 * t30;
-        let t57 = t52 * t27;
-        let t58 = k(2.0) * link_3_e1;
-        let t59 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t21));
-        let t60 = k(4.0) * link_3_e0;
-        let t61 = k(2.0) * T::fused(-link_2_e0, link_2_e1, link_2_e2 * link_2_e3);
-        let t62 = k(2.0) * link_3_e3;
-        let t63 = k(2.0) * (t18 + t17);
-        let t64 = k(2.0) * link_3_e0;
-        let t65 = k(2.0) * link_3_e2;
+        let t48 = k(2.0) * link_3_e0;
+        let t49 = link_3_e1 * t48;
+        let t50 = k(2.0) * link_3_e2;
+        let t51 = link_3_e3 * t50;
+        let t52 = t51 + t49;
+        let t53 = T::fused(-link_3_e0, t48, k(1.0));
+        let t54 = T::fused(-link_3_e2, t50, t53);
+        let t55 = t18 * t54;
+        let t56 = k(2.0) * link_3_e1;
+        let t57 = T::fused(-link_3_e3, t48, link_3_e2 * t56);
+        let t58 = t16 * t54;
+        let t59 = t35 * t54;
+        let t60 = t31 * t54;
+        let t61 = T::fused(-link_2_e3, t35, t23);
+        let t62 = T::fused(-link_2_e1, t16, link_2_e3 * t31);
+        let t63 = k(4.0) * link_3_e0;
+        let t64 = t19 + t17;
+        let t65 = k(2.0) * link_3_e3;
         let t66 = k(4.0) * link_3_e2;
         let t67 = k(0.2) * link_4_e2;
         let t68 = k(0.2) * link_4_e3;
@@ -3469,71 +3487,70 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let t70 = k(0.2) * link_4_e1;
         let t71 = k(0.4) * link_4_e0;
         let t72 = k(0.4) * link_4_e3;
-        let t73 = link_4_e0 * link_4_e2;
-        let t74 = link_4_e1 * link_4_e3;
-        let t75 = k(2.0) * (t74 - t73);
-        let t76 = k(2.0) * T::fused(link_4_e0, link_4_e3, link_4_e1 * link_4_e2);
-        let t77 = link_4_e0 * link_4_e0;
-        let t78 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t77));
-        let t79 = t78 * t65;
-        let t80 = t78 * t62;
-        let t81 = t78 * t64;
-        let t82 = t78 * t58;
-        let t83 = k(2.0) * link_4_e2;
-        let t84 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t51));
-        let t85 = k(2.0) * link_4_e3;
-        let t86 = k(2.0) * (t49 - t48);
-        let t87 = k(4.0) * link_4_e0;
-        let t88 = k(2.0) * T::fused(link_3_e0, link_3_e2, link_3_e1 * link_3_e3);
-        let t89 = k(4.0) * link_4_e1;
-        let t90 = k(2.0) * link_4_e0;
-        let t91 = k(2.0) * link_4_e1;
+        let t73 = k(2.0) * link_4_e0;
+        let t74 = link_4_e2 * t73;
+        let t75 = k(2.0) * link_4_e1;
+        let t76 = link_4_e3 * t75;
+        let t77 = t76 - t74;
+        let t78 = T::fused(link_4_e3, t73, link_4_e2 * t75);
+        let t79 = T::fused(-link_4_e0, t73, k(1.0));
+        let t80 = T::fused(-link_4_e1, t75, t79);
+        let t81 = t50 * t80;
+        let t82 = t65 * t80;
+        let t83 = t48 * t80;
+        let t84 = t56 * t80;
+        let t85 = T::fused(-link_3_e3, t65, t53);
+        let t86 = k(2.0) * link_4_e2;
+        let t87 = t51 - t49;
+        let t88 = k(2.0) * link_4_e3;
+        let t89 = T::fused(link_3_e2, t48, link_3_e3 * t56);
+        let t90 = k(4.0) * link_4_e0;
+        let t91 = k(4.0) * link_4_e1;
         let t92 = k(0.2) * link_5_e2;
         let t93 = k(0.2) * link_5_e3;
         let t94 = k(0.2) * link_5_e0;
         let t95 = k(0.2) * link_5_e1;
         let t96 = k(0.4) * link_5_e0;
         let t97 = k(0.4) * link_5_e3;
-        let t98 = link_5_e0 * link_5_e1;
-        let t99 = link_5_e2 * link_5_e3;
-        let t100 = k(2.0) * (t99 + t98);
-        let t101 = link_5_e0 * link_5_e0;
-        let t102 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t101));
-        let t103 = t102 * t91;
-        let t104 = k(2.0) * T::fused(-link_5_e0, link_5_e3, link_5_e1 * link_5_e2);
-        let t105 = t102 * t90;
-        let t106 = t102 * t85;
-        let t107 = t102 * t83;
-        let t108 = k(2.0) * link_5_e1;
-        let t109 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t77));
-        let t110 = k(4.0) * link_5_e0;
-        let t111 = k(2.0) * T::fused(-link_4_e0, link_4_e1, link_4_e2 * link_4_e3);
-        let t112 = k(2.0) * link_5_e3;
-        let t113 = k(2.0) * (t74 + t73);
-        let t114 = k(2.0) * link_5_e0;
-        let t115 = k(2.0) * link_5_e2;
+        let t98 = k(2.0) * link_5_e0;
+        let t99 = link_5_e1 * t98;
+        let t100 = k(2.0) * link_5_e2;
+        let t101 = link_5_e3 * t100;
+        let t102 = t101 + t99;
+        let t103 = T::fused(-link_5_e0, t98, k(1.0));
+        let t104 = T::fused(-link_5_e2, t100, t103);
+        let t105 = t75 * t104;
+        let t106 = k(2.0) * link_5_e1;
+        let t107 = T::fused(-link_5_e3, t98, link_5_e2 * t106);
+        let t108 = t73 * t104;
+        let t109 = t88 * t104;
+        let t110 = t86 * t104;
+        let t111 = T::fused(-link_4_e3, t88, t79);
+        let t112 = T::fused(-link_4_e1, t73, link_4_e3 * t86);
+        let t113 = k(4.0) * link_5_e0;
+        let t114 = t76 + t74;
+        let t115 = k(2.0) * link_5_e3;
         let t116 = k(4.0) * link_5_e2;
         let t117 = k(0.2) * link_6_e2;
         let t118 = k(0.2) * link_6_e3;
         let t119 = k(0.2) * link_6_e0;
         let t120 = k(0.2) * link_6_e1;
-        let t121 = k(2.0) * T::fused(-link_6_e0, link_6_e2, link_6_e1 * link_6_e3);
-        let t122 = k(2.0) * T::fused(link_6_e0, link_6_e3, link_6_e1 * link_6_e2);
-        let t123 = k(2.0)
-            * (k(0.5) - T::fused(link_6_e1, link_6_e1, link_6_e0 * link_6_e0));
-        let t124 = t123 * t115;
-        let t125 = t123 * t112;
-        let t126 = t123 * t114;
-        let t127 = t123 * t108;
-        let t128 = k(2.0) * link_6_e2;
-        let t129 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t101));
-        let t130 = k(2.0) * link_6_e3;
-        let t131 = k(2.0) * (t99 - t98);
-        let t132 = k(4.0) * link_6_e0;
-        let t133 = k(2.0) * T::fused(link_5_e0, link_5_e2, link_5_e1 * link_5_e3);
-        let t134 = k(4.0) * link_6_e1;
-        let t135 = k(2.0) * link_6_e0;
-        let t136 = k(2.0) * link_6_e1;
+        let t121 = k(2.0) * link_6_e0;
+        let t122 = k(2.0) * link_6_e1;
+        let t123 = T::fused(-link_6_e2, t121, link_6_e3 * t122);
+        let t124 = T::fused(link_6_e3, t121, link_6_e2 * t122);
+        let t125 = T::fused(-link_6_e1, t122, T::fused(-link_6_e0, t121, k(1.0)));
+        let t126 = t100 * t125;
+        let t127 = t115 * t125;
+        let t128 = t98 * t125;
+        let t129 = t106 * t125;
+        let t130 = T::fused(-link_5_e3, t115, t103);
+        let t131 = k(2.0) * link_6_e2;
+        let t132 = t101 - t99;
+        let t133 = k(2.0) * link_6_e3;
+        let t134 = T::fused(link_5_e2, t98, link_5_e3 * t106);
+        let t135 = k(4.0) * link_6_e0;
+        let t136 = k(4.0) * link_6_e1;
         *out = [
             k(1.0),
             t0,
@@ -3582,22 +3599,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t14,
             t15,
-            T::fused(t19, t16, -T::fused(t20, t6, t23)),
-            -T::fused(t20, t7, t24),
-            T::fused(t20, t8, -t25),
-            T::fused(t19, k(4.0) * link_1_e3, T::fused(t20, t9, -t26)),
-            T::fused(t29, t27, T::fused(t33, t30, t35 * t34)),
-            T::fused(-t29, t30, T::fused(t33, t27, t35 * t36)),
-            T::fused(t29, t37, t33 * t38),
-            T::fused(-t29, t38, t33 * t37),
-            -T::fused(t19, t6, T::fused(t20, t16, t24)),
-            T::fused(-t19, t7, t23),
-            T::fused(-t19, t8, T::fused(-t20, k(4.0) * link_1_e2, t26)),
-            -T::fused(t19, t9, t25),
-            T::fused(t39, t27, -T::fused(-t40, t30, t41 * t34)),
-            -T::fused(t39, t30, T::fused(-t40, t27, t41 * t36)),
-            T::fused(t39, t37, t40 * t38),
-            T::fused(-t39, t38, t40 * t37),
+            T::fused(t21, t20, -T::fused(t6, t22, t25)),
+            -T::fused(t7, t22, t26),
+            T::fused(t8, t22, -t27),
+            T::fused(k(4.0) * link_1_e3, t20, T::fused(t9, t22, -t28)),
+            T::fused(t31, t30, T::fused(t35, t34, t37 * t36)),
+            T::fused(-t35, t30, T::fused(t31, t34, t38 * t36)),
+            T::fused(t16, t30, t18 * t34),
+            T::fused(-t18, t30, t16 * t34),
+            -T::fused(t6, t20, T::fused(t21, t22, t26)),
+            T::fused(-t7, t20, t25),
+            T::fused(-t8, t20, T::fused(-(k(4.0) * link_1_e2), t22, t28)),
+            -T::fused(t9, t20, t27),
+            T::fused(t31, t39, -T::fused(-t35, t40, t37 * t41)),
+            -T::fused(t35, t39, T::fused(-t31, t40, t38 * t41)),
+            T::fused(t16, t39, t18 * t40),
+            T::fused(-t18, t39, t16 * t40),
             k(-1.0),
             t10,
             t11,
@@ -3624,22 +3641,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t46,
             t47,
-            T::fused(t50, t34, T::fused(t54, t27, t53)),
-            T::fused(t54, t30, t55),
-            T::fused(t54, t37, -t56),
-            T::fused(t50, k(4.0) * link_2_e3, T::fused(t54, t38, -t57)),
-            -T::fused(t59, t58, T::fused(-t61, t60, t63 * t62)),
-            T::fused(-t59, t64, t63 * t65),
-            T::fused(-t59, t62, T::fused(t61, t66, t63 * t58)),
-            -T::fused(t59, t65, t63 * t64),
-            -T::fused(t50, t27, T::fused(-t54, t34, t56)),
-            T::fused(t50, t30, -T::fused(-t54, t36, t57)),
-            -T::fused(t50, t37, t53),
-            T::fused(t50, t38, -t55),
-            T::fused(t19, t58, T::fused(t20, t60, t22 * t62)),
-            T::fused(-t22, t65, t19 * t64),
-            T::fused(t19, t62, -T::fused(-t20, t66, t22 * t58)),
-            T::fused(t19, t65, t22 * t64),
+            T::fused(t37, t52, T::fused(t31, t57, t55)),
+            T::fused(t35, t57, t58),
+            T::fused(t16, t57, -t59),
+            T::fused(k(4.0) * link_2_e3, t52, T::fused(t18, t57, -t60)),
+            -T::fused(t56, t61, T::fused(-t63, t62, t65 * t64)),
+            T::fused(-t48, t61, t50 * t64),
+            T::fused(-t65, t61, T::fused(t66, t62, t56 * t64)),
+            -T::fused(t50, t61, t48 * t64),
+            -T::fused(t31, t52, T::fused(-t37, t57, t59)),
+            T::fused(t35, t52, -T::fused(-t38, t57, t60)),
+            -T::fused(t16, t52, t55),
+            T::fused(t18, t52, -t58),
+            T::fused(t56, t20, T::fused(t63, t22, t65 * t24)),
+            T::fused(-t50, t24, t48 * t20),
+            T::fused(t65, t20, -T::fused(-t66, t22, t56 * t24)),
+            T::fused(t50, t20, t48 * t24),
             k(-1.0),
             t42,
             t43,
@@ -3666,22 +3683,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t71,
             t72,
-            T::fused(t75, t60, -T::fused(t76, t58, t79)),
-            -T::fused(t76, t64, t80),
-            T::fused(t76, t62, -t81),
-            T::fused(t75, k(4.0) * link_3_e3, T::fused(t76, t65, -t82)),
-            T::fused(t84, t83, T::fused(t86, t85, t88 * t87)),
-            T::fused(-t84, t85, T::fused(t86, t83, t88 * t89)),
-            T::fused(t84, t90, t86 * t91),
-            T::fused(-t84, t91, t86 * t90),
-            -T::fused(t75, t58, T::fused(t76, t60, t80)),
-            T::fused(-t75, t64, t79),
-            T::fused(-t75, t62, T::fused(-t76, t66, t82)),
-            -T::fused(t75, t65, t81),
-            T::fused(t50, t83, -T::fused(-t52, t85, t54 * t87)),
-            -T::fused(t50, t85, T::fused(-t52, t83, t54 * t89)),
-            T::fused(t50, t90, t52 * t91),
-            T::fused(-t50, t91, t52 * t90),
+            T::fused(t63, t77, -T::fused(t56, t78, t81)),
+            -T::fused(t48, t78, t82),
+            T::fused(t65, t78, -t83),
+            T::fused(k(4.0) * link_3_e3, t77, T::fused(t50, t78, -t84)),
+            T::fused(t86, t85, T::fused(t88, t87, t90 * t89)),
+            T::fused(-t88, t85, T::fused(t86, t87, t91 * t89)),
+            T::fused(t73, t85, t75 * t87),
+            T::fused(-t75, t85, t73 * t87),
+            -T::fused(t56, t77, T::fused(t63, t78, t82)),
+            T::fused(-t48, t77, t81),
+            T::fused(-t65, t77, T::fused(-t66, t78, t84)),
+            -T::fused(t50, t77, t83),
+            T::fused(t86, t52, -T::fused(-t88, t54, t90 * t57)),
+            -T::fused(t88, t52, T::fused(-t86, t54, t91 * t57)),
+            T::fused(t73, t52, t75 * t54),
+            T::fused(-t75, t52, t73 * t54),
             k(-1.0),
             t67,
             t68,
@@ -3708,22 +3725,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             t96,
             t97,
-            T::fused(t100, t87, T::fused(t104, t83, t103)),
-            T::fused(t104, t85, t105),
-            T::fused(t104, t90, -t106),
-            T::fused(t100, k(4.0) * link_4_e3, T::fused(t104, t91, -t107)),
-            -T::fused(t109, t108, T::fused(-t111, t110, t113 * t112)),
-            T::fused(-t109, t114, t113 * t115),
-            T::fused(-t109, t112, T::fused(t111, t116, t113 * t108)),
-            -T::fused(t109, t115, t113 * t114),
-            -T::fused(t100, t83, T::fused(-t104, t87, t106)),
-            T::fused(t100, t85, -T::fused(-t104, t89, t107)),
-            -T::fused(t100, t90, t103),
-            T::fused(t100, t91, -t105),
-            T::fused(t75, t108, T::fused(t76, t110, t78 * t112)),
-            T::fused(-t78, t115, t75 * t114),
-            T::fused(t75, t112, -T::fused(-t76, t116, t78 * t108)),
-            T::fused(t75, t115, t78 * t114),
+            T::fused(t90, t102, T::fused(t86, t107, t105)),
+            T::fused(t88, t107, t108),
+            T::fused(t73, t107, -t109),
+            T::fused(k(4.0) * link_4_e3, t102, T::fused(t75, t107, -t110)),
+            -T::fused(t106, t111, T::fused(-t113, t112, t115 * t114)),
+            T::fused(-t98, t111, t100 * t114),
+            T::fused(-t115, t111, T::fused(t116, t112, t106 * t114)),
+            -T::fused(t100, t111, t98 * t114),
+            -T::fused(t86, t102, T::fused(-t90, t107, t109)),
+            T::fused(t88, t102, -T::fused(-t91, t107, t110)),
+            -T::fused(t73, t102, t105),
+            T::fused(t75, t102, -t108),
+            T::fused(t106, t77, T::fused(t113, t78, t115 * t80)),
+            T::fused(-t100, t80, t98 * t77),
+            T::fused(t115, t77, -T::fused(-t116, t78, t106 * t80)),
+            T::fused(t100, t77, t98 * t80),
             k(-1.0),
             t92,
             t93,
@@ -3750,49 +3767,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(1.0),
             k(0.4) * link_6_e0,
             k(0.4) * link_6_e3,
-            T::fused(t121, t110, -T::fused(t122, t108, t124)),
-            -T::fused(t122, t114, t125),
-            T::fused(t122, t112, -t126),
-            T::fused(t121, k(4.0) * link_5_e3, T::fused(t122, t115, -t127)),
-            T::fused(t129, t128, T::fused(t131, t130, t133 * t132)),
-            T::fused(-t129, t130, T::fused(t131, t128, t133 * t134)),
-            T::fused(t129, t135, t131 * t136),
-            T::fused(-t129, t136, t131 * t135),
-            -T::fused(t121, t108, T::fused(t122, t110, t125)),
-            T::fused(-t121, t114, t124),
-            T::fused(-t121, t112, T::fused(-t122, t116, t127)),
-            -T::fused(t121, t115, t126),
-            T::fused(t100, t128, -T::fused(-t102, t130, t104 * t132)),
-            -T::fused(t100, t130, T::fused(-t102, t128, t104 * t134)),
-            T::fused(t100, t135, t102 * t136),
-            T::fused(-t100, t136, t102 * t135),
+            T::fused(t113, t123, -T::fused(t106, t124, t126)),
+            -T::fused(t98, t124, t127),
+            T::fused(t115, t124, -t128),
+            T::fused(k(4.0) * link_5_e3, t123, T::fused(t100, t124, -t129)),
+            T::fused(t131, t130, T::fused(t133, t132, t135 * t134)),
+            T::fused(-t133, t130, T::fused(t131, t132, t136 * t134)),
+            T::fused(t121, t130, t122 * t132),
+            T::fused(-t122, t130, t121 * t132),
+            -T::fused(t106, t123, T::fused(t113, t124, t127)),
+            T::fused(-t98, t123, t126),
+            T::fused(-t115, t123, T::fused(-t116, t124, t129)),
+            -T::fused(t100, t123, t128),
+            T::fused(t131, t102, -T::fused(-t133, t104, t135 * t107)),
+            -T::fused(t133, t102, T::fused(-t131, t104, t136 * t107)),
+            T::fused(t121, t102, t122 * t104),
+            T::fused(-t122, t102, t121 * t104),
             t7,
             t6,
             t9,
             t8,
-            t37,
-            t38,
-            t27,
-            t30,
-            t64,
-            t58,
+            t16,
+            t18,
+            t31,
+            t35,
+            t48,
+            t56,
+            t50,
             t65,
-            t62,
-            t90,
-            t91,
-            t83,
-            t85,
-            t114,
-            t108,
+            t73,
+            t75,
+            t86,
+            t88,
+            t98,
+            t106,
+            t100,
             t115,
-            t112,
-            t135,
-            t136,
-            t128,
-            t130,
+            t121,
+            t122,
+            t131,
+            t133,
         ];
     }
-    /// Writes the non-zeros of (Φ_r, Φ_π'): 397 operations (142 ±, 255 ×, 0 ÷).
+    /// Writes the non-zeros of (Φ_r, Φ_π'): 355 operations (130 ±, 225 ×, 0 ÷).
     fn phi_pi(&self, _t: T, y: &Self::State, out: &mut Self::PhiPi) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -3819,316 +3836,299 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let link_6_e1 = y[39];
         let link_6_e2 = y[40];
         let link_6_e3 = y[41];
-        let t0 = link_1_e0 * link_1_e3;
-        let t1 = link_1_e1 * link_1_e2;
-        let t2 = t1 - t0;
-        let t3 = k(0.2) * t2;
-        let t4 = link_1_e0 * link_1_e0;
-        let t5 = k(0.5) - T::fused(link_1_e1, link_1_e1, t4);
-        let t6 = k(0.2) * t5;
-        let t7 = k(0.5) - T::fused(link_1_e2, link_1_e2, t4);
-        let t8 = k(0.2) * t7;
-        let t9 = t1 + t0;
-        let t10 = k(0.2) * t9;
-        let t11 = link_1_e0 * link_1_e1;
-        let t12 = link_1_e2 * link_1_e3;
-        let t13 = t12 + t11;
-        let t14 = k(0.2) * t13;
-        let t15 = link_1_e0 * link_1_e2;
-        let t16 = link_1_e1 * link_1_e3;
-        let t17 = t16 - t15;
-        let t18 = k(0.2) * t17;
-        let t19 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t4));
-        let t20 = k(2.0) * t17;
-        let t21 = k(2.0) * (t16 + t15);
-        let t22 = k(2.0) * t5;
-        let t23 = link_2_e0 * link_2_e3;
-        let t24 = link_2_e1 * link_2_e2;
-        let t25 = t24 - t23;
-        let t26 = k(0.2) * t25;
-        let t27 = link_2_e0 * link_2_e0;
-        let t28 = k(0.5) - T::fused(link_2_e1, link_2_e1, t27);
-        let t29 = k(0.2) * t28;
-        let t30 = k(0.5) - T::fused(link_2_e2, link_2_e2, t27);
-        let t31 = k(0.2) * t30;
-        let t32 = t24 + t23;
-        let t33 = k(0.2) * t32;
-        let t34 = link_2_e0 * link_2_e1;
-        let t35 = link_2_e2 * link_2_e3;
-        let t36 = t35 + t34;
-        let t37 = k(0.2) * t36;
-        let t38 = link_2_e0 * link_2_e2;
-        let t39 = link_2_e1 * link_2_e3;
-        let t40 = t39 - t38;
-        let t41 = k(0.2) * t40;
-        let t42 = k(2.0) * t28;
-        let t43 = k(2.0) * t2;
-        let t44 = k(2.0) * t32;
-        let t45 = k(2.0) * t7;
-        let t46 = k(2.0) * t40;
-        let t47 = k(2.0) * t13;
-        let t48 = T::fused(t20, t46, T::fused(t22, t42, k(2.0) * t9 * t44));
-        let t49 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t27));
-        let t50 = k(2.0) * (t35 - t34);
-        let t51 = k(2.0) * (t12 - t11);
-        let t52 = k(2.0) * (t39 + t38);
-        let t53 = k(2.0) * t30;
-        let t54 = k(2.0) * t25;
-        let t55 = k(2.0) * t36;
-        let t56 = link_3_e0 * link_3_e3;
-        let t57 = link_3_e1 * link_3_e2;
-        let t58 = t57 - t56;
-        let t59 = k(0.2) * t58;
-        let t60 = link_3_e0 * link_3_e0;
-        let t61 = k(0.5) - T::fused(link_3_e1, link_3_e1, t60);
-        let t62 = k(0.2) * t61;
-        let t63 = k(0.5) - T::fused(link_3_e2, link_3_e2, t60);
-        let t64 = k(0.2) * t63;
-        let t65 = t57 + t56;
-        let t66 = k(0.2) * t65;
-        let t67 = link_3_e0 * link_3_e1;
-        let t68 = link_3_e2 * link_3_e3;
-        let t69 = t68 + t67;
-        let t70 = k(0.2) * t69;
-        let t71 = link_3_e0 * link_3_e2;
-        let t72 = link_3_e1 * link_3_e3;
-        let t73 = t72 - t71;
-        let t74 = k(0.2) * t73;
-        let t75 = k(2.0) * t63;
-        let t76 = k(2.0) * t58;
-        let t77 = k(2.0) * t69;
-        let t78 = T::fused(t55, t77, T::fused(t53, t75, t54 * t76));
-        let t79 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t60));
-        let t80 = k(2.0) * (t68 - t67);
-        let t81 = k(2.0) * (t72 + t71);
-        let t82 = k(2.0) * t61;
-        let t83 = k(2.0) * t65;
-        let t84 = k(2.0) * t73;
-        let t85 = link_4_e0 * link_4_e3;
-        let t86 = link_4_e1 * link_4_e2;
-        let t87 = t86 - t85;
-        let t88 = k(0.2) * t87;
-        let t89 = link_4_e0 * link_4_e0;
-        let t90 = k(0.5) - T::fused(link_4_e1, link_4_e1, t89);
-        let t91 = k(0.2) * t90;
-        let t92 = k(0.5) - T::fused(link_4_e2, link_4_e2, t89);
-        let t93 = k(0.2) * t92;
-        let t94 = t86 + t85;
-        let t95 = k(0.2) * t94;
-        let t96 = link_4_e0 * link_4_e1;
-        let t97 = link_4_e2 * link_4_e3;
-        let t98 = t97 + t96;
-        let t99 = k(0.2) * t98;
-        let t100 = link_4_e0 * link_4_e2;
-        let t101 = link_4_e1 * link_4_e3;
-        let t102 = t101 - t100;
-        let t103 = k(0.2) * t102;
-        let t104 = k(2.0) * t90;
-        let t105 = k(2.0) * t94;
-        let t106 = k(2.0) * t102;
-        let t107 = T::fused(t84, t106, T::fused(t82, t104, t83 * t105));
-        let t108 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t89));
-        let t109 = k(2.0) * (t97 - t96);
-        let t110 = k(2.0) * (t101 + t100);
-        let t111 = k(2.0) * t92;
-        let t112 = k(2.0) * t87;
-        let t113 = k(2.0) * t98;
-        let t114 = link_5_e0 * link_5_e3;
-        let t115 = link_5_e1 * link_5_e2;
-        let t116 = t115 - t114;
-        let t117 = k(0.2) * t116;
-        let t118 = link_5_e0 * link_5_e0;
-        let t119 = k(0.5) - T::fused(link_5_e1, link_5_e1, t118);
-        let t120 = k(0.2) * t119;
-        let t121 = k(0.5) - T::fused(link_5_e2, link_5_e2, t118);
-        let t122 = k(0.2) * t121;
-        let t123 = t115 + t114;
-        let t124 = k(0.2) * t123;
-        let t125 = link_5_e0 * link_5_e1;
-        let t126 = link_5_e2 * link_5_e3;
-        let t127 = t126 + t125;
-        let t128 = k(0.2) * t127;
-        let t129 = link_5_e0 * link_5_e2;
-        let t130 = link_5_e1 * link_5_e3;
-        let t131 = t130 - t129;
-        let t132 = k(0.2) * t131;
-        let t133 = k(2.0) * t121;
-        let t134 = k(2.0) * t116;
-        let t135 = k(2.0) * t127;
-        let t136 = T::fused(t113, t135, T::fused(t111, t133, t112 * t134));
-        let t137 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t118));
-        let t138 = k(2.0) * (t126 - t125);
-        let t139 = k(2.0) * (t130 + t129);
-        let t140 = k(2.0) * t119;
-        let t141 = k(2.0) * t123;
-        let t142 = k(2.0) * t131;
-        let t143 = link_6_e0 * link_6_e3;
-        let t144 = link_6_e1 * link_6_e2;
-        let t145 = t144 - t143;
-        let t146 = link_6_e0 * link_6_e0;
-        let t147 = k(0.5) - T::fused(link_6_e1, link_6_e1, t146);
-        let t148 = k(0.5) - T::fused(link_6_e2, link_6_e2, t146);
-        let t149 = t144 + t143;
-        let t150 = link_6_e0 * link_6_e1;
-        let t151 = link_6_e2 * link_6_e3;
-        let t152 = t151 + t150;
-        let t153 = link_6_e0 * link_6_e2;
-        let t154 = link_6_e1 * link_6_e3;
-        let t155 = t154 - t153;
-        let t156 = k(2.0) * t147;
-        let t157 = k(2.0) * t149;
-        let t158 = k(2.0) * t155;
-        let t159 = T::fused(t142, t158, T::fused(t140, t156, t141 * t157));
-        let t160 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t146));
-        let t161 = k(2.0) * (t151 - t150);
-        let t162 = k(2.0) * (t154 + t153);
-        let t163 = k(2.0) * t148;
-        let t164 = k(2.0) * t145;
-        let t165 = k(2.0) * t152;
+        let t0 = k(2.0) * link_1_e0;
+        let t1 = link_1_e3 * t0;
+        let t2 = k(2.0) * link_1_e1;
+        let t3 = link_1_e2 * t2;
+        let t4 = t3 - t1;
+        let t5 = k(0.1) * t4;
+        let t6 = T::fused(-link_1_e0, t0, k(1.0));
+        let t7 = T::fused(-link_1_e1, t2, t6);
+        let t8 = k(0.1) * t7;
+        let t9 = k(2.0) * link_1_e2;
+        let t10 = T::fused(-link_1_e2, t9, t6);
+        let t11 = k(0.1) * t10;
+        let t12 = t3 + t1;
+        let t13 = k(0.1) * t12;
+        let t14 = link_1_e1 * t0;
+        let t15 = link_1_e3 * t9;
+        let t16 = t15 + t14;
+        let t17 = k(0.1) * t16;
+        let t18 = link_1_e2 * t0;
+        let t19 = link_1_e3 * t2;
+        let t20 = t19 - t18;
+        let t21 = k(0.1) * t20;
+        let t22 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t6);
+        let t23 = t19 + t18;
+        let t24 = k(2.0) * link_2_e0;
+        let t25 = link_2_e3 * t24;
+        let t26 = k(2.0) * link_2_e1;
+        let t27 = link_2_e2 * t26;
+        let t28 = t27 - t25;
+        let t29 = k(0.1) * t28;
+        let t30 = T::fused(-link_2_e0, t24, k(1.0));
+        let t31 = T::fused(-link_2_e1, t26, t30);
+        let t32 = k(0.1) * t31;
+        let t33 = k(2.0) * link_2_e2;
+        let t34 = T::fused(-link_2_e2, t33, t30);
+        let t35 = k(0.1) * t34;
+        let t36 = t27 + t25;
+        let t37 = k(0.1) * t36;
+        let t38 = link_2_e1 * t24;
+        let t39 = link_2_e3 * t33;
+        let t40 = t39 + t38;
+        let t41 = k(0.1) * t40;
+        let t42 = link_2_e2 * t24;
+        let t43 = link_2_e3 * t26;
+        let t44 = t43 - t42;
+        let t45 = k(0.1) * t44;
+        let t46 = T::fused(t20, t44, T::fused(t7, t31, t12 * t36));
+        let t47 = t43 + t42;
+        let t48 = t39 - t38;
+        let t49 = t15 - t14;
+        let t50 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t30);
+        let t51 = k(2.0) * link_3_e0;
+        let t52 = link_3_e3 * t51;
+        let t53 = k(2.0) * link_3_e1;
+        let t54 = link_3_e2 * t53;
+        let t55 = t54 - t52;
+        let t56 = k(0.1) * t55;
+        let t57 = T::fused(-link_3_e0, t51, k(1.0));
+        let t58 = T::fused(-link_3_e1, t53, t57);
+        let t59 = k(0.1) * t58;
+        let t60 = k(2.0) * link_3_e2;
+        let t61 = T::fused(-link_3_e2, t60, t57);
+        let t62 = k(0.1) * t61;
+        let t63 = t54 + t52;
+        let t64 = k(0.1) * t63;
+        let t65 = link_3_e1 * t51;
+        let t66 = link_3_e3 * t60;
+        let t67 = t66 + t65;
+        let t68 = k(0.1) * t67;
+        let t69 = link_3_e2 * t51;
+        let t70 = link_3_e3 * t53;
+        let t71 = t70 - t69;
+        let t72 = k(0.1) * t71;
+        let t73 = T::fused(t40, t67, T::fused(t28, t55, t34 * t61));
+        let t74 = t70 + t69;
+        let t75 = t66 - t65;
+        let t76 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t57);
+        let t77 = k(2.0) * link_4_e0;
+        let t78 = link_4_e3 * t77;
+        let t79 = k(2.0) * link_4_e1;
+        let t80 = link_4_e2 * t79;
+        let t81 = t80 - t78;
+        let t82 = k(0.1) * t81;
+        let t83 = T::fused(-link_4_e0, t77, k(1.0));
+        let t84 = T::fused(-link_4_e1, t79, t83);
+        let t85 = k(0.1) * t84;
+        let t86 = k(2.0) * link_4_e2;
+        let t87 = T::fused(-link_4_e2, t86, t83);
+        let t88 = k(0.1) * t87;
+        let t89 = t80 + t78;
+        let t90 = k(0.1) * t89;
+        let t91 = link_4_e1 * t77;
+        let t92 = link_4_e3 * t86;
+        let t93 = t92 + t91;
+        let t94 = k(0.1) * t93;
+        let t95 = link_4_e2 * t77;
+        let t96 = link_4_e3 * t79;
+        let t97 = t96 - t95;
+        let t98 = k(0.1) * t97;
+        let t99 = T::fused(t71, t97, T::fused(t58, t84, t63 * t89));
+        let t100 = t96 + t95;
+        let t101 = t92 - t91;
+        let t102 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t83);
+        let t103 = k(2.0) * link_5_e0;
+        let t104 = link_5_e3 * t103;
+        let t105 = k(2.0) * link_5_e1;
+        let t106 = link_5_e2 * t105;
+        let t107 = t106 - t104;
+        let t108 = k(0.1) * t107;
+        let t109 = T::fused(-link_5_e0, t103, k(1.0));
+        let t110 = T::fused(-link_5_e1, t105, t109);
+        let t111 = k(0.1) * t110;
+        let t112 = k(2.0) * link_5_e2;
+        let t113 = T::fused(-link_5_e2, t112, t109);
+        let t114 = k(0.1) * t113;
+        let t115 = t106 + t104;
+        let t116 = k(0.1) * t115;
+        let t117 = link_5_e1 * t103;
+        let t118 = link_5_e3 * t112;
+        let t119 = t118 + t117;
+        let t120 = k(0.1) * t119;
+        let t121 = link_5_e2 * t103;
+        let t122 = link_5_e3 * t105;
+        let t123 = t122 - t121;
+        let t124 = k(0.1) * t123;
+        let t125 = T::fused(t93, t119, T::fused(t81, t107, t87 * t113));
+        let t126 = t122 + t121;
+        let t127 = t118 - t117;
+        let t128 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t109);
+        let t129 = k(2.0) * link_6_e0;
+        let t130 = link_6_e3 * t129;
+        let t131 = k(2.0) * link_6_e1;
+        let t132 = link_6_e2 * t131;
+        let t133 = t132 - t130;
+        let t134 = T::fused(-link_6_e0, t129, k(1.0));
+        let t135 = T::fused(-link_6_e1, t131, t134);
+        let t136 = k(2.0) * link_6_e2;
+        let t137 = T::fused(-link_6_e2, t136, t134);
+        let t138 = t132 + t130;
+        let t139 = link_6_e1 * t129;
+        let t140 = link_6_e3 * t136;
+        let t141 = t140 + t139;
+        let t142 = link_6_e2 * t129;
+        let t143 = link_6_e3 * t131;
+        let t144 = t143 - t142;
+        let t145 = T::fused(t123, t144, T::fused(t110, t135, t115 * t138));
+        let t146 = t143 + t142;
+        let t147 = t140 - t139;
+        let t148 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t134);
         *out = [
             k(1.0),
-            -t3,
-            -t6,
+            -t5,
+            -t8,
             k(1.0),
-            t8,
-            t10,
+            t11,
+            t13,
             k(1.0),
-            -t14,
-            t18,
-            -t19,
-            -t20,
+            -t17,
             t21,
-            t22,
+            -t22,
+            -t20,
+            t23,
+            t7,
             k(-1.0),
-            -t3,
-            -t6,
+            -t5,
+            -t8,
             k(1.0),
-            -t26,
             -t29,
+            -t32,
             k(-1.0),
-            t8,
-            t10,
+            t11,
+            t13,
             k(1.0),
-            t31,
-            t33,
+            t35,
+            t37,
             k(-1.0),
-            -t14,
-            t18,
+            -t17,
+            t21,
             k(1.0),
-            -t37,
-            t41,
-            T::fused(-t47, t46, T::fused(t43, t42, t45 * t44)),
-            t48,
-            -T::fused(t19, t49, T::fused(t51, t50, t21 * t52)),
-            T::fused(-t19, t55, T::fused(-t51, t53, t21 * t54)),
-            T::fused(t19, t46, -T::fused(-t21, t42, t51 * t44)),
-            t48,
-            T::fused(-t47, t49, T::fused(-t45, t50, t43 * t52)),
-            -T::fused(t47, t55, T::fused(t45, t53, t43 * t54)),
+            -t41,
+            t45,
+            T::fused(-t16, t44, T::fused(t4, t31, t10 * t36)),
+            t46,
+            -T::fused(t22, t50, T::fused(t23, t47, t49 * t48)),
+            -T::fused(t22, t40, T::fused(-t23, t28, t49 * t34)),
+            T::fused(t22, t44, -T::fused(-t23, t31, t49 * t36)),
+            t46,
+            -T::fused(t16, t50, T::fused(-t4, t47, t10 * t48)),
+            -T::fused(t16, t40, T::fused(t4, t28, t10 * t34)),
             k(-1.0),
-            -t26,
             -t29,
+            -t32,
             k(1.0),
+            -t56,
             -t59,
-            -t62,
             k(-1.0),
-            t31,
-            t33,
+            t35,
+            t37,
             k(1.0),
+            t62,
             t64,
-            t66,
             k(-1.0),
-            -t37,
-            t41,
+            -t41,
+            t45,
             k(1.0),
-            -t70,
-            t74,
-            -t78,
-            T::fused(t46, t77, -T::fused(t42, t76, t44 * t75)),
-            T::fused(t49, t79, T::fused(t50, t80, t52 * t81)),
-            T::fused(t49, t84, -T::fused(-t52, t82, t50 * t83)),
-            T::fused(t49, t77, -T::fused(-t50, t75, t52 * t76)),
-            t78,
-            T::fused(-t46, t79, T::fused(-t42, t81, t44 * t80)),
-            -T::fused(t46, t84, T::fused(t42, t82, t44 * t83)),
+            -t68,
+            t72,
+            -t73,
+            T::fused(t44, t67, -T::fused(t31, t55, t36 * t61)),
+            T::fused(t50, t76, T::fused(t47, t74, t48 * t75)),
+            T::fused(t50, t71, -T::fused(-t47, t58, t48 * t63)),
+            T::fused(t50, t67, T::fused(-t47, t55, t48 * t61)),
+            t73,
+            T::fused(-t44, t76, T::fused(-t31, t74, t36 * t75)),
+            -T::fused(t44, t71, T::fused(t31, t58, t36 * t63)),
             k(-1.0),
+            -t56,
             -t59,
-            -t62,
             k(1.0),
-            -t88,
-            -t91,
+            -t82,
+            -t85,
             k(-1.0),
+            t62,
             t64,
-            t66,
             k(1.0),
-            t93,
-            t95,
+            t88,
+            t90,
             k(-1.0),
-            -t70,
-            t74,
+            -t68,
+            t72,
             k(1.0),
-            -t99,
-            t103,
-            T::fused(-t77, t106, T::fused(t76, t104, t75 * t105)),
-            t107,
-            -T::fused(t79, t108, T::fused(t80, t109, t81 * t110)),
-            T::fused(-t79, t113, T::fused(-t80, t111, t81 * t112)),
-            T::fused(t79, t106, -T::fused(-t81, t104, t80 * t105)),
-            t107,
-            T::fused(-t77, t108, T::fused(-t75, t109, t76 * t110)),
-            -T::fused(t77, t113, T::fused(t75, t111, t76 * t112)),
+            -t94,
+            t98,
+            T::fused(-t67, t97, T::fused(t55, t84, t61 * t89)),
+            t99,
+            -T::fused(t76, t102, T::fused(t74, t100, t75 * t101)),
+            -T::fused(t76, t93, T::fused(-t74, t81, t75 * t87)),
+            T::fused(t76, t97, -T::fused(-t74, t84, t75 * t89)),
+            t99,
+            -T::fused(t67, t102, T::fused(-t55, t100, t61 * t101)),
+            -T::fused(t67, t93, T::fused(t55, t81, t61 * t87)),
             k(-1.0),
-            -t88,
-            -t91,
+            -t82,
+            -t85,
             k(1.0),
-            -t117,
+            -t108,
+            -t111,
+            k(-1.0),
+            t88,
+            t90,
+            k(1.0),
+            t114,
+            t116,
+            k(-1.0),
+            -t94,
+            t98,
+            k(1.0),
             -t120,
-            k(-1.0),
-            t93,
-            t95,
-            k(1.0),
-            t122,
             t124,
+            -t125,
+            T::fused(t97, t119, -T::fused(t84, t107, t89 * t113)),
+            T::fused(t102, t128, T::fused(t100, t126, t101 * t127)),
+            T::fused(t102, t123, -T::fused(-t100, t110, t101 * t115)),
+            T::fused(t102, t119, T::fused(-t100, t107, t101 * t113)),
+            t125,
+            T::fused(-t97, t128, T::fused(-t84, t126, t89 * t127)),
+            -T::fused(t97, t123, T::fused(t84, t110, t89 * t115)),
             k(-1.0),
-            -t99,
-            t103,
+            -t108,
+            -t111,
             k(1.0),
-            -t128,
-            t132,
-            -t136,
-            T::fused(t106, t135, -T::fused(t104, t134, t105 * t133)),
-            T::fused(t108, t137, T::fused(t109, t138, t110 * t139)),
-            T::fused(t108, t142, -T::fused(-t110, t140, t109 * t141)),
-            T::fused(t108, t135, -T::fused(-t109, t133, t110 * t134)),
-            t136,
-            T::fused(-t106, t137, T::fused(-t104, t139, t105 * t138)),
-            -T::fused(t106, t142, T::fused(t104, t140, t105 * t141)),
+            -(k(0.1) * t133),
+            -(k(0.1) * t135),
             k(-1.0),
-            -t117,
+            t114,
+            t116,
+            k(1.0),
+            k(0.1) * t137,
+            k(0.1) * t138,
+            k(-1.0),
             -t120,
-            k(1.0),
-            -(k(0.2) * t145),
-            -(k(0.2) * t147),
-            k(-1.0),
-            t122,
             t124,
             k(1.0),
-            k(0.2) * t148,
-            k(0.2) * t149,
-            k(-1.0),
-            -t128,
-            t132,
-            k(1.0),
-            -(k(0.2) * t152),
-            k(0.2) * t155,
-            T::fused(-t135, t158, T::fused(t134, t156, t133 * t157)),
-            t159,
-            -T::fused(t137, t160, T::fused(t138, t161, t139 * t162)),
-            T::fused(-t137, t165, T::fused(-t138, t163, t139 * t164)),
-            T::fused(t137, t158, -T::fused(-t139, t156, t138 * t157)),
-            t159,
-            T::fused(-t135, t160, T::fused(-t133, t161, t134 * t162)),
-            -T::fused(t135, t165, T::fused(t133, t163, t134 * t164)),
+            -(k(0.1) * t141),
+            k(0.1) * t144,
+            T::fused(-t119, t144, T::fused(t107, t135, t113 * t138)),
+            t145,
+            -T::fused(t128, t148, T::fused(t126, t146, t127 * t147)),
+            -T::fused(t128, t141, T::fused(-t126, t133, t127 * t137)),
+            T::fused(t128, t144, -T::fused(-t126, t135, t127 * t138)),
+            t145,
+            -T::fused(t119, t148, T::fused(-t107, t146, t113 * t147)),
+            -T::fused(t119, t141, T::fused(t107, t133, t113 * t137)),
         ];
     }
     /// Writes ν: 0 operations (0 ±, 0 ×, 0 ÷).
@@ -4167,7 +4167,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(0.0),
         ];
     }
-    /// Writes γ: 797 operations (314 ±, 483 ×, 0 ÷).
+    /// Writes γ: 755 operations (302 ±, 453 ×, 0 ÷).
     fn gamma(&self, _t: T, y: &Self::State, out: &mut Self::Rows) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -4212,340 +4212,546 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let link_6_wx = y[75];
         let link_6_wy = y[76];
         let link_6_wz = y[77];
-        let t0 = link_1_wx * link_1_wz;
-        let t1 = link_1_e0 * link_1_e0;
-        let t2 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t1));
-        let t3 = link_1_wy * link_1_wz;
-        let t4 = link_1_e0 * link_1_e3;
-        let t5 = link_1_e1 * link_1_e2;
-        let t6 = k(2.0) * (t5 - t4);
-        let t7 = link_1_wx * link_1_wx;
-        let t8 = T::fused(link_1_wy, link_1_wy, t7);
-        let t9 = link_1_e0 * link_1_e2;
-        let t10 = link_1_e1 * link_1_e3;
-        let t11 = k(2.0) * (t10 + t9);
-        let t12 = T::fused(t11, t8, -T::fused(-t2, t0, t6 * t3));
-        let t13 = k(2.0) * (t5 + t4);
-        let t14 = k(2.0) * (k(0.5) - T::fused(link_1_e2, link_1_e2, t1));
-        let t15 = link_1_e0 * link_1_e1;
-        let t16 = link_1_e2 * link_1_e3;
-        let t17 = k(2.0) * (t16 - t15);
-        let t18 = T::fused(t17, t8, T::fused(-t13, t0, t14 * t3));
-        let t19 = k(2.0) * (t10 - t9);
-        let t20 = k(2.0) * (t16 + t15);
-        let t21 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t1));
-        let t22 = T::fused(t21, t8, T::fused(t19, t0, t20 * t3));
-        let t23 = link_1_wx * link_1_wy;
-        let t24 = T::fused(link_1_wz, link_1_wz, t7);
-        let t25 = link_2_wx * link_2_wz;
-        let t26 = link_2_e0 * link_2_e0;
-        let t27 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t26));
-        let t28 = link_2_wy * link_2_wz;
-        let t29 = link_2_e0 * link_2_e3;
-        let t30 = link_2_e1 * link_2_e2;
-        let t31 = k(2.0) * (t30 - t29);
-        let t32 = link_2_wy * link_2_wy;
-        let t33 = T::fused(link_2_wx, link_2_wx, t32);
-        let t34 = link_2_e0 * link_2_e2;
-        let t35 = link_2_e1 * link_2_e3;
-        let t36 = k(2.0) * (t35 + t34);
-        let t37 = T::fused(t36, t33, -T::fused(-t27, t25, t31 * t28));
-        let t38 = k(2.0) * (t30 + t29);
-        let t39 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t26));
-        let t40 = link_2_e0 * link_2_e1;
-        let t41 = link_2_e2 * link_2_e3;
-        let t42 = k(2.0) * (t41 - t40);
-        let t43 = T::fused(t42, t33, T::fused(-t38, t25, t39 * t28));
-        let t44 = k(2.0) * (t35 - t34);
-        let t45 = k(2.0) * (t41 + t40);
-        let t46 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t26));
-        let t47 = T::fused(t46, t33, T::fused(t44, t25, t45 * t28));
-        let t48 = T::fused(t19, t44, T::fused(t2, t27, t13 * t38));
-        let t49 = T::fused(t20, t44, -T::fused(t6, t27, t14 * t38));
-        let t50 = T::fused(t21, t44, -T::fused(-t11, t27, t17 * t38));
-        let t51 = T::fused(
-            link_2_wz,
-            T::fused(t19, t45, -T::fused(t2, t31, t13 * t39)),
-            link_2_wy * T::fused(t19, t46, -T::fused(-t2, t36, t13 * t42)),
-        );
-        let t52 = T::fused(t20, t45, T::fused(t14, t39, t6 * t31));
-        let t53 = T::fused(t20, t46, -T::fused(-t14, t42, t6 * t36));
-        let t54 = T::fused(link_2_wz, link_2_wz, t32);
-        let t55 = T::fused(t21, t45, -T::fused(-t17, t39, t11 * t31));
-        let t56 = link_2_wx * link_2_wy;
-        let t57 = T::fused(t21, t46, T::fused(t17, t42, t11 * t36));
-        let t58 = T::fused(
-            -k(2.0),
-            T::fused(
-                -link_1_wy,
-                t51,
-                link_1_wx * T::fused(link_2_wz, t52, link_2_wy * t53),
-            ),
-            T::fused(t25, t57, -T::fused(-t54, t50, t56 * t55)),
-        );
-        let t59 = T::fused(
-            k(2.0),
-            T::fused(
-                link_1_wz,
-                t51,
-                link_1_wx * T::fused(link_2_wz, t55, link_2_wy * t57),
-            ),
-            T::fused(t25, t53, -T::fused(-t54, t49, t56 * t52)),
-        );
-        let t60 = link_3_wx * link_3_wz;
-        let t61 = link_3_e0 * link_3_e0;
-        let t62 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t61));
-        let t63 = link_3_wy * link_3_wz;
-        let t64 = link_3_e0 * link_3_e3;
-        let t65 = link_3_e1 * link_3_e2;
-        let t66 = k(2.0) * (t65 - t64);
-        let t67 = link_3_wx * link_3_wx;
-        let t68 = T::fused(link_3_wy, link_3_wy, t67);
-        let t69 = link_3_e0 * link_3_e2;
-        let t70 = link_3_e1 * link_3_e3;
-        let t71 = k(2.0) * (t70 + t69);
-        let t72 = T::fused(t71, t68, -T::fused(-t62, t60, t66 * t63));
-        let t73 = k(2.0) * (t65 + t64);
-        let t74 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t61));
-        let t75 = link_3_e0 * link_3_e1;
-        let t76 = link_3_e2 * link_3_e3;
-        let t77 = k(2.0) * (t76 - t75);
-        let t78 = T::fused(t77, t68, T::fused(-t73, t60, t74 * t63));
-        let t79 = k(2.0) * (t70 - t69);
-        let t80 = k(2.0) * (t76 + t75);
-        let t81 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t61));
-        let t82 = T::fused(t81, t68, T::fused(t79, t60, t80 * t63));
-        let t83 = T::fused(t44, t80, -T::fused(t27, t66, t38 * t74));
-        let t84 = T::fused(t45, t80, T::fused(t39, t74, t31 * t66));
-        let t85 = T::fused(t46, t80, -T::fused(-t42, t74, t36 * t66));
-        let t86 = T::fused(t44, t79, T::fused(t27, t62, t38 * t73));
-        let t87 = T::fused(t44, t81, -T::fused(-t27, t71, t38 * t77));
-        let t88 = T::fused(
-            link_3_wz,
-            T::fused(t45, t79, -T::fused(t31, t62, t39 * t73)),
-            link_3_wx * T::fused(t45, t81, -T::fused(-t39, t77, t31 * t71)),
-        );
-        let t89 = T::fused(t46, t79, -T::fused(-t36, t62, t42 * t73));
-        let t90 = link_3_wx * link_3_wy;
-        let t91 = T::fused(link_3_wz, link_3_wz, t67);
-        let t92 = T::fused(t46, t81, T::fused(t42, t77, t36 * t71));
-        let t93 = T::fused(
-            k(2.0),
-            T::fused(
-                -link_2_wy,
-                T::fused(link_3_wz, t86, link_3_wx * t87),
-                link_2_wx * t88,
-            ),
-            T::fused(t63, t92, T::fused(-t90, t89, t91 * t85)),
-        );
-        let t94 = T::fused(
-            k(2.0),
-            T::fused(
-                link_2_wz,
-                t88,
-                link_2_wy * T::fused(link_3_wz, t89, link_3_wx * t92),
-            ),
-            T::fused(t63, t87, T::fused(-t90, t86, t91 * t83)),
-        );
-        let t95 = link_4_wx * link_4_wz;
-        let t96 = link_4_e0 * link_4_e0;
-        let t97 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t96));
-        let t98 = link_4_wy * link_4_wz;
-        let t99 = link_4_e0 * link_4_e3;
-        let t100 = link_4_e1 * link_4_e2;
-        let t101 = k(2.0) * (t100 - t99);
-        let t102 = link_4_wy * link_4_wy;
-        let t103 = T::fused(link_4_wx, link_4_wx, t102);
-        let t104 = link_4_e0 * link_4_e2;
-        let t105 = link_4_e1 * link_4_e3;
-        let t106 = k(2.0) * (t105 + t104);
-        let t107 = T::fused(t106, t103, -T::fused(-t97, t95, t101 * t98));
-        let t108 = k(2.0) * (t100 + t99);
-        let t109 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t96));
-        let t110 = link_4_e0 * link_4_e1;
-        let t111 = link_4_e2 * link_4_e3;
-        let t112 = k(2.0) * (t111 - t110);
-        let t113 = T::fused(t112, t103, T::fused(-t108, t95, t109 * t98));
-        let t114 = k(2.0) * (t105 - t104);
-        let t115 = k(2.0) * (t111 + t110);
-        let t116 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t96));
-        let t117 = T::fused(t116, t103, T::fused(t114, t95, t115 * t98));
-        let t118 = T::fused(t79, t114, T::fused(t62, t97, t73 * t108));
-        let t119 = T::fused(t80, t114, -T::fused(t66, t97, t74 * t108));
-        let t120 = T::fused(t81, t114, -T::fused(-t71, t97, t77 * t108));
-        let t121 = T::fused(
-            link_4_wz,
-            T::fused(t79, t115, -T::fused(t62, t101, t73 * t109)),
-            link_4_wy * T::fused(t79, t116, -T::fused(-t62, t106, t73 * t112)),
-        );
-        let t122 = T::fused(t80, t115, T::fused(t74, t109, t66 * t101));
-        let t123 = T::fused(t80, t116, -T::fused(-t74, t112, t66 * t106));
-        let t124 = T::fused(link_4_wz, link_4_wz, t102);
-        let t125 = T::fused(t81, t115, -T::fused(-t77, t109, t71 * t101));
-        let t126 = link_4_wx * link_4_wy;
-        let t127 = T::fused(t81, t116, T::fused(t77, t112, t71 * t106));
-        let t128 = T::fused(
-            -k(2.0),
-            T::fused(
-                -link_3_wy,
-                t121,
-                link_3_wx * T::fused(link_4_wz, t122, link_4_wy * t123),
-            ),
-            T::fused(t95, t127, -T::fused(-t124, t120, t126 * t125)),
-        );
-        let t129 = T::fused(
-            k(2.0),
-            T::fused(
-                link_3_wz,
-                t121,
-                link_3_wx * T::fused(link_4_wz, t125, link_4_wy * t127),
-            ),
-            T::fused(t95, t123, -T::fused(-t124, t119, t126 * t122)),
-        );
-        let t130 = link_5_wx * link_5_wz;
-        let t131 = link_5_e0 * link_5_e0;
-        let t132 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t131));
-        let t133 = link_5_wy * link_5_wz;
-        let t134 = link_5_e0 * link_5_e3;
-        let t135 = link_5_e1 * link_5_e2;
-        let t136 = k(2.0) * (t135 - t134);
-        let t137 = link_5_wx * link_5_wx;
-        let t138 = T::fused(link_5_wy, link_5_wy, t137);
-        let t139 = link_5_e0 * link_5_e2;
-        let t140 = link_5_e1 * link_5_e3;
-        let t141 = k(2.0) * (t140 + t139);
-        let t142 = T::fused(t141, t138, -T::fused(-t132, t130, t136 * t133));
-        let t143 = k(2.0) * (t135 + t134);
-        let t144 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t131));
-        let t145 = link_5_e0 * link_5_e1;
-        let t146 = link_5_e2 * link_5_e3;
-        let t147 = k(2.0) * (t146 - t145);
-        let t148 = T::fused(t147, t138, T::fused(-t143, t130, t144 * t133));
-        let t149 = k(2.0) * (t140 - t139);
-        let t150 = k(2.0) * (t146 + t145);
-        let t151 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t131));
-        let t152 = T::fused(t151, t138, T::fused(t149, t130, t150 * t133));
-        let t153 = T::fused(t114, t150, -T::fused(t97, t136, t108 * t144));
-        let t154 = T::fused(t115, t150, T::fused(t109, t144, t101 * t136));
-        let t155 = T::fused(t116, t150, -T::fused(-t112, t144, t106 * t136));
-        let t156 = T::fused(t114, t149, T::fused(t97, t132, t108 * t143));
-        let t157 = T::fused(t114, t151, -T::fused(-t97, t141, t108 * t147));
-        let t158 = T::fused(
-            link_5_wz,
-            T::fused(t115, t149, -T::fused(t101, t132, t109 * t143)),
-            link_5_wx * T::fused(t115, t151, -T::fused(-t109, t147, t101 * t141)),
-        );
-        let t159 = T::fused(t116, t149, -T::fused(-t106, t132, t112 * t143));
-        let t160 = link_5_wx * link_5_wy;
-        let t161 = T::fused(link_5_wz, link_5_wz, t137);
-        let t162 = T::fused(t116, t151, T::fused(t112, t147, t106 * t141));
-        let t163 = T::fused(
-            k(2.0),
-            T::fused(
-                -link_4_wy,
-                T::fused(link_5_wz, t156, link_5_wx * t157),
-                link_4_wx * t158,
-            ),
-            T::fused(t133, t162, T::fused(-t160, t159, t161 * t155)),
-        );
-        let t164 = T::fused(
-            k(2.0),
-            T::fused(
-                link_4_wz,
-                t158,
-                link_4_wy * T::fused(link_5_wz, t159, link_5_wx * t162),
-            ),
-            T::fused(t133, t157, T::fused(-t160, t156, t161 * t153)),
-        );
-        let t165 = link_6_wx * link_6_wz;
-        let t166 = link_6_e0 * link_6_e0;
-        let t167 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t166));
-        let t168 = link_6_wy * link_6_wz;
-        let t169 = link_6_e0 * link_6_e3;
-        let t170 = link_6_e1 * link_6_e2;
-        let t171 = k(2.0) * (t170 - t169);
-        let t172 = link_6_wy * link_6_wy;
-        let t173 = T::fused(link_6_wx, link_6_wx, t172);
-        let t174 = link_6_e0 * link_6_e2;
-        let t175 = link_6_e1 * link_6_e3;
-        let t176 = k(2.0) * (t175 + t174);
-        let t177 = k(0.1)
-            * (t142 + T::fused(t176, t173, -T::fused(-t167, t165, t171 * t168)));
-        let t178 = k(2.0) * (t170 + t169);
-        let t179 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t166));
-        let t180 = link_6_e0 * link_6_e1;
-        let t181 = link_6_e2 * link_6_e3;
-        let t182 = k(2.0) * (t181 - t180);
-        let t183 = k(0.1)
-            * (t148 + T::fused(t182, t173, T::fused(-t178, t165, t179 * t168)));
-        let t184 = k(2.0) * (t175 - t174);
-        let t185 = k(2.0) * (t181 + t180);
-        let t186 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t166));
-        let t187 = k(0.1)
-            * (t152 + T::fused(t186, t173, T::fused(t184, t165, t185 * t168)));
-        let t188 = T::fused(t149, t184, T::fused(t132, t167, t143 * t178));
-        let t189 = T::fused(t150, t184, -T::fused(t136, t167, t144 * t178));
-        let t190 = T::fused(t151, t184, -T::fused(-t141, t167, t147 * t178));
-        let t191 = T::fused(
-            link_6_wz,
-            T::fused(t149, t185, -T::fused(t132, t171, t143 * t179)),
-            link_6_wy * T::fused(t149, t186, -T::fused(-t132, t176, t143 * t182)),
-        );
-        let t192 = T::fused(t150, t185, T::fused(t144, t179, t136 * t171));
-        let t193 = T::fused(t150, t186, -T::fused(-t144, t182, t136 * t176));
-        let t194 = T::fused(link_6_wz, link_6_wz, t172);
-        let t195 = T::fused(t151, t185, -T::fused(-t147, t179, t141 * t171));
-        let t196 = link_6_wx * link_6_wy;
-        let t197 = T::fused(t151, t186, T::fused(t147, t182, t141 * t176));
-        let t198 = T::fused(
-            -k(2.0),
-            T::fused(
-                -link_5_wy,
-                t191,
-                link_5_wx * T::fused(link_6_wz, t192, link_6_wy * t193),
-            ),
-            T::fused(t165, t197, -T::fused(-t194, t190, t196 * t195)),
-        );
-        let t199 = T::fused(
-            k(2.0),
-            T::fused(
-                link_5_wz,
-                t191,
-                link_5_wx * T::fused(link_6_wz, t195, link_6_wy * t197),
-            ),
-            T::fused(t165, t193, -T::fused(-t194, t189, t196 * t192)),
-        );
-        *out = [
-            k(0.1) * t12,
-            k(0.1) * t18,
-            -(k(0.1) * t22),
-            T::fused(t21, t3, T::fused(-t19, t23, t20 * t24)),
-            T::fused(-t11, t3, T::fused(t2, t23, t6 * t24)),
-            k(0.1) * (t12 + t37),
-            k(0.1) * (t18 + t43),
-            -(k(0.1) * (t22 + t47)),
-            -(t58 + T::fused(t8, t50, T::fused(t0, t48, t3 * t49))),
-            -(t59 + T::fused(t3, t50, T::fused(-t23, t48, t24 * t49))),
-            k(0.1) * (t37 + t72),
-            k(0.1) * (t43 + t78),
-            -(k(0.1) * (t47 + t82)),
-            -(t93 + T::fused(t33, t85, T::fused(t25, t83, t28 * t84))),
-            t94 + T::fused(t25, t85, -T::fused(-t54, t83, t56 * t84)),
-            k(0.1) * (t72 + t107),
-            k(0.1) * (t78 + t113),
-            -(k(0.1) * (t82 + t117)),
-            -(t128 + T::fused(t68, t120, T::fused(t60, t118, t63 * t119))),
-            -(t129 + T::fused(t63, t120, T::fused(-t90, t118, t91 * t119))),
-            k(0.1) * (t107 + t142),
-            k(0.1) * (t113 + t148),
-            -(k(0.1) * (t117 + t152)),
-            -(t163 + T::fused(t103, t155, T::fused(t95, t153, t98 * t154))),
-            t164 + T::fused(t95, t155, -T::fused(-t124, t153, t126 * t154)),
-            t177,
+        let (
+            t3,
+            t4,
+            t7,
+            t8,
+            t11,
+            t13,
+            t14,
+            t21,
+            t22,
+            t23,
+            t24,
+            t25,
+            t26,
+            t27,
+            t32,
+            t36,
+            t41,
+            t42,
+            t49,
+            t53,
+            t54,
+            t55,
+            t56,
+            t60,
+            t62,
+            t64,
+            t65,
+            t70,
+            t74,
+            t79,
+            t80,
+            t87,
+            t91,
+            t92,
+            t93,
+            t94,
+            t99,
+            t100,
+            t102,
+            t103,
+            t108,
+            t112,
+            t117,
+            t118,
+            t125,
+            t129,
+            t130,
+            t131,
+            t132,
+            t136,
+            t138,
+            t140,
+            t141,
+            t145,
+            t146,
+            t149,
+            t150,
+            t153,
+            t155,
+            t156,
+            t157,
+            t159,
+            t162,
+            t163,
+            t164,
+            t165,
+            t166,
+            t167,
+            t168,
+            t169,
+            t170,
+            t175,
+            t176,
+            t178,
+            t179,
+            t182,
             t183,
-            -t187,
-            -(t198 + T::fused(t138, t190, T::fused(t130, t188, t133 * t189))),
-            -(t199 + T::fused(t133, t190, T::fused(-t160, t188, t161 * t189))),
+            t184,
+            t187,
+            t188,
+            t189,
+            t190,
+            t191,
+            t192,
+            t193,
+            t194,
+            t195,
+            t197,
+            t198,
+            t199,
+        ) = {
+            let t0 = k(2.0) * link_1_e1;
+            let t1 = k(2.0) * link_1_e0;
+            let t2 = T::fused(-link_1_e0, t1, k(1.0));
+            let t3 = T::fused(-link_1_e1, t0, t2);
+            let t4 = link_1_wx * link_1_wz;
+            let t5 = link_1_e3 * t1;
+            let t6 = link_1_e2 * t0;
+            let t7 = t6 - t5;
+            let t8 = link_1_wy * link_1_wz;
+            let t9 = link_1_e2 * t1;
+            let t10 = link_1_e3 * t0;
+            let t11 = t10 + t9;
+            let t12 = link_1_wx * link_1_wx;
+            let t13 = T::fused(link_1_wy, link_1_wy, t12);
+            let t14 = T::fused(t13, t11, -T::fused(-t4, t3, t8 * t7));
+            let t15 = t6 + t5;
+            let t16 = k(2.0) * link_1_e2;
+            let t17 = T::fused(-link_1_e2, t16, t2);
+            let t18 = link_1_e1 * t1;
+            let t19 = link_1_e3 * t16;
+            let t20 = t19 - t18;
+            let t21 = T::fused(t13, t20, T::fused(-t4, t15, t8 * t17));
+            let t22 = t10 - t9;
+            let t23 = t19 + t18;
+            let t24 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t2);
+            let t25 = T::fused(t13, t24, T::fused(t4, t22, t8 * t23));
+            let t26 = link_1_wx * link_1_wy;
+            let t27 = T::fused(link_1_wz, link_1_wz, t12);
+            let t28 = k(2.0) * link_2_e1;
+            let t29 = k(2.0) * link_2_e0;
+            let t30 = T::fused(-link_2_e0, t29, k(1.0));
+            let t31 = T::fused(-link_2_e1, t28, t30);
+            let t32 = link_2_wx * link_2_wz;
+            let t33 = link_2_e3 * t29;
+            let t34 = link_2_e2 * t28;
+            let t35 = t34 - t33;
+            let t36 = link_2_wy * link_2_wz;
+            let t37 = link_2_e2 * t29;
+            let t38 = link_2_e3 * t28;
+            let t39 = t38 + t37;
+            let t40 = link_2_wy * link_2_wy;
+            let t41 = T::fused(link_2_wx, link_2_wx, t40);
+            let t42 = T::fused(t41, t39, -T::fused(-t32, t31, t36 * t35));
+            let t43 = t34 + t33;
+            let t44 = k(2.0) * link_2_e2;
+            let t45 = T::fused(-link_2_e2, t44, t30);
+            let t46 = link_2_e1 * t29;
+            let t47 = link_2_e3 * t44;
+            let t48 = t47 - t46;
+            let t49 = T::fused(t41, t48, T::fused(-t32, t43, t36 * t45));
+            let t50 = t38 - t37;
+            let t51 = t47 + t46;
+            let t52 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t30);
+            let t53 = T::fused(t41, t52, T::fused(t32, t50, t36 * t51));
+            let t54 = T::fused(t22, t50, T::fused(t3, t31, t15 * t43));
+            let t55 = T::fused(t23, t50, -T::fused(t7, t31, t17 * t43));
+            let t56 = T::fused(t24, t50, -T::fused(-t11, t31, t20 * t43));
+            let t57 = T::fused(
+                link_2_wz,
+                T::fused(t22, t51, -T::fused(t3, t35, t15 * t45)),
+                link_2_wy * T::fused(t22, t52, -T::fused(-t3, t39, t15 * t48)),
+            );
+            let t58 = T::fused(t23, t51, T::fused(t7, t35, t17 * t45));
+            let t59 = T::fused(t23, t52, T::fused(-t7, t39, t17 * t48));
+            let t60 = T::fused(link_2_wz, link_2_wz, t40);
+            let t61 = T::fused(t24, t51, T::fused(-t11, t35, t20 * t45));
+            let t62 = link_2_wx * link_2_wy;
+            let t63 = T::fused(t24, t52, T::fused(t11, t39, t20 * t48));
+            let t64 = T::fused(
+                -k(2.0),
+                T::fused(
+                    -link_1_wy,
+                    t57,
+                    link_1_wx * T::fused(link_2_wz, t58, link_2_wy * t59),
+                ),
+                T::fused(t32, t63, -T::fused(-t60, t56, t62 * t61)),
+            );
+            let t65 = T::fused(
+                k(2.0),
+                T::fused(
+                    link_1_wz,
+                    t57,
+                    link_1_wx * T::fused(link_2_wz, t61, link_2_wy * t63),
+                ),
+                T::fused(t32, t59, -T::fused(-t60, t55, t62 * t58)),
+            );
+            let t66 = k(2.0) * link_3_e1;
+            let t67 = k(2.0) * link_3_e0;
+            let t68 = T::fused(-link_3_e0, t67, k(1.0));
+            let t69 = T::fused(-link_3_e1, t66, t68);
+            let t70 = link_3_wx * link_3_wz;
+            let t71 = link_3_e3 * t67;
+            let t72 = link_3_e2 * t66;
+            let t73 = t72 - t71;
+            let t74 = link_3_wy * link_3_wz;
+            let t75 = link_3_e2 * t67;
+            let t76 = link_3_e3 * t66;
+            let t77 = t76 + t75;
+            let t78 = link_3_wx * link_3_wx;
+            let t79 = T::fused(link_3_wy, link_3_wy, t78);
+            let t80 = T::fused(t79, t77, -T::fused(-t70, t69, t74 * t73));
+            let t81 = t72 + t71;
+            let t82 = k(2.0) * link_3_e2;
+            let t83 = T::fused(-link_3_e2, t82, t68);
+            let t84 = link_3_e1 * t67;
+            let t85 = link_3_e3 * t82;
+            let t86 = t85 - t84;
+            let t87 = T::fused(t79, t86, T::fused(-t70, t81, t74 * t83));
+            let t88 = t76 - t75;
+            let t89 = t85 + t84;
+            let t90 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t68);
+            let t91 = T::fused(t79, t90, T::fused(t70, t88, t74 * t89));
+            let t92 = T::fused(t50, t89, -T::fused(t31, t73, t43 * t83));
+            let t93 = T::fused(t51, t89, T::fused(t35, t73, t45 * t83));
+            let t94 = T::fused(t52, t89, T::fused(-t39, t73, t48 * t83));
+            let t95 = T::fused(t50, t88, T::fused(t31, t69, t43 * t81));
+            let t96 = T::fused(t50, t90, -T::fused(-t31, t77, t43 * t86));
+            let t97 = T::fused(
+                link_3_wz,
+                T::fused(t51, t88, -T::fused(t35, t69, t45 * t81)),
+                link_3_wx * T::fused(t51, t90, T::fused(-t35, t77, t45 * t86)),
+            );
+            let t98 = T::fused(t52, t88, -T::fused(-t39, t69, t48 * t81));
+            let t99 = link_3_wx * link_3_wy;
+            let t100 = T::fused(link_3_wz, link_3_wz, t78);
+            let t101 = T::fused(t52, t90, T::fused(t39, t77, t48 * t86));
+            let t102 = T::fused(
+                k(2.0),
+                T::fused(
+                    -link_2_wy,
+                    T::fused(link_3_wz, t95, link_3_wx * t96),
+                    link_2_wx * t97,
+                ),
+                T::fused(t74, t101, T::fused(-t99, t98, t100 * t94)),
+            );
+            let t103 = T::fused(
+                k(2.0),
+                T::fused(
+                    link_2_wz,
+                    t97,
+                    link_2_wy * T::fused(link_3_wz, t98, link_3_wx * t101),
+                ),
+                T::fused(t74, t96, T::fused(-t99, t95, t100 * t92)),
+            );
+            let t104 = k(2.0) * link_4_e1;
+            let t105 = k(2.0) * link_4_e0;
+            let t106 = T::fused(-link_4_e0, t105, k(1.0));
+            let t107 = T::fused(-link_4_e1, t104, t106);
+            let t108 = link_4_wx * link_4_wz;
+            let t109 = link_4_e3 * t105;
+            let t110 = link_4_e2 * t104;
+            let t111 = t110 - t109;
+            let t112 = link_4_wy * link_4_wz;
+            let t113 = link_4_e2 * t105;
+            let t114 = link_4_e3 * t104;
+            let t115 = t114 + t113;
+            let t116 = link_4_wy * link_4_wy;
+            let t117 = T::fused(link_4_wx, link_4_wx, t116);
+            let t118 = T::fused(t117, t115, -T::fused(-t108, t107, t112 * t111));
+            let t119 = t110 + t109;
+            let t120 = k(2.0) * link_4_e2;
+            let t121 = T::fused(-link_4_e2, t120, t106);
+            let t122 = link_4_e1 * t105;
+            let t123 = link_4_e3 * t120;
+            let t124 = t123 - t122;
+            let t125 = T::fused(t117, t124, T::fused(-t108, t119, t112 * t121));
+            let t126 = t114 - t113;
+            let t127 = t123 + t122;
+            let t128 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t106);
+            let t129 = T::fused(t117, t128, T::fused(t108, t126, t112 * t127));
+            let t130 = T::fused(t88, t126, T::fused(t69, t107, t81 * t119));
+            let t131 = T::fused(t89, t126, -T::fused(t73, t107, t83 * t119));
+            let t132 = T::fused(t90, t126, -T::fused(-t77, t107, t86 * t119));
+            let t133 = T::fused(
+                link_4_wz,
+                T::fused(t88, t127, -T::fused(t69, t111, t81 * t121)),
+                link_4_wy * T::fused(t88, t128, -T::fused(-t69, t115, t81 * t124)),
+            );
+            let t134 = T::fused(t89, t127, T::fused(t73, t111, t83 * t121));
+            let t135 = T::fused(t89, t128, T::fused(-t73, t115, t83 * t124));
+            let t136 = T::fused(link_4_wz, link_4_wz, t116);
+            let t137 = T::fused(t90, t127, T::fused(-t77, t111, t86 * t121));
+            let t138 = link_4_wx * link_4_wy;
+            let t139 = T::fused(t90, t128, T::fused(t77, t115, t86 * t124));
+            let t140 = T::fused(
+                -k(2.0),
+                T::fused(
+                    -link_3_wy,
+                    t133,
+                    link_3_wx * T::fused(link_4_wz, t134, link_4_wy * t135),
+                ),
+                T::fused(t108, t139, -T::fused(-t136, t132, t138 * t137)),
+            );
+            let t141 = T::fused(
+                k(2.0),
+                T::fused(
+                    link_3_wz,
+                    t133,
+                    link_3_wx * T::fused(link_4_wz, t137, link_4_wy * t139),
+                ),
+                T::fused(t108, t135, -T::fused(-t136, t131, t138 * t134)),
+            );
+            let t142 = k(2.0) * link_5_e1;
+            let t143 = k(2.0) * link_5_e0;
+            let t144 = T::fused(-link_5_e0, t143, k(1.0));
+            let t145 = T::fused(-link_5_e1, t142, t144);
+            let t146 = link_5_wx * link_5_wz;
+            let t147 = link_5_e3 * t143;
+            let t148 = link_5_e2 * t142;
+            let t149 = t148 - t147;
+            let t150 = link_5_wy * link_5_wz;
+            let t151 = link_5_e2 * t143;
+            let t152 = link_5_e3 * t142;
+            let t153 = t152 + t151;
+            let t154 = link_5_wx * link_5_wx;
+            let t155 = T::fused(link_5_wy, link_5_wy, t154);
+            let t156 = T::fused(t155, t153, -T::fused(-t146, t145, t150 * t149));
+            let t157 = t148 + t147;
+            let t158 = k(2.0) * link_5_e2;
+            let t159 = T::fused(-link_5_e2, t158, t144);
+            let t160 = link_5_e1 * t143;
+            let t161 = link_5_e3 * t158;
+            let t162 = t161 - t160;
+            let t163 = T::fused(t155, t162, T::fused(-t146, t157, t150 * t159));
+            let t164 = t152 - t151;
+            let t165 = t161 + t160;
+            let t166 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t144);
+            let t167 = T::fused(t155, t166, T::fused(t146, t164, t150 * t165));
+            let t168 = T::fused(t126, t165, -T::fused(t107, t149, t119 * t159));
+            let t169 = T::fused(t127, t165, T::fused(t111, t149, t121 * t159));
+            let t170 = T::fused(t128, t165, T::fused(-t115, t149, t124 * t159));
+            let t171 = T::fused(t126, t164, T::fused(t107, t145, t119 * t157));
+            let t172 = T::fused(t126, t166, -T::fused(-t107, t153, t119 * t162));
+            let t173 = T::fused(
+                link_5_wz,
+                T::fused(t127, t164, -T::fused(t111, t145, t121 * t157)),
+                link_5_wx * T::fused(t127, t166, T::fused(-t111, t153, t121 * t162)),
+            );
+            let t174 = T::fused(t128, t164, -T::fused(-t115, t145, t124 * t157));
+            let t175 = link_5_wx * link_5_wy;
+            let t176 = T::fused(link_5_wz, link_5_wz, t154);
+            let t177 = T::fused(t128, t166, T::fused(t115, t153, t124 * t162));
+            let t178 = T::fused(
+                k(2.0),
+                T::fused(
+                    -link_4_wy,
+                    T::fused(link_5_wz, t171, link_5_wx * t172),
+                    link_4_wx * t173,
+                ),
+                T::fused(t150, t177, T::fused(-t175, t174, t176 * t170)),
+            );
+            let t179 = T::fused(
+                k(2.0),
+                T::fused(
+                    link_4_wz,
+                    t173,
+                    link_4_wy * T::fused(link_5_wz, t174, link_5_wx * t177),
+                ),
+                T::fused(t150, t172, T::fused(-t175, t171, t176 * t168)),
+            );
+            let t180 = k(2.0) * link_6_e1;
+            let t181 = k(2.0) * link_6_e0;
+            let t182 = T::fused(-link_6_e0, t181, k(1.0));
+            let t183 = T::fused(-link_6_e1, t180, t182);
+            let t184 = link_6_wx * link_6_wz;
+            let t185 = link_6_e3 * t181;
+            let t186 = link_6_e2 * t180;
+            let t187 = t186 - t185;
+            let t188 = link_6_wy * link_6_wz;
+            let t189 = link_6_e2 * t181;
+            let t190 = link_6_e3 * t180;
+            let t191 = t190 + t189;
+            let t192 = link_6_wy * link_6_wy;
+            let t193 = T::fused(link_6_wx, link_6_wx, t192);
+            let t194 = k(0.1)
+                * (t156 + T::fused(t193, t191, -T::fused(-t184, t183, t188 * t187)));
+            let t195 = t186 + t185;
+            let t196 = k(2.0) * link_6_e2;
+            let t197 = T::fused(-link_6_e2, t196, t182);
+            let t198 = link_6_e1 * t181;
+            let t199 = link_6_e3 * t196;
+            (
+                t3,
+                t4,
+                t7,
+                t8,
+                t11,
+                t13,
+                t14,
+                t21,
+                t22,
+                t23,
+                t24,
+                t25,
+                t26,
+                t27,
+                t32,
+                t36,
+                t41,
+                t42,
+                t49,
+                t53,
+                t54,
+                t55,
+                t56,
+                t60,
+                t62,
+                t64,
+                t65,
+                t70,
+                t74,
+                t79,
+                t80,
+                t87,
+                t91,
+                t92,
+                t93,
+                t94,
+                t99,
+                t100,
+                t102,
+                t103,
+                t108,
+                t112,
+                t117,
+                t118,
+                t125,
+                t129,
+                t130,
+                t131,
+                t132,
+                t136,
+                t138,
+                t140,
+                t141,
+                t145,
+                t146,
+                t149,
+                t150,
+                t153,
+                t155,
+                t156,
+                t157,
+                t159,
+                t162,
+                t163,
+                t164,
+                t165,
+                t166,
+                t167,
+                t168,
+                t169,
+                t170,
+                t175,
+                t176,
+                t178,
+                t179,
+                t182,
+                t183,
+                t184,
+                t187,
+                t188,
+                t189,
+                t190,
+                t191,
+                t192,
+                t193,
+                t194,
+                t195,
+                t197,
+                t198,
+                t199,
+            )
+        };
+        let (t201, t205, t206, t207, t208, t216, t217) = {
+            let t200 = t199 - t198;
+            let t201 = k(0.1)
+                * (t163 + T::fused(t193, t200, T::fused(-t184, t195, t188 * t197)));
+            let t202 = t190 - t189;
+            let t203 = t199 + t198;
+            let t204 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t182);
+            let t205 = k(0.1)
+                * (t167 + T::fused(t193, t204, T::fused(t184, t202, t188 * t203)));
+            let t206 = T::fused(t164, t202, T::fused(t145, t183, t157 * t195));
+            let t207 = T::fused(t165, t202, -T::fused(t149, t183, t159 * t195));
+            let t208 = T::fused(t166, t202, -T::fused(-t153, t183, t162 * t195));
+            let t209 = T::fused(
+                link_6_wz,
+                T::fused(t164, t203, -T::fused(t145, t187, t157 * t197)),
+                link_6_wy * T::fused(t164, t204, -T::fused(-t145, t191, t157 * t200)),
+            );
+            let t210 = T::fused(t165, t203, T::fused(t149, t187, t159 * t197));
+            let t211 = T::fused(t165, t204, T::fused(-t149, t191, t159 * t200));
+            let t212 = T::fused(link_6_wz, link_6_wz, t192);
+            let t213 = T::fused(t166, t203, T::fused(-t153, t187, t162 * t197));
+            let t214 = link_6_wx * link_6_wy;
+            let t215 = T::fused(t166, t204, T::fused(t153, t191, t162 * t200));
+            let t216 = T::fused(
+                -k(2.0),
+                T::fused(
+                    -link_5_wy,
+                    t209,
+                    link_5_wx * T::fused(link_6_wz, t210, link_6_wy * t211),
+                ),
+                T::fused(t184, t215, -T::fused(-t212, t208, t214 * t213)),
+            );
+            let t217 = T::fused(
+                k(2.0),
+                T::fused(
+                    link_5_wz,
+                    t209,
+                    link_5_wx * T::fused(link_6_wz, t213, link_6_wy * t215),
+                ),
+                T::fused(t184, t211, -T::fused(-t212, t207, t214 * t210)),
+            );
+            (t201, t205, t206, t207, t208, t216, t217)
+        };
+        *out = [
+            k(0.1) * t14,
+            k(0.1) * t21,
+            -(k(0.1) * t25),
+            T::fused(t8, t24, T::fused(-t26, t22, t27 * t23)),
+            T::fused(-t8, t11, T::fused(t26, t3, t27 * t7)),
+            k(0.1) * (t14 + t42),
+            k(0.1) * (t21 + t49),
+            -(k(0.1) * (t25 + t53)),
+            -(t64 + T::fused(t13, t56, T::fused(t4, t54, t8 * t55))),
+            -(t65 + T::fused(t8, t56, T::fused(-t26, t54, t27 * t55))),
+            k(0.1) * (t42 + t80),
+            k(0.1) * (t49 + t87),
+            -(k(0.1) * (t53 + t91)),
+            -(t102 + T::fused(t41, t94, T::fused(t32, t92, t36 * t93))),
+            t103 + T::fused(t32, t94, -T::fused(-t60, t92, t62 * t93)),
+            k(0.1) * (t80 + t118),
+            k(0.1) * (t87 + t125),
+            -(k(0.1) * (t91 + t129)),
+            -(t140 + T::fused(t79, t132, T::fused(t70, t130, t74 * t131))),
+            -(t141 + T::fused(t74, t132, T::fused(-t99, t130, t100 * t131))),
+            k(0.1) * (t118 + t156),
+            k(0.1) * (t125 + t163),
+            -(k(0.1) * (t129 + t167)),
+            -(t178 + T::fused(t117, t170, T::fused(t108, t168, t112 * t169))),
+            t179 + T::fused(t108, t170, -T::fused(-t136, t168, t138 * t169)),
+            t194,
+            t201,
+            -t205,
+            -(t216 + T::fused(t155, t208, T::fused(t146, t206, t150 * t207))),
+            -(t217 + T::fused(t150, t208, T::fused(-t175, t206, t176 * t207))),
         ];
     }
     /// Writes (f, n' − w̃'J'w'): 36 operations (0 ±, 36 ×, 0 ÷).
@@ -4608,7 +4814,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             k(0.0001) * (link_6_wx * link_6_wy),
         ];
     }
-    /// Solves eq. (17): 2651 operations (1172 ±, 1468 ×, 11 ÷).
+    /// Solves eq. (17): 2608 operations (1160 ±, 1437 ×, 11 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let link_1_e0 = y[3];
@@ -4654,68 +4860,59 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
         let link_6_wy = y[76];
         let link_6_wz = y[77];
         let (
-            t2,
             t4,
-            t6,
-            t9,
-            t12,
-            t13,
-            t16,
+            t8,
+            t11,
+            t14,
             t17,
-            t18,
-            t22,
-            t23,
-            t24,
+            t20,
+            t21,
             t25,
             t26,
+            t27,
             t28,
-            t29,
             t30,
             t31,
             t32,
-            t33,
-            t36,
-            t37,
+            t34,
+            t35,
             t38,
-            t41,
-            t48,
+            t39,
+            t42,
             t49,
-            t60,
-            t69,
-            t71,
-            t74,
-            t76,
-            t79,
+            t50,
+            t61,
+            t70,
+            t72,
+            t77,
             t80,
-            t81,
-            t82,
             t83,
             t84,
             t85,
             t86,
             t87,
-            t92,
-            t93,
+            t88,
+            t89,
             t94,
+            t95,
             t96,
             t98,
             t100,
             t101,
-            t102,
+            t104,
             t105,
             t106,
-            t107,
             t108,
+            t109,
             t110,
-            t111,
             t112,
-            t118,
-            t120,
+            t113,
+            t119,
             t121,
-            t123,
+            t122,
             t124,
             t125,
-            t128,
+            t126,
             t129,
             t130,
             t131,
@@ -4725,24 +4922,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t135,
             t136,
             t137,
-            t144,
-            t149,
-            t152,
+            t138,
+            t141,
+            t142,
+            t145,
+            t150,
             t153,
+            t154,
             t155,
-            t157,
+            t156,
             t158,
             t159,
             t160,
-            t163,
+            t161,
             t164,
             t165,
-            t167,
+            t166,
             t168,
-            t169,
+            t171,
             t172,
-            t173,
-            t174,
             t175,
             t176,
             t177,
@@ -4753,12 +4951,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t182,
             t183,
             t184,
-            t186,
-            t188,
+            t185,
+            t187,
             t189,
             t190,
             t191,
-            t193,
+            t192,
             t194,
             t195,
             t196,
@@ -4766,296 +4964,287 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t198,
             t199,
         ) = {
-            let t0 = link_6_e0 * link_6_e3;
-            let t1 = link_6_e1 * link_6_e2;
-            let t2 = k(2.0) * (t1 - t0);
-            let t3 = link_5_e0 * link_5_e0;
-            let t4 = k(2.0) * (k(0.5) - T::fused(link_5_e1, link_5_e1, t3));
-            let t5 = link_6_e0 * link_6_e0;
-            let t6 = k(2.0) * (k(0.5) - T::fused(link_6_e2, link_6_e2, t5));
-            let t7 = link_5_e0 * link_5_e3;
-            let t8 = link_5_e1 * link_5_e2;
-            let t9 = k(2.0) * (t8 + t7);
-            let t10 = link_6_e0 * link_6_e1;
-            let t11 = link_6_e2 * link_6_e3;
-            let t12 = t11 + t10;
-            let t13 = k(2.0) * t12;
-            let t14 = link_5_e0 * link_5_e2;
-            let t15 = link_5_e1 * link_5_e3;
-            let t16 = t15 - t14;
-            let t17 = k(2.0) * t16;
-            let t18 = T::fused(t17, t13, -T::fused(t4, t2, t9 * t6));
-            let t19 = k(0.0066) * t18;
-            let t20 = link_6_e0 * link_6_e2;
-            let t21 = link_6_e1 * link_6_e3;
-            let t22 = k(2.0) * (t21 + t20);
-            let t23 = k(2.0) * (t11 - t10);
-            let t24 = k(0.5) - T::fused(link_6_e3, link_6_e3, t5);
-            let t25 = k(2.0) * t24;
-            let t26 = T::fused(t17, t25, -T::fused(-t4, t22, t9 * t23));
-            let t27 = k(0.0002) * t26;
-            let t28 = k(2.0) * (k(0.5) - T::fused(link_6_e1, link_6_e1, t5));
-            let t29 = k(2.0) * (t8 - t7);
-            let t30 = k(2.0) * (t1 + t0);
-            let t31 = k(2.0) * (k(0.5) - T::fused(link_5_e2, link_5_e2, t3));
-            let t32 = t21 - t20;
-            let t33 = k(2.0) * t32;
-            let t34 = link_5_e0 * link_5_e1;
-            let t35 = link_5_e2 * link_5_e3;
-            let t36 = t35 + t34;
-            let t37 = k(2.0) * t36;
-            let t38 = T::fused(t37, t33, -T::fused(t29, t28, t31 * t30));
-            let t39 = k(0.05) * t38;
-            let t40 = t18 * t39;
-            let t41 = T::fused(t37, t13, T::fused(t31, t6, t29 * t2));
-            let t42 = k(0.373134328358209) * t41;
-            let t43 = t41 * t42;
-            let t44 = k(0.01) * t43;
-            let t45 = T::fused(k(0.2), t40, t44)
-                - (k(0.005) + T::fused(t18, t19, t26 * t27));
-            let t46 = k(0.1) * t43;
-            let t47 = k(0.05) - t46 - t40;
-            let t48 = T::fused(t37, t25, -T::fused(-t31, t23, t29 * t22));
-            let t49 = T::fused(t17, t33, T::fused(t4, t28, t9 * t30));
-            let t50 = k(0.05) * t49;
-            let t51 = t18 * t50;
-            let t52 = t41 * t39;
-            let t53 = k(0.373134328358209) * t18;
-            let t54 = t41 * t53;
-            let t55 = k(0.01) * t54;
-            let t56 = T::fused(-k(0.1), t52 - t51, t55) + T::fused(t41, t19, t48 * t27);
-            let t57 = k(0.1) * t54;
-            let t58 = t57 + t51;
-            let t59 = t57 - t52;
-            let t60 = T::fused(k(0.1), t59 + t58, t55) + t56;
-            let t61 = k(0.0066) * t41;
-            let t62 = k(0.0002) * t48;
-            let t63 = t41 * t50;
-            let t64 = t18 * t53;
-            let t65 = k(0.01) * t64;
-            let t66 = T::fused(-k(0.2), t63, t65)
-                - (k(0.005) + T::fused(t41, t61, t48 * t62));
-            let t67 = k(0.1) * t64;
-            let t68 = k(0.05) - t67 + t63;
-            let t69 = k(1.0)
-                / (T::fused(k(0.2), t68, -t65) + (k(0.01) + (k(0.0016) - t66)));
-            let t70 = t69 * t60;
-            let t71 = T::fused(
-                t60,
-                t70,
-                -(T::fused(k(0.2), t47, -t44) + (k(0.01) + (k(0.0017) - t45))),
+            let t0 = k(2.0) * link_6_e0;
+            let t1 = link_6_e3 * t0;
+            let t2 = k(2.0) * link_6_e1;
+            let t3 = link_6_e2 * t2;
+            let t4 = t3 - t1;
+            let t5 = k(2.0) * link_5_e1;
+            let t6 = k(2.0) * link_5_e0;
+            let t7 = T::fused(-link_5_e0, t6, k(1.0));
+            let t8 = T::fused(-link_5_e1, t5, t7);
+            let t9 = k(2.0) * link_6_e2;
+            let t10 = T::fused(-link_6_e0, t0, k(1.0));
+            let t11 = T::fused(-link_6_e2, t9, t10);
+            let t12 = link_5_e3 * t6;
+            let t13 = link_5_e2 * t5;
+            let t14 = t13 + t12;
+            let t15 = link_6_e1 * t0;
+            let t16 = link_6_e3 * t9;
+            let t17 = t16 + t15;
+            let t18 = link_5_e2 * t6;
+            let t19 = link_5_e3 * t5;
+            let t20 = t19 - t18;
+            let t21 = T::fused(t20, t17, -T::fused(t8, t4, t14 * t11));
+            let t22 = k(0.0066) * t21;
+            let t23 = link_6_e2 * t0;
+            let t24 = link_6_e3 * t2;
+            let t25 = t24 + t23;
+            let t26 = t16 - t15;
+            let t27 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t10);
+            let t28 = T::fused(t20, t27, -T::fused(-t8, t25, t14 * t26));
+            let t29 = k(0.0002) * t28;
+            let t30 = T::fused(-link_6_e1, t2, t10);
+            let t31 = t13 - t12;
+            let t32 = t3 + t1;
+            let t33 = k(2.0) * link_5_e2;
+            let t34 = T::fused(-link_5_e2, t33, t7);
+            let t35 = t24 - t23;
+            let t36 = link_5_e1 * t6;
+            let t37 = link_5_e3 * t33;
+            let t38 = t37 + t36;
+            let t39 = T::fused(t38, t35, -T::fused(t31, t30, t34 * t32));
+            let t40 = k(0.05) * t39;
+            let t41 = t21 * t40;
+            let t42 = T::fused(t38, t17, T::fused(t31, t4, t34 * t11));
+            let t43 = k(0.373134328358209) * t42;
+            let t44 = t42 * t43;
+            let t45 = k(0.01) * t44;
+            let t46 = T::fused(k(0.2), t41, t45)
+                - (k(0.005) + T::fused(t21, t22, t28 * t29));
+            let t47 = k(0.1) * t44;
+            let t48 = k(0.05) - t47 - t41;
+            let t49 = T::fused(t38, t27, T::fused(-t31, t25, t34 * t26));
+            let t50 = T::fused(t20, t35, T::fused(t8, t30, t14 * t32));
+            let t51 = k(0.05) * t50;
+            let t52 = t21 * t51;
+            let t53 = t42 * t40;
+            let t54 = k(0.373134328358209) * t21;
+            let t55 = t54 * t42;
+            let t56 = k(0.01) * t55;
+            let t57 = T::fused(-k(0.1), t53 - t52, t56) + T::fused(t42, t22, t49 * t29);
+            let t58 = k(0.1) * t55;
+            let t59 = t58 + t52;
+            let t60 = t58 - t53;
+            let t61 = T::fused(k(0.1), t60 + t59, t56) + t57;
+            let t62 = k(0.0066) * t42;
+            let t63 = k(0.0002) * t49;
+            let t64 = t51 * t42;
+            let t65 = t21 * t54;
+            let t66 = k(0.01) * t65;
+            let t67 = T::fused(-k(0.2), t64, t66)
+                - (k(0.005) + T::fused(t42, t62, t49 * t63));
+            let t68 = k(0.1) * t65;
+            let t69 = k(0.05) - t68 + t64;
+            let t70 = k(1.0)
+                / (T::fused(k(0.2), t69, -t66) + (k(0.01) + (k(0.0016) - t67)));
+            let t71 = t70 * t61;
+            let t72 = T::fused(
+                t61,
+                t71,
+                -(T::fused(k(0.2), t48, -t45) + (k(0.01) + (k(0.0017) - t46))),
             );
-            let t72 = link_4_e0 * link_4_e3;
-            let t73 = link_4_e1 * link_4_e2;
-            let t74 = k(2.0) * (t73 - t72);
-            let t75 = link_4_e0 * link_4_e0;
-            let t76 = k(2.0) * (k(0.5) - T::fused(link_4_e2, link_4_e2, t75));
-            let t77 = link_4_e0 * link_4_e1;
-            let t78 = link_4_e2 * link_4_e3;
-            let t79 = t78 + t77;
-            let t80 = k(2.0) * t79;
-            let t81 = T::fused(t80, t17, -T::fused(t74, t4, t76 * t9));
-            let t82 = k(2.0) * (t35 - t34);
-            let t83 = k(2.0) * (t15 + t14);
-            let t84 = k(0.5) - T::fused(link_5_e3, link_5_e3, t3);
-            let t85 = k(2.0) * t84;
-            let t86 = T::fused(t85, t13, -T::fused(-t82, t6, t83 * t2));
-            let t87 = T::fused(t85, t25, T::fused(t82, t23, t83 * t22));
-            let t88 = t86 * t39;
-            let t89 = k(0.1) * t88;
-            let t90 = t86 * t50;
+            let t73 = k(2.0) * link_4_e0;
+            let t74 = link_4_e3 * t73;
+            let t75 = k(2.0) * link_4_e1;
+            let t76 = link_4_e2 * t75;
+            let t77 = t76 - t74;
+            let t78 = k(2.0) * link_4_e2;
+            let t79 = T::fused(-link_4_e0, t73, k(1.0));
+            let t80 = T::fused(-link_4_e2, t78, t79);
+            let t81 = link_4_e1 * t73;
+            let t82 = link_4_e3 * t78;
+            let t83 = t82 + t81;
+            let t84 = T::fused(t83, t20, -T::fused(t77, t8, t80 * t14));
+            let t85 = t19 + t18;
+            let t86 = t37 - t36;
+            let t87 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t7);
+            let t88 = T::fused(t87, t17, T::fused(-t85, t4, t86 * t11));
+            let t89 = T::fused(t87, t27, T::fused(t85, t25, t86 * t26));
+            let t90 = t88 * t40;
             let t91 = k(0.1) * t90;
-            let t92 = t91 + (t91 + T::fused(t86, t61, t87 * t62));
-            let t93 = T::fused(t92, t70, t89 + (t89 - T::fused(t86, t19, t87 * t27)));
-            let t94 = T::fused(t80, t85, -T::fused(-t76, t82, t74 * t83));
-            let t95 = T::fused(t81, t71, t94 * t93);
-            let t96 = T::fused(
-                t92,
-                t69 * t92,
-                -(k(0.0002) + T::fused(t86, k(0.0066) * t86, t87 * (k(0.0002) * t87))),
+            let t92 = t51 * t88;
+            let t93 = k(0.1) * t92;
+            let t94 = t93 + (t93 + T::fused(t62, t88, t63 * t89));
+            let t95 = T::fused(t94, t71, t91 + (t91 - T::fused(t88, t22, t89 * t29)));
+            let t96 = T::fused(t83, t87, T::fused(-t77, t85, t80 * t86));
+            let t97 = T::fused(t84, t72, t96 * t95);
+            let t98 = T::fused(
+                t94,
+                t70 * t94,
+                -(k(0.0002) + T::fused(t88, k(0.0066) * t88, t89 * (k(0.0002) * t89))),
             );
-            let t97 = T::fused(t81, t93, t94 * t96);
-            let t98 = t68 + (k(0.1) - t67);
-            let t99 = t69 * t98;
-            let t100 = T::fused(t99, t60, -(t57 + t58));
-            let t101 = k(2.0) * (k(0.5) - T::fused(link_4_e1, link_4_e1, t75));
-            let t102 = k(2.0) * (t73 + t72);
-            let t103 = link_4_e0 * link_4_e2;
-            let t104 = link_4_e1 * link_4_e3;
-            let t105 = t104 - t103;
-            let t106 = k(2.0) * t105;
-            let t107 = T::fused(t106, t17, T::fused(t101, t4, t102 * t9));
-            let t108 = t57 + t59;
-            let t109 = t69 * t108;
-            let t110 = T::fused(t109, t60, -(k(0.1) - t46 + t47));
-            let t111 = T::fused(t106, t37, -T::fused(t101, t29, t102 * t31));
-            let t112 = T::fused(t85, t33, -T::fused(-t83, t28, t82 * t30));
-            let t113 = k(0.05) * t112;
-            let t114 = t86 * t42;
-            let t115 = k(0.1) * t114;
-            let t116 = t86 * t53;
-            let t117 = k(0.1) * t116;
-            let t118 = t117 + T::fused(-t41, t113, t117);
-            let t119 = t69 * t118;
-            let t120 = T::fused(t119, t60, t115 + T::fused(t18, t113, t115));
-            let t121 = T::fused(t106, t85, -T::fused(-t101, t83, t102 * t82));
-            let t122 = T::fused(t121, t120, T::fused(-t107, t100, t111 * t110));
-            let t123 = T::fused(-t99, t92, t90);
-            let t124 = T::fused(t109, t92, t88);
-            let t125 = T::fused(t86, t113, t119 * t92);
-            let t126 = T::fused(t121, t125, T::fused(t107, t123, t111 * t124));
-            let t127 = T::fused(t81, t122, t94 * t126);
-            let t128 = T::fused(t98, t99, t64);
-            let t129 = T::fused(-t108, t99, t54);
-            let t130 = T::fused(-t118, t99, t116);
-            let t131 = T::fused(t121, t130, T::fused(t107, t128, t111 * t129));
-            let t132 = T::fused(t108, t109, t43);
-            let t133 = T::fused(t118, t109, t114);
-            let t134 = T::fused(t121, t133, T::fused(t107, t129, t111 * t132));
-            let t135 = T::fused(t86, k(0.373134328358209) * t86, t118 * t119);
-            let t136 = T::fused(t121, t135, T::fused(t107, t130, t111 * t133));
-            let t137 = T::fused(t121, t136, T::fused(t107, t131, t111 * t134));
-            let t138 = k(0.01) * t137;
-            let t139 = T::fused(-k(0.2), t127, t138)
-                - (k(0.01) - T::fused(t81, t95, t94 * t97));
-            let t140 = k(0.1) * t137;
-            let t141 = k(0.1) - t140 + t127;
-            let t142 = T::fused(t107, t71, t121 * t93);
-            let t143 = T::fused(t107, t93, t121 * t96);
-            let t144 = T::fused(t80, t37, T::fused(t76, t31, t74 * t29));
-            let t145 = T::fused(t94, t120, T::fused(-t81, t100, t144 * t110));
-            let t146 = T::fused(t94, t125, T::fused(t81, t123, t144 * t124));
-            let t147 = T::fused(t81, t145, t94 * t146);
-            let t148 = T::fused(t107, t122, t121 * t126);
-            let t149 = T::fused(t94, t136, T::fused(t81, t131, t144 * t134));
-            let t150 = k(0.01) * t149;
-            let t151 = T::fused(k(0.1), t148 - t147, t150)
-                - T::fused(t81, t142, t94 * t143);
-            let t152 = k(0.1) * t149;
-            let t153 = t152 - t147;
-            let t154 = t152 + t148;
-            let t155 = T::fused(k(0.1), t154 + t153, t150) + t151;
-            let t156 = T::fused(t107, t145, t121 * t146);
-            let t157 = T::fused(t94, t130, T::fused(t81, t128, t144 * t129));
-            let t158 = T::fused(t94, t133, T::fused(t81, t129, t144 * t132));
-            let t159 = T::fused(t135, t94, T::fused(t130, t81, t144 * t133));
-            let t160 = T::fused(t94, t159, T::fused(t81, t157, t144 * t158));
-            let t161 = k(0.01) * t160;
-            let t162 = T::fused(k(0.2), t156, t161)
-                - (k(0.01) - T::fused(t107, t142, t121 * t143));
-            let t163 = k(0.1) * t160;
-            let t164 = k(0.1) - t163 - t156;
-            let t165 = k(1.0)
-                / (T::fused(k(0.2), t164, -t161) + (k(0.015) + (k(0.0017) - t162)));
-            let t166 = t165 * t155;
-            let t167 = T::fused(
-                t155,
-                t166,
-                -(T::fused(k(0.2), t141, -t138) + (k(0.015) + (k(0.0016) - t139))),
+            let t99 = T::fused(t84, t95, t96 * t98);
+            let t100 = T::fused(-link_4_e1, t75, t79);
+            let t101 = t76 + t74;
+            let t102 = link_4_e2 * t73;
+            let t103 = link_4_e3 * t75;
+            let t104 = t103 - t102;
+            let t105 = T::fused(t104, t20, T::fused(t100, t8, t101 * t14));
+            let t106 = t69 + (k(0.1) - t68);
+            let t107 = t70 * t106;
+            let t108 = T::fused(t107, t61, -(t58 + t59));
+            let t109 = T::fused(t104, t38, -T::fused(t100, t31, t101 * t34));
+            let t110 = t58 + t60;
+            let t111 = t70 * t110;
+            let t112 = T::fused(t111, t61, -(k(0.1) - t47 + t48));
+            let t113 = T::fused(t87, t35, -T::fused(-t85, t30, t86 * t32));
+            let t114 = k(0.05) * t113;
+            let t115 = t88 * t43;
+            let t116 = k(0.1) * t115;
+            let t117 = t54 * t88;
+            let t118 = k(0.1) * t117;
+            let t119 = t118 + T::fused(-t42, t114, t118);
+            let t120 = t70 * t119;
+            let t121 = T::fused(t120, t61, t116 + T::fused(t21, t114, t116));
+            let t122 = T::fused(t104, t87, -T::fused(-t100, t85, t101 * t86));
+            let t123 = T::fused(t122, t121, T::fused(-t108, t105, t112 * t109));
+            let t124 = T::fused(-t107, t94, t92);
+            let t125 = T::fused(t111, t94, t90);
+            let t126 = T::fused(t88, t114, t120 * t94);
+            let t127 = T::fused(t126, t122, T::fused(t124, t105, t125 * t109));
+            let t128 = T::fused(t84, t123, t96 * t127);
+            let t129 = T::fused(t106, t107, t65);
+            let t130 = T::fused(-t110, t107, t55);
+            let t131 = T::fused(-t119, t107, t117);
+            let t132 = T::fused(t131, t122, T::fused(t129, t105, t130 * t109));
+            let t133 = T::fused(t110, t111, t44);
+            let t134 = T::fused(t119, t111, t115);
+            let t135 = T::fused(t134, t122, T::fused(t130, t105, t133 * t109));
+            let t136 = T::fused(t88, k(0.373134328358209) * t88, t119 * t120);
+            let t137 = T::fused(t136, t122, T::fused(t131, t105, t134 * t109));
+            let t138 = T::fused(t122, t137, T::fused(t105, t132, t109 * t135));
+            let t139 = k(0.01) * t138;
+            let t140 = T::fused(-k(0.2), t128, t139)
+                - (k(0.01) - T::fused(t84, t97, t96 * t99));
+            let t141 = k(0.1) * t138;
+            let t142 = k(0.1) - t141 + t128;
+            let t143 = T::fused(t105, t72, t122 * t95);
+            let t144 = T::fused(t105, t95, t122 * t98);
+            let t145 = T::fused(t83, t38, T::fused(t77, t31, t80 * t34));
+            let t146 = T::fused(t96, t121, T::fused(-t84, t108, t145 * t112));
+            let t147 = T::fused(t96, t126, T::fused(t84, t124, t145 * t125));
+            let t148 = T::fused(t84, t146, t96 * t147);
+            let t149 = T::fused(t105, t123, t122 * t127);
+            let t150 = T::fused(t96, t137, T::fused(t84, t132, t145 * t135));
+            let t151 = k(0.01) * t150;
+            let t152 = T::fused(k(0.1), t149 - t148, t151)
+                - T::fused(t84, t143, t96 * t144);
+            let t153 = k(0.1) * t150;
+            let t154 = t153 - t148;
+            let t155 = t153 + t149;
+            let t156 = T::fused(k(0.1), t155 + t154, t151) + t152;
+            let t157 = T::fused(t146, t105, t147 * t122);
+            let t158 = T::fused(t96, t131, T::fused(t84, t129, t145 * t130));
+            let t159 = T::fused(t96, t134, T::fused(t84, t130, t145 * t133));
+            let t160 = T::fused(t136, t96, T::fused(t131, t84, t134 * t145));
+            let t161 = T::fused(t96, t160, T::fused(t84, t158, t145 * t159));
+            let t162 = k(0.01) * t161;
+            let t163 = T::fused(k(0.2), t157, t162)
+                - (k(0.01) - T::fused(t105, t143, t122 * t144));
+            let t164 = k(0.1) * t161;
+            let t165 = k(0.1) - t164 - t157;
+            let t166 = k(1.0)
+                / (T::fused(k(0.2), t165, -t162) + (k(0.015) + (k(0.0017) - t163)));
+            let t167 = t166 * t156;
+            let t168 = T::fused(
+                t156,
+                t167,
+                -(T::fused(k(0.2), t142, -t139) + (k(0.015) + (k(0.0016) - t140))),
             );
-            let t168 = link_3_e0 * link_3_e0;
-            let t169 = k(2.0) * (k(0.5) - T::fused(link_3_e1, link_3_e1, t168));
-            let t170 = link_3_e0 * link_3_e3;
-            let t171 = link_3_e1 * link_3_e2;
-            let t172 = k(2.0) * (t171 + t170);
-            let t173 = link_3_e0 * link_3_e2;
-            let t174 = link_3_e1 * link_3_e3;
-            let t175 = t174 - t173;
-            let t176 = k(2.0) * t175;
-            let t177 = T::fused(t176, t80, -T::fused(t169, t74, t172 * t76));
-            let t178 = k(2.0) * (t104 + t103);
-            let t179 = k(2.0) * (t78 - t77);
-            let t180 = k(0.5) - T::fused(link_4_e3, link_4_e3, t75);
-            let t181 = k(2.0) * t180;
-            let t182 = T::fused(t181, t17, -T::fused(-t178, t4, t179 * t9));
-            let t183 = T::fused(t181, t85, T::fused(t179, t82, t178 * t83));
-            let t184 = T::fused(t182, t122, t183 * t126);
-            let t185 = k(0.1) * t184;
-            let t186 = T::fused(t182, t145, t183 * t146);
-            let t187 = k(0.1) * t186;
-            let t188 = t187 + (t187 + T::fused(t182, t142, t183 * t143));
-            let t189 = T::fused(
-                t188,
-                t166,
-                t185 + (t185 - T::fused(t182, t95, t183 * t97)),
+            let t169 = k(2.0) * link_3_e1;
+            let t170 = k(2.0) * link_3_e0;
+            let t171 = T::fused(-link_3_e0, t170, k(1.0));
+            let t172 = T::fused(-link_3_e1, t169, t171);
+            let t173 = link_3_e3 * t170;
+            let t174 = link_3_e2 * t169;
+            let t175 = t174 + t173;
+            let t176 = link_3_e2 * t170;
+            let t177 = link_3_e3 * t169;
+            let t178 = t177 - t176;
+            let t179 = T::fused(t178, t83, -T::fused(t172, t77, t175 * t80));
+            let t180 = t103 + t102;
+            let t181 = t82 - t81;
+            let t182 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t79);
+            let t183 = T::fused(t182, t20, -T::fused(-t180, t8, t181 * t14));
+            let t184 = T::fused(t182, t87, T::fused(t180, t85, t181 * t86));
+            let t185 = T::fused(t183, t123, t184 * t127);
+            let t186 = k(0.1) * t185;
+            let t187 = T::fused(t146, t183, t147 * t184);
+            let t188 = k(0.1) * t187;
+            let t189 = t188 + (t188 + T::fused(t143, t183, t144 * t184));
+            let t190 = T::fused(
+                t189,
+                t167,
+                t186 + (t186 - T::fused(t183, t97, t184 * t99)),
             );
-            let t190 = T::fused(t176, t181, -T::fused(-t169, t178, t172 * t179));
-            let t191 = T::fused(-t177, t167, t190 * t189);
-            let t192 = T::fused(
-                t182,
-                T::fused(t182, t71, t183 * t93),
-                t183 * T::fused(t182, t93, t183 * t96),
+            let t191 = T::fused(t178, t182, -T::fused(-t172, t180, t175 * t181));
+            let t192 = T::fused(-t179, t168, t191 * t190);
+            let t193 = T::fused(
+                t183,
+                T::fused(t72, t183, t95 * t184),
+                t184 * T::fused(t95, t183, t98 * t184),
             );
-            let t193 = T::fused(t188, t165 * t188, -(k(0.0002) - t192));
-            let t194 = T::fused(-t177, t189, t190 * t193);
-            let t195 = t152 + t154;
-            let t196 = t165 * t195;
-            let t197 = T::fused(t196, t155, -(k(0.15) - t140 + t141));
-            let t198 = k(2.0) * (t171 - t170);
-            let t199 = k(2.0) * (k(0.5) - T::fused(link_3_e2, link_3_e2, t168));
+            let t194 = T::fused(t189, t166 * t189, -(k(0.0002) - t193));
+            let t195 = T::fused(-t179, t190, t191 * t194);
+            let t196 = t174 - t173;
+            let t197 = k(2.0) * link_3_e2;
+            let t198 = T::fused(-link_3_e2, t197, t171);
+            let t199 = link_3_e1 * t170;
             (
-                t2,
                 t4,
-                t6,
-                t9,
-                t12,
-                t13,
-                t16,
+                t8,
+                t11,
+                t14,
                 t17,
-                t18,
-                t22,
-                t23,
-                t24,
+                t20,
+                t21,
                 t25,
                 t26,
+                t27,
                 t28,
-                t29,
                 t30,
                 t31,
                 t32,
-                t33,
-                t36,
-                t37,
+                t34,
+                t35,
                 t38,
-                t41,
-                t48,
+                t39,
+                t42,
                 t49,
-                t60,
-                t69,
-                t71,
-                t74,
-                t76,
-                t79,
+                t50,
+                t61,
+                t70,
+                t72,
+                t77,
                 t80,
-                t81,
-                t82,
                 t83,
                 t84,
                 t85,
                 t86,
                 t87,
-                t92,
-                t93,
+                t88,
+                t89,
                 t94,
+                t95,
                 t96,
                 t98,
                 t100,
                 t101,
-                t102,
+                t104,
                 t105,
                 t106,
-                t107,
                 t108,
+                t109,
                 t110,
-                t111,
                 t112,
-                t118,
-                t120,
+                t113,
+                t119,
                 t121,
-                t123,
+                t122,
                 t124,
                 t125,
-                t128,
+                t126,
                 t129,
                 t130,
                 t131,
@@ -5065,24 +5254,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t135,
                 t136,
                 t137,
-                t144,
-                t149,
-                t152,
+                t138,
+                t141,
+                t142,
+                t145,
+                t150,
                 t153,
+                t154,
                 t155,
-                t157,
+                t156,
                 t158,
                 t159,
                 t160,
-                t163,
+                t161,
                 t164,
                 t165,
-                t167,
+                t166,
                 t168,
-                t169,
+                t171,
                 t172,
-                t173,
-                t174,
                 t175,
                 t176,
                 t177,
@@ -5093,12 +5283,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t182,
                 t183,
                 t184,
-                t186,
-                t188,
+                t185,
+                t187,
                 t189,
                 t190,
                 t191,
-                t193,
+                t192,
                 t194,
                 t195,
                 t196,
@@ -5108,89 +5298,87 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             )
         };
         let (
+            t201,
             t202,
             t203,
-            t204,
             t205,
+            t206,
             t207,
-            t208,
             t209,
-            t216,
-            t218,
+            t210,
+            t217,
             t219,
-            t221,
+            t220,
             t222,
             t223,
-            t226,
+            t224,
             t227,
             t228,
-            t230,
+            t229,
             t231,
-            t235,
-            t242,
-            t256,
-            t265,
-            t267,
-            t270,
-            t272,
-            t275,
+            t232,
+            t236,
+            t243,
+            t257,
+            t266,
+            t268,
+            t273,
             t276,
-            t277,
-            t278,
             t279,
             t280,
             t281,
             t282,
             t283,
-            t288,
-            t289,
+            t284,
+            t285,
             t290,
-            t293,
+            t291,
+            t292,
             t295,
             t297,
             t298,
-            t299,
+            t301,
             t302,
             t303,
-            t304,
             t305,
+            t306,
             t307,
-            t308,
             t309,
-            t316,
-            t318,
+            t310,
+            t317,
             t319,
-            t321,
+            t320,
             t322,
             t323,
-            t326,
+            t324,
             t327,
             t328,
             t329,
             t330,
             t331,
             t332,
-            t335,
+            t333,
             t336,
             t337,
-            t344,
-            t349,
-            t352,
+            t338,
+            t345,
+            t350,
             t353,
-            t355,
-            t357,
+            t354,
+            t356,
             t358,
             t359,
             t360,
-            t363,
+            t361,
             t364,
             t365,
-            t367,
+            t366,
             t368,
             t369,
             t370,
+            t371,
+            t372,
             t373,
-            t374,
             t375,
             t376,
             t377,
@@ -5201,359 +5389,357 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t382,
             t383,
             t384,
+            t385,
             t386,
             t388,
-            t389,
             t390,
             t391,
+            t392,
             t393,
-            t394,
             t395,
             t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = link_3_e0 * link_3_e1;
-            let t201 = link_3_e2 * link_3_e3;
-            let t202 = t201 + t200;
-            let t203 = k(2.0) * t202;
-            let t204 = T::fused(t203, t106, -T::fused(t198, t101, t199 * t102));
-            let t205 = t164 + (k(0.15) - t163);
-            let t206 = t165 * t205;
-            let t207 = T::fused(t206, t155, -(t152 + t153));
-            let t208 = T::fused(t203, t80, T::fused(t199, t76, t198 * t74));
-            let t209 = T::fused(t181, t37, -T::fused(-t179, t31, t178 * t29));
-            let t210 = T::fused(t183, t120, T::fused(-t182, t100, t209 * t110));
-            let t211 = T::fused(t183, t125, T::fused(t182, t123, t209 * t124));
-            let t212 = T::fused(t183, t136, T::fused(t182, t131, t209 * t134));
-            let t213 = k(0.1) * t212;
-            let t214 = T::fused(t183, t159, T::fused(t182, t157, t209 * t158));
-            let t215 = k(0.1) * t214;
-            let t216 = t215 + (t215 + T::fused(t107, t210, t121 * t211));
-            let t217 = t165 * t216;
-            let t218 = T::fused(
-                t217,
-                t155,
-                t213 + (t213 - T::fused(t81, t210, t94 * t211)),
+            let t200 = link_3_e3 * t197;
+            let t201 = t200 + t199;
+            let t202 = T::fused(t201, t104, -T::fused(t196, t100, t198 * t101));
+            let t203 = t153 + t155;
+            let t204 = t166 * t203;
+            let t205 = T::fused(t204, t156, -(k(0.15) - t141 + t142));
+            let t206 = T::fused(t201, t83, T::fused(t196, t77, t198 * t80));
+            let t207 = t165 + (k(0.15) - t164);
+            let t208 = t166 * t207;
+            let t209 = T::fused(t208, t156, -(t153 + t154));
+            let t210 = T::fused(t182, t38, T::fused(-t180, t31, t181 * t34));
+            let t211 = T::fused(t121, t184, T::fused(-t108, t183, t112 * t210));
+            let t212 = T::fused(t126, t184, T::fused(t124, t183, t125 * t210));
+            let t213 = T::fused(t184, t137, T::fused(t183, t132, t210 * t135));
+            let t214 = k(0.1) * t213;
+            let t215 = T::fused(t160, t184, T::fused(t158, t183, t159 * t210));
+            let t216 = k(0.1) * t215;
+            let t217 = t216 + (t216 + T::fused(t105, t211, t122 * t212));
+            let t218 = t166 * t217;
+            let t219 = T::fused(
+                t218,
+                t156,
+                t214 + (t214 - T::fused(t84, t211, t96 * t212)),
             );
-            let t219 = T::fused(t203, t181, -T::fused(-t199, t179, t198 * t178));
-            let t220 = T::fused(t219, t218, -T::fused(-t204, t197, t208 * t207));
-            let t221 = T::fused(t196, t188, t184);
-            let t222 = T::fused(-t206, t188, t186);
-            let t223 = T::fused(t217, t188, T::fused(t182, t210, t183 * t211));
-            let t224 = T::fused(t219, t223, T::fused(t204, t221, t208 * t222));
-            let t225 = T::fused(-t177, t220, t190 * t224);
-            let t226 = T::fused(t195, t196, t137);
-            let t227 = T::fused(-t205, t196, t149);
-            let t228 = T::fused(t216, t196, t212);
-            let t229 = T::fused(t219, t228, T::fused(t204, t226, t208 * t227));
-            let t230 = T::fused(t205, t206, t160);
-            let t231 = T::fused(-t216, t206, t214);
-            let t232 = T::fused(t219, t231, T::fused(t204, t227, t208 * t230));
-            let t233 = T::fused(
-                t182,
-                T::fused(t183, t130, T::fused(t182, t128, t209 * t129)),
-                t209 * T::fused(t183, t133, T::fused(t182, t129, t209 * t132)),
-            );
+            let t220 = T::fused(t201, t182, T::fused(-t196, t180, t198 * t181));
+            let t221 = T::fused(t220, t219, -T::fused(-t205, t202, t209 * t206));
+            let t222 = T::fused(t204, t189, t185);
+            let t223 = T::fused(-t208, t189, t187);
+            let t224 = T::fused(t218, t189, T::fused(t183, t211, t184 * t212));
+            let t225 = T::fused(t224, t220, T::fused(t222, t202, t223 * t206));
+            let t226 = T::fused(-t179, t221, t191 * t225);
+            let t227 = T::fused(t203, t204, t138);
+            let t228 = T::fused(-t207, t204, t150);
+            let t229 = T::fused(t217, t204, t213);
+            let t230 = T::fused(t229, t220, T::fused(t227, t202, t228 * t206));
+            let t231 = T::fused(t207, t208, t161);
+            let t232 = T::fused(-t217, t208, t215);
+            let t233 = T::fused(t232, t220, T::fused(t228, t202, t231 * t206));
             let t234 = T::fused(
                 t183,
-                T::fused(t183, t135, T::fused(t182, t130, t209 * t133)),
-                t233,
+                T::fused(t131, t184, T::fused(t129, t183, t130 * t210)),
+                t210 * T::fused(t134, t184, T::fused(t130, t183, t133 * t210)),
             );
-            let t235 = T::fused(t216, t217, t234);
-            let t236 = T::fused(t219, t235, T::fused(t204, t228, t208 * t231));
-            let t237 = T::fused(t219, t236, T::fused(t204, t229, t208 * t232));
-            let t238 = k(0.01) * t237;
-            let t239 = T::fused(k(0.2), t225, t238)
-                - (k(0.015) - T::fused(-t177, t191, t190 * t194));
-            let t240 = k(0.1) * t237;
-            let t241 = k(0.15) - t240 - t225;
-            let t242 = T::fused(t176, t106, T::fused(t169, t101, t172 * t102));
-            let t243 = T::fused(t190, t218, -T::fused(-t242, t197, t177 * t207));
-            let t244 = T::fused(t190, t223, T::fused(t242, t221, t177 * t222));
-            let t245 = T::fused(-t177, t243, t190 * t244);
-            let t246 = T::fused(-t208, t220, t219 * t224);
-            let t247 = T::fused(t190, t228, T::fused(t242, t226, t177 * t227));
-            let t248 = T::fused(t190, t231, T::fused(t242, t227, t177 * t230));
-            let t249 = T::fused(t235, t190, T::fused(t242, t228, t231 * t177));
-            let t250 = T::fused(t219, t249, T::fused(t204, t247, t208 * t248));
-            let t251 = k(0.01) * t250;
-            let t252 = T::fused(-k(0.1), t246 - t245, t251)
-                - T::fused(-t208, t191, t219 * t194);
-            let t253 = k(0.1) * t250;
-            let t254 = t253 + t245;
-            let t255 = t253 - t246;
-            let t256 = T::fused(k(0.1), t255 + t254, t251) + t252;
-            let t257 = T::fused(-t208, t167, t219 * t189);
-            let t258 = T::fused(-t208, t189, t219 * t193);
-            let t259 = T::fused(-t208, t243, t219 * t244);
-            let t260 = T::fused(t190, t249, T::fused(t242, t247, t177 * t248));
-            let t261 = k(0.01) * t260;
-            let t262 = T::fused(-k(0.2), t259, t261)
-                - (k(0.015) - T::fused(-t208, t257, t219 * t258));
-            let t263 = k(0.1) * t260;
-            let t264 = k(0.15) - t263 + t259;
-            let t265 = k(1.0)
-                / (T::fused(k(0.2), t264, -t261) + (k(0.02) + (k(0.0016) - t262)));
-            let t266 = t265 * t256;
-            let t267 = T::fused(
-                t256,
-                t266,
-                -(T::fused(k(0.2), t241, -t238) + (k(0.02) + (k(0.0017) - t239))),
+            let t235 = T::fused(
+                t184,
+                T::fused(t136, t184, T::fused(t131, t183, t134 * t210)),
+                t234,
             );
-            let t268 = link_2_e0 * link_2_e3;
-            let t269 = link_2_e1 * link_2_e2;
-            let t270 = k(2.0) * (t269 - t268);
-            let t271 = link_2_e0 * link_2_e0;
-            let t272 = k(2.0) * (k(0.5) - T::fused(link_2_e2, link_2_e2, t271));
-            let t273 = link_2_e0 * link_2_e1;
-            let t274 = link_2_e2 * link_2_e3;
-            let t275 = t274 + t273;
-            let t276 = k(2.0) * t275;
-            let t277 = T::fused(t276, t176, -T::fused(t270, t169, t272 * t172));
-            let t278 = k(2.0) * (t201 - t200);
-            let t279 = k(2.0) * (t174 + t173);
-            let t280 = k(0.5) - T::fused(link_3_e3, link_3_e3, t168);
-            let t281 = k(2.0) * t280;
-            let t282 = T::fused(t281, t80, -T::fused(-t278, t76, t279 * t74));
-            let t283 = T::fused(t281, t181, T::fused(t278, t179, t279 * t178));
-            let t284 = T::fused(-t282, t220, t283 * t224);
-            let t285 = k(0.1) * t284;
-            let t286 = T::fused(-t282, t243, t283 * t244);
+            let t236 = T::fused(t217, t218, t235);
+            let t237 = T::fused(t236, t220, T::fused(t229, t202, t232 * t206));
+            let t238 = T::fused(t220, t237, T::fused(t202, t230, t206 * t233));
+            let t239 = k(0.01) * t238;
+            let t240 = T::fused(k(0.2), t226, t239)
+                - (k(0.015) - T::fused(-t179, t192, t191 * t195));
+            let t241 = k(0.1) * t238;
+            let t242 = k(0.15) - t241 - t226;
+            let t243 = T::fused(t178, t104, T::fused(t172, t100, t175 * t101));
+            let t244 = T::fused(t191, t219, -T::fused(-t243, t205, t179 * t209));
+            let t245 = T::fused(t191, t224, T::fused(t243, t222, t179 * t223));
+            let t246 = T::fused(-t179, t244, t191 * t245);
+            let t247 = T::fused(-t206, t221, t220 * t225);
+            let t248 = T::fused(t191, t229, T::fused(t243, t227, t179 * t228));
+            let t249 = T::fused(t191, t232, T::fused(t243, t228, t179 * t231));
+            let t250 = T::fused(t236, t191, T::fused(t229, t243, t232 * t179));
+            let t251 = T::fused(t250, t220, T::fused(t248, t202, t249 * t206));
+            let t252 = k(0.01) * t251;
+            let t253 = T::fused(-k(0.1), t247 - t246, t252)
+                - T::fused(-t206, t192, t220 * t195);
+            let t254 = k(0.1) * t251;
+            let t255 = t254 + t246;
+            let t256 = t254 - t247;
+            let t257 = T::fused(k(0.1), t256 + t255, t252) + t253;
+            let t258 = T::fused(-t206, t168, t220 * t190);
+            let t259 = T::fused(-t206, t190, t220 * t194);
+            let t260 = T::fused(-t244, t206, t245 * t220);
+            let t261 = T::fused(t191, t250, T::fused(t243, t248, t179 * t249));
+            let t262 = k(0.01) * t261;
+            let t263 = T::fused(-k(0.2), t260, t262)
+                - (k(0.015) - T::fused(-t206, t258, t220 * t259));
+            let t264 = k(0.1) * t261;
+            let t265 = k(0.15) - t264 + t260;
+            let t266 = k(1.0)
+                / (T::fused(k(0.2), t265, -t262) + (k(0.02) + (k(0.0016) - t263)));
+            let t267 = t266 * t257;
+            let t268 = T::fused(
+                t257,
+                t267,
+                -(T::fused(k(0.2), t242, -t239) + (k(0.02) + (k(0.0017) - t240))),
+            );
+            let t269 = k(2.0) * link_2_e0;
+            let t270 = link_2_e3 * t269;
+            let t271 = k(2.0) * link_2_e1;
+            let t272 = link_2_e2 * t271;
+            let t273 = t272 - t270;
+            let t274 = k(2.0) * link_2_e2;
+            let t275 = T::fused(-link_2_e0, t269, k(1.0));
+            let t276 = T::fused(-link_2_e2, t274, t275);
+            let t277 = link_2_e1 * t269;
+            let t278 = link_2_e3 * t274;
+            let t279 = t278 + t277;
+            let t280 = T::fused(t279, t178, -T::fused(t273, t172, t276 * t175));
+            let t281 = t177 + t176;
+            let t282 = t200 - t199;
+            let t283 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t171);
+            let t284 = T::fused(t283, t83, T::fused(-t281, t77, t282 * t80));
+            let t285 = T::fused(t283, t182, T::fused(t281, t180, t282 * t181));
+            let t286 = T::fused(-t284, t221, t285 * t225);
             let t287 = k(0.1) * t286;
-            let t288 = t287 + (t287 - T::fused(-t282, t257, t283 * t258));
-            let t289 = T::fused(
-                t288,
-                t266,
-                t285 + (t285 + T::fused(-t282, t191, t283 * t194)),
+            let t288 = T::fused(-t244, t284, t245 * t285);
+            let t289 = k(0.1) * t288;
+            let t290 = t289 + (t289 - T::fused(-t258, t284, t259 * t285));
+            let t291 = T::fused(
+                t290,
+                t267,
+                t287 + (t287 + T::fused(-t284, t192, t285 * t195)),
             );
-            let t290 = T::fused(t276, t281, -T::fused(-t272, t278, t270 * t279));
-            let t291 = T::fused(t277, t267, t290 * t289);
-            let t292 = T::fused(
-                -t282,
-                T::fused(-t282, t167, t283 * t189),
-                t283 * T::fused(-t282, t189, t283 * t193),
+            let t292 = T::fused(t279, t283, T::fused(-t273, t281, t276 * t282));
+            let t293 = T::fused(t280, t268, t292 * t291);
+            let t294 = T::fused(
+                -t284,
+                T::fused(-t168, t284, t190 * t285),
+                t285 * T::fused(-t190, t284, t194 * t285),
             );
-            let t293 = T::fused(t288, t265 * t288, -(k(0.0002) - t292));
-            let t294 = T::fused(t277, t289, t290 * t293);
-            let t295 = t264 + (k(0.2) - t263);
-            let t296 = t265 * t295;
-            let t297 = T::fused(t296, t256, -(t253 + t254));
-            let t298 = k(2.0) * (k(0.5) - T::fused(link_2_e1, link_2_e1, t271));
-            let t299 = k(2.0) * (t269 + t268);
-            let t300 = link_2_e0 * link_2_e2;
-            let t301 = link_2_e1 * link_2_e3;
-            let t302 = t301 - t300;
-            let t303 = k(2.0) * t302;
-            let t304 = T::fused(t303, t176, T::fused(t298, t169, t299 * t172));
-            let t305 = t253 + t255;
-            let t306 = t265 * t305;
-            let t307 = T::fused(t306, t256, -(k(0.2) - t240 + t241));
-            let t308 = T::fused(t303, t203, -T::fused(t298, t198, t299 * t199));
-            let t309 = T::fused(t281, t106, -T::fused(-t279, t101, t278 * t102));
-            let t310 = T::fused(t283, t218, -T::fused(-t309, t197, t282 * t207));
-            let t311 = T::fused(t283, t223, T::fused(t309, t221, t282 * t222));
-            let t312 = T::fused(t283, t236, T::fused(t309, t229, t282 * t232));
-            let t313 = k(0.1) * t312;
-            let t314 = T::fused(t283, t249, T::fused(t309, t247, t282 * t248));
-            let t315 = k(0.1) * t314;
-            let t316 = t315 + (t315 - T::fused(-t208, t310, t219 * t311));
-            let t317 = t265 * t316;
-            let t318 = T::fused(
-                t317,
-                t256,
-                t313 + (t313 + T::fused(-t177, t310, t190 * t311)),
+            let t295 = T::fused(t290, t266 * t290, -(k(0.0002) - t294));
+            let t296 = T::fused(t280, t291, t292 * t295);
+            let t297 = T::fused(-link_2_e1, t271, t275);
+            let t298 = t272 + t270;
+            let t299 = link_2_e2 * t269;
+            let t300 = link_2_e3 * t271;
+            let t301 = t300 - t299;
+            let t302 = T::fused(t301, t178, T::fused(t297, t172, t298 * t175));
+            let t303 = t265 + (k(0.2) - t264);
+            let t304 = t266 * t303;
+            let t305 = T::fused(t304, t257, -(t254 + t255));
+            let t306 = T::fused(t301, t201, -T::fused(t297, t196, t298 * t198));
+            let t307 = t254 + t256;
+            let t308 = t266 * t307;
+            let t309 = T::fused(t308, t257, -(k(0.2) - t241 + t242));
+            let t310 = T::fused(t283, t104, -T::fused(-t281, t100, t282 * t101));
+            let t311 = T::fused(t219, t285, -T::fused(-t205, t310, t209 * t284));
+            let t312 = T::fused(t224, t285, T::fused(t222, t310, t223 * t284));
+            let t313 = T::fused(t285, t237, T::fused(t310, t230, t284 * t233));
+            let t314 = k(0.1) * t313;
+            let t315 = T::fused(t250, t285, T::fused(t248, t310, t249 * t284));
+            let t316 = k(0.1) * t315;
+            let t317 = t316 + (t316 - T::fused(-t206, t311, t220 * t312));
+            let t318 = t266 * t317;
+            let t319 = T::fused(
+                t318,
+                t257,
+                t314 + (t314 + T::fused(-t179, t311, t191 * t312)),
             );
-            let t319 = T::fused(t303, t281, -T::fused(-t298, t279, t299 * t278));
-            let t320 = T::fused(t319, t318, T::fused(-t304, t297, t308 * t307));
-            let t321 = T::fused(-t296, t288, t286);
-            let t322 = T::fused(t306, t288, t284);
-            let t323 = T::fused(t317, t288, T::fused(-t282, t310, t283 * t311));
-            let t324 = T::fused(t319, t323, T::fused(t304, t321, t308 * t322));
-            let t325 = T::fused(t277, t320, t290 * t324);
-            let t326 = T::fused(t295, t296, t260);
-            let t327 = T::fused(-t305, t296, t250);
-            let t328 = T::fused(-t316, t296, t314);
-            let t329 = T::fused(t319, t328, T::fused(t304, t326, t308 * t327));
-            let t330 = T::fused(t305, t306, t237);
-            let t331 = T::fused(t316, t306, t312);
-            let t332 = T::fused(t319, t331, T::fused(t304, t327, t308 * t330));
-            let t333 = T::fused(
-                t309,
-                T::fused(t283, t228, T::fused(t309, t226, t282 * t227)),
-                t282 * T::fused(t283, t231, T::fused(t309, t227, t282 * t230)),
-            );
+            let t320 = T::fused(t301, t283, -T::fused(-t297, t281, t298 * t282));
+            let t321 = T::fused(t320, t319, T::fused(-t305, t302, t309 * t306));
+            let t322 = T::fused(-t304, t290, t288);
+            let t323 = T::fused(t308, t290, t286);
+            let t324 = T::fused(t318, t290, T::fused(-t284, t311, t285 * t312));
+            let t325 = T::fused(t324, t320, T::fused(t322, t302, t323 * t306));
+            let t326 = T::fused(t280, t321, t292 * t325);
+            let t327 = T::fused(t303, t304, t261);
+            let t328 = T::fused(-t307, t304, t251);
+            let t329 = T::fused(-t317, t304, t315);
+            let t330 = T::fused(t329, t320, T::fused(t327, t302, t328 * t306));
+            let t331 = T::fused(t307, t308, t238);
+            let t332 = T::fused(t317, t308, t313);
+            let t333 = T::fused(t332, t320, T::fused(t328, t302, t331 * t306));
             let t334 = T::fused(
-                t283,
-                T::fused(t283, t235, T::fused(t309, t228, t282 * t231)),
-                t333,
+                t310,
+                T::fused(t229, t285, T::fused(t227, t310, t228 * t284)),
+                t284 * T::fused(t232, t285, T::fused(t228, t310, t231 * t284)),
             );
-            let t335 = T::fused(t316, t317, t334);
-            let t336 = T::fused(t319, t335, T::fused(t304, t328, t308 * t331));
-            let t337 = T::fused(t319, t336, T::fused(t304, t329, t308 * t332));
-            let t338 = k(0.01) * t337;
-            let t339 = T::fused(-k(0.2), t325, t338)
-                - (k(0.02) - T::fused(t277, t291, t290 * t294));
-            let t340 = k(0.1) * t337;
-            let t341 = k(0.2) - t340 + t325;
-            let t342 = T::fused(t304, t267, t319 * t289);
-            let t343 = T::fused(t304, t289, t319 * t293);
-            let t344 = T::fused(t276, t203, T::fused(t272, t199, t270 * t198));
-            let t345 = T::fused(t290, t318, T::fused(-t277, t297, t344 * t307));
-            let t346 = T::fused(t290, t323, T::fused(t277, t321, t344 * t322));
-            let t347 = T::fused(t277, t345, t290 * t346);
-            let t348 = T::fused(t304, t320, t319 * t324);
-            let t349 = T::fused(t290, t336, T::fused(t277, t329, t344 * t332));
-            let t350 = k(0.01) * t349;
-            let t351 = T::fused(k(0.1), t348 - t347, t350)
-                - T::fused(t277, t342, t290 * t343);
-            let t352 = k(0.1) * t349;
-            let t353 = t352 - t347;
-            let t354 = t352 + t348;
-            let t355 = T::fused(k(0.1), t354 + t353, t350) + t351;
-            let t356 = T::fused(t304, t345, t319 * t346);
-            let t357 = T::fused(t290, t328, T::fused(t277, t326, t344 * t327));
-            let t358 = T::fused(t290, t331, T::fused(t277, t327, t344 * t330));
-            let t359 = T::fused(t335, t290, T::fused(t328, t277, t344 * t331));
-            let t360 = T::fused(t290, t359, T::fused(t277, t357, t344 * t358));
-            let t361 = k(0.01) * t360;
-            let t362 = T::fused(k(0.2), t356, t361)
-                - (k(0.02) - T::fused(t304, t342, t319 * t343));
-            let t363 = k(0.1) * t360;
-            let t364 = k(0.2) - t363 - t356;
-            let t365 = k(1.0)
-                / (T::fused(k(0.2), t364, -t361) + (k(0.025) + (k(0.0017) - t362)));
-            let t366 = t365 * t355;
-            let t367 = T::fused(
-                t355,
-                t366,
-                -(T::fused(k(0.2), t341, -t338) + (k(0.025) + (k(0.0016) - t339))),
+            let t335 = T::fused(
+                t285,
+                T::fused(t236, t285, T::fused(t229, t310, t232 * t284)),
+                t334,
             );
-            let t368 = link_1_e0 * link_1_e0;
-            let t369 = k(0.5) - T::fused(link_1_e2, link_1_e2, t368);
-            let t370 = k(2.0) * t369;
-            let t371 = link_1_e0 * link_1_e3;
-            let t372 = link_1_e1 * link_1_e2;
-            let t373 = k(2.0) * (t372 - t371);
-            let t374 = link_1_e0 * link_1_e1;
-            let t375 = link_1_e2 * link_1_e3;
-            let t376 = k(2.0) * (t375 + t374);
-            let t377 = T::fused(t376, t276, T::fused(t370, t272, t373 * t270));
-            let t378 = k(2.0) * (t301 + t300);
-            let t379 = k(2.0) * (t274 - t273);
-            let t380 = k(0.5) - T::fused(link_2_e3, link_2_e3, t271);
-            let t381 = k(2.0) * t380;
-            let t382 = T::fused(t381, t176, -T::fused(-t378, t169, t379 * t172));
-            let t383 = T::fused(t381, t281, T::fused(t379, t278, t378 * t279));
-            let t384 = T::fused(t382, t320, t383 * t324);
-            let t385 = k(0.1) * t384;
-            let t386 = T::fused(t382, t345, t383 * t346);
+            let t336 = T::fused(t317, t318, t335);
+            let t337 = T::fused(t336, t320, T::fused(t329, t302, t332 * t306));
+            let t338 = T::fused(t320, t337, T::fused(t302, t330, t306 * t333));
+            let t339 = k(0.01) * t338;
+            let t340 = T::fused(-k(0.2), t326, t339)
+                - (k(0.02) - T::fused(t280, t293, t292 * t296));
+            let t341 = k(0.1) * t338;
+            let t342 = k(0.2) - t341 + t326;
+            let t343 = T::fused(t302, t268, t320 * t291);
+            let t344 = T::fused(t302, t291, t320 * t295);
+            let t345 = T::fused(t279, t201, T::fused(t273, t196, t276 * t198));
+            let t346 = T::fused(t292, t319, T::fused(-t280, t305, t345 * t309));
+            let t347 = T::fused(t292, t324, T::fused(t280, t322, t345 * t323));
+            let t348 = T::fused(t280, t346, t292 * t347);
+            let t349 = T::fused(t302, t321, t320 * t325);
+            let t350 = T::fused(t292, t337, T::fused(t280, t330, t345 * t333));
+            let t351 = k(0.01) * t350;
+            let t352 = T::fused(k(0.1), t349 - t348, t351)
+                - T::fused(t280, t343, t292 * t344);
+            let t353 = k(0.1) * t350;
+            let t354 = t353 - t348;
+            let t355 = t353 + t349;
+            let t356 = T::fused(k(0.1), t355 + t354, t351) + t352;
+            let t357 = T::fused(t346, t302, t347 * t320);
+            let t358 = T::fused(t292, t329, T::fused(t280, t327, t345 * t328));
+            let t359 = T::fused(t292, t332, T::fused(t280, t328, t345 * t331));
+            let t360 = T::fused(t336, t292, T::fused(t329, t280, t332 * t345));
+            let t361 = T::fused(t292, t360, T::fused(t280, t358, t345 * t359));
+            let t362 = k(0.01) * t361;
+            let t363 = T::fused(k(0.2), t357, t362)
+                - (k(0.02) - T::fused(t302, t343, t320 * t344));
+            let t364 = k(0.1) * t361;
+            let t365 = k(0.2) - t364 - t357;
+            let t366 = k(1.0)
+                / (T::fused(k(0.2), t365, -t362) + (k(0.025) + (k(0.0017) - t363)));
+            let t367 = t366 * t356;
+            let t368 = T::fused(
+                t356,
+                t367,
+                -(T::fused(k(0.2), t342, -t339) + (k(0.025) + (k(0.0016) - t340))),
+            );
+            let t369 = k(2.0) * link_1_e0;
+            let t370 = link_1_e3 * t369;
+            let t371 = k(2.0) * link_1_e1;
+            let t372 = link_1_e2 * t371;
+            let t373 = t372 - t370;
+            let t374 = k(2.0) * link_1_e2;
+            let t375 = T::fused(-link_1_e0, t369, k(1.0));
+            let t376 = T::fused(-link_1_e2, t374, t375);
+            let t377 = link_1_e1 * t369;
+            let t378 = link_1_e3 * t374;
+            let t379 = t378 + t377;
+            let t380 = T::fused(t379, t279, T::fused(t373, t273, t376 * t276));
+            let t381 = t300 + t299;
+            let t382 = t278 - t277;
+            let t383 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t275);
+            let t384 = T::fused(t383, t178, -T::fused(-t381, t172, t382 * t175));
+            let t385 = T::fused(t383, t283, T::fused(t381, t281, t382 * t282));
+            let t386 = T::fused(t384, t321, t385 * t325);
             let t387 = k(0.1) * t386;
-            let t388 = t387 + (t387 + T::fused(t382, t342, t383 * t343));
-            let t389 = T::fused(
-                t388,
-                t366,
-                t385 + (t385 - T::fused(t382, t291, t383 * t294)),
+            let t388 = T::fused(t346, t384, t347 * t385);
+            let t389 = k(0.1) * t388;
+            let t390 = t389 + (t389 + T::fused(t343, t384, t344 * t385));
+            let t391 = T::fused(
+                t390,
+                t367,
+                t387 + (t387 - T::fused(t384, t293, t385 * t296)),
             );
-            let t390 = T::fused(t376, t381, -T::fused(-t370, t379, t373 * t378));
-            let t391 = T::fused(-t377, t367, t390 * t389);
-            let t392 = T::fused(
-                t382,
-                T::fused(t382, t267, t383 * t289),
-                t383 * T::fused(t382, t289, t383 * t293),
+            let t392 = T::fused(t379, t383, T::fused(-t373, t381, t376 * t382));
+            let t393 = T::fused(-t380, t368, t392 * t391);
+            let t394 = T::fused(
+                t384,
+                T::fused(t268, t384, t291 * t385),
+                t385 * T::fused(t291, t384, t295 * t385),
             );
-            let t393 = T::fused(t388, t365 * t388, -(k(0.0002) - t392));
-            let t394 = T::fused(-t377, t389, t390 * t393);
-            let t395 = t352 + t354;
-            let t396 = t365 * t395;
-            let t397 = T::fused(t396, t355, -(k(0.25) - t340 + t341));
-            let t398 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t368));
-            let t399 = k(2.0) * (t372 + t371);
+            let t395 = T::fused(t390, t366 * t390, -(k(0.0002) - t394));
+            let t396 = T::fused(-t391, t380, t395 * t392);
+            let t397 = t353 + t355;
+            let t398 = t366 * t397;
+            let t399 = T::fused(t398, t356, -(k(0.25) - t341 + t342));
             (
+                t201,
                 t202,
                 t203,
-                t204,
                 t205,
+                t206,
                 t207,
-                t208,
                 t209,
-                t216,
-                t218,
+                t210,
+                t217,
                 t219,
-                t221,
+                t220,
                 t222,
                 t223,
-                t226,
+                t224,
                 t227,
                 t228,
-                t230,
+                t229,
                 t231,
-                t235,
-                t242,
-                t256,
-                t265,
-                t267,
-                t270,
-                t272,
-                t275,
+                t232,
+                t236,
+                t243,
+                t257,
+                t266,
+                t268,
+                t273,
                 t276,
-                t277,
-                t278,
                 t279,
                 t280,
                 t281,
                 t282,
                 t283,
-                t288,
-                t289,
+                t284,
+                t285,
                 t290,
-                t293,
+                t291,
+                t292,
                 t295,
                 t297,
                 t298,
-                t299,
+                t301,
                 t302,
                 t303,
-                t304,
                 t305,
+                t306,
                 t307,
-                t308,
                 t309,
-                t316,
-                t318,
+                t310,
+                t317,
                 t319,
-                t321,
+                t320,
                 t322,
                 t323,
-                t326,
+                t324,
                 t327,
                 t328,
                 t329,
                 t330,
                 t331,
                 t332,
-                t335,
+                t333,
                 t336,
                 t337,
-                t344,
-                t349,
-                t352,
+                t338,
+                t345,
+                t350,
                 t353,
-                t355,
-                t357,
+                t354,
+                t356,
                 t358,
                 t359,
                 t360,
-                t363,
+                t361,
                 t364,
                 t365,
-                t367,
+                t366,
                 t368,
                 t369,
                 t370,
+                t371,
+                t372,
                 t373,
-                t374,
                 t375,
                 t376,
                 t377,
@@ -5564,13 +5750,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t382,
                 t383,
                 t384,
+                t385,
                 t386,
                 t388,
-                t389,
                 t390,
                 t391,
+                t392,
                 t393,
-                t394,
                 t395,
                 t396,
                 t397,
@@ -5579,72 +5765,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             )
         };
         let (
-            t402,
-            t403,
+            t400,
+            t401,
             t404,
             t405,
-            t407,
+            t406,
             t408,
             t409,
-            t416,
-            t418,
+            t410,
+            t417,
             t419,
             t420,
             t421,
             t422,
             t423,
             t424,
-            t426,
+            t425,
             t427,
             t428,
             t429,
             t430,
             t431,
             t432,
-            t435,
+            t433,
             t436,
-            t438,
+            t437,
             t439,
             t440,
             t441,
-            t449,
-            t451,
-            t458,
-            t461,
-            t463,
-            t465,
-            t473,
-            t480,
+            t442,
+            t450,
+            t452,
+            t459,
+            t462,
+            t464,
+            t466,
+            t474,
             t481,
             t482,
-            t490,
+            t483,
             t491,
-            t510,
-            t517,
+            t492,
+            t511,
             t518,
             t519,
-            t527,
+            t520,
             t528,
-            t547,
-            t553,
+            t529,
+            t548,
             t554,
             t555,
             t556,
-            t564,
+            t557,
             t565,
-            t567,
-            t570,
-            t572,
-            t574,
-            t577,
-            t579,
+            t566,
+            t568,
+            t571,
+            t573,
+            t575,
+            t578,
             t580,
-            t583,
+            t581,
             t584,
             t585,
-            t587,
+            t586,
             t588,
-            t590,
+            t589,
             t591,
             t592,
             t593,
@@ -5655,463 +5841,463 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t598,
             t599,
         ) = {
-            let t400 = link_1_e0 * link_1_e2;
-            let t401 = link_1_e1 * link_1_e3;
-            let t402 = t401 - t400;
-            let t403 = k(2.0) * t402;
-            let t404 = T::fused(t403, t303, T::fused(t398, t298, t399 * t299));
-            let t405 = t364 + (k(0.25) - t363);
-            let t406 = t365 * t405;
-            let t407 = T::fused(t406, t355, -(t352 + t353));
-            let t408 = T::fused(t403, t276, -T::fused(t398, t270, t399 * t272));
-            let t409 = T::fused(t381, t203, -T::fused(-t379, t199, t378 * t198));
-            let t410 = T::fused(t383, t318, T::fused(-t382, t297, t409 * t307));
-            let t411 = T::fused(t383, t323, T::fused(t382, t321, t409 * t322));
-            let t412 = T::fused(t383, t336, T::fused(t382, t329, t409 * t332));
-            let t413 = k(0.1) * t412;
-            let t414 = T::fused(t383, t359, T::fused(t382, t357, t409 * t358));
-            let t415 = k(0.1) * t414;
-            let t416 = t415 + (t415 + T::fused(t304, t410, t319 * t411));
-            let t417 = t365 * t416;
-            let t418 = T::fused(
-                t417,
-                t355,
-                t413 + (t413 - T::fused(t277, t410, t290 * t411)),
+            let t400 = T::fused(-link_1_e1, t371, t375);
+            let t401 = t372 + t370;
+            let t402 = link_1_e2 * t369;
+            let t403 = link_1_e3 * t371;
+            let t404 = t403 - t402;
+            let t405 = T::fused(t404, t301, T::fused(t400, t297, t401 * t298));
+            let t406 = t365 + (k(0.25) - t364);
+            let t407 = t366 * t406;
+            let t408 = T::fused(t407, t356, -(t353 + t354));
+            let t409 = T::fused(t404, t279, -T::fused(t400, t273, t401 * t276));
+            let t410 = T::fused(t383, t201, T::fused(-t381, t196, t382 * t198));
+            let t411 = T::fused(t319, t385, T::fused(-t305, t384, t309 * t410));
+            let t412 = T::fused(t324, t385, T::fused(t322, t384, t323 * t410));
+            let t413 = T::fused(t385, t337, T::fused(t384, t330, t410 * t333));
+            let t414 = k(0.1) * t413;
+            let t415 = T::fused(t360, t385, T::fused(t358, t384, t359 * t410));
+            let t416 = k(0.1) * t415;
+            let t417 = t416 + (t416 + T::fused(t302, t411, t320 * t412));
+            let t418 = t366 * t417;
+            let t419 = T::fused(
+                t418,
+                t356,
+                t414 + (t414 - T::fused(t280, t411, t292 * t412)),
             );
-            let t419 = T::fused(t403, t381, -T::fused(-t398, t378, t399 * t379));
-            let t420 = T::fused(t419, t418, -T::fused(-t404, t397, t408 * t407));
-            let t421 = T::fused(t388, t396, t384);
-            let t422 = T::fused(-t388, t406, t386);
-            let t423 = T::fused(t417, t388, T::fused(t382, t410, t383 * t411));
-            let t424 = T::fused(t423, t419, T::fused(t404, t421, t422 * t408));
-            let t425 = T::fused(-t377, t420, t390 * t424);
-            let t426 = T::fused(t395, t396, t337);
-            let t427 = T::fused(-t405, t396, t349);
-            let t428 = T::fused(t416, t396, t412);
-            let t429 = T::fused(t419, t428, T::fused(t404, t426, t408 * t427));
-            let t430 = T::fused(t405, t406, t360);
-            let t431 = T::fused(-t416, t406, t414);
-            let t432 = T::fused(t419, t431, T::fused(t404, t427, t408 * t430));
-            let t433 = T::fused(
-                t382,
-                T::fused(t383, t328, T::fused(t382, t326, t409 * t327)),
-                t409 * T::fused(t383, t331, T::fused(t382, t327, t409 * t330)),
-            );
+            let t420 = T::fused(t404, t383, -T::fused(-t400, t381, t401 * t382));
+            let t421 = T::fused(t420, t419, -T::fused(-t405, t399, t409 * t408));
+            let t422 = T::fused(t390, t398, t386);
+            let t423 = T::fused(-t390, t407, t388);
+            let t424 = T::fused(t418, t390, T::fused(t384, t411, t385 * t412));
+            let t425 = T::fused(t424, t420, T::fused(t422, t405, t423 * t409));
+            let t426 = T::fused(-t421, t380, t425 * t392);
+            let t427 = T::fused(t397, t398, t338);
+            let t428 = T::fused(-t406, t398, t350);
+            let t429 = T::fused(t417, t398, t413);
+            let t430 = T::fused(t420, t429, T::fused(t405, t427, t409 * t428));
+            let t431 = T::fused(t406, t407, t361);
+            let t432 = T::fused(-t417, t407, t415);
+            let t433 = T::fused(t420, t432, T::fused(t405, t428, t409 * t431));
             let t434 = T::fused(
-                t383,
-                T::fused(t383, t335, T::fused(t382, t328, t409 * t331)),
-                t433,
+                t384,
+                T::fused(t329, t385, T::fused(t327, t384, t328 * t410)),
+                t410 * T::fused(t332, t385, T::fused(t328, t384, t331 * t410)),
             );
-            let t435 = T::fused(t416, t417, t434);
-            let t436 = T::fused(t419, t435, T::fused(t404, t428, t408 * t431));
-            let t437 = T::fused(t419, t436, T::fused(t404, t429, t408 * t432));
-            let t438 = k(0.01) * t437;
-            let t439 = T::fused(-k(0.2), t425, t438)
-                - (k(0.025) - T::fused(-t377, t391, t390 * t394));
-            let t440 = k(0.1) * t437;
-            let t441 = k(0.25) - t440 + t425;
-            let t442 = T::fused(
+            let t435 = T::fused(
+                t385,
+                T::fused(t336, t385, T::fused(t329, t384, t332 * t410)),
+                t434,
+            );
+            let t436 = T::fused(t417, t418, t435);
+            let t437 = T::fused(t420, t436, T::fused(t405, t429, t409 * t432));
+            let t438 = T::fused(t420, t437, T::fused(t405, t430, t409 * t433));
+            let t439 = k(0.01) * t438;
+            let t440 = T::fused(-k(0.2), t426, t439)
+                - (k(0.025) - T::fused(-t380, t393, t392 * t396));
+            let t441 = k(0.1) * t438;
+            let t442 = k(0.25) - t441 + t426;
+            let t443 = T::fused(
                 link_5_wz,
-                t112,
-                -T::fused(link_5_wx, t49, link_5_wy * t38),
+                t113,
+                -T::fused(link_5_wx, t50, link_5_wy * t39),
             );
-            let t443 = link_6_wx + t442;
-            let t444 = T::fused(
+            let t444 = link_6_wx + t443;
+            let t445 = T::fused(
                 link_5_wz,
-                t86,
-                -T::fused(link_5_wx, t18, link_5_wy * t41),
+                t88,
+                -T::fused(link_5_wx, t21, link_5_wy * t42),
             );
-            let t445 = link_6_wy + t444;
-            let t446 = T::fused(
+            let t446 = link_6_wy + t445;
+            let t447 = T::fused(
                 link_5_wz,
-                t87,
-                -T::fused(link_5_wx, t26, link_5_wy * t48),
+                t89,
+                -T::fused(link_5_wx, t28, link_5_wy * t49),
             );
-            let t447 = link_6_wz - t446;
-            let t448 = T::fused(t447, t447, t445 * t445) / t49;
-            let t449 = T::fused(-link_6_wy, t442, link_6_wx * t444)
-                - T::fused(t445, t443, t18 * t448);
-            let t450 = T::fused(-k(0.0002), t449, k(0.0001) * (link_6_wx * link_6_wy));
-            let t451 = T::fused(link_6_wx, t446, link_6_wz * t442)
-                - T::fused(-t447, t443, t26 * t448);
-            let t452 = k(0.1) * link_5_wx;
-            let t453 = link_5_wz * t452;
-            let t454 = k(0.1) * link_5_wy;
-            let t455 = link_5_wz * t454;
-            let t456 = T::fused(link_5_wy, t454, link_5_wx * t452);
-            let t457 = k(0.1) * link_6_wx;
-            let t458 = T::fused(
+            let t448 = link_6_wz - t447;
+            let t449 = T::fused(t448, t448, t446 * t446) / t50;
+            let t450 = T::fused(-link_6_wy, t443, link_6_wx * t445)
+                - T::fused(t446, t444, t21 * t449);
+            let t451 = T::fused(-k(0.0002), t450, k(0.0001) * (link_6_wx * link_6_wy));
+            let t452 = T::fused(link_6_wx, t447, link_6_wz * t443)
+                - T::fused(-t448, t444, t28 * t449);
+            let t453 = k(0.1) * link_5_wx;
+            let t454 = link_5_wz * t453;
+            let t455 = k(0.1) * link_5_wy;
+            let t456 = link_5_wz * t455;
+            let t457 = T::fused(link_5_wy, t455, link_5_wx * t453);
+            let t458 = k(0.1) * link_6_wx;
+            let t459 = T::fused(
                 link_6_wz,
-                t457,
-                T::fused(t456, t112, T::fused(t453, t49, t455 * t38)),
+                t458,
+                T::fused(t457, t113, T::fused(t454, t50, t456 * t39)),
             );
-            let t459 = T::fused(k(0.0066), t451, k(0.05) * t458)
-                + T::fused(-k(0.981), t32, k(0.0015) * (link_6_wx * link_6_wz));
-            let t460 = T::fused(-k(9.81), t32, T::fused(k(0.5), t458, k(0.05) * t451));
-            let t461 = T::fused(-k(0.981), t12, k(0.0014) * (link_6_wy * link_6_wz));
-            let t462 = k(0.1) * link_6_wy;
-            let t463 = T::fused(
-                link_6_wz,
-                t462,
-                T::fused(t456, t86, T::fused(t453, t18, t455 * t41)),
-            );
+            let t460 = T::fused(k(0.0066), t452, k(0.05) * t459)
+                + T::fused(-k(0.4905), t35, k(0.0015) * (link_6_wx * link_6_wz));
+            let t461 = T::fused(-k(4.905), t35, T::fused(k(0.5), t459, k(0.05) * t452));
+            let t462 = T::fused(-k(0.4905), t17, k(0.0014) * (link_6_wy * link_6_wz));
+            let t463 = k(0.1) * link_6_wy;
             let t464 = T::fused(
-                k(0.12686567164179105),
+                link_6_wz,
                 t463,
-                -T::fused(k(9.81), t12, k(7.462686567164179) * t461),
+                T::fused(t457, t88, T::fused(t454, t21, t456 * t42)),
             );
-            let t465 = T::fused(link_6_wy, t462, link_6_wx * t457)
-                + T::fused(t456, t87, T::fused(t453, t26, t455 * t48));
-            let t466 = T::fused(-k(9.81), t24, k(0.5) * t465);
-            let t467 = T::fused(t48, t466, T::fused(t38, t460, t41 * t464));
-            let t468 = T::fused(
+            let t465 = T::fused(
+                k(0.12686567164179105),
+                t464,
+                -T::fused(k(4.905), t17, k(7.462686567164179) * t462),
+            );
+            let t466 = T::fused(link_6_wy, t463, link_6_wx * t458)
+                + T::fused(t457, t89, T::fused(t454, t28, t456 * t49));
+            let t467 = T::fused(-k(4.905), t27, k(0.5) * t466);
+            let t468 = T::fused(t49, t467, T::fused(t39, t461, t42 * t465));
+            let t469 = T::fused(
                 k(0.0014),
                 link_5_wy * link_5_wz,
-                T::fused(k(0.1), t467, -T::fused(t26, t450, t18 * t459)),
+                T::fused(k(0.1), t468, -T::fused(t28, t451, t21 * t460)),
             );
-            let t469 = T::fused(-k(9.81), t36, t467);
-            let t470 = T::fused(t26, t466, T::fused(t49, t460, t18 * t464));
-            let t471 = T::fused(
+            let t470 = T::fused(-k(4.905), t38, t468);
+            let t471 = T::fused(t28, t467, T::fused(t50, t461, t21 * t465));
+            let t472 = T::fused(
                 k(0.0015),
                 link_5_wx * link_5_wz,
-                T::fused(k(0.1), t470, T::fused(t48, t450, t41 * t459)),
+                T::fused(k(0.1), t471, T::fused(t49, t451, t42 * t460)),
             );
-            let t472 = T::fused(-k(9.81), t16, t470);
-            let t473 = T::fused(k(0.1), t472, t471);
-            let t474 = t69 * t473;
-            let t475 = k(0.1) * link_4_wx;
-            let t476 = link_4_wz * t475;
-            let t477 = k(0.1) * link_4_wy;
-            let t478 = link_4_wz * t477;
-            let t479 = T::fused(link_4_wy, t477, link_4_wx * t475);
-            let t480 = t453 + T::fused(t479, t182, T::fused(t476, t107, t478 * t81));
-            let t481 = t455 + T::fused(t479, t209, T::fused(t476, t111, t478 * t144));
-            let t482 = t456 + T::fused(t479, t183, T::fused(t476, t121, t478 * t94));
-            let t483 = T::fused(
+            let t473 = T::fused(-k(4.905), t20, t471);
+            let t474 = T::fused(k(0.1), t473, t472);
+            let t475 = t70 * t474;
+            let t476 = k(0.1) * link_4_wx;
+            let t477 = link_4_wz * t476;
+            let t478 = k(0.1) * link_4_wy;
+            let t479 = link_4_wz * t478;
+            let t480 = T::fused(link_4_wy, t478, link_4_wx * t476);
+            let t481 = t454 + T::fused(t480, t183, T::fused(t477, t105, t479 * t84));
+            let t482 = t456 + T::fused(t480, t210, T::fused(t477, t109, t479 * t145));
+            let t483 = t457 + T::fused(t480, t184, T::fused(t477, t122, t479 * t96));
+            let t484 = T::fused(
                 link_4_wz,
-                t209,
-                -T::fused(link_4_wx, t111, link_4_wy * t144),
+                t210,
+                -T::fused(link_4_wx, t109, link_4_wy * t145),
             );
-            let t484 = link_5_wy + t483;
-            let t485 = T::fused(
+            let t485 = link_5_wy + t484;
+            let t486 = T::fused(
+                link_4_wz,
+                t184,
+                -T::fused(link_4_wx, t122, link_4_wy * t96),
+            );
+            let t487 = link_5_wz - t486;
+            let t488 = T::fused(
                 link_4_wz,
                 t183,
-                -T::fused(link_4_wx, t121, link_4_wy * t94),
+                -T::fused(link_4_wx, t105, link_4_wy * t84),
             );
-            let t486 = link_5_wz - t485;
-            let t487 = T::fused(
-                link_4_wz,
-                t182,
-                -T::fused(link_4_wx, t107, link_4_wy * t81),
-            );
-            let t488 = link_5_wx + t487;
-            let t489 = T::fused(t486, t486, t488 * t488) / t144;
-            let t490 = T::fused(link_5_wz, t483, link_5_wy * t485)
-                - T::fused(-t486, t484, t94 * t489);
-            let t491 = T::fused(-link_5_wy, t487, link_5_wx * t483)
-                + T::fused(t488, t484, t81 * t489);
-            let t492 = T::fused(t71, t490, t93 * t491)
-                + T::fused(t120, t482, T::fused(-t100, t480, t110 * t481));
-            let t493 = t492 - T::fused(t60, t474, T::fused(k(0.1), t469, t468));
-            let t494 = T::fused(
-                t92,
-                t474,
+            let t489 = link_5_wx + t488;
+            let t490 = T::fused(t487, t487, t489 * t489) / t145;
+            let t491 = T::fused(link_5_wz, t484, link_5_wy * t486)
+                - T::fused(-t487, t485, t96 * t490);
+            let t492 = T::fused(-link_5_wy, t488, link_5_wx * t484)
+                + T::fused(t489, t485, t84 * t490);
+            let t493 = T::fused(t72, t491, t95 * t492)
+                + T::fused(t121, t483, T::fused(-t108, t481, t112 * t482));
+            let t494 = t493 - T::fused(t61, t475, T::fused(k(0.1), t470, t469));
+            let t495 = T::fused(
+                t94,
+                t475,
                 -T::fused(
                     k(0.0001),
                     link_5_wx * link_5_wy,
-                    T::fused(t87, t450, t86 * t459),
+                    T::fused(t89, t451, t88 * t460),
                 ),
             );
-            let t495 = T::fused(t93, t490, t96 * t491)
-                + T::fused(t125, t482, T::fused(t123, t480, t124 * t481));
-            let t496 = t495 - t494;
-            let t497 = T::fused(-t100, t490, t123 * t491)
-                - (t480 - T::fused(t130, t482, T::fused(t128, t480, t129 * t481)));
-            let t498 = t497 - T::fused(-t98, t474, t472);
-            let t499 = T::fused(t110, t490, t124 * t491)
-                - (t481 - T::fused(t133, t482, T::fused(t129, t480, t132 * t481)));
-            let t500 = t499 - T::fused(t108, t474, t469);
-            let t501 = T::fused(
-                -k(9.81),
-                t84,
-                T::fused(t87, t466, T::fused(t112, t460, t86 * t464)),
+            let t496 = T::fused(t95, t491, t98 * t492)
+                + T::fused(t126, t483, T::fused(t124, t481, t125 * t482));
+            let t497 = t496 - t495;
+            let t498 = T::fused(-t108, t491, t124 * t492)
+                - (t481 - T::fused(t131, t483, T::fused(t129, t481, t130 * t482)));
+            let t499 = t498 - T::fused(-t106, t475, t473);
+            let t500 = T::fused(t112, t491, t125 * t492)
+                - (t482 - T::fused(t134, t483, T::fused(t130, t481, t133 * t482)));
+            let t501 = t500 - T::fused(t110, t475, t470);
+            let t502 = T::fused(
+                -k(4.905),
+                t87,
+                T::fused(t89, t467, T::fused(t113, t461, t88 * t465)),
             );
-            let t502 = T::fused(t120, t490, t125 * t491)
-                - (t482 - T::fused(t135, t482, T::fused(t130, t480, t133 * t481)));
-            let t503 = t502 - T::fused(t118, t474, t501);
-            let t504 = T::fused(t121, t503, T::fused(t107, t498, t111 * t500));
-            let t505 = T::fused(
+            let t503 = T::fused(t121, t491, t126 * t492)
+                - (t483 - T::fused(t136, t483, T::fused(t131, t481, t134 * t482)));
+            let t504 = t503 - T::fused(t119, t475, t502);
+            let t505 = T::fused(t122, t504, T::fused(t105, t499, t109 * t501));
+            let t506 = T::fused(
                 k(0.0015),
                 link_4_wx * link_4_wz,
-                -T::fused(k(0.1), t504, -T::fused(t81, t493, t94 * t496)),
+                -T::fused(k(0.1), t505, -T::fused(t84, t494, t96 * t497)),
             );
-            let t506 = T::fused(k(9.81), t105, t504);
-            let t507 = T::fused(t94, t503, T::fused(t81, t498, t144 * t500));
-            let t508 = T::fused(
+            let t507 = T::fused(k(4.905), t104, t505);
+            let t508 = T::fused(t96, t504, T::fused(t84, t499, t145 * t501));
+            let t509 = T::fused(
                 k(0.0014),
                 link_4_wy * link_4_wz,
-                -T::fused(k(0.1), t507, T::fused(t107, t493, t121 * t496)),
+                -T::fused(k(0.1), t508, T::fused(t105, t494, t122 * t497)),
             );
-            let t509 = T::fused(k(9.81), t79, t507);
-            let t510 = T::fused(k(0.1), t509, -t508);
-            let t511 = t165 * t510;
-            let t512 = k(0.1) * link_3_wx;
-            let t513 = link_3_wz * t512;
-            let t514 = k(0.1) * link_3_wy;
-            let t515 = link_3_wz * t514;
-            let t516 = T::fused(link_3_wy, t514, link_3_wx * t512);
-            let t517 = t476 + T::fused(t516, t309, T::fused(t513, t242, t515 * t204));
-            let t518 = t478 + T::fused(t516, t282, T::fused(t513, t177, t515 * t208));
-            let t519 = t479 + T::fused(t516, t283, T::fused(t513, t190, t515 * t219));
-            let t520 = T::fused(
+            let t510 = T::fused(k(4.905), t83, t508);
+            let t511 = T::fused(k(0.1), t510, -t509);
+            let t512 = t166 * t511;
+            let t513 = k(0.1) * link_3_wx;
+            let t514 = link_3_wz * t513;
+            let t515 = k(0.1) * link_3_wy;
+            let t516 = link_3_wz * t515;
+            let t517 = T::fused(link_3_wy, t515, link_3_wx * t513);
+            let t518 = t477 + T::fused(t517, t310, T::fused(t514, t243, t516 * t202));
+            let t519 = t479 + T::fused(t517, t284, T::fused(t514, t179, t516 * t206));
+            let t520 = t480 + T::fused(t517, t285, T::fused(t514, t191, t516 * t220));
+            let t521 = T::fused(
                 link_3_wz,
-                t309,
-                -T::fused(link_3_wx, t242, link_3_wy * t204),
+                t310,
+                -T::fused(link_3_wx, t243, link_3_wy * t202),
             );
-            let t521 = link_4_wx + t520;
-            let t522 = T::fused(
+            let t522 = link_4_wx + t521;
+            let t523 = T::fused(
                 link_3_wz,
-                t283,
-                -T::fused(link_3_wx, t190, link_3_wy * t219),
+                t285,
+                -T::fused(link_3_wx, t191, link_3_wy * t220),
             );
-            let t523 = link_4_wz - t522;
-            let t524 = T::fused(
+            let t524 = link_4_wz - t523;
+            let t525 = T::fused(
                 link_3_wz,
-                t282,
-                -T::fused(link_3_wx, t177, link_3_wy * t208),
+                t284,
+                -T::fused(link_3_wx, t179, link_3_wy * t206),
             );
-            let t525 = link_4_wy + t524;
-            let t526 = T::fused(t523, t523, t525 * t525) / t242;
-            let t527 = T::fused(link_4_wx, t522, link_4_wz * t520)
-                - T::fused(-t523, t521, t190 * t526);
-            let t528 = T::fused(-link_4_wy, t520, link_4_wx * t524)
-                - T::fused(t525, t521, t177 * t526);
-            let t529 = T::fused(t167, t527, t189 * t528)
-                + T::fused(t218, t519, -T::fused(-t197, t517, t207 * t518));
-            let t530 = t529 + T::fused(t155, t511, T::fused(k(0.1), t506, -t505));
-            let t531 = T::fused(
-                t188,
-                t511,
+            let t526 = link_4_wy + t525;
+            let t527 = T::fused(t524, t524, t526 * t526) / t243;
+            let t528 = T::fused(link_4_wx, t523, link_4_wz * t521)
+                - T::fused(-t524, t522, t191 * t527);
+            let t529 = T::fused(-link_4_wy, t521, link_4_wx * t525)
+                - T::fused(t526, t522, t179 * t527);
+            let t530 = T::fused(t168, t528, t190 * t529)
+                + T::fused(t219, t520, -T::fused(-t205, t518, t209 * t519));
+            let t531 = t530 + T::fused(t156, t512, T::fused(k(0.1), t507, -t506));
+            let t532 = T::fused(
+                t189,
+                t512,
                 T::fused(
                     k(0.0001),
                     link_4_wx * link_4_wy,
-                    T::fused(t182, t493, t183 * t496),
+                    T::fused(t183, t494, t184 * t497),
                 ),
             );
-            let t532 = T::fused(t189, t527, t193 * t528)
-                + T::fused(t223, t519, T::fused(t221, t517, t222 * t518));
-            let t533 = t532 + t531;
-            let t534 = T::fused(
-                -k(1.5),
-                t517,
-                T::fused(t228, t519, T::fused(t226, t517, t227 * t518)),
-            );
-            let t535 = T::fused(t197, t527, t221 * t528) + t534
-                + T::fused(t195, t511, t506);
-            let t536 = T::fused(
+            let t533 = T::fused(t190, t528, t194 * t529)
+                + T::fused(t224, t520, T::fused(t222, t518, t223 * t519));
+            let t534 = t533 + t532;
+            let t535 = T::fused(
                 -k(1.5),
                 t518,
-                T::fused(t231, t519, T::fused(t227, t517, t230 * t518)),
+                T::fused(t229, t520, T::fused(t227, t518, t228 * t519)),
             );
-            let t537 = T::fused(-t207, t527, t222 * t528) + t536
-                + T::fused(-t205, t511, t509);
-            let t538 = T::fused(
-                k(9.81),
-                t180,
-                T::fused(t183, t503, T::fused(t182, t498, t209 * t500)),
-            );
-            let t539 = T::fused(
+            let t536 = T::fused(t205, t528, t222 * t529) + t535
+                + T::fused(t203, t512, t507);
+            let t537 = T::fused(
                 -k(1.5),
                 t519,
-                T::fused(t235, t519, T::fused(t228, t517, t231 * t518)),
+                T::fused(t232, t520, T::fused(t228, t518, t231 * t519)),
             );
-            let t540 = T::fused(t218, t527, t223 * t528) + t539
-                + T::fused(t216, t511, t538);
-            let t541 = T::fused(t219, t540, T::fused(t204, t535, t208 * t537));
-            let t542 = T::fused(
+            let t538 = T::fused(-t209, t528, t223 * t529) + t537
+                + T::fused(-t207, t512, t510);
+            let t539 = T::fused(
+                k(4.905),
+                t182,
+                T::fused(t184, t504, T::fused(t183, t499, t210 * t501)),
+            );
+            let t540 = T::fused(
+                -k(1.5),
+                t520,
+                T::fused(t236, t520, T::fused(t229, t518, t232 * t519)),
+            );
+            let t541 = T::fused(t219, t528, t224 * t529) + t540
+                + T::fused(t217, t512, t539);
+            let t542 = T::fused(t220, t541, T::fused(t202, t536, t206 * t538));
+            let t543 = T::fused(
                 k(0.0014),
                 link_3_wy * link_3_wz,
-                -T::fused(k(0.1), t541, T::fused(-t177, t530, t190 * t533)),
+                -T::fused(k(0.1), t542, T::fused(-t179, t531, t191 * t534)),
             );
-            let t543 = T::fused(k(9.81), t202, t541);
-            let t544 = T::fused(t190, t540, T::fused(t242, t535, t177 * t537));
-            let t545 = T::fused(
+            let t544 = T::fused(k(4.905), t201, t542);
+            let t545 = T::fused(t191, t541, T::fused(t243, t536, t179 * t538));
+            let t546 = T::fused(
                 k(0.0015),
                 link_3_wx * link_3_wz,
-                -T::fused(k(0.1), t544, -T::fused(-t208, t530, t219 * t533)),
+                -T::fused(k(0.1), t545, -T::fused(-t206, t531, t220 * t534)),
             );
-            let t546 = T::fused(k(9.81), t175, t544);
-            let t547 = T::fused(k(0.1), t546, -t545);
-            let t548 = t265 * t547;
-            let t549 = k(0.1) * link_2_wx;
-            let t550 = link_2_wz * t549;
-            let t551 = k(0.1) * link_2_wy;
-            let t552 = link_2_wz * t551;
-            let t553 = T::fused(link_2_wy, t551, link_2_wx * t549);
-            let t554 = t513 + T::fused(t553, t382, T::fused(t550, t304, t552 * t277));
-            let t555 = t515 + T::fused(t553, t409, T::fused(t550, t308, t552 * t344));
-            let t556 = t516 + T::fused(t553, t383, T::fused(t550, t319, t552 * t290));
-            let t557 = T::fused(
+            let t547 = T::fused(k(4.905), t178, t545);
+            let t548 = T::fused(k(0.1), t547, -t546);
+            let t549 = t266 * t548;
+            let t550 = k(0.1) * link_2_wx;
+            let t551 = link_2_wz * t550;
+            let t552 = k(0.1) * link_2_wy;
+            let t553 = link_2_wz * t552;
+            let t554 = T::fused(link_2_wy, t552, link_2_wx * t550);
+            let t555 = t514 + T::fused(t554, t384, T::fused(t551, t302, t553 * t280));
+            let t556 = t516 + T::fused(t554, t410, T::fused(t551, t306, t553 * t345));
+            let t557 = t517 + T::fused(t554, t385, T::fused(t551, t320, t553 * t292));
+            let t558 = T::fused(
                 link_2_wz,
-                t409,
-                -T::fused(link_2_wx, t308, link_2_wy * t344),
+                t410,
+                -T::fused(link_2_wx, t306, link_2_wy * t345),
             );
-            let t558 = link_3_wy + t557;
-            let t559 = T::fused(
+            let t559 = link_3_wy + t558;
+            let t560 = T::fused(
                 link_2_wz,
-                t383,
-                -T::fused(link_2_wx, t319, link_2_wy * t290),
+                t385,
+                -T::fused(link_2_wx, t320, link_2_wy * t292),
             );
-            let t560 = link_3_wz - t559;
-            let t561 = T::fused(
+            let t561 = link_3_wz - t560;
+            let t562 = T::fused(
                 link_2_wz,
-                t382,
-                -T::fused(link_2_wx, t304, link_2_wy * t277),
+                t384,
+                -T::fused(link_2_wx, t302, link_2_wy * t280),
             );
-            let t562 = link_3_wx + t561;
-            let t563 = T::fused(t560, t560, t562 * t562) / t344;
-            let t564 = T::fused(link_3_wz, t557, link_3_wy * t559)
-                - T::fused(-t560, t558, t290 * t563);
-            let t565 = T::fused(-link_3_wy, t561, link_3_wx * t557)
-                + T::fused(t562, t558, t277 * t563);
-            let t566 = T::fused(t267, t564, t289 * t565)
-                + T::fused(t318, t556, T::fused(-t297, t554, t307 * t555));
-            let t567 = t566 + T::fused(t256, t548, T::fused(k(0.1), t543, -t542));
-            let t568 = T::fused(
-                t288,
-                t548,
+            let t563 = link_3_wx + t562;
+            let t564 = T::fused(t561, t561, t563 * t563) / t345;
+            let t565 = T::fused(link_3_wz, t558, link_3_wy * t560)
+                - T::fused(-t561, t559, t292 * t564);
+            let t566 = T::fused(-link_3_wy, t562, link_3_wx * t558)
+                + T::fused(t563, t559, t280 * t564);
+            let t567 = T::fused(t268, t565, t291 * t566)
+                + T::fused(t319, t557, T::fused(-t305, t555, t309 * t556));
+            let t568 = t567 + T::fused(t257, t549, T::fused(k(0.1), t544, -t543));
+            let t569 = T::fused(
+                t290,
+                t549,
                 T::fused(
                     k(0.0001),
                     link_3_wx * link_3_wy,
-                    T::fused(-t282, t530, t283 * t533),
+                    T::fused(-t284, t531, t285 * t534),
                 ),
             );
-            let t569 = T::fused(t289, t564, t293 * t565)
-                + T::fused(t323, t556, T::fused(t321, t554, t322 * t555));
-            let t570 = t569 + t568;
-            let t571 = T::fused(
-                -k(2.0),
-                t554,
-                T::fused(t328, t556, T::fused(t326, t554, t327 * t555)),
-            );
-            let t572 = T::fused(-t297, t564, t321 * t565) + t571
-                + T::fused(-t295, t548, t546);
-            let t573 = T::fused(
+            let t570 = T::fused(t291, t565, t295 * t566)
+                + T::fused(t324, t557, T::fused(t322, t555, t323 * t556));
+            let t571 = t570 + t569;
+            let t572 = T::fused(
                 -k(2.0),
                 t555,
-                T::fused(t331, t556, T::fused(t327, t554, t330 * t555)),
+                T::fused(t329, t557, T::fused(t327, t555, t328 * t556)),
             );
-            let t574 = T::fused(t307, t564, t322 * t565) + t573
-                + T::fused(t305, t548, t543);
-            let t575 = T::fused(
-                k(9.81),
-                t280,
-                T::fused(t283, t540, T::fused(t309, t535, t282 * t537)),
-            );
-            let t576 = T::fused(
+            let t573 = T::fused(-t305, t565, t322 * t566) + t572
+                + T::fused(-t303, t549, t547);
+            let t574 = T::fused(
                 -k(2.0),
                 t556,
-                T::fused(t335, t556, T::fused(t328, t554, t331 * t555)),
+                T::fused(t332, t557, T::fused(t328, t555, t331 * t556)),
             );
-            let t577 = T::fused(t318, t564, t323 * t565) + t576
-                + T::fused(t316, t548, t575);
-            let t578 = T::fused(t319, t577, T::fused(t304, t572, t308 * t574));
-            let t579 = T::fused(
+            let t575 = T::fused(t309, t565, t323 * t566) + t574
+                + T::fused(t307, t549, t544);
+            let t576 = T::fused(
+                k(4.905),
+                t283,
+                T::fused(t285, t541, T::fused(t310, t536, t284 * t538)),
+            );
+            let t577 = T::fused(
+                -k(2.0),
+                t557,
+                T::fused(t336, t557, T::fused(t329, t555, t332 * t556)),
+            );
+            let t578 = T::fused(t319, t565, t324 * t566) + t577
+                + T::fused(t317, t549, t576);
+            let t579 = T::fused(t320, t578, T::fused(t302, t573, t306 * t575));
+            let t580 = T::fused(
                 k(0.0015),
                 link_2_wx * link_2_wz,
-                -T::fused(k(0.1), t578, -T::fused(t277, t567, t290 * t570)),
+                -T::fused(k(0.1), t579, -T::fused(t280, t568, t292 * t571)),
             );
-            let t580 = T::fused(k(9.81), t302, t578);
-            let t581 = T::fused(t290, t577, T::fused(t277, t572, t344 * t574));
-            let t582 = T::fused(
+            let t581 = T::fused(k(4.905), t301, t579);
+            let t582 = T::fused(t292, t578, T::fused(t280, t573, t345 * t575));
+            let t583 = T::fused(
                 k(0.0014),
                 link_2_wy * link_2_wz,
-                -T::fused(k(0.1), t581, T::fused(t304, t567, t319 * t570)),
+                -T::fused(k(0.1), t582, T::fused(t302, t568, t320 * t571)),
             );
-            let t583 = T::fused(k(9.81), t275, t581);
-            let t584 = T::fused(k(0.1), t583, -t582);
-            let t585 = t365 * t584;
-            let t586 = k(0.1) * link_1_wx;
-            let t587 = link_1_wz * t586;
-            let t588 = T::fused(t376, t303, -T::fused(t373, t298, t370 * t299));
-            let t589 = k(0.1) * link_1_wy;
-            let t590 = link_1_wz * t589;
-            let t591 = k(2.0) * (t401 + t400);
-            let t592 = k(2.0) * (t375 - t374);
-            let t593 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t368));
-            let t594 = T::fused(t593, t303, -T::fused(-t591, t298, t592 * t299));
-            let t595 = T::fused(link_1_wy, t589, link_1_wx * t586);
-            let t596 = t550 + T::fused(t595, t594, T::fused(t587, t404, t590 * t588));
-            let t597 = T::fused(t593, t276, -T::fused(-t592, t272, t591 * t270));
-            let t598 = t552 + T::fused(t595, t597, T::fused(t587, t408, t590 * t377));
-            let t599 = T::fused(t593, t381, T::fused(t592, t379, t591 * t378));
+            let t584 = T::fused(k(4.905), t279, t582);
+            let t585 = T::fused(k(0.1), t584, -t583);
+            let t586 = t366 * t585;
+            let t587 = k(0.1) * link_1_wx;
+            let t588 = link_1_wz * t587;
+            let t589 = T::fused(t379, t301, -T::fused(t373, t297, t376 * t298));
+            let t590 = k(0.1) * link_1_wy;
+            let t591 = link_1_wz * t590;
+            let t592 = t403 + t402;
+            let t593 = t378 - t377;
+            let t594 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t375);
+            let t595 = T::fused(t594, t301, -T::fused(-t592, t297, t593 * t298));
+            let t596 = T::fused(link_1_wy, t590, link_1_wx * t587);
+            let t597 = t551 + T::fused(t596, t595, T::fused(t588, t405, t591 * t589));
+            let t598 = T::fused(t594, t279, T::fused(-t592, t273, t593 * t276));
+            let t599 = t553 + T::fused(t596, t598, T::fused(t588, t409, t591 * t380));
             (
-                t402,
-                t403,
+                t400,
+                t401,
                 t404,
                 t405,
-                t407,
+                t406,
                 t408,
                 t409,
-                t416,
-                t418,
+                t410,
+                t417,
                 t419,
                 t420,
                 t421,
                 t422,
                 t423,
                 t424,
-                t426,
+                t425,
                 t427,
                 t428,
                 t429,
                 t430,
                 t431,
                 t432,
-                t435,
+                t433,
                 t436,
-                t438,
+                t437,
                 t439,
                 t440,
                 t441,
-                t449,
-                t451,
-                t458,
-                t461,
-                t463,
-                t465,
-                t473,
-                t480,
+                t442,
+                t450,
+                t452,
+                t459,
+                t462,
+                t464,
+                t466,
+                t474,
                 t481,
                 t482,
-                t490,
+                t483,
                 t491,
-                t510,
-                t517,
+                t492,
+                t511,
                 t518,
                 t519,
-                t527,
+                t520,
                 t528,
-                t547,
-                t553,
+                t529,
+                t548,
                 t554,
                 t555,
                 t556,
-                t564,
+                t557,
                 t565,
-                t567,
-                t570,
-                t572,
-                t574,
-                t577,
-                t579,
+                t566,
+                t568,
+                t571,
+                t573,
+                t575,
+                t578,
                 t580,
-                t583,
+                t581,
                 t584,
                 t585,
-                t587,
+                t586,
                 t588,
-                t590,
+                t589,
                 t591,
                 t592,
                 t593,
@@ -6124,316 +6310,317 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             )
         };
         let (
-            t638,
-            t645,
+            t639,
             t646,
-            t649,
-            t651,
-            t653,
+            t647,
+            t650,
+            t652,
             t654,
-            t659,
-            t661,
+            t655,
+            t660,
             t662,
-            t664,
-            t666,
-            t671,
+            t663,
+            t665,
+            t667,
             t672,
             t673,
-            t675,
-            t677,
-            t679,
+            t674,
+            t676,
+            t678,
             t680,
-            t685,
-            t687,
+            t681,
+            t686,
             t688,
-            t690,
-            t692,
-            t697,
+            t689,
+            t691,
+            t693,
             t698,
             t699,
-            t701,
-            t703,
-            t705,
-            t708,
+            t700,
+            t702,
+            t704,
+            t706,
             t709,
-            t711,
+            t710,
             t712,
             t713,
+            t714,
         ) = {
-            let t600 = t553 + T::fused(t595, t599, T::fused(t587, t419, t590 * t390));
-            let t601 = T::fused(
+            let t600 = T::fused(t594, t383, T::fused(t592, t381, t593 * t382));
+            let t601 = t554 + T::fused(t596, t600, T::fused(t588, t420, t591 * t392));
+            let t602 = T::fused(
                 link_1_wz,
-                t594,
-                -T::fused(link_1_wx, t404, link_1_wy * t588),
+                t595,
+                -T::fused(link_1_wx, t405, link_1_wy * t589),
             );
-            let t602 = link_2_wx + t601;
-            let t603 = T::fused(
+            let t603 = link_2_wx + t602;
+            let t604 = T::fused(
                 link_1_wz,
-                t599,
-                -T::fused(link_1_wx, t419, link_1_wy * t390),
+                t600,
+                -T::fused(link_1_wx, t420, link_1_wy * t392),
             );
-            let t604 = link_2_wz - t603;
-            let t605 = T::fused(
+            let t605 = link_2_wz - t604;
+            let t606 = T::fused(
                 link_1_wz,
-                t597,
-                -T::fused(link_1_wx, t408, link_1_wy * t377),
+                t598,
+                -T::fused(link_1_wx, t409, link_1_wy * t380),
             );
-            let t606 = link_2_wy + t605;
-            let t607 = T::fused(t604, t604, t606 * t606) / t404;
-            let t608 = T::fused(link_2_wx, t603, link_2_wz * t601)
-                - T::fused(-t604, t602, t419 * t607);
-            let t609 = T::fused(-link_2_wy, t601, link_2_wx * t605)
-                - T::fused(t606, t602, t408 * t607);
-            let t610 = T::fused(t367, t608, t389 * t609)
-                + T::fused(t418, t600, -T::fused(-t397, t596, t407 * t598));
-            let t611 = T::fused(
-                t388,
-                t585,
+            let t607 = link_2_wy + t606;
+            let t608 = T::fused(t605, t605, t607 * t607) / t405;
+            let t609 = T::fused(link_2_wx, t604, link_2_wz * t602)
+                - T::fused(-t605, t603, t420 * t608);
+            let t610 = T::fused(-link_2_wy, t602, link_2_wx * t606)
+                - T::fused(t607, t603, t409 * t608);
+            let t611 = T::fused(t368, t609, t391 * t610)
+                + T::fused(t419, t601, -T::fused(-t399, t597, t408 * t599));
+            let t612 = T::fused(
+                t390,
+                t586,
                 T::fused(
                     k(0.0001),
                     link_2_wx * link_2_wy,
-                    T::fused(t382, t567, t383 * t570),
+                    T::fused(t384, t568, t385 * t571),
                 ),
             );
-            let t612 = T::fused(t389, t608, t393 * t609)
-                + T::fused(t423, t600, T::fused(t421, t596, t422 * t598));
-            let t613 = T::fused(
-                -t377,
-                t610 + T::fused(t355, t585, T::fused(k(0.1), t580, -t579)),
-                t390 * (t612 + t611),
-            );
+            let t613 = T::fused(t391, t609, t395 * t610)
+                + T::fused(t424, t601, T::fused(t422, t597, t423 * t599));
             let t614 = T::fused(
+                -t380,
+                t611 + T::fused(t356, t586, T::fused(k(0.1), t581, -t580)),
+                t392 * (t613 + t612),
+            );
+            let t615 = T::fused(
                 -k(2.5),
-                t596,
-                T::fused(t428, t600, T::fused(t426, t596, t427 * t598)),
+                t597,
+                T::fused(t429, t601, T::fused(t427, t597, t428 * t599)),
             );
-            let t615 = T::fused(t397, t608, t421 * t609) + t614
-                + T::fused(t395, t585, t580);
-            let t616 = T::fused(
+            let t616 = T::fused(t399, t609, t422 * t610) + t615
+                + T::fused(t397, t586, t581);
+            let t617 = T::fused(
                 -k(2.5),
-                t598,
-                T::fused(t431, t600, T::fused(t427, t596, t430 * t598)),
+                t599,
+                T::fused(t432, t601, T::fused(t428, t597, t431 * t599)),
             );
-            let t617 = T::fused(-t407, t608, t422 * t609) + t616
-                + T::fused(-t405, t585, t583);
-            let t618 = T::fused(
-                k(9.81),
-                t380,
-                T::fused(t383, t577, T::fused(t382, t572, t409 * t574)),
-            );
+            let t618 = T::fused(-t408, t609, t423 * t610) + t617
+                + T::fused(-t406, t586, t584);
             let t619 = T::fused(
+                k(4.905),
+                t383,
+                T::fused(t385, t578, T::fused(t384, t573, t410 * t575)),
+            );
+            let t620 = T::fused(
                 -k(2.5),
-                t600,
-                T::fused(t435, t600, T::fused(t428, t596, t431 * t598)),
+                t601,
+                T::fused(t436, t601, T::fused(t429, t597, t432 * t599)),
             );
-            let t620 = T::fused(t418, t608, t423 * t609) + t619
-                + T::fused(t416, t585, t618);
-            let t621 = T::fused(t419, t620, T::fused(t404, t615, t408 * t617));
-            let t622 = link_1_wx * link_1_wz;
-            let t623 = T::fused(
+            let t621 = T::fused(t419, t609, t424 * t610) + t620
+                + T::fused(t417, t586, t619);
+            let t622 = T::fused(t420, t621, T::fused(t405, t616, t409 * t618));
+            let t623 = link_1_wx * link_1_wz;
+            let t624 = T::fused(
                 k(0.1),
-                T::fused(k(9.81), t402, t621),
-                -T::fused(k(0.0015), t622, -T::fused(k(0.1), t621, -t613)),
+                T::fused(k(4.905), t404, t622),
+                -T::fused(k(0.0015), t623, -T::fused(k(0.1), t622, -t614)),
             );
-            let t624 = link_1_wy * link_1_wz;
-            let t625 = link_1_wx * link_1_wx;
-            let t626 = T::fused(link_1_wy, link_1_wy, t625);
-            let t627 = k(0.1)
-                * T::fused(t591, t626, -T::fused(-t398, t622, t373 * t624));
-            let t628 = k(0.1) * T::fused(t592, t626, T::fused(-t399, t622, t370 * t624));
-            let t629 = k(0.1) * T::fused(t593, t626, T::fused(t403, t622, t376 * t624));
-            let t630 = T::fused(t403, t629, -T::fused(-t398, t627, t399 * t628));
-            let t631 = T::fused(
-                -t377,
-                T::fused(t390, t418, -T::fused(-t588, t397, t377 * t407)),
-                t390 * T::fused(t390, t423, T::fused(t588, t421, t377 * t422)),
+            let t625 = link_1_wy * link_1_wz;
+            let t626 = link_1_wx * link_1_wx;
+            let t627 = T::fused(link_1_wy, link_1_wy, t626);
+            let t628 = k(0.1)
+                * T::fused(t627, t592, -T::fused(-t623, t400, t625 * t373));
+            let t629 = k(0.1) * T::fused(t627, t593, T::fused(-t623, t401, t625 * t376));
+            let t630 = k(0.1) * T::fused(t627, t594, T::fused(t623, t404, t625 * t379));
+            let t631 = T::fused(t404, t630, -T::fused(-t400, t628, t401 * t629));
+            let t632 = T::fused(
+                -t380,
+                T::fused(t419, t392, -T::fused(-t399, t589, t408 * t380)),
+                t392 * T::fused(t424, t392, T::fused(t422, t589, t423 * t380)),
             );
-            let t632 = T::fused(t390, t436, T::fused(t588, t429, t377 * t432));
-            let t633 = k(0.1) * t632;
-            let t634 = t633 - t631;
-            let t635 = T::fused(t376, t629, T::fused(-t373, t627, t370 * t628));
-            let t636 = T::fused(
-                -t377,
-                T::fused(t599, t418, -T::fused(-t594, t397, t597 * t407)),
-                t390 * T::fused(t599, t423, T::fused(t594, t421, t597 * t422)),
+            let t633 = T::fused(t392, t437, T::fused(t430, t589, t380 * t433));
+            let t634 = k(0.1) * t633;
+            let t635 = t634 - t632;
+            let t636 = T::fused(t379, t630, T::fused(-t373, t628, t376 * t629));
+            let t637 = T::fused(
+                -t380,
+                T::fused(t600, t419, -T::fused(-t399, t595, t408 * t598)),
+                t392 * T::fused(t424, t600, T::fused(t422, t595, t423 * t598)),
             );
-            let t637 = k(0.1) * T::fused(t599, t436, T::fused(t594, t429, t597 * t432));
-            let t638 = T::fused(t593, t629, T::fused(t591, t627, t592 * t628));
-            let t639 = T::fused(
-                t638,
-                t637 + (t637 - t636),
-                T::fused(-(k(0.3) - t440 + t441), t630, t635 * (t633 + t634)),
-            );
+            let t638 = k(0.1) * T::fused(t600, t437, T::fused(t430, t595, t598 * t433));
+            let t639 = T::fused(t594, t630, T::fused(t592, t628, t593 * t629));
             let t640 = T::fused(
-                -t377,
-                T::fused(-t408, t367, t419 * t389),
-                t390 * T::fused(-t408, t389, t419 * t393),
+                t639,
+                t638 + (t638 - t637),
+                T::fused(-(k(0.3) - t441 + t442), t631, t636 * (t634 + t635)),
             );
-            let t641 = T::fused(-t408, t420, t419 * t424);
-            let t642 = k(0.01) * t632;
-            let t643 = T::fused(k(0.1), t634 + (t633 + t641), t642)
-                + (T::fused(-k(0.1), t631 - t641, t642) - t640);
-            let t644 = T::fused(link_1_wz, link_1_wz, t625) * (k(0.5) / t369);
-            let t645 = T::fused(-t592, t644, t624);
-            let t646 = T::fused(-t399, t644, link_1_wx * link_1_wy);
-            let t647 = k(0.1) * T::fused(-t597, t420, t599 * t424);
-            let t648 = T::fused(
-                t645,
-                t643,
-                (t647 + (t647 - T::fused(-t597, t391, t599 * t394))) * t646,
+            let t641 = T::fused(
+                -t380,
+                T::fused(-t409, t368, t420 * t391),
+                t392 * T::fused(-t409, t391, t420 * t395),
             );
-            let t649 = (t648 + t639 + t623)
-                / (T::fused(k(0.2), t441, -t438) + (k(0.03) + (k(0.0016) - t439)));
-            let t650 = k(0.1) * t649;
-            let t651 = t630 + t650;
-            let t652 = k(0.1) * t645;
-            let t653 = t652 + t635;
-            let t654 = t608 + T::fused(-t597, t646, T::fused(-t645, t408, t377 * t649));
-            let t655 = k(0.1) * t654;
-            let t656 = t650 + t651;
-            let t657 = t652 + t653;
-            let t658 = t596 + T::fused(t594, t638, T::fused(t404, t656, t588 * t657));
-            let t659 = t658 + t655;
-            let t660 = t598 + T::fused(t597, t638, T::fused(t408, t656, t377 * t657));
-            let t661 = t600 + T::fused(t599, t638, T::fused(t419, t656, t390 * t657));
-            let t662 = t609 - T::fused(-t599, t646, T::fused(-t645, t419, t390 * t649));
-            let t663 = T::fused(t355, t654, t388 * t662)
-                + T::fused(t416, t661, -T::fused(-t395, t658, t405 * t660));
-            let t664 = t365 * (t584 + t663);
-            let t665 = k(0.1) * t664;
-            let t666 = t660 + t665;
-            let t667 = t655 + t659;
-            let t668 = t665 + t666;
-            let t669 = t554 + T::fused(t382, t661, T::fused(t304, t667, t277 * t668));
-            let t670 = t555 + T::fused(t409, t661, T::fused(t308, t667, t344 * t668));
-            let t671 = t556 + T::fused(t383, t661, T::fused(t319, t667, t290 * t668));
-            let t672 = t564 + T::fused(t382, t662, -T::fused(-t304, t664, t277 * t654));
-            let t673 = t565 + T::fused(t383, t662, -T::fused(-t319, t664, t290 * t654));
-            let t674 = T::fused(t256, t672, t288 * t673)
-                + T::fused(t316, t671, T::fused(-t295, t669, t305 * t670));
-            let t675 = t265 * (t547 + t674);
-            let t676 = k(0.1) * t675;
-            let t677 = t669 + t676;
-            let t678 = k(0.1) * t672;
-            let t679 = t678 + t670;
-            let t680 = t527 - T::fused(t282, t673, -T::fused(-t177, t672, t208 * t675));
-            let t681 = k(0.1) * t680;
-            let t682 = t676 + t677;
-            let t683 = t678 + t679;
-            let t684 = t517 + T::fused(t309, t671, T::fused(t242, t682, t204 * t683));
-            let t685 = t684 + t681;
-            let t686 = t518 + T::fused(t282, t671, T::fused(t177, t682, t208 * t683));
-            let t687 = t519 + T::fused(t283, t671, T::fused(t190, t682, t219 * t683));
-            let t688 = t528 + T::fused(t283, t673, -T::fused(-t190, t672, t219 * t675));
-            let t689 = T::fused(t155, t680, t188 * t688)
-                + T::fused(t216, t687, -T::fused(-t195, t684, t205 * t686));
-            let t690 = t165 * (t510 + t689);
-            let t691 = k(0.1) * t690;
-            let t692 = t686 + t691;
-            let t693 = t681 + t685;
-            let t694 = t691 + t692;
-            let t695 = t480 + T::fused(t182, t687, T::fused(t107, t693, t81 * t694));
-            let t696 = t481 + T::fused(t209, t687, T::fused(t111, t693, t144 * t694));
-            let t697 = t482 + T::fused(t183, t687, T::fused(t121, t693, t94 * t694));
-            let t698 = t490 + T::fused(t182, t688, -T::fused(-t107, t690, t81 * t680));
-            let t699 = t491 + T::fused(t183, t688, -T::fused(-t121, t690, t94 * t680));
-            let t700 = T::fused(t60, t698, t92 * t699)
-                + T::fused(t118, t697, T::fused(-t98, t695, t108 * t696));
-            let t701 = t69 * (t473 - t700);
-            let t702 = k(0.1) * t701;
-            let t703 = t695 - t702;
-            let t704 = k(0.1) * t698;
-            let t705 = t704 + t696;
-            let t706 = t702 - t703;
-            let t707 = t704 + t705;
-            let t708 = t451 - T::fused(t86, t699, T::fused(t18, t698, t41 * t701));
-            let t709 = T::fused(
-                k(0.1),
-                t708,
-                t458 + T::fused(t112, t697, T::fused(-t49, t706, t38 * t707)),
-            );
-            let t710 = t463 + T::fused(t86, t697, T::fused(-t18, t706, t41 * t707));
-            let t711 = T::fused(k(0.05), t710, t461);
-            let t712 = T::fused(-k(14.925373134328359), t711, t710);
-            let t713 = t465 + T::fused(t87, t697, T::fused(-t26, t706, t48 * t707));
-            (
-                t638,
-                t645,
+            let t642 = T::fused(-t409, t421, t420 * t425);
+            let t643 = k(0.01) * t633;
+            let t644 = T::fused(k(0.1), t635 + (t634 + t642), t643)
+                + (T::fused(-k(0.1), t632 - t642, t643) - t641);
+            let t645 = T::fused(link_1_wz, link_1_wz, t626) / t376;
+            let t646 = T::fused(-t593, t645, t625);
+            let t647 = T::fused(-t401, t645, link_1_wx * link_1_wy);
+            let t648 = k(0.1) * T::fused(-t421, t598, t425 * t600);
+            let t649 = T::fused(
                 t646,
-                t649,
-                t651,
-                t653,
+                t644,
+                (t648 + (t648 - T::fused(-t598, t393, t600 * t396))) * t647,
+            );
+            let t650 = (t649 + t640 + t624)
+                / (T::fused(k(0.2), t442, -t439) + (k(0.03) + (k(0.0016) - t440)));
+            let t651 = k(0.1) * t650;
+            let t652 = t631 + t651;
+            let t653 = k(0.1) * t646;
+            let t654 = t653 + t636;
+            let t655 = t609 + T::fused(-t598, t647, T::fused(-t646, t409, t380 * t650));
+            let t656 = k(0.1) * t655;
+            let t657 = t651 + t652;
+            let t658 = t653 + t654;
+            let t659 = t597 + T::fused(t639, t595, T::fused(t405, t657, t589 * t658));
+            let t660 = t659 + t656;
+            let t661 = t599 + T::fused(t639, t598, T::fused(t409, t657, t380 * t658));
+            let t662 = t601 + T::fused(t639, t600, T::fused(t420, t657, t392 * t658));
+            let t663 = t610 - T::fused(-t600, t647, T::fused(-t646, t420, t392 * t650));
+            let t664 = T::fused(t356, t655, t390 * t663)
+                + T::fused(t417, t662, -T::fused(-t397, t659, t406 * t661));
+            let t665 = t366 * (t585 + t664);
+            let t666 = k(0.1) * t665;
+            let t667 = t661 + t666;
+            let t668 = t656 + t660;
+            let t669 = t666 + t667;
+            let t670 = t555 + T::fused(t384, t662, T::fused(t302, t668, t280 * t669));
+            let t671 = t556 + T::fused(t410, t662, T::fused(t306, t668, t345 * t669));
+            let t672 = t557 + T::fused(t385, t662, T::fused(t320, t668, t292 * t669));
+            let t673 = t565 + T::fused(t384, t663, -T::fused(-t302, t665, t280 * t655));
+            let t674 = t566 + T::fused(t385, t663, -T::fused(-t320, t665, t292 * t655));
+            let t675 = T::fused(t257, t673, t290 * t674)
+                + T::fused(t317, t672, T::fused(-t303, t670, t307 * t671));
+            let t676 = t266 * (t548 + t675);
+            let t677 = k(0.1) * t676;
+            let t678 = t670 + t677;
+            let t679 = k(0.1) * t673;
+            let t680 = t679 + t671;
+            let t681 = t528 - T::fused(t284, t674, -T::fused(-t179, t673, t206 * t676));
+            let t682 = k(0.1) * t681;
+            let t683 = t677 + t678;
+            let t684 = t679 + t680;
+            let t685 = t518 + T::fused(t310, t672, T::fused(t243, t683, t202 * t684));
+            let t686 = t685 + t682;
+            let t687 = t519 + T::fused(t284, t672, T::fused(t179, t683, t206 * t684));
+            let t688 = t520 + T::fused(t285, t672, T::fused(t191, t683, t220 * t684));
+            let t689 = t529 + T::fused(t285, t674, -T::fused(-t191, t673, t220 * t676));
+            let t690 = T::fused(t156, t681, t189 * t689)
+                + T::fused(t217, t688, -T::fused(-t203, t685, t207 * t687));
+            let t691 = t166 * (t511 + t690);
+            let t692 = k(0.1) * t691;
+            let t693 = t687 + t692;
+            let t694 = t682 + t686;
+            let t695 = t692 + t693;
+            let t696 = t481 + T::fused(t183, t688, T::fused(t105, t694, t84 * t695));
+            let t697 = t482 + T::fused(t210, t688, T::fused(t109, t694, t145 * t695));
+            let t698 = t483 + T::fused(t184, t688, T::fused(t122, t694, t96 * t695));
+            let t699 = t491 + T::fused(t183, t689, -T::fused(-t105, t691, t84 * t681));
+            let t700 = t492 + T::fused(t184, t689, -T::fused(-t122, t691, t96 * t681));
+            let t701 = T::fused(t61, t699, t94 * t700)
+                + T::fused(t119, t698, T::fused(-t106, t696, t110 * t697));
+            let t702 = t70 * (t474 - t701);
+            let t703 = k(0.1) * t702;
+            let t704 = t696 - t703;
+            let t705 = k(0.1) * t699;
+            let t706 = t705 + t697;
+            let t707 = t703 - t704;
+            let t708 = t705 + t706;
+            let t709 = t452 - T::fused(t88, t700, T::fused(t21, t699, t42 * t702));
+            let t710 = T::fused(
+                k(0.1),
+                t709,
+                t459 + T::fused(t113, t698, T::fused(-t50, t707, t39 * t708)),
+            );
+            let t711 = t464 + T::fused(t88, t698, T::fused(-t21, t707, t42 * t708));
+            let t712 = T::fused(k(0.05), t711, t462);
+            let t713 = T::fused(-k(14.925373134328359), t712, t711);
+            let t714 = t466 + T::fused(t89, t698, T::fused(-t28, t707, t49 * t708));
+            (
+                t639,
+                t646,
+                t647,
+                t650,
+                t652,
                 t654,
-                t659,
-                t661,
+                t655,
+                t660,
                 t662,
-                t664,
-                t666,
-                t671,
+                t663,
+                t665,
+                t667,
                 t672,
                 t673,
-                t675,
-                t677,
-                t679,
+                t674,
+                t676,
+                t678,
                 t680,
-                t685,
-                t687,
+                t681,
+                t686,
                 t688,
-                t690,
-                t692,
-                t697,
+                t689,
+                t691,
+                t693,
                 t698,
                 t699,
-                t701,
-                t703,
-                t705,
-                t708,
+                t700,
+                t702,
+                t704,
+                t706,
                 t709,
-                t711,
+                t710,
                 t712,
                 t713,
+                t714,
             )
         };
         *out = [
-            T::fused(t591, t638, -T::fused(-t398, t651, t373 * t653)),
-            T::fused(t592, t638, T::fused(-t399, t651, t370 * t653)),
-            -T::fused(t593, t638, T::fused(t403, t651, t376 * t653)),
-            -t645,
-            t649,
-            t646,
-            T::fused(t378, t661, -T::fused(-t298, t659, t270 * t666)),
-            T::fused(t379, t661, T::fused(-t299, t659, t272 * t666)),
-            -T::fused(t381, t661, T::fused(t303, t659, t276 * t666)),
-            -t664,
-            t654,
-            t662,
-            T::fused(t279, t671, -T::fused(-t169, t677, t198 * t679)),
-            T::fused(t278, t671, T::fused(-t172, t677, t199 * t679)),
-            -T::fused(t281, t671, T::fused(t176, t677, t203 * t679)),
-            -t672,
-            t675,
-            t673,
-            T::fused(t178, t687, -T::fused(-t101, t685, t74 * t692)),
-            T::fused(t179, t687, T::fused(-t102, t685, t76 * t692)),
-            -T::fused(t181, t687, T::fused(t106, t685, t80 * t692)),
-            -t690,
-            t680,
-            t688,
-            T::fused(t83, t697, -T::fused(-t4, t703, t29 * t705)),
-            T::fused(t82, t697, T::fused(-t9, t703, t31 * t705)),
-            -T::fused(t85, t697, T::fused(t17, t703, t37 * t705)),
-            -t698,
-            -t701,
-            t699,
-            T::fused(t22, t713, -T::fused(-t28, t709, t2 * t712)),
-            T::fused(t23, t713, T::fused(-t30, t709, t6 * t712)),
-            -T::fused(t25, t713, T::fused(t33, t709, t13 * t712)),
-            k(149.2537313432836) * t711,
-            t708,
-            t449 + T::fused(t87, t699, T::fused(t26, t698, t48 * t701)),
+            T::fused(t592, t639, -T::fused(-t400, t652, t373 * t654)),
+            T::fused(t593, t639, T::fused(-t401, t652, t376 * t654)),
+            -T::fused(t594, t639, T::fused(t404, t652, t379 * t654)),
+            -t646,
+            t650,
+            t647,
+            T::fused(t381, t662, -T::fused(-t297, t660, t273 * t667)),
+            T::fused(t382, t662, T::fused(-t298, t660, t276 * t667)),
+            -T::fused(t383, t662, T::fused(t301, t660, t279 * t667)),
+            -t665,
+            t655,
+            t663,
+            T::fused(t281, t672, -T::fused(-t172, t678, t196 * t680)),
+            T::fused(t282, t672, T::fused(-t175, t678, t198 * t680)),
+            -T::fused(t283, t672, T::fused(t178, t678, t201 * t680)),
+            -t673,
+            t676,
+            t674,
+            T::fused(t180, t688, -T::fused(-t100, t686, t77 * t693)),
+            T::fused(t181, t688, T::fused(-t101, t686, t80 * t693)),
+            -T::fused(t182, t688, T::fused(t104, t686, t83 * t693)),
+            -t691,
+            t681,
+            t689,
+            T::fused(t85, t698, -T::fused(-t8, t704, t31 * t706)),
+            T::fused(t86, t698, T::fused(-t14, t704, t34 * t706)),
+            -T::fused(t87, t698, T::fused(t20, t704, t38 * t706)),
+            -t699,
+            -t702,
+            t700,
+            T::fused(t25, t714, -T::fused(-t30, t710, t4 * t713)),
+            T::fused(t26, t714, T::fused(-t32, t710, t11 * t713)),
+            -T::fused(t27, t714, T::fused(t35, t710, t17 * t713)),
+            k(149.2537313432836) * t712,
+            t709,
+            t450 + T::fused(t89, t700, T::fused(t28, t699, t49 * t702)),
         ];
     }
-    /// Writes λ: 834 operations (318 ±, 510 ×, 6 ÷).
+    /// Writes λ: 792 operations (306 ±, 480 ×, 6 ÷).
     fn multipliers(
         &self,
         _t: T,
@@ -6528,62 +6715,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             t13,
             t14,
             t15,
-            t19,
-            t22,
-            t48,
-            t56,
-            t67,
-            t68,
-            t69,
-            t81,
-            t85,
-            t87,
-            t97,
-            t99,
-            t100,
-            t101,
+            t21,
+            t25,
+            t47,
+            t52,
+            t64,
+            t65,
+            t66,
+            t77,
+            t78,
+            t80,
+            t90,
+            t92,
+            t93,
+            t94,
+            t105,
+            t106,
             t111,
-            t112,
-            t116,
-            t120,
+            t114,
+            t117,
             t124,
+            t129,
+            t131,
+            t132,
             t134,
-            t139,
+            t137,
             t141,
-            t142,
+            t144,
+            t145,
+            t146,
+            t149,
+            t150,
             t153,
             t154,
             t155,
             t156,
             t157,
             t158,
-            t161,
-            t162,
-            t163,
-            t164,
+            t160,
             t165,
-            t166,
             t167,
             t168,
             t169,
             t170,
-            t171,
+            t172,
             t173,
+            t174,
+            t175,
             t178,
             t180,
             t181,
             t182,
-            t183,
             t185,
             t186,
             t187,
-            t188,
+            t189,
             t190,
+            t191,
             t192,
             t193,
             t194,
+            t195,
+            t196,
             t197,
-            t198,
             t199,
         ) = {
             let t0 = link_5_dsx + link_6_dsx;
@@ -6602,298 +6796,306 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
             let t13 = T::fused(k(0.5), link_3_dsz, k(4.905)) + t12;
             let t14 = T::fused(k(0.5), link_2_dsz, k(4.905)) + t13;
             let t15 = T::fused(k(0.5), link_1_dsz, k(4.905)) + t14;
-            let t16 = link_6_e0 * link_6_e3;
-            let t17 = link_6_e1 * link_6_e2;
-            let t18 = t17 - t16;
-            let t19 = k(0.5) * link_6_dsx;
-            let t20 = link_6_e0 * link_6_e0;
-            let t21 = k(0.5) - T::fused(link_6_e2, link_6_e2, t20);
-            let t22 = k(0.5) * link_6_dsy;
-            let t23 = link_6_e0 * link_6_e1;
-            let t24 = link_6_e2 * link_6_e3;
-            let t25 = t24 + t23;
-            let t26 = T::fused(
+            let t16 = k(2.0) * link_6_e0;
+            let t17 = link_6_e3 * t16;
+            let t18 = k(2.0) * link_6_e1;
+            let t19 = link_6_e2 * t18;
+            let t20 = t19 - t17;
+            let t21 = k(0.5) * link_6_dsx;
+            let t22 = k(2.0) * link_6_e2;
+            let t23 = T::fused(-link_6_e0, t16, k(1.0));
+            let t24 = T::fused(-link_6_e2, t22, t23);
+            let t25 = k(0.5) * link_6_dsy;
+            let t26 = link_6_e1 * t16;
+            let t27 = link_6_e3 * t22;
+            let t28 = t27 + t26;
+            let t29 = T::fused(
                 t10,
-                k(0.2) * t25,
-                -T::fused(-t19, k(0.2) * t18, t22 * (k(0.2) * t21)),
+                k(0.1) * t28,
+                -T::fused(-t21, k(0.1) * t20, t25 * (k(0.1) * t24)),
             );
-            let t27 = T::fused(
+            let t30 = T::fused(
                 -k(0.0017),
                 link_6_dwx,
                 k(0.0014) * (link_6_wy * link_6_wz),
-            ) - t26;
-            let t28 = k(0.5) - T::fused(link_6_e1, link_6_e1, t20);
-            let t29 = k(2.0) * t28;
-            let t30 = link_5_e0 * link_5_e0;
-            let t31 = k(0.5) - T::fused(link_5_e1, link_5_e1, t30);
-            let t32 = k(2.0) * t31;
-            let t33 = t17 + t16;
-            let t34 = k(2.0) * t33;
-            let t35 = link_5_e0 * link_5_e3;
-            let t36 = link_5_e1 * link_5_e2;
-            let t37 = t36 + t35;
-            let t38 = k(2.0) * t37;
-            let t39 = link_6_e0 * link_6_e2;
-            let t40 = link_6_e1 * link_6_e3;
-            let t41 = t40 - t39;
-            let t42 = k(2.0) * t41;
-            let t43 = link_5_e0 * link_5_e2;
-            let t44 = link_5_e1 * link_5_e3;
+            ) - t29;
+            let t31 = T::fused(-link_6_e1, t18, t23);
+            let t32 = k(2.0) * link_5_e1;
+            let t33 = k(2.0) * link_5_e0;
+            let t34 = T::fused(-link_5_e0, t33, k(1.0));
+            let t35 = T::fused(-link_5_e1, t32, t34);
+            let t36 = t19 + t17;
+            let t37 = link_5_e3 * t33;
+            let t38 = link_5_e2 * t32;
+            let t39 = t38 + t37;
+            let t40 = link_6_e2 * t16;
+            let t41 = link_6_e3 * t18;
+            let t42 = t41 - t40;
+            let t43 = link_5_e2 * t33;
+            let t44 = link_5_e3 * t32;
             let t45 = t44 - t43;
-            let t46 = k(2.0) * t45;
-            let t47 = T::fused(
+            let t46 = T::fused(
                 t10,
-                k(0.2) * t41,
-                T::fused(-t19, k(0.2) * t28, t22 * (k(0.2) * t33)),
+                k(0.1) * t42,
+                T::fused(-t21, k(0.1) * t31, t25 * (k(0.1) * t36)),
             );
-            let t48 = T::fused(
+            let t47 = T::fused(
                 k(0.0016),
                 link_6_dwy,
                 k(0.0015) * (link_6_wx * link_6_wz),
-            ) - t47;
-            let t49 = k(2.0) * t18;
-            let t50 = k(2.0) * t21;
-            let t51 = k(2.0) * t25;
-            let t52 = T::fused(
-                -T::fused(t46, t42, T::fused(t32, t29, t38 * t34)),
-                t27,
-                T::fused(t46, t51, -T::fused(t32, t49, t38 * t50)) * t48,
+            ) - t46;
+            let t48 = T::fused(
+                -T::fused(t45, t42, T::fused(t35, t31, t39 * t36)),
+                t30,
+                T::fused(t45, t28, -T::fused(t35, t20, t39 * t24)) * t47,
             );
-            let t53 = k(2.0) * (t40 + t39);
-            let t54 = k(2.0) * (t24 - t23);
-            let t55 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t20));
-            let t56 = T::fused(
+            let t49 = t41 + t40;
+            let t50 = t27 - t26;
+            let t51 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t23);
+            let t52 = T::fused(
                 -k(0.0002),
                 link_6_dwz,
                 k(0.0001) * (link_6_wx * link_6_wy),
             );
-            let t57 = T::fused(
-                t56,
-                T::fused(t46, t55, -T::fused(-t32, t53, t38 * t54)),
+            let t53 = T::fused(
                 t52,
+                T::fused(t45, t51, -T::fused(-t35, t49, t39 * t50)),
+                t48,
             );
-            let t58 = t36 - t35;
-            let t59 = k(0.2) * t58;
-            let t60 = k(0.5) - T::fused(link_5_e2, link_5_e2, t30);
-            let t61 = k(0.2) * t60;
-            let t62 = link_5_e0 * link_5_e1;
-            let t63 = link_5_e2 * link_5_e3;
-            let t64 = t63 + t62;
-            let t65 = k(0.2) * t64;
-            let t66 = T::fused(
+            let t54 = t38 - t37;
+            let t55 = k(0.1) * t54;
+            let t56 = k(2.0) * link_5_e2;
+            let t57 = T::fused(-link_5_e2, t56, t34);
+            let t58 = k(0.1) * t57;
+            let t59 = link_5_e1 * t33;
+            let t60 = link_5_e3 * t56;
+            let t61 = t60 + t59;
+            let t62 = k(0.1) * t61;
+            let t63 = T::fused(
                 -k(0.0017),
                 link_5_dwx,
                 k(0.0014) * (link_5_wy * link_5_wz),
-            ) - (T::fused(t10, t65, -T::fused(-t19, t59, t22 * t61)) + t57);
-            let t67 = k(0.5) * t0;
-            let t68 = k(0.5) * t5;
-            let t69 = T::fused(t11, t65, -T::fused(-t67, t59, t68 * t61)) - t66;
-            let t70 = link_4_e0 * link_4_e0;
-            let t71 = k(0.5) - T::fused(link_4_e1, link_4_e1, t70);
-            let t72 = k(2.0) * t71;
-            let t73 = link_4_e0 * link_4_e3;
-            let t74 = link_4_e1 * link_4_e2;
-            let t75 = t74 + t73;
-            let t76 = k(2.0) * t75;
-            let t77 = link_4_e0 * link_4_e2;
-            let t78 = link_4_e1 * link_4_e3;
-            let t79 = t78 - t77;
-            let t80 = k(2.0) * t79;
-            let t81 = T::fused(t80, t46, T::fused(t72, t32, t76 * t38));
-            let t82 = k(2.0) * t58;
-            let t83 = k(2.0) * t60;
-            let t84 = k(2.0) * t64;
-            let t85 = T::fused(t84, t51, T::fused(t83, t50, t82 * t49));
-            let t86 = T::fused(
-                -T::fused(t84, t42, -T::fused(t82, t29, t83 * t34)),
-                t27,
-                t85 * t48,
+            ) - (T::fused(t10, t62, -T::fused(-t21, t55, t25 * t58)) + t53);
+            let t64 = k(0.5) * t0;
+            let t65 = k(0.5) * t5;
+            let t66 = T::fused(t11, t62, -T::fused(-t64, t55, t65 * t58)) - t63;
+            let t67 = k(2.0) * link_4_e1;
+            let t68 = k(2.0) * link_4_e0;
+            let t69 = T::fused(-link_4_e0, t68, k(1.0));
+            let t70 = T::fused(-link_4_e1, t67, t69);
+            let t71 = link_4_e3 * t68;
+            let t72 = link_4_e2 * t67;
+            let t73 = t72 + t71;
+            let t74 = link_4_e2 * t68;
+            let t75 = link_4_e3 * t67;
+            let t76 = t75 - t74;
+            let t77 = T::fused(t76, t45, T::fused(t70, t35, t73 * t39));
+            let t78 = T::fused(t61, t28, T::fused(t54, t20, t57 * t24));
+            let t79 = T::fused(
+                -T::fused(t61, t42, -T::fused(t54, t31, t57 * t36)),
+                t30,
+                t78 * t47,
             );
-            let t87 = T::fused(t84, t55, -T::fused(-t83, t54, t82 * t53));
-            let t88 = k(0.2) * t31;
-            let t89 = k(0.2) * t37;
-            let t90 = k(0.2) * t45;
-            let t91 = T::fused(t10, t90, T::fused(-t19, t88, t22 * t89))
-                - T::fused(t56, t87, t86);
-            let t92 = T::fused(t11, t90, T::fused(-t67, t88, t68 * t89))
+            let t80 = T::fused(t61, t51, T::fused(-t54, t49, t57 * t50));
+            let t81 = k(0.1) * t35;
+            let t82 = k(0.1) * t39;
+            let t83 = k(0.1) * t45;
+            let t84 = T::fused(t10, t83, T::fused(-t21, t81, t25 * t82))
+                - T::fused(t52, t80, t79);
+            let t85 = T::fused(t11, t83, T::fused(-t64, t81, t65 * t82))
                 - (T::fused(k(0.0016), link_5_dwy, k(0.0015) * (link_5_wx * link_5_wz))
-                    - t91);
+                    - t84);
+            let t86 = T::fused(
+                -t77,
+                t66,
+                T::fused(t76, t61, -T::fused(t70, t54, t73 * t57)) * t85,
+            );
+            let t87 = t44 + t43;
+            let t88 = t60 - t59;
+            let t89 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t34);
+            let t90 = T::fused(t89, t28, T::fused(-t87, t20, t88 * t24));
+            let t91 = T::fused(
+                -T::fused(t89, t42, -T::fused(-t87, t31, t88 * t36)),
+                t30,
+                t90 * t47,
+            );
+            let t92 = T::fused(t89, t51, T::fused(t87, t49, t88 * t50));
             let t93 = T::fused(
-                -t81,
-                t69,
-                T::fused(t80, t84, -T::fused(t72, t82, t76 * t83)) * t92,
-            );
-            let t94 = k(2.0) * (t44 + t43);
-            let t95 = k(2.0) * (t63 - t62);
-            let t96 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t30));
-            let t97 = T::fused(t96, t51, -T::fused(-t95, t50, t94 * t49));
-            let t98 = T::fused(
-                -T::fused(t96, t42, -T::fused(-t94, t29, t95 * t34)),
-                t27,
-                t97 * t48,
-            );
-            let t99 = T::fused(t96, t55, T::fused(t95, t54, t94 * t53));
-            let t100 = T::fused(
                 -k(0.0002),
                 link_5_dwz,
                 k(0.0001) * (link_5_wx * link_5_wy),
-            ) + T::fused(t56, t99, t98);
-            let t101 = T::fused(t80, t96, -T::fused(-t72, t94, t76 * t95));
-            let t102 = t74 - t73;
-            let t103 = k(0.2) * t102;
-            let t104 = k(0.5) - T::fused(link_4_e2, link_4_e2, t70);
-            let t105 = k(0.2) * t104;
-            let t106 = link_4_e0 * link_4_e1;
-            let t107 = link_4_e2 * link_4_e3;
-            let t108 = t107 + t106;
-            let t109 = k(0.2) * t108;
-            let t110 = T::fused(t11, t109, -T::fused(-t67, t103, t68 * t105))
-                + T::fused(t101, t100, -t93);
-            let t111 = k(0.5) * t1;
-            let t112 = k(0.5) * t6;
-            let t113 = T::fused(t12, t109, -T::fused(-t111, t103, t112 * t105))
+            ) + T::fused(t52, t92, t91);
+            let t94 = T::fused(t76, t89, -T::fused(-t70, t87, t73 * t88));
+            let t95 = t72 - t71;
+            let t96 = k(0.1) * t95;
+            let t97 = k(2.0) * link_4_e2;
+            let t98 = T::fused(-link_4_e2, t97, t69);
+            let t99 = k(0.1) * t98;
+            let t100 = link_4_e1 * t68;
+            let t101 = link_4_e3 * t97;
+            let t102 = t101 + t100;
+            let t103 = k(0.1) * t102;
+            let t104 = T::fused(t11, t103, -T::fused(-t64, t96, t65 * t99))
+                + T::fused(t94, t93, -t86);
+            let t105 = k(0.5) * t1;
+            let t106 = k(0.5) * t6;
+            let t107 = T::fused(t12, t103, -T::fused(-t105, t96, t106 * t99))
                 - (T::fused(-k(0.0017), link_4_dwx, k(0.0014) * (link_4_wy * link_4_wz))
-                    - t110);
-            let t114 = link_3_e0 * link_3_e0;
-            let t115 = k(0.5) - T::fused(link_3_e1, link_3_e1, t114);
-            let t116 = k(2.0) * t115;
-            let t117 = link_3_e0 * link_3_e3;
-            let t118 = link_3_e1 * link_3_e2;
-            let t119 = t118 + t117;
-            let t120 = k(2.0) * t119;
-            let t121 = link_3_e0 * link_3_e2;
-            let t122 = link_3_e1 * link_3_e3;
-            let t123 = t122 - t121;
-            let t124 = k(2.0) * t123;
-            let t125 = k(2.0) * t102;
-            let t126 = k(2.0) * t104;
-            let t127 = k(2.0) * t108;
-            let t128 = T::fused(
-                -T::fused(t127, t46, -T::fused(t125, t32, t126 * t38)),
-                t69,
-                T::fused(t127, t84, T::fused(t126, t83, t125 * t82)) * t92,
+                    - t104);
+            let t108 = k(2.0) * link_3_e1;
+            let t109 = k(2.0) * link_3_e0;
+            let t110 = T::fused(-link_3_e0, t109, k(1.0));
+            let t111 = T::fused(-link_3_e1, t108, t110);
+            let t112 = link_3_e3 * t109;
+            let t113 = link_3_e2 * t108;
+            let t114 = t113 + t112;
+            let t115 = link_3_e2 * t109;
+            let t116 = link_3_e3 * t108;
+            let t117 = t116 - t115;
+            let t118 = T::fused(
+                -T::fused(t102, t45, -T::fused(t95, t35, t98 * t39)),
+                t66,
+                T::fused(t102, t61, T::fused(t95, t54, t98 * t57)) * t85,
             );
-            let t129 = T::fused(
-                T::fused(t127, t96, -T::fused(-t126, t95, t125 * t94)),
-                t100,
-                -t128,
+            let t119 = T::fused(
+                T::fused(t102, t89, T::fused(-t95, t87, t98 * t88)),
+                t93,
+                -t118,
             );
-            let t130 = k(0.2) * t71;
-            let t131 = k(0.2) * t75;
-            let t132 = k(0.2) * t79;
-            let t133 = T::fused(
+            let t120 = k(0.1) * t70;
+            let t121 = k(0.1) * t73;
+            let t122 = k(0.1) * t76;
+            let t123 = T::fused(
                 k(0.0016),
                 link_4_dwy,
                 k(0.0015) * (link_4_wx * link_4_wz),
-            ) - (T::fused(t11, t132, T::fused(-t67, t130, t68 * t131)) - t129);
-            let t134 = T::fused(t12, t132, T::fused(-t111, t130, t112 * t131)) - t133;
-            let t135 = T::fused(
-                -T::fused(t124, t80, T::fused(t116, t72, t120 * t76)),
-                t113,
-                T::fused(t124, t127, -T::fused(t116, t125, t120 * t126)) * t134,
+            ) - (T::fused(t11, t122, T::fused(-t64, t120, t65 * t121)) - t119);
+            let t124 = T::fused(t12, t122, T::fused(-t105, t120, t106 * t121)) - t123;
+            let t125 = T::fused(
+                -T::fused(t117, t76, T::fused(t111, t70, t114 * t73)),
+                t107,
+                T::fused(t117, t102, -T::fused(t111, t95, t114 * t98)) * t124,
             );
-            let t136 = k(2.0) * (t78 + t77);
-            let t137 = k(2.0) * (t107 - t106);
-            let t138 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t70));
-            let t139 = T::fused(t138, t46, -T::fused(-t136, t32, t137 * t38));
-            let t140 = T::fused(
-                -t139,
-                t69,
-                T::fused(t138, t84, -T::fused(-t137, t83, t136 * t82)) * t92,
+            let t126 = t75 + t74;
+            let t127 = t101 - t100;
+            let t128 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t69);
+            let t129 = T::fused(t128, t45, -T::fused(-t126, t35, t127 * t39));
+            let t130 = T::fused(
+                -t129,
+                t66,
+                T::fused(t128, t61, T::fused(-t126, t54, t127 * t57)) * t85,
             );
-            let t141 = T::fused(t138, t96, T::fused(t137, t95, t136 * t94));
-            let t142 = T::fused(
+            let t131 = T::fused(t128, t89, T::fused(t126, t87, t127 * t88));
+            let t132 = T::fused(
                 -k(0.0002),
                 link_4_dwz,
                 k(0.0001) * (link_4_wx * link_4_wy),
-            ) + T::fused(t141, t100, -t140);
-            let t143 = T::fused(
-                T::fused(t124, t138, -T::fused(-t116, t136, t120 * t137)),
-                t142,
-                -t135,
+            ) + T::fused(t131, t93, -t130);
+            let t133 = T::fused(
+                T::fused(t117, t128, -T::fused(-t111, t126, t114 * t127)),
+                t132,
+                -t125,
             );
-            let t144 = t118 - t117;
-            let t145 = k(0.2) * t144;
-            let t146 = k(0.5) - T::fused(link_3_e2, link_3_e2, t114);
-            let t147 = k(0.2) * t146;
-            let t148 = link_3_e0 * link_3_e1;
-            let t149 = link_3_e2 * link_3_e3;
-            let t150 = t149 + t148;
-            let t151 = k(0.2) * t150;
-            let t152 = T::fused(
+            let t134 = t113 - t112;
+            let t135 = k(0.1) * t134;
+            let t136 = k(2.0) * link_3_e2;
+            let t137 = T::fused(-link_3_e2, t136, t110);
+            let t138 = k(0.1) * t137;
+            let t139 = link_3_e1 * t109;
+            let t140 = link_3_e3 * t136;
+            let t141 = t140 + t139;
+            let t142 = k(0.1) * t141;
+            let t143 = T::fused(
                 -k(0.0017),
                 link_3_dwx,
                 k(0.0014) * (link_3_wy * link_3_wz),
-            ) - (T::fused(t12, t151, -T::fused(-t111, t145, t112 * t147)) + t143);
-            let t153 = k(0.5) * t2;
-            let t154 = k(0.5) * t7;
-            let t155 = T::fused(t13, t151, -T::fused(-t153, t145, t154 * t147)) - t152;
-            let t156 = link_2_e0 * link_2_e0;
-            let t157 = k(0.5) - T::fused(link_2_e1, link_2_e1, t156);
-            let t158 = k(2.0) * t157;
-            let t159 = link_2_e0 * link_2_e3;
-            let t160 = link_2_e1 * link_2_e2;
-            let t161 = t160 + t159;
-            let t162 = k(2.0) * t161;
-            let t163 = link_2_e0 * link_2_e2;
-            let t164 = link_2_e1 * link_2_e3;
-            let t165 = t164 - t163;
-            let t166 = k(2.0) * t165;
-            let t167 = T::fused(t166, t124, T::fused(t158, t116, t162 * t120));
-            let t168 = k(2.0) * t144;
-            let t169 = k(2.0) * t146;
-            let t170 = k(2.0) * t150;
-            let t171 = T::fused(t170, t127, T::fused(t169, t126, t168 * t125));
-            let t172 = T::fused(
-                -T::fused(t170, t80, -T::fused(t168, t72, t169 * t76)),
-                t113,
-                t171 * t134,
+            ) - (T::fused(t12, t142, -T::fused(-t105, t135, t106 * t138)) + t133);
+            let t144 = k(0.5) * t2;
+            let t145 = k(0.5) * t7;
+            let t146 = T::fused(t13, t142, -T::fused(-t144, t135, t145 * t138)) - t143;
+            let t147 = k(2.0) * link_2_e1;
+            let t148 = k(2.0) * link_2_e0;
+            let t149 = T::fused(-link_2_e0, t148, k(1.0));
+            let t150 = T::fused(-link_2_e1, t147, t149);
+            let t151 = link_2_e3 * t148;
+            let t152 = link_2_e2 * t147;
+            let t153 = t152 + t151;
+            let t154 = link_2_e2 * t148;
+            let t155 = link_2_e3 * t147;
+            let t156 = t155 - t154;
+            let t157 = T::fused(t156, t117, T::fused(t150, t111, t153 * t114));
+            let t158 = T::fused(t141, t102, T::fused(t134, t95, t137 * t98));
+            let t159 = T::fused(
+                -T::fused(t141, t76, -T::fused(t134, t70, t137 * t73)),
+                t107,
+                t158 * t124,
             );
-            let t173 = T::fused(t170, t138, -T::fused(-t169, t137, t168 * t136));
-            let t174 = k(0.2) * t115;
-            let t175 = k(0.2) * t119;
-            let t176 = k(0.2) * t123;
-            let t177 = T::fused(t12, t176, T::fused(-t111, t174, t112 * t175))
-                - T::fused(t173, t142, -t172);
-            let t178 = T::fused(t13, t176, T::fused(-t153, t174, t154 * t175))
+            let t160 = T::fused(t141, t128, T::fused(-t134, t126, t137 * t127));
+            let t161 = k(0.1) * t111;
+            let t162 = k(0.1) * t114;
+            let t163 = k(0.1) * t117;
+            let t164 = T::fused(t12, t163, T::fused(-t105, t161, t106 * t162))
+                - T::fused(t160, t132, -t159);
+            let t165 = T::fused(t13, t163, T::fused(-t144, t161, t145 * t162))
                 - (T::fused(k(0.0016), link_3_dwy, k(0.0015) * (link_3_wx * link_3_wz))
-                    - t177);
-            let t179 = T::fused(
-                -t167,
-                t155,
-                T::fused(t166, t170, -T::fused(t158, t168, t162 * t169)) * t178,
+                    - t164);
+            let t166 = T::fused(
+                -t157,
+                t146,
+                T::fused(t156, t141, -T::fused(t150, t134, t153 * t137)) * t165,
             );
-            let t180 = k(2.0) * (t122 + t121);
-            let t181 = k(2.0) * (t149 - t148);
-            let t182 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t114));
-            let t183 = T::fused(t182, t127, -T::fused(-t181, t126, t180 * t125));
-            let t184 = T::fused(
-                -T::fused(t182, t80, -T::fused(-t180, t72, t181 * t76)),
-                t113,
-                t183 * t134,
+            let t167 = t116 + t115;
+            let t168 = t140 - t139;
+            let t169 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t110);
+            let t170 = T::fused(t169, t102, T::fused(-t167, t95, t168 * t98));
+            let t171 = T::fused(
+                -T::fused(t169, t76, -T::fused(-t167, t70, t168 * t73)),
+                t107,
+                t170 * t124,
             );
-            let t185 = T::fused(t182, t138, T::fused(t181, t137, t180 * t136));
-            let t186 = T::fused(
+            let t172 = T::fused(t169, t128, T::fused(t167, t126, t168 * t127));
+            let t173 = T::fused(
                 -k(0.0002),
                 link_3_dwz,
                 k(0.0001) * (link_3_wx * link_3_wy),
-            ) + T::fused(t185, t142, -t184);
-            let t187 = T::fused(t166, t182, -T::fused(-t158, t180, t162 * t181));
-            let t188 = t160 - t159;
-            let t189 = k(0.2) * t188;
-            let t190 = k(0.5) - T::fused(link_2_e2, link_2_e2, t156);
-            let t191 = k(0.2) * t190;
-            let t192 = link_2_e0 * link_2_e1;
-            let t193 = link_2_e2 * link_2_e3;
-            let t194 = t193 + t192;
-            let t195 = k(0.2) * t194;
-            let t196 = T::fused(t13, t195, -T::fused(-t153, t189, t154 * t191))
-                + T::fused(t187, t186, -t179);
-            let t197 = k(0.5) * t3;
-            let t198 = k(0.5) * t8;
-            let t199 = T::fused(t14, t195, -T::fused(-t197, t189, t198 * t191))
+            ) + T::fused(t172, t132, -t171);
+            let t174 = T::fused(t156, t169, -T::fused(-t150, t167, t153 * t168));
+            let t175 = t152 - t151;
+            let t176 = k(0.1) * t175;
+            let t177 = k(2.0) * link_2_e2;
+            let t178 = T::fused(-link_2_e2, t177, t149);
+            let t179 = k(0.1) * t178;
+            let t180 = link_2_e1 * t148;
+            let t181 = link_2_e3 * t177;
+            let t182 = t181 + t180;
+            let t183 = k(0.1) * t182;
+            let t184 = T::fused(t13, t183, -T::fused(-t144, t176, t145 * t179))
+                + T::fused(t174, t173, -t166);
+            let t185 = k(0.5) * t3;
+            let t186 = k(0.5) * t8;
+            let t187 = T::fused(t14, t183, -T::fused(-t185, t176, t186 * t179))
                 - (T::fused(-k(0.0017), link_2_dwx, k(0.0014) * (link_2_wy * link_2_wz))
-                    - t196);
+                    - t184);
+            let t188 = k(2.0) * link_1_e1;
+            let t189 = k(2.0) * link_1_e0;
+            let t190 = T::fused(-link_1_e0, t189, k(1.0));
+            let t191 = T::fused(-link_1_e1, t188, t190);
+            let t192 = link_1_e3 * t189;
+            let t193 = link_1_e2 * t188;
+            let t194 = t193 + t192;
+            let t195 = link_1_e2 * t189;
+            let t196 = link_1_e3 * t188;
+            let t197 = t196 - t195;
+            let t198 = T::fused(
+                -T::fused(t182, t117, -T::fused(t175, t111, t178 * t114)),
+                t146,
+                T::fused(t182, t141, T::fused(t175, t134, t178 * t137)) * t165,
+            );
+            let t199 = T::fused(
+                T::fused(t182, t169, T::fused(-t175, t167, t178 * t168)),
+                t173,
+                -t198,
+            );
             (
                 t4,
                 t9,
@@ -6903,241 +7105,221 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for Chain<T> {
                 t13,
                 t14,
                 t15,
-                t19,
-                t22,
-                t48,
-                t56,
-                t67,
-                t68,
-                t69,
-                t81,
-                t85,
-                t87,
-                t97,
-                t99,
-                t100,
-                t101,
+                t21,
+                t25,
+                t47,
+                t52,
+                t64,
+                t65,
+                t66,
+                t77,
+                t78,
+                t80,
+                t90,
+                t92,
+                t93,
+                t94,
+                t105,
+                t106,
                 t111,
-                t112,
-                t116,
-                t120,
+                t114,
+                t117,
                 t124,
+                t129,
+                t131,
+                t132,
                 t134,
-                t139,
+                t137,
                 t141,
-                t142,
+                t144,
+                t145,
+                t146,
+                t149,
+                t150,
                 t153,
                 t154,
                 t155,
                 t156,
                 t157,
                 t158,
-                t161,
-                t162,
-                t163,
-                t164,
+                t160,
                 t165,
-                t166,
                 t167,
                 t168,
                 t169,
                 t170,
-                t171,
+                t172,
                 t173,
+                t174,
+                t175,
                 t178,
                 t180,
                 t181,
                 t182,
-                t183,
                 t185,
                 t186,
                 t187,
-                t188,
+                t189,
                 t190,
+                t191,
                 t192,
                 t193,
                 t194,
+                t195,
+                t196,
                 t197,
-                t198,
                 t199,
             )
         };
         let (
-            t201,
-            t207,
-            t217,
-            t222,
+            t204,
+            t209,
+            t211,
+            t212,
             t224,
             t225,
+            t226,
+            t227,
+            t229,
+            t231,
+            t232,
+            t233,
+            t234,
+            t235,
             t236,
             t237,
             t238,
             t239,
-            t241,
-            t243,
-            t244,
-            t248,
-            t249,
-            t250,
-            t251,
-            t252,
-            t253,
-            t254,
         ) = {
-            let t200 = link_1_e0 * link_1_e0;
-            let t201 = k(2.0) * (k(0.5) - T::fused(link_1_e1, link_1_e1, t200));
-            let t202 = link_1_e0 * link_1_e3;
-            let t203 = link_1_e1 * link_1_e2;
-            let t204 = k(2.0) * (t203 + t202);
-            let t205 = link_1_e0 * link_1_e2;
-            let t206 = link_1_e1 * link_1_e3;
-            let t207 = k(2.0) * (t206 - t205);
-            let t208 = k(2.0) * t188;
-            let t209 = k(2.0) * t190;
-            let t210 = k(2.0) * t194;
-            let t211 = T::fused(
-                -T::fused(t210, t124, -T::fused(t208, t116, t209 * t120)),
-                t155,
-                T::fused(t210, t170, T::fused(t209, t169, t208 * t168)) * t178,
-            );
-            let t212 = T::fused(
-                T::fused(t210, t182, -T::fused(-t209, t181, t208 * t180)),
-                t186,
-                -t211,
-            );
-            let t213 = k(0.2) * t157;
-            let t214 = k(0.2) * t161;
-            let t215 = k(0.2) * t165;
-            let t216 = T::fused(
+            let t200 = k(0.1) * t150;
+            let t201 = k(0.1) * t153;
+            let t202 = k(0.1) * t156;
+            let t203 = T::fused(
                 k(0.0016),
                 link_2_dwy,
                 k(0.0015) * (link_2_wx * link_2_wz),
-            ) - (T::fused(t13, t215, T::fused(-t153, t213, t154 * t214)) - t212);
-            let t217 = T::fused(t14, t215, T::fused(-t197, t213, t198 * t214)) - t216;
-            let t218 = T::fused(
-                -T::fused(t207, t166, T::fused(t201, t158, t204 * t162)),
-                t199,
-                T::fused(t207, t210, -T::fused(t201, t208, t204 * t209)) * t217,
+            ) - (T::fused(t13, t202, T::fused(-t144, t200, t145 * t201)) - t199);
+            let t204 = T::fused(t14, t202, T::fused(-t185, t200, t186 * t201)) - t203;
+            let t205 = T::fused(
+                -T::fused(t197, t156, T::fused(t191, t150, t194 * t153)),
+                t187,
+                T::fused(t197, t182, -T::fused(t191, t175, t194 * t178)) * t204,
             );
-            let t219 = k(2.0) * (t164 + t163);
-            let t220 = k(2.0) * (t193 - t192);
-            let t221 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t156));
-            let t222 = T::fused(t221, t124, -T::fused(-t219, t116, t220 * t120));
-            let t223 = T::fused(
-                -t222,
-                t155,
-                T::fused(t221, t170, -T::fused(-t220, t169, t219 * t168)) * t178,
+            let t206 = t155 + t154;
+            let t207 = t181 - t180;
+            let t208 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t149);
+            let t209 = T::fused(t208, t117, -T::fused(-t206, t111, t207 * t114));
+            let t210 = T::fused(
+                -t209,
+                t146,
+                T::fused(t208, t141, T::fused(-t206, t134, t207 * t137)) * t165,
             );
-            let t224 = T::fused(t221, t182, T::fused(t220, t181, t219 * t180));
-            let t225 = T::fused(
+            let t211 = T::fused(t208, t169, T::fused(t206, t167, t207 * t168));
+            let t212 = T::fused(
                 -k(0.0002),
                 link_2_dwz,
                 k(0.0001) * (link_2_wx * link_2_wy),
-            ) + T::fused(t224, t186, -t223);
-            let t226 = T::fused(
-                T::fused(t207, t221, -T::fused(-t201, t219, t204 * t220)),
-                t225,
-                -t218,
+            ) + T::fused(t211, t173, -t210);
+            let t213 = T::fused(
+                T::fused(t197, t208, -T::fused(-t191, t206, t194 * t207)),
+                t212,
+                -t205,
             );
-            let t227 = t203 - t202;
-            let t228 = k(0.2) * t227;
-            let t229 = k(0.5) - T::fused(link_1_e2, link_1_e2, t200);
-            let t230 = k(0.2) * t229;
-            let t231 = link_1_e0 * link_1_e1;
-            let t232 = link_1_e2 * link_1_e3;
-            let t233 = t232 + t231;
-            let t234 = k(0.2) * t233;
-            let t235 = T::fused(
+            let t214 = t193 - t192;
+            let t215 = k(0.1) * t214;
+            let t216 = k(2.0) * link_1_e2;
+            let t217 = T::fused(-link_1_e2, t216, t190);
+            let t218 = k(0.1) * t217;
+            let t219 = link_1_e1 * t189;
+            let t220 = link_1_e3 * t216;
+            let t221 = t220 + t219;
+            let t222 = k(0.1) * t221;
+            let t223 = T::fused(
                 -k(0.0017),
                 link_1_dwx,
                 k(0.0014) * (link_1_wy * link_1_wz),
-            ) - (T::fused(t14, t234, -T::fused(-t197, t228, t198 * t230)) + t226);
-            let t236 = T::fused(t15, t234, -T::fused(-t4, t228, t9 * t230)) - t235;
-            let t237 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t200));
-            let t238 = k(2.0) * (t206 + t205);
-            let t239 = k(1.0) / T::fused(-t201, t237, t238 * t207);
-            let t240 = k(2.0) * (t232 - t231);
-            let t241 = T::fused(t237, t210, -T::fused(-t240, t209, t238 * t208));
-            let t242 = T::fused(
-                -T::fused(t237, t166, -T::fused(-t238, t158, t240 * t162)),
-                t199,
-                t241 * t217,
+            ) - (T::fused(t14, t222, -T::fused(-t185, t215, t186 * t218)) + t213);
+            let t224 = T::fused(t15, t222, -T::fused(-t4, t215, t9 * t218)) - t223;
+            let t225 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t190);
+            let t226 = t196 + t195;
+            let t227 = k(1.0) / T::fused(-t191, t225, t226 * t197);
+            let t228 = t220 - t219;
+            let t229 = T::fused(t225, t182, T::fused(-t226, t175, t228 * t178));
+            let t230 = T::fused(
+                -T::fused(t225, t156, -T::fused(-t226, t150, t228 * t153)),
+                t187,
+                t229 * t204,
             );
-            let t243 = T::fused(t237, t221, T::fused(t240, t220, t238 * t219));
-            let t244 = T::fused(
+            let t231 = T::fused(t225, t208, T::fused(t226, t206, t228 * t207));
+            let t232 = T::fused(
                 -k(0.0002),
                 link_1_dwz,
                 k(0.0001) * (link_1_wx * link_1_wy),
-            ) + T::fused(t243, t225, -t242);
-            let t245 = k(2.0) * t229;
-            let t246 = k(2.0) * t227;
-            let t247 = k(2.0) * t233;
-            let t248 = T::fused(t247, t210, T::fused(t245, t209, t246 * t208));
-            let t249 = T::fused(t247, t221, -T::fused(-t245, t220, t246 * t219));
-            let t250 = k(1.0) / T::fused(-t243, t248, t241 * t249);
-            let t251 = k(1.0) / T::fused(-t224, t167, t222 * t187);
-            let t252 = k(1.0) / T::fused(-t185, t171, t183 * t173);
-            let t253 = k(1.0) / T::fused(-t141, t81, t139 * t101);
-            let t254 = k(1.0) / T::fused(-t99, t85, t97 * t87);
+            ) + T::fused(t231, t212, -t230);
+            let t233 = T::fused(t221, t182, T::fused(t214, t175, t217 * t178));
+            let t234 = T::fused(t221, t208, T::fused(-t214, t206, t217 * t207));
+            let t235 = k(1.0) / T::fused(-t231, t233, t229 * t234);
+            let t236 = k(1.0) / T::fused(-t157, t211, t174 * t209);
+            let t237 = k(1.0) / T::fused(-t158, t172, t160 * t170);
+            let t238 = k(1.0) / T::fused(-t77, t131, t94 * t129);
+            let t239 = k(1.0) / T::fused(-t78, t92, t80 * t90);
             (
-                t201,
-                t207,
-                t217,
-                t222,
+                t204,
+                t209,
+                t211,
+                t212,
                 t224,
                 t225,
+                t226,
+                t227,
+                t229,
+                t231,
+                t232,
+                t233,
+                t234,
+                t235,
                 t236,
                 t237,
                 t238,
                 t239,
-                t241,
-                t243,
-                t244,
-                t248,
-                t249,
-                t250,
-                t251,
-                t252,
-                t253,
-                t254,
             )
         };
         *lambda = [
             -t4,
             -t9,
             -t15,
-            -T::fused(t201 * t239, t236, t238 * t239 * t244),
-            -T::fused(t207 * t239, t236, t237 * t239 * t244),
-            -t197,
-            -t198,
+            -T::fused(t191 * t227, t224, t226 * t227 * t232),
+            -T::fused(t197 * t227, t224, t225 * t227 * t232),
+            -t185,
+            -t186,
             -t14,
-            T::fused(-(t249 * t250), t225, t248 * t250 * t217),
-            T::fused(-(t241 * t250), t217, t243 * t250 * t225),
-            -t153,
-            -t154,
+            T::fused(-(t234 * t235), t212, t233 * t235 * t204),
+            T::fused(-(t229 * t235), t204, t231 * t235 * t212),
+            -t144,
+            -t145,
             -t13,
-            T::fused(t167 * t251, t155, t187 * t251 * t186),
-            T::fused(t222 * t251, t155, t224 * t251 * t186),
-            -t111,
-            -t112,
+            T::fused(t157 * t236, t146, t174 * t236 * t173),
+            T::fused(t209 * t236, t146, t211 * t236 * t173),
+            -t105,
+            -t106,
             -t12,
-            T::fused(-(t173 * t252), t142, t171 * t252 * t134),
-            T::fused(-(t183 * t252), t134, t185 * t252 * t142),
-            -t67,
-            -t68,
+            T::fused(-(t160 * t237), t132, t158 * t237 * t124),
+            T::fused(-(t170 * t237), t124, t172 * t237 * t132),
+            -t64,
+            -t65,
             -t11,
-            T::fused(t81 * t253, t69, t101 * t253 * t100),
-            T::fused(t139 * t253, t69, t141 * t253 * t100),
-            -t19,
-            -t22,
+            T::fused(t77 * t238, t66, t94 * t238 * t93),
+            T::fused(t129 * t238, t66, t131 * t238 * t93),
+            -t21,
+            -t25,
             -t10,
-            -T::fused(t85 * t254, t48, t56 * (t87 * t254)),
-            T::fused(t97 * t254, t48, t56 * (t99 * t254)),
+            -T::fused(t78 * t239, t47, t52 * (t80 * t239)),
+            T::fused(t90 * t239, t47, t52 * (t92 * t239)),
         ];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
-    /// Solves eq. (17) without forces, the changes of the rows for γ: 2254 operations (1025 ±, 1218 ×, 11 ÷).
+    /// Solves eq. (17) without forces, the changes of the rows for γ: 2215 operations (1013 ±, 1191 ×, 11 ÷).
     fn project(
         &self,
         _t: T,
@@ -7204,8 +7386,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
             t0,
             t1,
             t2,
-            t3,
-            t6,
+            t4,
             t7,
             t8,
             t9,
@@ -7214,18 +7395,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
             t12,
             t13,
             t14,
-            t16,
-            t17,
-            t20,
-            t24,
-            t25,
-            t30,
-            t33,
+            t18,
+            t19,
+            t22,
+            t26,
+            t28,
+            t31,
+            t34,
+            t37,
             t38,
-            t39,
+            t41,
             t42,
             t43,
-            t44,
             t47,
             t50,
             t51,
@@ -7240,15 +7421,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
             t67,
             t69,
             t77,
-            t87,
-            t91,
-            t92,
-            t93,
-            t99,
-            t104,
-            t111,
-            t113,
-            t116,
+            t84,
+            t88,
+            t89,
+            t90,
+            t96,
+            t101,
+            t108,
+            t110,
+            t115,
             t117,
             t118,
             t119,
@@ -7259,29 +7440,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
             t124,
             t125,
             t126,
-            t127,
-            t128,
-            t129,
+            t131,
+            t133,
             t134,
+            t135,
             t136,
             t137,
             t138,
             t139,
-            t140,
             t141,
             t142,
             t144,
             t145,
-            t147,
+            t146,
             t148,
             t149,
             t151,
             t152,
-            t154,
+            t153,
             t155,
             t156,
             t158,
             t159,
+            t160,
             t161,
             t162,
             t163,
@@ -7292,275 +7473,276 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
             t168,
             t169,
             t170,
-            t171,
-            t172,
             t173,
+            t174,
+            t175,
             t176,
             t177,
             t178,
             t179,
             t180,
+            t181,
+            t182,
+            t183,
             t184,
-            t185,
-            t186,
-            t187,
-            t188,
-            t189,
             t190,
             t191,
             t192,
             t193,
             t194,
             t195,
-            t196,
             t197,
             t198,
             t199,
         ) = {
-            let t0 = link_1_e0 * link_1_e0;
-            let t1 = k(2.0) * (k(0.5) - T::fused(link_1_e3, link_1_e3, t0));
-            let t2 = k(0.5) - T::fused(link_1_e1, link_1_e1, t0);
-            let t3 = k(2.0) * t2;
-            let t4 = link_1_e0 * link_1_e2;
-            let t5 = link_1_e1 * link_1_e3;
-            let t6 = t5 - t4;
-            let t7 = k(2.0) * t6;
-            let t8 = k(2.0) * (t5 + t4);
-            let t9 = k(1.0) / T::fused(-t3, t1, t8 * t7);
-            let t10 = T::fused(t3 * t9, row3, t7 * t9 * row4);
-            let t11 = link_1_e0 * link_1_e3;
-            let t12 = link_1_e1 * link_1_e2;
+            let t0 = k(2.0) * link_1_e0;
+            let t1 = T::fused(-link_1_e0, t0, k(1.0));
+            let t2 = T::fused(-link_1_e3, k(2.0) * link_1_e3, t1);
+            let t3 = k(2.0) * link_1_e1;
+            let t4 = T::fused(-link_1_e1, t3, t1);
+            let t5 = link_1_e2 * t0;
+            let t6 = link_1_e3 * t3;
+            let t7 = t6 - t5;
+            let t8 = t6 + t5;
+            let t9 = k(1.0) / T::fused(-t4, t2, t8 * t7);
+            let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
+            let t11 = link_1_e3 * t0;
+            let t12 = link_1_e2 * t3;
             let t13 = t12 - t11;
-            let t14 = k(0.2) * t13;
-            let t15 = link_6_e0 * link_6_e0;
-            let t16 = k(0.5) - T::fused(link_6_e1, link_6_e1, t15);
-            let t17 = k(0.1) * t16;
-            let t18 = link_6_e0 * link_6_e3;
-            let t19 = link_6_e1 * link_6_e2;
-            let t20 = t19 - t18;
-            let t21 = k(2.0) * t20;
-            let t22 = link_5_e0 * link_5_e0;
-            let t23 = k(0.5) - T::fused(link_5_e1, link_5_e1, t22);
-            let t24 = k(2.0) * t23;
-            let t25 = k(0.5) - T::fused(link_6_e2, link_6_e2, t15);
-            let t26 = k(2.0) * t25;
-            let t27 = link_5_e0 * link_5_e3;
-            let t28 = link_5_e1 * link_5_e2;
-            let t29 = t28 + t27;
-            let t30 = k(2.0) * t29;
-            let t31 = link_6_e0 * link_6_e1;
-            let t32 = link_6_e2 * link_6_e3;
-            let t33 = t32 + t31;
-            let t34 = k(2.0) * t33;
-            let t35 = link_5_e0 * link_5_e2;
-            let t36 = link_5_e1 * link_5_e3;
+            let t14 = k(0.1) * t13;
+            let t15 = k(2.0) * link_6_e1;
+            let t16 = k(2.0) * link_6_e0;
+            let t17 = T::fused(-link_6_e0, t16, k(1.0));
+            let t18 = T::fused(-link_6_e1, t15, t17);
+            let t19 = k(0.05) * t18;
+            let t20 = link_6_e3 * t16;
+            let t21 = link_6_e2 * t15;
+            let t22 = t21 - t20;
+            let t23 = k(2.0) * link_5_e1;
+            let t24 = k(2.0) * link_5_e0;
+            let t25 = T::fused(-link_5_e0, t24, k(1.0));
+            let t26 = T::fused(-link_5_e1, t23, t25);
+            let t27 = k(2.0) * link_6_e2;
+            let t28 = T::fused(-link_6_e2, t27, t17);
+            let t29 = link_5_e3 * t24;
+            let t30 = link_5_e2 * t23;
+            let t31 = t30 + t29;
+            let t32 = link_6_e1 * t16;
+            let t33 = link_6_e3 * t27;
+            let t34 = t33 + t32;
+            let t35 = link_5_e2 * t24;
+            let t36 = link_5_e3 * t23;
             let t37 = t36 - t35;
-            let t38 = k(2.0) * t37;
-            let t39 = T::fused(t38, t34, -T::fused(t24, t21, t30 * t26));
-            let t40 = t39 * t17;
-            let t41 = t28 - t27;
-            let t42 = k(0.2) * t41;
-            let t43 = t19 + t18;
-            let t44 = k(0.1) * t43;
-            let t45 = t39 * t44;
-            let t46 = k(0.5) - T::fused(link_5_e2, link_5_e2, t22);
-            let t47 = k(0.2) * t46;
-            let t48 = link_6_e0 * link_6_e2;
-            let t49 = link_6_e1 * link_6_e3;
+            let t38 = T::fused(t37, t34, -T::fused(t26, t22, t31 * t28));
+            let t39 = t38 * t19;
+            let t40 = t30 - t29;
+            let t41 = k(0.1) * t40;
+            let t42 = t21 + t20;
+            let t43 = k(0.05) * t42;
+            let t44 = t38 * t43;
+            let t45 = k(2.0) * link_5_e2;
+            let t46 = T::fused(-link_5_e2, t45, t25);
+            let t47 = k(0.1) * t46;
+            let t48 = link_6_e2 * t16;
+            let t49 = link_6_e3 * t15;
             let t50 = t49 - t48;
-            let t51 = k(0.1) * t50;
-            let t52 = t39 * t51;
-            let t53 = link_5_e0 * link_5_e1;
-            let t54 = link_5_e2 * link_5_e3;
+            let t51 = k(0.05) * t50;
+            let t52 = t38 * t51;
+            let t53 = link_5_e1 * t24;
+            let t54 = link_5_e3 * t45;
             let t55 = t54 + t53;
-            let t56 = k(0.2) * t55;
-            let t57 = k(0.1) * t20;
-            let t58 = k(14.925373134328359) * t20;
+            let t56 = k(0.1) * t55;
+            let t57 = k(0.05) * t22;
+            let t58 = k(7.462686567164179) * t22;
             let t59 = t58 * t57;
-            let t60 = k(0.1) * t25;
+            let t60 = k(0.05) * t28;
             let t61 = t58 * t60;
-            let t62 = k(0.1) * t33;
+            let t62 = k(0.05) * t34;
             let t63 = t62 * t58;
-            let t64 = T::fused(t56, t63, T::fused(t42, t59, t47 * t61));
-            let t65 = k(14.925373134328359) * t25;
+            let t64 = T::fused(t56, t63, T::fused(t41, t59, t47 * t61));
+            let t65 = k(7.462686567164179) * t28;
             let t66 = t65 * t60;
             let t67 = t62 * t65;
-            let t68 = T::fused(t56, t67, T::fused(t42, t61, t47 * t66));
-            let t69 = k(14.925373134328359) * t33 * t62;
-            let t70 = T::fused(t56, t69, T::fused(t42, t63, t47 * t67));
-            let t71 = T::fused(t56, t70, T::fused(t42, t64, t47 * t68));
+            let t68 = T::fused(t56, t67, T::fused(t41, t61, t47 * t66));
+            let t69 = k(7.462686567164179) * t34 * t62;
+            let t70 = T::fused(t56, t69, T::fused(t41, t63, t47 * t67));
+            let t71 = T::fused(t56, t70, T::fused(t41, t64, t47 * t68));
             let t72 = T::fused(
                 k(2.0),
-                T::fused(t56, t52, -T::fused(t42, t40, t47 * t45)),
+                T::fused(t56, t52, -T::fused(t41, t39, t47 * t44)),
                 t71,
             );
-            let t73 = k(0.0066) * t39;
-            let t74 = k(2.0) * (t49 + t48);
-            let t75 = k(2.0) * (t32 - t31);
-            let t76 = k(2.0) * (k(0.5) - T::fused(link_6_e3, link_6_e3, t15));
-            let t77 = T::fused(t38, t76, -T::fused(-t24, t74, t30 * t75));
+            let t73 = k(0.0066) * t38;
+            let t74 = t49 + t48;
+            let t75 = t33 - t32;
+            let t76 = T::fused(-link_6_e3, k(2.0) * link_6_e3, t17);
+            let t77 = T::fused(t37, t76, -T::fused(-t26, t74, t31 * t75));
             let t78 = k(0.0002) * t77;
             let t79 = k(0.01)
-                + (k(0.0017) + (k(0.005) + T::fused(t39, t73, t77 * t78) - t72));
-            let t80 = T::fused(-k(0.1), t41, t64) - t40;
-            let t81 = T::fused(-k(0.1), t46, t68) - t45;
-            let t82 = T::fused(-k(0.1), t55, t70) + t52;
+                + (k(0.0017) + (k(0.005) + T::fused(t38, t73, t77 * t78) - t72));
+            let t80 = T::fused(-k(0.05), t40, t64) - t39;
+            let t81 = T::fused(-k(0.05), t46, t68) - t44;
+            let t82 = T::fused(-k(0.05), t55, t70) + t52;
             let t83 = T::fused(
                 k(2.0),
-                T::fused(t56, t82, T::fused(t42, t80, t47 * t81)),
+                T::fused(t56, t82, T::fused(t41, t80, t47 * t81)),
                 t71,
             );
-            let t84 = k(2.0) * t46;
-            let t85 = k(2.0) * t41;
-            let t86 = k(2.0) * t55;
-            let t87 = T::fused(t86, t34, T::fused(t84, t26, t85 * t21));
-            let t88 = t87 * t17;
-            let t89 = t87 * t44;
-            let t90 = t87 * t51;
-            let t91 = k(0.2) * t23;
-            let t92 = k(0.2) * t29;
-            let t93 = k(0.2) * t37;
-            let t94 = T::fused(t93, t52, T::fused(t91, t40, t92 * t45))
-                - T::fused(t56, t90, -T::fused(t42, t88, t47 * t89));
-            let t95 = T::fused(t93, t63, -T::fused(t91, t59, t92 * t61));
-            let t96 = T::fused(t93, t67, -T::fused(t91, t61, t92 * t66));
-            let t97 = T::fused(t93, t69, -T::fused(t91, t63, t92 * t67));
-            let t98 = T::fused(t56, t97, T::fused(t42, t95, t47 * t96));
-            let t99 = T::fused(t86, t76, -T::fused(-t84, t75, t85 * t74));
-            let t100 = T::fused(k(0.1), t23, t95) + t88;
-            let t101 = T::fused(k(0.1), t29, t96) + t89;
-            let t102 = T::fused(-k(0.1), t37, t97) - t90;
-            let t103 = T::fused(t93, t82, -T::fused(t91, t80, t92 * t81))
-                + T::fused(t56, t102, T::fused(t42, t100, t47 * t101));
-            let t104 = t103 + t98 + (T::fused(t87, t73, t99 * t78) + (t98 + t94));
-            let t105 = T::fused(t93, t97, -T::fused(t91, t95, t92 * t96));
-            let t106 = T::fused(
+            let t84 = T::fused(t55, t34, T::fused(t40, t22, t46 * t28));
+            let t85 = t84 * t19;
+            let t86 = t84 * t43;
+            let t87 = t84 * t51;
+            let t88 = k(0.1) * t26;
+            let t89 = k(0.1) * t31;
+            let t90 = k(0.1) * t37;
+            let t91 = T::fused(t90, t52, T::fused(t88, t39, t89 * t44))
+                - T::fused(t56, t87, -T::fused(t41, t85, t47 * t86));
+            let t92 = T::fused(t90, t63, -T::fused(t88, t59, t89 * t61));
+            let t93 = T::fused(t90, t67, -T::fused(t88, t61, t89 * t66));
+            let t94 = T::fused(t90, t69, -T::fused(t88, t63, t89 * t67));
+            let t95 = T::fused(t56, t94, T::fused(t41, t92, t47 * t93));
+            let t96 = T::fused(t55, t76, T::fused(-t40, t74, t46 * t75));
+            let t97 = T::fused(k(0.05), t26, t92) + t85;
+            let t98 = T::fused(k(0.05), t31, t93) + t86;
+            let t99 = T::fused(-k(0.05), t37, t94) - t87;
+            let t100 = T::fused(t90, t82, -T::fused(t88, t80, t89 * t81))
+                + T::fused(t56, t99, T::fused(t41, t97, t47 * t98));
+            let t101 = t100 + t95 + (T::fused(t84, t73, t96 * t78) + (t95 + t91));
+            let t102 = T::fused(t90, t94, -T::fused(t88, t92, t89 * t93));
+            let t103 = T::fused(
                 -k(2.0),
-                T::fused(t93, t90, T::fused(t91, t88, t92 * t89)),
-                t105,
+                T::fused(t90, t87, T::fused(t88, t85, t89 * t86)),
+                t102,
             );
-            let t107 = k(0.0066) * t87;
-            let t108 = k(0.0002) * t99;
-            let t109 = k(0.01)
-                + (k(0.0016) + (k(0.005) + T::fused(t87, t107, t99 * t108) - t106));
-            let t110 = T::fused(
+            let t104 = k(0.0066) * t84;
+            let t105 = k(0.0002) * t96;
+            let t106 = k(0.01)
+                + (k(0.0016) + (k(0.005) + T::fused(t84, t104, t96 * t105) - t103));
+            let t107 = T::fused(
                 k(2.0),
-                T::fused(t93, t102, -T::fused(t91, t100, t92 * t101)),
-                t105,
+                T::fused(t90, t99, -T::fused(t88, t97, t89 * t98)),
+                t102,
             );
-            let t111 = k(1.0) / (t110 - t109);
-            let t112 = t111 * t104;
-            let t113 = T::fused(t104, t112, -(t83 - t79));
-            let t114 = link_4_e0 * link_4_e3;
-            let t115 = link_4_e1 * link_4_e2;
-            let t116 = t115 - t114;
-            let t117 = k(2.0) * t116;
-            let t118 = link_4_e0 * link_4_e0;
-            let t119 = k(0.5) - T::fused(link_4_e2, link_4_e2, t118);
-            let t120 = k(2.0) * t119;
-            let t121 = link_4_e0 * link_4_e1;
-            let t122 = link_4_e2 * link_4_e3;
-            let t123 = t122 + t121;
-            let t124 = k(2.0) * t123;
-            let t125 = T::fused(t124, t38, -T::fused(t117, t24, t120 * t30));
-            let t126 = k(2.0) * (t54 - t53);
-            let t127 = k(2.0) * (t36 + t35);
-            let t128 = k(2.0) * (k(0.5) - T::fused(link_5_e3, link_5_e3, t22));
-            let t129 = T::fused(t128, t34, -T::fused(-t126, t26, t127 * t21));
-            let t130 = t129 * t17;
-            let t131 = t129 * t44;
-            let t132 = t129 * t51;
-            let t133 = T::fused(t56, t132, -T::fused(t42, t130, t47 * t131));
-            let t134 = T::fused(t128, t76, T::fused(t126, t75, t127 * t74));
-            let t135 = T::fused(t93, t132, T::fused(t91, t130, t92 * t131));
-            let t136 = t135 + (T::fused(t129, t107, t134 * t108) + t135);
+            let t108 = k(1.0) / (t107 - t106);
+            let t109 = t108 * t101;
+            let t110 = T::fused(t101, t109, -(t83 - t79));
+            let t111 = k(2.0) * link_4_e0;
+            let t112 = link_4_e3 * t111;
+            let t113 = k(2.0) * link_4_e1;
+            let t114 = link_4_e2 * t113;
+            let t115 = t114 - t112;
+            let t116 = k(2.0) * link_4_e2;
+            let t117 = T::fused(-link_4_e0, t111, k(1.0));
+            let t118 = T::fused(-link_4_e2, t116, t117);
+            let t119 = link_4_e1 * t111;
+            let t120 = link_4_e3 * t116;
+            let t121 = t120 + t119;
+            let t122 = T::fused(t121, t37, -T::fused(t115, t26, t118 * t31));
+            let t123 = t36 + t35;
+            let t124 = t54 - t53;
+            let t125 = T::fused(-link_5_e3, k(2.0) * link_5_e3, t25);
+            let t126 = T::fused(t125, t34, T::fused(-t123, t22, t124 * t28));
+            let t127 = t126 * t19;
+            let t128 = t126 * t43;
+            let t129 = t126 * t51;
+            let t130 = T::fused(t56, t129, -T::fused(t41, t127, t47 * t128));
+            let t131 = T::fused(t125, t76, T::fused(t123, t74, t124 * t75));
+            let t132 = T::fused(t90, t129, T::fused(t88, t127, t89 * t128));
+            let t133 = t132 + (T::fused(t104, t126, t105 * t131) + t132);
+            let t134 = T::fused(
+                t133,
+                t109,
+                -(t130 - (T::fused(t126, t73, t131 * t78) - t130)),
+            );
+            let t135 = T::fused(t121, t125, T::fused(-t115, t123, t118 * t124));
+            let t136 = T::fused(t122, t110, t135 * t134);
             let t137 = T::fused(
-                t136,
-                t112,
-                -(t133 - (T::fused(t129, t73, t134 * t78) - t133)),
+                t133,
+                t108 * t133,
+                k(0.0002) + T::fused(t126, k(0.0066) * t126, t131 * (k(0.0002) * t131)),
             );
-            let t138 = T::fused(t124, t128, -T::fused(-t120, t126, t117 * t127));
-            let t139 = T::fused(t125, t113, t138 * t137);
-            let t140 = T::fused(
-                t136,
-                t111 * t136,
-                k(0.0002) + T::fused(t129, k(0.0066) * t129, t134 * (k(0.0002) * t134)),
-            );
-            let t141 = T::fused(t125, t137, t138 * t140);
-            let t142 = t100 + (t91 + t95);
-            let t143 = t111 * t142;
-            let t144 = T::fused(t143, t104, -(t80 - (t42 - t64)));
-            let t145 = T::fused(t143, t136, t130);
-            let t146 = T::fused(t125, t144, t138 * t145);
-            let t147 = k(0.5) - T::fused(link_4_e1, link_4_e1, t118);
-            let t148 = k(0.2) * t147;
-            let t149 = t101 + (t92 + t96);
-            let t150 = t111 * t149;
-            let t151 = T::fused(t150, t104, -(t81 - (t47 - t68)));
-            let t152 = T::fused(t150, t136, t131);
-            let t153 = T::fused(t125, t151, t138 * t152);
-            let t154 = t115 + t114;
-            let t155 = k(0.2) * t154;
-            let t156 = t102 - (t93 - t97);
-            let t157 = t111 * t156;
-            let t158 = T::fused(t157, t104, -(t82 - (t56 - t70)));
-            let t159 = T::fused(-t157, t136, t132);
-            let t160 = T::fused(-t125, t158, t138 * t159);
-            let t161 = link_4_e0 * link_4_e2;
-            let t162 = link_4_e1 * link_4_e3;
-            let t163 = t162 - t161;
-            let t164 = k(0.2) * t163;
-            let t165 = T::fused(-t142, t143, t59);
-            let t166 = T::fused(-t149, t143, t61);
-            let t167 = T::fused(-t156, t143, t63);
-            let t168 = T::fused(t164, t167, -T::fused(t148, t165, t155 * t166));
-            let t169 = T::fused(-t149, t150, t66);
-            let t170 = T::fused(-t156, t150, t67);
-            let t171 = T::fused(t164, t170, -T::fused(t148, t166, t155 * t169));
-            let t172 = T::fused(-t156, t157, t69);
-            let t173 = T::fused(t164, t172, -T::fused(t148, t167, t155 * t170));
-            let t174 = T::fused(t164, t173, -T::fused(t148, t168, t155 * t171));
-            let t175 = T::fused(
+            let t138 = T::fused(t122, t134, t135 * t137);
+            let t139 = t97 + (t88 + t92);
+            let t140 = t108 * t139;
+            let t141 = T::fused(t140, t101, -(t80 - (t41 - t64)));
+            let t142 = T::fused(t140, t133, t127);
+            let t143 = T::fused(t122, t141, t135 * t142);
+            let t144 = T::fused(-link_4_e1, t113, t117);
+            let t145 = k(0.1) * t144;
+            let t146 = t98 + (t89 + t93);
+            let t147 = t108 * t146;
+            let t148 = T::fused(t147, t101, -(t81 - (t47 - t68)));
+            let t149 = T::fused(t147, t133, t128);
+            let t150 = T::fused(t122, t148, t135 * t149);
+            let t151 = t114 + t112;
+            let t152 = k(0.1) * t151;
+            let t153 = t99 - (t90 - t94);
+            let t154 = t108 * t153;
+            let t155 = T::fused(t154, t101, -(t82 - (t56 - t70)));
+            let t156 = T::fused(-t154, t133, t129);
+            let t157 = T::fused(-t122, t155, t135 * t156);
+            let t158 = link_4_e2 * t111;
+            let t159 = link_4_e3 * t113;
+            let t160 = t159 - t158;
+            let t161 = k(0.1) * t160;
+            let t162 = T::fused(-t139, t140, t59);
+            let t163 = T::fused(-t146, t140, t61);
+            let t164 = T::fused(-t153, t140, t63);
+            let t165 = T::fused(t161, t164, -T::fused(t145, t162, t152 * t163));
+            let t166 = T::fused(-t146, t147, t66);
+            let t167 = T::fused(-t153, t147, t67);
+            let t168 = T::fused(t161, t167, -T::fused(t145, t163, t152 * t166));
+            let t169 = T::fused(-t153, t154, t69);
+            let t170 = T::fused(t161, t169, -T::fused(t145, t164, t152 * t167));
+            let t171 = T::fused(t161, t170, -T::fused(t145, t165, t152 * t168));
+            let t172 = T::fused(
                 -k(2.0),
-                T::fused(t164, t160, T::fused(t148, t146, t155 * t153)),
-                t174,
+                T::fused(t161, t157, T::fused(t145, t143, t152 * t150)),
+                t171,
             );
-            let t176 = k(0.015)
-                + (k(0.0016) - (t175 - (k(0.01) + T::fused(t125, t139, t138 * t141))));
-            let t177 = t148 + t168 + t146;
-            let t178 = t155 + t171 + t153;
-            let t179 = t164 - t173 + t160;
-            let t180 = T::fused(
+            let t173 = k(0.015)
+                + (k(0.0016) - (t172 - (k(0.01) + T::fused(t122, t136, t135 * t138))));
+            let t174 = t145 + t165 + t143;
+            let t175 = t152 + t168 + t150;
+            let t176 = t161 - t170 + t157;
+            let t177 = T::fused(
                 k(2.0),
-                T::fused(t164, t179, T::fused(t148, t177, t155 * t178)),
-                -t174,
+                T::fused(t161, t176, T::fused(t145, t174, t152 * t175)),
+                -t171,
             );
-            let t181 = k(2.0) * t147;
-            let t182 = k(2.0) * t154;
-            let t183 = k(2.0) * t163;
-            let t184 = T::fused(t183, t38, T::fused(t181, t24, t182 * t30));
-            let t185 = T::fused(t183, t128, -T::fused(-t181, t127, t182 * t126));
-            let t186 = T::fused(t184, t113, t185 * t137);
-            let t187 = T::fused(t184, t137, t185 * t140);
-            let t188 = k(0.2) * t116;
-            let t189 = k(0.2) * t119;
-            let t190 = k(0.2) * t123;
-            let t191 = T::fused(t184, t144, t185 * t145);
-            let t192 = T::fused(t184, t151, t185 * t152);
-            let t193 = T::fused(-t184, t158, t185 * t159);
-            let t194 = T::fused(t164, t193, T::fused(t148, t191, t155 * t192))
-                - T::fused(t190, t160, -T::fused(t188, t146, t189 * t153));
-            let t195 = T::fused(t190, t173, T::fused(t188, t168, t189 * t171));
-            let t196 = T::fused(t190, t167, T::fused(t188, t165, t189 * t166));
-            let t197 = t188 - t196 + t191;
-            let t198 = T::fused(t190, t170, T::fused(t188, t166, t189 * t169));
-            let t199 = t189 - t198 + t192;
+            let t178 = T::fused(t160, t37, T::fused(t144, t26, t151 * t31));
+            let t179 = T::fused(t160, t125, -T::fused(-t144, t123, t151 * t124));
+            let t180 = T::fused(t178, t110, t179 * t134);
+            let t181 = T::fused(t178, t134, t179 * t137);
+            let t182 = k(0.1) * t115;
+            let t183 = k(0.1) * t118;
+            let t184 = k(0.1) * t121;
+            let t185 = T::fused(t178, t141, t179 * t142);
+            let t186 = T::fused(t178, t148, t179 * t149);
+            let t187 = T::fused(-t178, t155, t179 * t156);
+            let t188 = T::fused(t161, t187, T::fused(t145, t185, t152 * t186))
+                - T::fused(t184, t157, -T::fused(t182, t143, t183 * t150));
+            let t189 = T::fused(t184, t170, T::fused(t182, t165, t183 * t168));
+            let t190 = T::fused(t184, t164, T::fused(t182, t162, t183 * t163));
+            let t191 = t182 - t190 + t185;
+            let t192 = T::fused(t184, t167, T::fused(t182, t163, t183 * t166));
+            let t193 = t183 - t192 + t186;
+            let t194 = T::fused(t184, t169, T::fused(t182, t164, t183 * t167));
+            let t195 = t184 - t194 - t187;
+            let t196 = T::fused(t161, t195, -T::fused(t145, t191, t152 * t193))
+                + T::fused(t184, t176, -T::fused(t182, t174, t183 * t175));
+            let t197 = t196 - t189 - (t189 + t188 + T::fused(t122, t180, t135 * t181));
+            let t198 = T::fused(t184, t194, T::fused(t182, t190, t183 * t192));
+            let t199 = T::fused(
+                k(2.0),
+                T::fused(t184, t187, -T::fused(t182, t185, t183 * t186)),
+                t198,
+            );
             (
                 t0,
                 t1,
                 t2,
-                t3,
-                t6,
+                t4,
                 t7,
                 t8,
                 t9,
@@ -7569,18 +7751,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
                 t12,
                 t13,
                 t14,
-                t16,
-                t17,
-                t20,
-                t24,
-                t25,
-                t30,
-                t33,
+                t18,
+                t19,
+                t22,
+                t26,
+                t28,
+                t31,
+                t34,
+                t37,
                 t38,
-                t39,
+                t41,
                 t42,
                 t43,
-                t44,
                 t47,
                 t50,
                 t51,
@@ -7595,15 +7777,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
                 t67,
                 t69,
                 t77,
-                t87,
-                t91,
-                t92,
-                t93,
-                t99,
-                t104,
-                t111,
-                t113,
-                t116,
+                t84,
+                t88,
+                t89,
+                t90,
+                t96,
+                t101,
+                t108,
+                t110,
+                t115,
                 t117,
                 t118,
                 t119,
@@ -7614,29 +7796,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
                 t124,
                 t125,
                 t126,
-                t127,
-                t128,
-                t129,
+                t131,
+                t133,
                 t134,
+                t135,
                 t136,
                 t137,
                 t138,
                 t139,
-                t140,
                 t141,
                 t142,
                 t144,
                 t145,
-                t147,
+                t146,
                 t148,
                 t149,
                 t151,
                 t152,
-                t154,
+                t153,
                 t155,
                 t156,
                 t158,
                 t159,
+                t160,
                 t161,
                 t162,
                 t163,
@@ -7647,916 +7829,912 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
                 t168,
                 t169,
                 t170,
-                t171,
-                t172,
                 t173,
+                t174,
+                t175,
                 t176,
                 t177,
                 t178,
                 t179,
                 t180,
+                t181,
+                t182,
+                t183,
                 t184,
-                t185,
-                t186,
-                t187,
-                t188,
-                t189,
                 t190,
                 t191,
                 t192,
                 t193,
                 t194,
                 t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t203,
+            t202,
+            t204,
             t208,
-            t210,
-            t213,
-            t217,
-            t221,
-            t222,
+            t211,
+            t214,
+            t215,
+            t219,
+            t220,
             t226,
             t227,
+            t228,
+            t231,
             t233,
-            t234,
             t235,
-            t238,
+            t236,
+            t239,
             t240,
             t242,
             t243,
-            t246,
             t247,
-            t249,
+            t248,
             t250,
-            t253,
-            t254,
+            t251,
             t256,
             t257,
+            t258,
+            t259,
+            t261,
             t262,
-            t263,
             t264,
-            t265,
-            t267,
-            t268,
-            t270,
-            t282,
-            t283,
-            t287,
-            t288,
-            t289,
+            t273,
+            t274,
+            t278,
+            t279,
+            t280,
+            t290,
+            t297,
             t299,
+            t304,
             t306,
+            t307,
             t308,
+            t309,
+            t310,
             t311,
             t312,
             t313,
             t314,
             t315,
             t316,
-            t317,
-            t318,
-            t319,
-            t320,
-            t321,
             t322,
             t323,
             t324,
             t325,
+            t327,
+            t328,
+            t329,
             t331,
             t332,
-            t333,
             t334,
+            t335,
             t336,
-            t337,
             t338,
-            t340,
+            t339,
             t341,
+            t342,
             t343,
-            t344,
             t345,
-            t347,
+            t346,
             t348,
+            t349,
             t350,
             t351,
             t352,
+            t353,
             t354,
             t355,
+            t356,
             t357,
             t358,
             t359,
             t360,
-            t361,
-            t362,
-            t363,
             t364,
             t365,
             t366,
-            t367,
             t368,
             t369,
+            t370,
+            t371,
             t372,
             t373,
             t374,
-            t375,
-            t376,
             t380,
             t381,
             t382,
             t383,
             t384,
             t385,
-            t386,
             t387,
-            t388,
-            t389,
             t392,
             t393,
             t394,
-            t395,
             t396,
             t397,
+            t398,
             t399,
         ) = {
-            let t200 = T::fused(t190, t172, T::fused(t188, t167, t189 * t170));
-            let t201 = t190 - t200 - t193;
-            let t202 = T::fused(t164, t201, -T::fused(t148, t197, t155 * t199))
-                + T::fused(t190, t179, -T::fused(t188, t177, t189 * t178));
-            let t203 = t202 - t195 - (t195 + t194 + T::fused(t125, t186, t138 * t187));
-            let t204 = T::fused(t190, t200, T::fused(t188, t196, t189 * t198));
-            let t205 = T::fused(
+            let t200 = k(0.015)
+                + (k(0.0017) - (t199 - (k(0.01) + T::fused(t178, t180, t179 * t181))));
+            let t201 = T::fused(
                 k(2.0),
-                T::fused(t190, t193, -T::fused(t188, t191, t189 * t192)),
-                t204,
+                T::fused(t184, t195, T::fused(t182, t191, t183 * t193)),
+                -t198,
             );
-            let t206 = k(0.015)
-                + (k(0.0017) - (t205 - (k(0.01) + T::fused(t184, t186, t185 * t187))));
-            let t207 = T::fused(
-                k(2.0),
-                T::fused(t190, t201, T::fused(t188, t197, t189 * t199)),
-                -t204,
-            );
-            let t208 = k(1.0) / (t207 + t206);
-            let t209 = t208 * t203;
-            let t210 = T::fused(t203, t209, -(t180 + t176));
-            let t211 = link_3_e0 * link_3_e0;
-            let t212 = k(0.5) - T::fused(link_3_e1, link_3_e1, t211);
-            let t213 = k(2.0) * t212;
-            let t214 = link_3_e0 * link_3_e3;
-            let t215 = link_3_e1 * link_3_e2;
-            let t216 = t215 + t214;
-            let t217 = k(2.0) * t216;
-            let t218 = link_3_e0 * link_3_e2;
-            let t219 = link_3_e1 * link_3_e3;
-            let t220 = t219 - t218;
-            let t221 = k(2.0) * t220;
-            let t222 = T::fused(t221, t124, -T::fused(t213, t117, t217 * t120));
-            let t223 = k(2.0) * (t162 + t161);
-            let t224 = k(2.0) * (t122 - t121);
-            let t225 = k(2.0) * (k(0.5) - T::fused(link_4_e3, link_4_e3, t118));
-            let t226 = T::fused(t225, t38, -T::fused(-t223, t24, t224 * t30));
-            let t227 = T::fused(t225, t128, T::fused(t224, t126, t223 * t127));
-            let t228 = T::fused(t226, t144, t227 * t145);
-            let t229 = T::fused(t226, t151, t227 * t152);
-            let t230 = T::fused(-t226, t158, t227 * t159);
-            let t231 = T::fused(t164, t230, T::fused(t148, t228, t155 * t229));
-            let t232 = T::fused(t190, t230, -T::fused(t188, t228, t189 * t229));
-            let t233 = t232 + (t232 - T::fused(t226, t186, t227 * t187));
-            let t234 = T::fused(
-                t233,
-                t209,
-                -(t231 + (t231 + T::fused(t226, t139, t227 * t141))),
-            );
-            let t235 = T::fused(t221, t225, -T::fused(-t213, t223, t217 * t224));
-            let t236 = T::fused(t222, t210, t235 * t234);
-            let t237 = T::fused(
+            let t202 = k(1.0) / (t201 + t200);
+            let t203 = t202 * t197;
+            let t204 = T::fused(t197, t203, -(t177 + t173));
+            let t205 = k(2.0) * link_3_e1;
+            let t206 = k(2.0) * link_3_e0;
+            let t207 = T::fused(-link_3_e0, t206, k(1.0));
+            let t208 = T::fused(-link_3_e1, t205, t207);
+            let t209 = link_3_e3 * t206;
+            let t210 = link_3_e2 * t205;
+            let t211 = t210 + t209;
+            let t212 = link_3_e2 * t206;
+            let t213 = link_3_e3 * t205;
+            let t214 = t213 - t212;
+            let t215 = T::fused(t214, t121, -T::fused(t208, t115, t211 * t118));
+            let t216 = t159 + t158;
+            let t217 = t120 - t119;
+            let t218 = T::fused(-link_4_e3, k(2.0) * link_4_e3, t117);
+            let t219 = T::fused(t218, t37, -T::fused(-t216, t26, t217 * t31));
+            let t220 = T::fused(t218, t125, T::fused(t216, t123, t217 * t124));
+            let t221 = T::fused(t219, t141, t220 * t142);
+            let t222 = T::fused(t219, t148, t220 * t149);
+            let t223 = T::fused(-t219, t155, t220 * t156);
+            let t224 = T::fused(t161, t223, T::fused(t145, t221, t152 * t222));
+            let t225 = T::fused(t184, t223, -T::fused(t182, t221, t183 * t222));
+            let t226 = t225 + (t225 - T::fused(t219, t180, t220 * t181));
+            let t227 = T::fused(
                 t226,
-                T::fused(t226, t113, t227 * t137),
-                t227 * T::fused(t226, t137, t227 * t140),
-            );
-            let t238 = T::fused(t233, t208 * t233, -(k(0.0002) + t237));
-            let t239 = T::fused(t222, t234, t235 * t238);
-            let t240 = t197 - T::fused(-k(0.3), t116, t196);
-            let t241 = t208 * t240;
-            let t242 = T::fused(t241, t203, t177 + T::fused(k(0.3), t147, t168));
-            let t243 = T::fused(t241, t233, t228);
-            let t244 = T::fused(t222, t242, t235 * t243);
-            let t245 = t215 - t214;
-            let t246 = k(0.2) * t245;
-            let t247 = t199 - T::fused(-k(0.3), t119, t198);
-            let t248 = t208 * t247;
-            let t249 = T::fused(t248, t203, t178 + T::fused(k(0.3), t154, t171));
-            let t250 = T::fused(t248, t233, t229);
-            let t251 = T::fused(t222, t249, t235 * t250);
-            let t252 = k(0.5) - T::fused(link_3_e2, link_3_e2, t211);
-            let t253 = k(0.2) * t252;
-            let t254 = t201 - T::fused(-k(0.3), t123, t200);
-            let t255 = t208 * t254;
-            let t256 = T::fused(t255, t203, -(t179 - T::fused(-k(0.3), t163, t173)));
-            let t257 = T::fused(-t255, t233, t230);
-            let t258 = T::fused(-t222, t256, t235 * t257);
-            let t259 = link_3_e0 * link_3_e1;
-            let t260 = link_3_e2 * link_3_e3;
-            let t261 = t260 + t259;
-            let t262 = k(0.2) * t261;
-            let t263 = T::fused(t240, t241, t165);
-            let t264 = T::fused(t247, t241, t166);
-            let t265 = T::fused(t254, t241, t167);
-            let t266 = T::fused(t262, t265, T::fused(t246, t263, t253 * t264));
-            let t267 = T::fused(t247, t248, t169);
-            let t268 = T::fused(t254, t248, t170);
-            let t269 = T::fused(t262, t268, T::fused(t246, t264, t253 * t267));
-            let t270 = T::fused(t254, t255, t172);
-            let t271 = T::fused(t262, t270, T::fused(t246, t265, t253 * t268));
-            let t272 = T::fused(t262, t271, T::fused(t246, t266, t253 * t269));
-            let t273 = T::fused(
-                k(2.0),
-                T::fused(t262, t258, -T::fused(t246, t244, t253 * t251)),
-                t272,
-            );
-            let t274 = k(0.02)
-                + (k(0.0017) - (t273 - (k(0.015) - T::fused(t222, t236, t235 * t239))));
-            let t275 = T::fused(-k(0.3), t245, t266) - t244;
-            let t276 = T::fused(-k(0.3), t252, t269) - t251;
-            let t277 = T::fused(-k(0.3), t261, t271) + t258;
-            let t278 = T::fused(
-                k(2.0),
-                T::fused(t262, t277, T::fused(t246, t275, t253 * t276)),
-                t272,
-            );
-            let t279 = k(2.0) * t252;
-            let t280 = k(2.0) * t245;
-            let t281 = k(2.0) * t261;
-            let t282 = T::fused(t281, t124, T::fused(t279, t120, t280 * t117));
-            let t283 = T::fused(t281, t225, -T::fused(-t279, t224, t280 * t223));
-            let t284 = T::fused(t282, t242, t283 * t243);
-            let t285 = T::fused(t282, t249, t283 * t250);
-            let t286 = T::fused(-t282, t256, t283 * t257);
-            let t287 = k(0.2) * t212;
-            let t288 = k(0.2) * t216;
-            let t289 = k(0.2) * t220;
-            let t290 = T::fused(t289, t258, T::fused(t287, t244, t288 * t251))
-                - T::fused(t262, t286, -T::fused(t246, t284, t253 * t285));
-            let t291 = T::fused(t289, t265, -T::fused(t287, t263, t288 * t264));
-            let t292 = T::fused(t289, t268, -T::fused(t287, t264, t288 * t267));
-            let t293 = T::fused(t289, t270, -T::fused(t287, t265, t288 * t268));
-            let t294 = T::fused(t262, t293, T::fused(t246, t291, t253 * t292));
-            let t295 = T::fused(k(0.3), t212, t291) + t284;
-            let t296 = T::fused(k(0.3), t216, t292) + t285;
-            let t297 = T::fused(-k(0.3), t220, t293) - t286;
-            let t298 = T::fused(t289, t277, -T::fused(t287, t275, t288 * t276))
-                + T::fused(t262, t297, T::fused(t246, t295, t253 * t296));
-            let t299 = t298 + t294 + (t294 + t290 - T::fused(t282, t236, t283 * t239));
-            let t300 = T::fused(t282, t210, t283 * t234);
-            let t301 = T::fused(t282, t234, t283 * t238);
-            let t302 = T::fused(t289, t293, -T::fused(t287, t291, t288 * t292));
-            let t303 = T::fused(
-                -k(2.0),
-                T::fused(t289, t286, T::fused(t287, t284, t288 * t285)),
-                t302,
-            );
-            let t304 = k(0.02)
-                + (k(0.0016) - (t303 - (k(0.015) - T::fused(t282, t300, t283 * t301))));
-            let t305 = T::fused(
-                k(2.0),
-                T::fused(t289, t297, -T::fused(t287, t295, t288 * t296)),
-                t302,
-            );
-            let t306 = k(1.0) / (t305 - t304);
-            let t307 = t306 * t299;
-            let t308 = T::fused(t299, t307, -(t278 - t274));
-            let t309 = link_2_e0 * link_2_e3;
-            let t310 = link_2_e1 * link_2_e2;
-            let t311 = t310 - t309;
-            let t312 = k(2.0) * t311;
-            let t313 = link_2_e0 * link_2_e0;
-            let t314 = k(0.5) - T::fused(link_2_e2, link_2_e2, t313);
-            let t315 = k(2.0) * t314;
-            let t316 = link_2_e0 * link_2_e1;
-            let t317 = link_2_e2 * link_2_e3;
-            let t318 = t317 + t316;
-            let t319 = k(2.0) * t318;
-            let t320 = T::fused(t319, t221, -T::fused(t312, t213, t315 * t217));
-            let t321 = k(2.0) * (t260 - t259);
-            let t322 = k(2.0) * (t219 + t218);
-            let t323 = k(2.0) * (k(0.5) - T::fused(link_3_e3, link_3_e3, t211));
-            let t324 = T::fused(t323, t124, -T::fused(-t321, t120, t322 * t117));
-            let t325 = T::fused(t323, t225, T::fused(t321, t224, t322 * t223));
-            let t326 = T::fused(t324, t242, t325 * t243);
-            let t327 = T::fused(t324, t249, t325 * t250);
-            let t328 = T::fused(-t324, t256, t325 * t257);
-            let t329 = T::fused(t262, t328, -T::fused(t246, t326, t253 * t327));
-            let t330 = T::fused(t289, t328, T::fused(t287, t326, t288 * t327));
-            let t331 = t330 + (t330 - T::fused(t324, t300, t325 * t301));
-            let t332 = T::fused(
-                t331,
-                t307,
-                -(t329 + (t329 + T::fused(t324, t236, t325 * t239))),
-            );
-            let t333 = T::fused(t319, t323, -T::fused(-t315, t321, t312 * t322));
-            let t334 = T::fused(t320, t308, t333 * t332);
-            let t335 = T::fused(
-                t324,
-                T::fused(t324, t210, t325 * t234),
-                t325 * T::fused(t324, t234, t325 * t238),
-            );
-            let t336 = T::fused(t331, t306 * t331, k(0.0002) - t335);
-            let t337 = T::fused(t320, t332, t333 * t336);
-            let t338 = t295 + T::fused(k(0.4), t212, t291);
-            let t339 = t306 * t338;
-            let t340 = T::fused(t339, t299, -(t275 + T::fused(-k(0.4), t245, t266)));
-            let t341 = T::fused(t339, t331, t326);
-            let t342 = T::fused(t320, t340, t333 * t341);
-            let t343 = k(0.5) - T::fused(link_2_e1, link_2_e1, t313);
-            let t344 = k(0.2) * t343;
-            let t345 = t296 + T::fused(k(0.4), t216, t292);
-            let t346 = t306 * t345;
-            let t347 = T::fused(t346, t299, -(t276 + T::fused(-k(0.4), t252, t269)));
-            let t348 = T::fused(t346, t331, t327);
-            let t349 = T::fused(t320, t347, t333 * t348);
-            let t350 = t310 + t309;
-            let t351 = k(0.2) * t350;
-            let t352 = t297 + T::fused(-k(0.4), t220, t293);
-            let t353 = t306 * t352;
-            let t354 = T::fused(t353, t299, -(t277 + T::fused(-k(0.4), t261, t271)));
-            let t355 = T::fused(-t353, t331, t328);
-            let t356 = T::fused(-t320, t354, t333 * t355);
-            let t357 = link_2_e0 * link_2_e2;
-            let t358 = link_2_e1 * link_2_e3;
-            let t359 = t358 - t357;
-            let t360 = k(0.2) * t359;
-            let t361 = T::fused(-t338, t339, t263);
-            let t362 = T::fused(-t345, t339, t264);
-            let t363 = T::fused(-t352, t339, t265);
-            let t364 = T::fused(t360, t363, -T::fused(t344, t361, t351 * t362));
-            let t365 = T::fused(-t345, t346, t267);
-            let t366 = T::fused(-t352, t346, t268);
-            let t367 = T::fused(t360, t366, -T::fused(t344, t362, t351 * t365));
-            let t368 = T::fused(-t352, t353, t270);
-            let t369 = T::fused(t360, t368, -T::fused(t344, t363, t351 * t366));
-            let t370 = T::fused(t360, t369, -T::fused(t344, t364, t351 * t367));
-            let t371 = T::fused(
-                -k(2.0),
-                T::fused(t360, t356, T::fused(t344, t342, t351 * t349)),
-                t370,
-            );
-            let t372 = k(0.025)
-                + (k(0.0016) - (t371 - (k(0.02) + T::fused(t320, t334, t333 * t337))));
-            let t373 = T::fused(k(0.4), t343, t364) + t342;
-            let t374 = T::fused(k(0.4), t350, t367) + t349;
-            let t375 = T::fused(-k(0.4), t359, t369) - t356;
-            let t376 = T::fused(
-                k(2.0),
-                T::fused(t360, t375, -T::fused(t344, t373, t351 * t374)),
-                t370,
-            );
-            let t377 = k(2.0) * t343;
-            let t378 = k(2.0) * t350;
-            let t379 = k(2.0) * t359;
-            let t380 = T::fused(t379, t221, T::fused(t377, t213, t378 * t217));
-            let t381 = T::fused(t379, t323, -T::fused(-t377, t322, t378 * t321));
-            let t382 = T::fused(t380, t308, t381 * t332);
-            let t383 = T::fused(t380, t332, t381 * t336);
-            let t384 = k(0.2) * t311;
-            let t385 = k(0.2) * t314;
-            let t386 = k(0.2) * t318;
-            let t387 = T::fused(t380, t340, t381 * t341);
-            let t388 = T::fused(t380, t347, t381 * t348);
-            let t389 = T::fused(-t380, t354, t381 * t355);
-            let t390 = T::fused(t360, t389, T::fused(t344, t387, t351 * t388))
-                - T::fused(t386, t356, -T::fused(t384, t342, t385 * t349));
-            let t391 = T::fused(t386, t369, T::fused(t384, t364, t385 * t367));
-            let t392 = T::fused(t386, t363, T::fused(t384, t361, t385 * t362));
-            let t393 = T::fused(-k(0.4), t311, t392) - t387;
-            let t394 = T::fused(t386, t366, T::fused(t384, t362, t385 * t365));
-            let t395 = T::fused(-k(0.4), t314, t394) - t388;
-            let t396 = T::fused(t386, t368, T::fused(t384, t363, t385 * t366));
-            let t397 = T::fused(-k(0.4), t318, t396) + t389;
-            let t398 = T::fused(t360, t397, -T::fused(t344, t393, t351 * t395))
-                + T::fused(t386, t375, T::fused(t384, t373, t385 * t374));
-            let t399 = t398 + t391 + (t391 + t390 + T::fused(t320, t382, t333 * t383));
-            (
                 t203,
+                -(t224 + (t224 + T::fused(t219, t136, t220 * t138))),
+            );
+            let t228 = T::fused(t214, t218, -T::fused(-t208, t216, t211 * t217));
+            let t229 = T::fused(t215, t204, t228 * t227);
+            let t230 = T::fused(
+                t219,
+                T::fused(t219, t110, t220 * t134),
+                t220 * T::fused(t219, t134, t220 * t137),
+            );
+            let t231 = T::fused(t226, t202 * t226, -(k(0.0002) + t230));
+            let t232 = T::fused(t215, t227, t228 * t231);
+            let t233 = t191 - T::fused(-k(0.15), t115, t190);
+            let t234 = t202 * t233;
+            let t235 = T::fused(t234, t197, t174 + T::fused(k(0.15), t144, t165));
+            let t236 = T::fused(t234, t226, t221);
+            let t237 = T::fused(t215, t235, t228 * t236);
+            let t238 = t210 - t209;
+            let t239 = k(0.1) * t238;
+            let t240 = t193 - T::fused(-k(0.15), t118, t192);
+            let t241 = t202 * t240;
+            let t242 = T::fused(t241, t197, t175 + T::fused(k(0.15), t151, t168));
+            let t243 = T::fused(t241, t226, t222);
+            let t244 = T::fused(t215, t242, t228 * t243);
+            let t245 = k(2.0) * link_3_e2;
+            let t246 = T::fused(-link_3_e2, t245, t207);
+            let t247 = k(0.1) * t246;
+            let t248 = t195 - T::fused(-k(0.15), t121, t194);
+            let t249 = t202 * t248;
+            let t250 = T::fused(t249, t197, -(t176 - T::fused(-k(0.15), t160, t170)));
+            let t251 = T::fused(-t249, t226, t223);
+            let t252 = T::fused(-t215, t250, t228 * t251);
+            let t253 = link_3_e1 * t206;
+            let t254 = link_3_e3 * t245;
+            let t255 = t254 + t253;
+            let t256 = k(0.1) * t255;
+            let t257 = T::fused(t233, t234, t162);
+            let t258 = T::fused(t240, t234, t163);
+            let t259 = T::fused(t248, t234, t164);
+            let t260 = T::fused(t256, t259, T::fused(t239, t257, t247 * t258));
+            let t261 = T::fused(t240, t241, t166);
+            let t262 = T::fused(t248, t241, t167);
+            let t263 = T::fused(t256, t262, T::fused(t239, t258, t247 * t261));
+            let t264 = T::fused(t248, t249, t169);
+            let t265 = T::fused(t256, t264, T::fused(t239, t259, t247 * t262));
+            let t266 = T::fused(t256, t265, T::fused(t239, t260, t247 * t263));
+            let t267 = T::fused(
+                k(2.0),
+                T::fused(t256, t252, -T::fused(t239, t237, t247 * t244)),
+                t266,
+            );
+            let t268 = k(0.02)
+                + (k(0.0017) - (t267 - (k(0.015) - T::fused(t215, t229, t228 * t232))));
+            let t269 = T::fused(-k(0.15), t238, t260) - t237;
+            let t270 = T::fused(-k(0.15), t246, t263) - t244;
+            let t271 = T::fused(-k(0.15), t255, t265) + t252;
+            let t272 = T::fused(
+                k(2.0),
+                T::fused(t256, t271, T::fused(t239, t269, t247 * t270)),
+                t266,
+            );
+            let t273 = T::fused(t255, t121, T::fused(t238, t115, t246 * t118));
+            let t274 = T::fused(t255, t218, T::fused(-t238, t216, t246 * t217));
+            let t275 = T::fused(t273, t235, t274 * t236);
+            let t276 = T::fused(t273, t242, t274 * t243);
+            let t277 = T::fused(-t273, t250, t274 * t251);
+            let t278 = k(0.1) * t208;
+            let t279 = k(0.1) * t211;
+            let t280 = k(0.1) * t214;
+            let t281 = T::fused(t280, t252, T::fused(t278, t237, t279 * t244))
+                - T::fused(t256, t277, -T::fused(t239, t275, t247 * t276));
+            let t282 = T::fused(t280, t259, -T::fused(t278, t257, t279 * t258));
+            let t283 = T::fused(t280, t262, -T::fused(t278, t258, t279 * t261));
+            let t284 = T::fused(t280, t264, -T::fused(t278, t259, t279 * t262));
+            let t285 = T::fused(t256, t284, T::fused(t239, t282, t247 * t283));
+            let t286 = T::fused(k(0.15), t208, t282) + t275;
+            let t287 = T::fused(k(0.15), t211, t283) + t276;
+            let t288 = T::fused(-k(0.15), t214, t284) - t277;
+            let t289 = T::fused(t280, t271, -T::fused(t278, t269, t279 * t270))
+                + T::fused(t256, t288, T::fused(t239, t286, t247 * t287));
+            let t290 = t289 + t285 + (t285 + t281 - T::fused(t273, t229, t274 * t232));
+            let t291 = T::fused(t273, t204, t274 * t227);
+            let t292 = T::fused(t273, t227, t274 * t231);
+            let t293 = T::fused(t280, t284, -T::fused(t278, t282, t279 * t283));
+            let t294 = T::fused(
+                -k(2.0),
+                T::fused(t280, t277, T::fused(t278, t275, t279 * t276)),
+                t293,
+            );
+            let t295 = k(0.02)
+                + (k(0.0016) - (t294 - (k(0.015) - T::fused(t273, t291, t274 * t292))));
+            let t296 = T::fused(
+                k(2.0),
+                T::fused(t280, t288, -T::fused(t278, t286, t279 * t287)),
+                t293,
+            );
+            let t297 = k(1.0) / (t296 - t295);
+            let t298 = t297 * t290;
+            let t299 = T::fused(t290, t298, -(t272 - t268));
+            let t300 = k(2.0) * link_2_e0;
+            let t301 = link_2_e3 * t300;
+            let t302 = k(2.0) * link_2_e1;
+            let t303 = link_2_e2 * t302;
+            let t304 = t303 - t301;
+            let t305 = k(2.0) * link_2_e2;
+            let t306 = T::fused(-link_2_e0, t300, k(1.0));
+            let t307 = T::fused(-link_2_e2, t305, t306);
+            let t308 = link_2_e1 * t300;
+            let t309 = link_2_e3 * t305;
+            let t310 = t309 + t308;
+            let t311 = T::fused(t310, t214, -T::fused(t304, t208, t307 * t211));
+            let t312 = t213 + t212;
+            let t313 = t254 - t253;
+            let t314 = T::fused(-link_3_e3, k(2.0) * link_3_e3, t207);
+            let t315 = T::fused(t314, t121, T::fused(-t312, t115, t313 * t118));
+            let t316 = T::fused(t314, t218, T::fused(t312, t216, t313 * t217));
+            let t317 = T::fused(t315, t235, t316 * t236);
+            let t318 = T::fused(t315, t242, t316 * t243);
+            let t319 = T::fused(-t315, t250, t316 * t251);
+            let t320 = T::fused(t256, t319, -T::fused(t239, t317, t247 * t318));
+            let t321 = T::fused(t280, t319, T::fused(t278, t317, t279 * t318));
+            let t322 = t321 + (t321 - T::fused(t315, t291, t316 * t292));
+            let t323 = T::fused(
+                t322,
+                t298,
+                -(t320 + (t320 + T::fused(t315, t229, t316 * t232))),
+            );
+            let t324 = T::fused(t310, t314, T::fused(-t304, t312, t307 * t313));
+            let t325 = T::fused(t311, t299, t324 * t323);
+            let t326 = T::fused(
+                t315,
+                T::fused(t315, t204, t316 * t227),
+                t316 * T::fused(t315, t227, t316 * t231),
+            );
+            let t327 = T::fused(t322, t297 * t322, k(0.0002) - t326);
+            let t328 = T::fused(t311, t323, t324 * t327);
+            let t329 = t286 + T::fused(k(0.2), t208, t282);
+            let t330 = t297 * t329;
+            let t331 = T::fused(t330, t290, -(t269 + T::fused(-k(0.2), t238, t260)));
+            let t332 = T::fused(t330, t322, t317);
+            let t333 = T::fused(t311, t331, t324 * t332);
+            let t334 = T::fused(-link_2_e1, t302, t306);
+            let t335 = k(0.1) * t334;
+            let t336 = t287 + T::fused(k(0.2), t211, t283);
+            let t337 = t297 * t336;
+            let t338 = T::fused(t337, t290, -(t270 + T::fused(-k(0.2), t246, t263)));
+            let t339 = T::fused(t337, t322, t318);
+            let t340 = T::fused(t311, t338, t324 * t339);
+            let t341 = t303 + t301;
+            let t342 = k(0.1) * t341;
+            let t343 = t288 + T::fused(-k(0.2), t214, t284);
+            let t344 = t297 * t343;
+            let t345 = T::fused(t344, t290, -(t271 + T::fused(-k(0.2), t255, t265)));
+            let t346 = T::fused(-t344, t322, t319);
+            let t347 = T::fused(-t311, t345, t324 * t346);
+            let t348 = link_2_e2 * t300;
+            let t349 = link_2_e3 * t302;
+            let t350 = t349 - t348;
+            let t351 = k(0.1) * t350;
+            let t352 = T::fused(-t329, t330, t257);
+            let t353 = T::fused(-t336, t330, t258);
+            let t354 = T::fused(-t343, t330, t259);
+            let t355 = T::fused(t351, t354, -T::fused(t335, t352, t342 * t353));
+            let t356 = T::fused(-t336, t337, t261);
+            let t357 = T::fused(-t343, t337, t262);
+            let t358 = T::fused(t351, t357, -T::fused(t335, t353, t342 * t356));
+            let t359 = T::fused(-t343, t344, t264);
+            let t360 = T::fused(t351, t359, -T::fused(t335, t354, t342 * t357));
+            let t361 = T::fused(t351, t360, -T::fused(t335, t355, t342 * t358));
+            let t362 = T::fused(
+                -k(2.0),
+                T::fused(t351, t347, T::fused(t335, t333, t342 * t340)),
+                t361,
+            );
+            let t363 = k(0.025)
+                + (k(0.0016) - (t362 - (k(0.02) + T::fused(t311, t325, t324 * t328))));
+            let t364 = T::fused(k(0.2), t334, t355) + t333;
+            let t365 = T::fused(k(0.2), t341, t358) + t340;
+            let t366 = T::fused(-k(0.2), t350, t360) - t347;
+            let t367 = T::fused(
+                k(2.0),
+                T::fused(t351, t366, -T::fused(t335, t364, t342 * t365)),
+                t361,
+            );
+            let t368 = T::fused(t350, t214, T::fused(t334, t208, t341 * t211));
+            let t369 = T::fused(t350, t314, -T::fused(-t334, t312, t341 * t313));
+            let t370 = T::fused(t368, t299, t369 * t323);
+            let t371 = T::fused(t368, t323, t369 * t327);
+            let t372 = k(0.1) * t304;
+            let t373 = k(0.1) * t307;
+            let t374 = k(0.1) * t310;
+            let t375 = T::fused(t368, t331, t369 * t332);
+            let t376 = T::fused(t368, t338, t369 * t339);
+            let t377 = T::fused(-t368, t345, t369 * t346);
+            let t378 = T::fused(t351, t377, T::fused(t335, t375, t342 * t376))
+                - T::fused(t374, t347, -T::fused(t372, t333, t373 * t340));
+            let t379 = T::fused(t374, t360, T::fused(t372, t355, t373 * t358));
+            let t380 = T::fused(t374, t354, T::fused(t372, t352, t373 * t353));
+            let t381 = T::fused(-k(0.2), t304, t380) - t375;
+            let t382 = T::fused(t374, t357, T::fused(t372, t353, t373 * t356));
+            let t383 = T::fused(-k(0.2), t307, t382) - t376;
+            let t384 = T::fused(t374, t359, T::fused(t372, t354, t373 * t357));
+            let t385 = T::fused(-k(0.2), t310, t384) + t377;
+            let t386 = T::fused(t351, t385, -T::fused(t335, t381, t342 * t383))
+                + T::fused(t374, t366, T::fused(t372, t364, t373 * t365));
+            let t387 = t386 + t379 + (t379 + t378 + T::fused(t311, t370, t324 * t371));
+            let t388 = T::fused(t374, t384, T::fused(t372, t380, t373 * t382));
+            let t389 = T::fused(
+                k(2.0),
+                T::fused(t374, t377, -T::fused(t372, t375, t373 * t376)),
+                t388,
+            );
+            let t390 = k(0.025)
+                + (k(0.0017) - (t389 - (k(0.02) + T::fused(t368, t370, t369 * t371))));
+            let t391 = T::fused(
+                k(2.0),
+                T::fused(t374, t385, T::fused(t372, t381, t373 * t383)),
+                t388,
+            );
+            let t392 = k(1.0) / (t391 - t390);
+            let t393 = t392 * t387;
+            let t394 = T::fused(t387, t393, -(t367 - t363));
+            let t395 = k(2.0) * link_1_e2;
+            let t396 = T::fused(-link_1_e2, t395, t1);
+            let t397 = link_1_e1 * t0;
+            let t398 = link_1_e3 * t395;
+            let t399 = t398 + t397;
+            (
+                t202,
+                t204,
                 t208,
-                t210,
-                t213,
-                t217,
-                t221,
-                t222,
+                t211,
+                t214,
+                t215,
+                t219,
+                t220,
                 t226,
                 t227,
+                t228,
+                t231,
                 t233,
-                t234,
                 t235,
-                t238,
+                t236,
+                t239,
                 t240,
                 t242,
                 t243,
-                t246,
                 t247,
-                t249,
+                t248,
                 t250,
-                t253,
-                t254,
+                t251,
                 t256,
                 t257,
+                t258,
+                t259,
+                t261,
                 t262,
-                t263,
                 t264,
-                t265,
-                t267,
-                t268,
-                t270,
-                t282,
-                t283,
-                t287,
-                t288,
-                t289,
+                t273,
+                t274,
+                t278,
+                t279,
+                t280,
+                t290,
+                t297,
                 t299,
+                t304,
                 t306,
+                t307,
                 t308,
+                t309,
+                t310,
                 t311,
                 t312,
                 t313,
                 t314,
                 t315,
                 t316,
-                t317,
-                t318,
-                t319,
-                t320,
-                t321,
                 t322,
                 t323,
                 t324,
                 t325,
+                t327,
+                t328,
+                t329,
                 t331,
                 t332,
-                t333,
                 t334,
+                t335,
                 t336,
-                t337,
                 t338,
-                t340,
+                t339,
                 t341,
+                t342,
                 t343,
-                t344,
                 t345,
-                t347,
+                t346,
                 t348,
+                t349,
                 t350,
                 t351,
                 t352,
+                t353,
                 t354,
                 t355,
+                t356,
                 t357,
                 t358,
                 t359,
                 t360,
-                t361,
-                t362,
-                t363,
                 t364,
                 t365,
                 t366,
-                t367,
                 t368,
                 t369,
+                t370,
+                t371,
                 t372,
                 t373,
                 t374,
-                t375,
-                t376,
                 t380,
                 t381,
                 t382,
                 t383,
                 t384,
                 t385,
-                t386,
                 t387,
-                t388,
-                t389,
                 t392,
                 t393,
                 t394,
-                t395,
                 t396,
                 t397,
+                t398,
                 t399,
             )
         };
         let (
-            t468,
+            t454,
+            t456,
+            t466,
             t470,
-            t480,
-            t484,
-            t485,
-            t498,
-            t502,
-            t503,
-            t516,
-            t572,
+            t471,
+            t557,
+            t560,
+            t562,
+            t564,
+            t566,
+            t570,
+            t571,
+            t573,
             t575,
             t577,
             t579,
-            t581,
-            t585,
+            t580,
+            t584,
             t586,
             t588,
             t590,
             t592,
+            t593,
             t594,
             t595,
             t596,
             t597,
-            t598,
             t599,
         ) = {
-            let t400 = T::fused(t386, t396, T::fused(t384, t392, t385 * t394));
-            let t401 = T::fused(
-                k(2.0),
-                T::fused(t386, t389, -T::fused(t384, t387, t385 * t388)),
-                t400,
+            let t400 = T::fused(t399, t310, T::fused(t13, t304, t396 * t307));
+            let t401 = t349 + t348;
+            let t402 = t309 - t308;
+            let t403 = T::fused(-link_2_e3, k(2.0) * link_2_e3, t306);
+            let t404 = T::fused(t403, t214, -T::fused(-t401, t208, t402 * t211));
+            let t405 = T::fused(t403, t314, T::fused(t401, t312, t402 * t313));
+            let t406 = T::fused(t404, t331, t405 * t332);
+            let t407 = T::fused(t404, t338, t405 * t339);
+            let t408 = T::fused(-t404, t345, t405 * t346);
+            let t409 = T::fused(t351, t408, T::fused(t335, t406, t342 * t407));
+            let t410 = T::fused(t374, t408, -T::fused(t372, t406, t373 * t407));
+            let t411 = t410 + (t410 - T::fused(t404, t370, t405 * t371));
+            let t412 = T::fused(
+                t411,
+                t393,
+                -(t409 + (t409 + T::fused(t404, t325, t405 * t328))),
             );
-            let t402 = k(0.025)
-                + (k(0.0017) - (t401 - (k(0.02) + T::fused(t380, t382, t381 * t383))));
-            let t403 = T::fused(
-                k(2.0),
-                T::fused(t386, t397, T::fused(t384, t393, t385 * t395)),
-                t400,
+            let t413 = T::fused(t399, t403, T::fused(-t13, t401, t396 * t402));
+            let t414 = T::fused(-t400, t394, t413 * t412);
+            let t415 = T::fused(
+                t404,
+                T::fused(t404, t299, t405 * t323),
+                t405 * T::fused(t404, t323, t405 * t327),
             );
-            let t404 = k(1.0) / (t403 - t402);
-            let t405 = t404 * t399;
-            let t406 = T::fused(t399, t405, -(t376 - t372));
-            let t407 = k(0.5) - T::fused(link_1_e2, link_1_e2, t0);
-            let t408 = k(2.0) * t407;
-            let t409 = k(2.0) * t13;
-            let t410 = link_1_e0 * link_1_e1;
-            let t411 = link_1_e2 * link_1_e3;
-            let t412 = t411 + t410;
-            let t413 = k(2.0) * t412;
-            let t414 = T::fused(t413, t319, T::fused(t408, t315, t409 * t312));
-            let t415 = k(2.0) * (t358 + t357);
-            let t416 = k(2.0) * (t317 - t316);
-            let t417 = k(2.0) * (k(0.5) - T::fused(link_2_e3, link_2_e3, t313));
-            let t418 = T::fused(t417, t221, -T::fused(-t415, t213, t416 * t217));
-            let t419 = T::fused(t417, t323, T::fused(t416, t321, t415 * t322));
-            let t420 = T::fused(t418, t340, t419 * t341);
-            let t421 = T::fused(t418, t347, t419 * t348);
-            let t422 = T::fused(-t418, t354, t419 * t355);
-            let t423 = T::fused(t360, t422, T::fused(t344, t420, t351 * t421));
-            let t424 = T::fused(t386, t422, -T::fused(t384, t420, t385 * t421));
-            let t425 = t424 + (t424 - T::fused(t418, t382, t419 * t383));
-            let t426 = T::fused(
-                t425,
-                t405,
-                -(t423 + (t423 + T::fused(t418, t334, t419 * t337))),
-            );
-            let t427 = T::fused(t413, t417, -T::fused(-t408, t416, t409 * t415));
-            let t428 = T::fused(-t414, t406, t427 * t426);
-            let t429 = T::fused(
-                t418,
-                T::fused(t418, t308, t419 * t332),
-                t419 * T::fused(t418, t332, t419 * t336),
-            );
-            let t430 = T::fused(t425, t404 * t425, k(0.0002) + t429);
-            let t431 = T::fused(-t414, t426, t427 * t430);
-            let t432 = t393 + T::fused(-k(0.5), t311, t392);
-            let t433 = t404 * t432;
-            let t434 = T::fused(t399, t433, -(t373 + T::fused(k(0.5), t343, t364)));
-            let t435 = T::fused(t425, t433, t420);
-            let t436 = T::fused(-t414, t434, t427 * t435);
-            let t437 = k(0.2) * t2;
-            let t438 = t395 + T::fused(-k(0.5), t314, t394);
-            let t439 = t404 * t438;
-            let t440 = T::fused(t399, t439, -(t374 + T::fused(k(0.5), t350, t367)));
-            let t441 = T::fused(t425, t439, t421);
-            let t442 = T::fused(-t414, t440, t427 * t441);
-            let t443 = t12 + t11;
-            let t444 = k(0.2) * t443;
-            let t445 = t397 + T::fused(-k(0.5), t318, t396);
-            let t446 = t404 * t445;
-            let t447 = T::fused(t446, t399, -(t375 + T::fused(-k(0.5), t359, t369)));
-            let t448 = T::fused(-t446, t425, t422);
-            let t449 = T::fused(t414, t447, t427 * t448);
-            let t450 = k(0.2) * t6;
-            let t451 = T::fused(-t432, t433, t361);
-            let t452 = T::fused(-t438, t433, t362);
-            let t453 = T::fused(-t445, t433, t363);
-            let t454 = T::fused(t450, t453, -T::fused(t437, t451, t444 * t452));
-            let t455 = T::fused(-t438, t439, t365);
-            let t456 = T::fused(-t445, t439, t366);
-            let t457 = T::fused(t450, t456, -T::fused(t437, t452, t444 * t455));
-            let t458 = T::fused(-t445, t446, t368);
-            let t459 = T::fused(t450, t458, -T::fused(t437, t453, t444 * t456));
-            let t460 = T::fused(t450, t459, -T::fused(t437, t454, t444 * t457));
-            let t461 = T::fused(
+            let t416 = T::fused(t411, t392 * t411, k(0.0002) + t415);
+            let t417 = T::fused(-t400, t412, t413 * t416);
+            let t418 = t381 + T::fused(-k(0.25), t304, t380);
+            let t419 = t392 * t418;
+            let t420 = T::fused(t387, t419, -(t364 + T::fused(k(0.25), t334, t355)));
+            let t421 = T::fused(t411, t419, t406);
+            let t422 = T::fused(-t400, t420, t413 * t421);
+            let t423 = k(0.1) * t4;
+            let t424 = t383 + T::fused(-k(0.25), t307, t382);
+            let t425 = t392 * t424;
+            let t426 = T::fused(t387, t425, -(t365 + T::fused(k(0.25), t341, t358)));
+            let t427 = T::fused(t411, t425, t407);
+            let t428 = T::fused(-t400, t426, t413 * t427);
+            let t429 = t12 + t11;
+            let t430 = k(0.1) * t429;
+            let t431 = t385 + T::fused(-k(0.25), t310, t384);
+            let t432 = t392 * t431;
+            let t433 = T::fused(t432, t387, -(t366 + T::fused(-k(0.25), t350, t360)));
+            let t434 = T::fused(-t432, t411, t408);
+            let t435 = T::fused(t400, t433, t413 * t434);
+            let t436 = k(0.1) * t7;
+            let t437 = T::fused(-t418, t419, t352);
+            let t438 = T::fused(-t424, t419, t353);
+            let t439 = T::fused(-t431, t419, t354);
+            let t440 = T::fused(t436, t439, -T::fused(t423, t437, t430 * t438));
+            let t441 = T::fused(-t424, t425, t356);
+            let t442 = T::fused(-t431, t425, t357);
+            let t443 = T::fused(t436, t442, -T::fused(t423, t438, t430 * t441));
+            let t444 = T::fused(-t431, t432, t359);
+            let t445 = T::fused(t436, t444, -T::fused(t423, t439, t430 * t442));
+            let t446 = T::fused(t436, t445, -T::fused(t423, t440, t430 * t443));
+            let t447 = T::fused(
                 -k(2.0),
-                T::fused(t450, t449, T::fused(t437, t436, t444 * t442)),
-                t460,
+                T::fused(t436, t435, T::fused(t423, t422, t430 * t428)),
+                t446,
             );
-            let t462 = k(0.03)
-                + (k(0.0016) - (t461 - (k(0.025) + T::fused(-t414, t428, t427 * t431))));
-            let t463 = T::fused(k(0.5), t2, t454) + t436;
-            let t464 = T::fused(k(0.5), t443, t457) + t442;
-            let t465 = T::fused(-k(0.5), t6, t459) - t449;
-            let t466 = T::fused(
+            let t448 = k(0.03)
+                + (k(0.0016) - (t447 - (k(0.025) + T::fused(-t400, t414, t413 * t417))));
+            let t449 = T::fused(k(0.25), t4, t440) + t422;
+            let t450 = T::fused(k(0.25), t429, t443) + t428;
+            let t451 = T::fused(-k(0.25), t7, t445) - t435;
+            let t452 = T::fused(
                 k(2.0),
-                T::fused(t450, t465, -T::fused(t437, t463, t444 * t464)),
-                t460,
+                T::fused(t436, t451, -T::fused(t423, t449, t430 * t450)),
+                t446,
             );
-            let t467 = k(1.0) / T::fused(-t134, t87, t129 * t99);
-            let t468 = T::fused(-(t87 * t467), row28, t129 * t467 * row29);
-            let t469 = T::fused(
+            let t453 = k(1.0) / T::fused(-t84, t131, t96 * t126);
+            let t454 = T::fused(-row28, t84 * t453, row29 * (t126 * t453));
+            let t455 = T::fused(
                 k(0.0066),
-                t468,
-                T::fused(row27, t51, T::fused(-row25, t17, row26 * t44)),
+                t454,
+                T::fused(row27, t51, T::fused(-row25, t19, row26 * t43)),
             );
-            let t470 = T::fused(-(t99 * t467), row28, t134 * t467 * row29);
-            let t471 = k(0.0002) * t470;
-            let t472 = T::fused(
+            let t456 = T::fused(-row28, t96 * t453, row29 * (t131 * t453));
+            let t457 = k(0.0002) * t456;
+            let t458 = T::fused(
                 k(0.5),
                 row25,
                 -T::fused(row27, t63, -T::fused(-row25, t59, row26 * t61)),
             );
-            let t473 = T::fused(t17, t468, -t472);
-            let t474 = T::fused(
+            let t459 = T::fused(t19, t454, -t458);
+            let t460 = T::fused(
                 k(0.5),
                 row26,
                 T::fused(row27, t67, -T::fused(-row25, t61, row26 * t66)),
             );
-            let t475 = T::fused(t44, t468, t474);
-            let t476 = T::fused(
+            let t461 = T::fused(t43, t454, t460);
+            let t462 = T::fused(
                 k(0.5),
                 row27,
                 -T::fused(row27, t69, -T::fused(-row25, t63, row26 * t67)),
             );
-            let t477 = T::fused(t51, t468, t476);
-            let t478 = T::fused(t56, t477, -T::fused(t42, t473, t47 * t475));
-            let t479 = T::fused(t93, t477, T::fused(t91, t473, t92 * t475));
-            let t480 = t479 + (t479 + T::fused(t87, t469, t99 * t471));
-            let t481 = t111 * t480;
-            let t482 = T::fused(
-                t104,
-                t481,
-                -(t478 + (t478 - T::fused(t39, t469, t77 * t471))),
+            let t463 = T::fused(t51, t454, t462);
+            let t464 = T::fused(t56, t463, -T::fused(t41, t459, t47 * t461));
+            let t465 = T::fused(t90, t463, T::fused(t88, t459, t89 * t461));
+            let t466 = t465 + (t465 + T::fused(t84, t455, t96 * t457));
+            let t467 = t108 * t466;
+            let t468 = T::fused(
+                t101,
+                t467,
+                -(t464 + (t464 - T::fused(t38, t455, t77 * t457))),
             );
-            let t483 = k(1.0) / T::fused(-t227, t184, t226 * t185);
-            let t484 = T::fused(t184 * t483, row23, t226 * t483 * row24);
-            let t485 = T::fused(t185 * t483, row23, t227 * t483 * row24);
-            let t486 = T::fused(t113, t484, t137 * t485)
-                - T::fused(row22, t158, -T::fused(-row20, t144, row21 * t151));
-            let t487 = t486 + t482;
-            let t488 = T::fused(t137, t484, t140 * t485)
-                + T::fused(row22, t159, T::fused(-row20, t145, row21 * t152));
-            let t489 = t488 + T::fused(t136, t481, T::fused(t129, t469, t134 * t471));
-            let t490 = T::fused(t144, t484, t145 * t485)
-                - (row20 - T::fused(row22, t167, -T::fused(-row20, t165, row21 * t166)));
-            let t491 = t490 + T::fused(t142, t481, t473);
-            let t492 = T::fused(t151, t484, t152 * t485)
-                + (row21 + T::fused(row22, t170, -T::fused(-row20, t166, row21 * t169)));
-            let t493 = t492 + T::fused(t149, t481, t475);
-            let t494 = T::fused(-t158, t484, t159 * t485)
-                + (row22 - T::fused(row22, t172, -T::fused(-row20, t167, row21 * t170)));
-            let t495 = t494 + T::fused(-t156, t481, t477);
-            let t496 = T::fused(t164, t495, T::fused(t148, t491, t155 * t493));
-            let t497 = T::fused(t190, t495, -T::fused(t188, t491, t189 * t493));
-            let t498 = t497 + (t497 - T::fused(t184, t487, t185 * t489));
-            let t499 = t208 * t498;
-            let t500 = T::fused(
-                t203,
-                t499,
-                -(t496 + (t496 + T::fused(t125, t487, t138 * t489))),
+            let t469 = k(1.0) / T::fused(-t178, t220, t179 * t219);
+            let t470 = T::fused(row23, t178 * t469, row24 * (t219 * t469));
+            let t471 = T::fused(row23, t179 * t469, row24 * (t220 * t469));
+            let t472 = T::fused(t110, t470, t134 * t471)
+                - T::fused(row22, t155, -T::fused(-row20, t141, row21 * t148));
+            let t473 = t472 + t468;
+            let t474 = T::fused(t134, t470, t137 * t471)
+                + T::fused(row22, t156, T::fused(-row20, t142, row21 * t149));
+            let t475 = t474 + T::fused(t133, t467, T::fused(t126, t455, t131 * t457));
+            let t476 = T::fused(t141, t470, t142 * t471)
+                - (row20 - T::fused(row22, t164, -T::fused(-row20, t162, row21 * t163)));
+            let t477 = t476 + T::fused(t139, t467, t459);
+            let t478 = T::fused(t148, t470, t149 * t471)
+                + (row21 + T::fused(row22, t167, -T::fused(-row20, t163, row21 * t166)));
+            let t479 = t478 + T::fused(t146, t467, t461);
+            let t480 = T::fused(-t155, t470, t156 * t471)
+                + (row22 - T::fused(row22, t169, -T::fused(-row20, t164, row21 * t167)));
+            let t481 = t480 + T::fused(-t153, t467, t463);
+            let t482 = T::fused(t161, t481, T::fused(t145, t477, t152 * t479));
+            let t483 = T::fused(t184, t481, -T::fused(t182, t477, t183 * t479));
+            let t484 = t483 + (t483 - T::fused(t178, t473, t179 * t475));
+            let t485 = t202 * t484;
+            let t486 = T::fused(
+                t197,
+                t485,
+                -(t482 + (t482 + T::fused(t122, t473, t135 * t475))),
             );
-            let t501 = k(1.0) / T::fused(-t325, t282, t324 * t283);
-            let t502 = T::fused(-(t282 * t501), row18, t324 * t501 * row19);
-            let t503 = T::fused(-(t283 * t501), row18, t325 * t501 * row19);
-            let t504 = T::fused(t210, t502, t234 * t503)
-                + T::fused(row17, t256, -T::fused(-row15, t242, row16 * t249));
-            let t505 = t504 + t500;
-            let t506 = T::fused(t234, t502, t238 * t503)
-                - T::fused(row17, t257, T::fused(-row15, t243, row16 * t250));
-            let t507 = t506 + T::fused(t233, t499, -T::fused(t226, t487, t227 * t489));
-            let t508 = T::fused(
+            let t487 = k(1.0) / T::fused(-t273, t316, t274 * t315);
+            let t488 = T::fused(-row18, t273 * t487, row19 * (t315 * t487));
+            let t489 = T::fused(-row18, t274 * t487, row19 * (t316 * t487));
+            let t490 = T::fused(t204, t488, t227 * t489)
+                + T::fused(row17, t250, -T::fused(-row15, t235, row16 * t242));
+            let t491 = t490 + t486;
+            let t492 = T::fused(t227, t488, t231 * t489)
+                - T::fused(row17, t251, T::fused(-row15, t236, row16 * t243));
+            let t493 = t492 + T::fused(t226, t485, -T::fused(t219, t473, t220 * t475));
+            let t494 = T::fused(
                 k(1.5),
                 row15,
-                -T::fused(row17, t265, -T::fused(-row15, t263, row16 * t264)),
+                -T::fused(row17, t259, -T::fused(-row15, t257, row16 * t258)),
             );
-            let t509 = T::fused(t242, t502, t243 * t503) - t508
-                + T::fused(t240, t499, t491);
-            let t510 = T::fused(
+            let t495 = T::fused(t235, t488, t236 * t489) - t494
+                + T::fused(t233, t485, t477);
+            let t496 = T::fused(
                 k(1.5),
                 row16,
-                T::fused(row17, t268, -T::fused(-row15, t264, row16 * t267)),
+                T::fused(row17, t262, -T::fused(-row15, t258, row16 * t261)),
             );
-            let t511 = T::fused(t249, t502, t250 * t503) + t510
-                + T::fused(t247, t499, t493);
-            let t512 = T::fused(
+            let t497 = T::fused(t242, t488, t243 * t489) + t496
+                + T::fused(t240, t485, t479);
+            let t498 = T::fused(
                 k(1.5),
                 row17,
-                -T::fused(row17, t270, -T::fused(-row15, t265, row16 * t268)),
+                -T::fused(row17, t264, -T::fused(-row15, t259, row16 * t262)),
             );
-            let t513 = T::fused(-t256, t502, t257 * t503) + t512
-                + T::fused(-t254, t499, t495);
-            let t514 = T::fused(t262, t513, -T::fused(t246, t509, t253 * t511));
-            let t515 = T::fused(t289, t513, T::fused(t287, t509, t288 * t511));
-            let t516 = t515 + (t515 - T::fused(t282, t505, t283 * t507));
-            let t517 = t306 * t516;
-            let t518 = T::fused(
-                t299,
-                t517,
-                -(t514 + (t514 + T::fused(t222, t505, t235 * t507))),
+            let t499 = T::fused(-t250, t488, t251 * t489) + t498
+                + T::fused(-t248, t485, t481);
+            let t500 = T::fused(t256, t499, -T::fused(t239, t495, t247 * t497));
+            let t501 = T::fused(t280, t499, T::fused(t278, t495, t279 * t497));
+            let t502 = t501 + (t501 - T::fused(t273, t491, t274 * t493));
+            let t503 = t297 * t502;
+            let t504 = T::fused(
+                t290,
+                t503,
+                -(t500 + (t500 + T::fused(t215, t491, t228 * t493))),
             );
-            let t519 = k(1.0) / T::fused(-t419, t380, t418 * t381);
-            let t520 = T::fused(t380 * t519, row13, t418 * t519 * row14);
-            let t521 = T::fused(t381 * t519, row13, t419 * t519 * row14);
-            let t522 = T::fused(t308, t520, t332 * t521)
-                - T::fused(row12, t354, -T::fused(-row10, t340, row11 * t347));
-            let t523 = t522 + t518;
-            let t524 = T::fused(t332, t520, t336 * t521)
-                + T::fused(row12, t355, T::fused(-row10, t341, row11 * t348));
-            let t525 = t524 + T::fused(t331, t517, -T::fused(t324, t505, t325 * t507));
-            let t526 = T::fused(
+            let t505 = k(1.0) / T::fused(-t368, t405, t369 * t404);
+            let t506 = T::fused(row13, t368 * t505, row14 * (t404 * t505));
+            let t507 = T::fused(row13, t369 * t505, row14 * (t405 * t505));
+            let t508 = T::fused(t299, t506, t323 * t507)
+                - T::fused(row12, t345, -T::fused(-row10, t331, row11 * t338));
+            let t509 = t508 + t504;
+            let t510 = T::fused(t323, t506, t327 * t507)
+                + T::fused(row12, t346, T::fused(-row10, t332, row11 * t339));
+            let t511 = t510 + T::fused(t322, t503, -T::fused(t315, t491, t316 * t493));
+            let t512 = T::fused(
                 k(2.0),
                 row10,
-                -T::fused(row12, t363, -T::fused(-row10, t361, row11 * t362)),
+                -T::fused(row12, t354, -T::fused(-row10, t352, row11 * t353)),
             );
-            let t527 = T::fused(t340, t520, t341 * t521) - t526
-                + T::fused(t338, t517, t509);
-            let t528 = T::fused(
+            let t513 = T::fused(t331, t506, t332 * t507) - t512
+                + T::fused(t329, t503, t495);
+            let t514 = T::fused(
                 k(2.0),
                 row11,
-                T::fused(row12, t366, -T::fused(-row10, t362, row11 * t365)),
+                T::fused(row12, t357, -T::fused(-row10, t353, row11 * t356)),
             );
-            let t529 = T::fused(t347, t520, t348 * t521) + t528
-                + T::fused(t345, t517, t511);
-            let t530 = T::fused(
+            let t515 = T::fused(t338, t506, t339 * t507) + t514
+                + T::fused(t336, t503, t497);
+            let t516 = T::fused(
                 k(2.0),
                 row12,
-                -T::fused(row12, t368, -T::fused(-row10, t363, row11 * t366)),
+                -T::fused(row12, t359, -T::fused(-row10, t354, row11 * t357)),
             );
-            let t531 = T::fused(-t354, t520, t355 * t521) + t530
-                + T::fused(-t352, t517, t513);
-            let t532 = T::fused(t360, t531, T::fused(t344, t527, t351 * t529));
-            let t533 = T::fused(t386, t531, -T::fused(t384, t527, t385 * t529));
-            let t534 = t533 + (t533 - T::fused(t380, t523, t381 * t525));
-            let t535 = t404 * t534;
-            let t536 = T::fused(
-                t399,
-                t535,
-                -(t532 + (t532 + T::fused(t320, t523, t333 * t525))),
+            let t517 = T::fused(-t345, t506, t346 * t507) + t516
+                + T::fused(-t343, t503, t499);
+            let t518 = T::fused(t351, t517, T::fused(t335, t513, t342 * t515));
+            let t519 = T::fused(t374, t517, -T::fused(t372, t513, t373 * t515));
+            let t520 = t519 + (t519 - T::fused(t368, t509, t369 * t511));
+            let t521 = t392 * t520;
+            let t522 = T::fused(
+                t387,
+                t521,
+                -(t518 + (t518 + T::fused(t311, t509, t324 * t511))),
             );
-            let t537 = k(2.0) * (t411 - t410);
-            let t538 = T::fused(t1, t417, T::fused(t537, t416, t8 * t415));
-            let t539 = T::fused(t1, t319, -T::fused(-t537, t315, t8 * t312));
-            let t540 = k(1.0) / T::fused(-t538, t414, t539 * t427);
-            let t541 = T::fused(-(t414 * t540), row8, t539 * t540 * row9);
-            let t542 = T::fused(-(t427 * t540), row8, t538 * t540 * row9);
-            let t543 = T::fused(-t406, t541, t426 * t542)
-                - T::fused(row7, t447, -T::fused(-row5, t434, row6 * t440));
-            let t544 = T::fused(-t426, t541, t430 * t542)
-                + T::fused(row7, t448, T::fused(-row5, t435, row6 * t441));
-            let t545 = T::fused(
-                -t414,
-                t543 + t536,
-                t427 * (t544 + T::fused(t425, t535, T::fused(t418, t523, t419 * t525))),
+            let t523 = t398 - t397;
+            let t524 = T::fused(t2, t403, T::fused(t8, t401, t523 * t402));
+            let t525 = T::fused(t2, t310, T::fused(-t8, t304, t523 * t307));
+            let t526 = k(1.0) / T::fused(-t524, t400, t525 * t413);
+            let t527 = T::fused(-row8, t400 * t526, row9 * (t525 * t526));
+            let t528 = T::fused(-row8, t413 * t526, row9 * (t524 * t526));
+            let t529 = T::fused(-t394, t527, t412 * t528)
+                - T::fused(row7, t433, -T::fused(-row5, t420, row6 * t426));
+            let t530 = T::fused(-t412, t527, t416 * t528)
+                + T::fused(row7, t434, T::fused(-row5, t421, row6 * t427));
+            let t531 = T::fused(
+                -t400,
+                t529 + t522,
+                t413 * (t530 + T::fused(t411, t521, T::fused(t404, t509, t405 * t511))),
             );
-            let t546 = T::fused(
+            let t532 = T::fused(
                 k(2.5),
                 row5,
-                -T::fused(row7, t453, -T::fused(-row5, t451, row6 * t452)),
+                -T::fused(row7, t439, -T::fused(-row5, t437, row6 * t438)),
             );
-            let t547 = T::fused(-t434, t541, t435 * t542) - t546
-                + T::fused(t432, t535, t527);
-            let t548 = T::fused(
+            let t533 = T::fused(-t420, t527, t421 * t528) - t532
+                + T::fused(t418, t521, t513);
+            let t534 = T::fused(
                 k(2.5),
                 row6,
-                T::fused(row7, t456, -T::fused(-row5, t452, row6 * t455)),
+                T::fused(row7, t442, -T::fused(-row5, t438, row6 * t441)),
             );
-            let t549 = T::fused(-t440, t541, t441 * t542) + t548
-                + T::fused(t438, t535, t529);
-            let t550 = T::fused(
+            let t535 = T::fused(-t426, t527, t427 * t528) + t534
+                + T::fused(t424, t521, t515);
+            let t536 = T::fused(
                 k(2.5),
                 row7,
-                -T::fused(row7, t458, -T::fused(-row5, t453, row6 * t456)),
+                -T::fused(row7, t444, -T::fused(-row5, t439, row6 * t442)),
             );
-            let t551 = T::fused(t447, t541, t448 * t542) + t550
-                + T::fused(-t445, t535, t531);
-            let t552 = T::fused(t450, t551, T::fused(t437, t547, t444 * t549));
-            let t553 = T::fused(
+            let t537 = T::fused(t433, t527, t434 * t528) + t536
+                + T::fused(-t431, t521, t517);
+            let t538 = T::fused(t436, t537, T::fused(t423, t533, t430 * t535));
+            let t539 = T::fused(
                 -row0,
-                t463 + T::fused(k(0.6), t2, t454),
-                row1 * (t464 + T::fused(k(0.6), t443, t457)),
+                t449 + T::fused(k(0.3), t4, t440),
+                row1 * (t450 + T::fused(k(0.3), t429, t443)),
             );
-            let t554 = k(2.0) * t443;
-            let t555 = T::fused(t7, t319, -T::fused(t3, t312, t554 * t315));
-            let t556 = T::fused(t7, t417, -T::fused(-t3, t415, t554 * t416));
-            let t557 = T::fused(
-                -t414,
-                T::fused(-t555, t406, t556 * t426),
-                t427 * T::fused(-t555, t426, t556 * t430),
+            let t540 = T::fused(t7, t310, -T::fused(t4, t304, t429 * t307));
+            let t541 = T::fused(t7, t403, -T::fused(-t4, t401, t429 * t402));
+            let t542 = T::fused(
+                -t400,
+                T::fused(-t540, t394, t541 * t412),
+                t413 * T::fused(-t540, t412, t541 * t416),
             );
-            let t558 = k(0.2) * t407;
-            let t559 = k(0.2) * t412;
-            let t560 = T::fused(-t555, t434, t556 * t435);
-            let t561 = T::fused(-t555, t440, t556 * t441);
-            let t562 = T::fused(t555, t447, t556 * t448);
-            let t563 = T::fused(t450, t562, T::fused(t437, t560, t444 * t561))
-                - T::fused(t559, t449, -T::fused(t14, t436, t558 * t442));
-            let t564 = T::fused(t559, t459, T::fused(t14, t454, t558 * t457));
-            let t565 = T::fused(
-                -k(0.5),
+            let t543 = k(0.1) * t396;
+            let t544 = k(0.1) * t399;
+            let t545 = T::fused(-t540, t420, t541 * t421);
+            let t546 = T::fused(-t540, t426, t541 * t427);
+            let t547 = T::fused(t540, t433, t541 * t434);
+            let t548 = T::fused(t436, t547, T::fused(t423, t545, t430 * t546))
+                - T::fused(t544, t435, -T::fused(t14, t422, t543 * t428));
+            let t549 = T::fused(t544, t445, T::fused(t14, t440, t543 * t443));
+            let t550 = T::fused(
+                -k(0.25),
                 t13,
-                T::fused(t559, t453, T::fused(t14, t451, t558 * t452)),
+                T::fused(t544, t439, T::fused(t14, t437, t543 * t438)),
             );
-            let t566 = T::fused(
-                -k(0.5),
-                t407,
-                T::fused(t559, t456, T::fused(t14, t452, t558 * t455)),
+            let t551 = T::fused(
+                -k(0.25),
+                t396,
+                T::fused(t544, t442, T::fused(t14, t438, t543 * t441)),
             );
-            let t567 = T::fused(
-                -k(0.5),
-                t412,
-                T::fused(t559, t458, T::fused(t14, t453, t558 * t456)),
+            let t552 = T::fused(
+                -k(0.25),
+                t399,
+                T::fused(t544, t444, T::fused(t14, t439, t543 * t442)),
             );
-            let t568 = T::fused(
-                t450,
-                t567 + t562,
-                -T::fused(t437, t565 - t560, t444 * (t566 - t561)),
+            let t553 = T::fused(
+                t436,
+                t552 + t547,
+                -T::fused(t423, t550 - t545, t430 * (t551 - t546)),
             );
-            let t569 = t568 + T::fused(t559, t465, T::fused(t14, t463, t558 * t464))
-                + t564;
-            let t570 = T::fused(
-                t437,
-                T::fused(-t539, t434, t538 * t435),
-                t444 * T::fused(-t539, t440, t538 * t441),
+            let t554 = t553 + T::fused(t544, t451, T::fused(t14, t449, t543 * t450))
+                + t549;
+            let t555 = T::fused(
+                t423,
+                T::fused(-t525, t420, t524 * t421),
+                t430 * T::fused(-t525, t426, t524 * t427),
             );
-            let t571 = T::fused(t450, T::fused(t539, t447, t538 * t448), t570);
-            let t572 = T::fused(t8 * t9, row3, t1 * t9 * row4);
-            let t573 = T::fused(
+            let t556 = T::fused(t436, T::fused(t525, t433, t524 * t434), t555);
+            let t557 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
+            let t558 = T::fused(
                 t10,
-                t569 + (t564 + t563 + t557),
-                t572 * (t571 + (t571 + T::fused(-t539, t428, t538 * t431))),
+                t554 + (t549 + t548 + t542),
+                t557 * (t556 + (t556 + T::fused(-t525, t414, t524 * t417))),
             );
-            let t574 = t573 + T::fused(row2, t465 + T::fused(-k(0.6), t6, t459), -t553)
-                - (t552 + (t552 + t545));
-            let t575 = t574 / (t466 - t462);
-            let t576 = T::fused(t14, t10, t437 * t575);
-            let t577 = row0 + t576;
-            let t578 = T::fused(t558, t10, t444 * t575);
-            let t579 = row1 - t578;
-            let t580 = T::fused(-t559, t10, t450 * t575);
-            let t581 = row2 - t580;
-            let t582 = row5 + (t576 + t577);
-            let t583 = row6 - (t578 - t579);
-            let t584 = row7 - (t580 - t581);
-            let t585 = t541 - T::fused(t539, t572, T::fused(t555, t10, t414 * t575));
-            let t586 = t542 - T::fused(t538, t572, T::fused(t556, t10, t427 * t575));
-            let t587 = T::fused(-t399, t585, t425 * t586)
-                - T::fused(t445, t584, -T::fused(-t432, t582, t438 * t583));
-            let t588 = t404 * (t534 + t587);
-            let t589 = T::fused(-t384, t588, t344 * t585);
-            let t590 = t582 - t589;
-            let t591 = T::fused(-t385, t588, t351 * t585);
+            let t559 = t558 + T::fused(row2, t451 + T::fused(-k(0.3), t7, t445), -t539)
+                - (t538 + (t538 + t531));
+            let t560 = t559 / (t452 - t448);
+            let t561 = T::fused(t14, t10, t423 * t560);
+            let t562 = row0 + t561;
+            let t563 = T::fused(t543, t10, t430 * t560);
+            let t564 = row1 - t563;
+            let t565 = T::fused(-t544, t10, t436 * t560);
+            let t566 = row2 - t565;
+            let t567 = row5 + (t561 + t562);
+            let t568 = row6 - (t563 - t564);
+            let t569 = row7 - (t565 - t566);
+            let t570 = t527 - T::fused(t525, t557, T::fused(t540, t10, t400 * t560));
+            let t571 = t528 - T::fused(t524, t557, T::fused(t541, t10, t413 * t560));
+            let t572 = T::fused(-t387, t570, t411 * t571)
+                - T::fused(t431, t569, -T::fused(-t418, t567, t424 * t568));
+            let t573 = t392 * (t520 + t572);
+            let t574 = T::fused(-t372, t573, t335 * t570);
+            let t575 = t567 - t574;
+            let t576 = T::fused(-t373, t573, t342 * t570);
+            let t577 = t568 + t576;
+            let t578 = T::fused(t374, t573, t351 * t570);
+            let t579 = t569 + t578;
+            let t580 = t506 + T::fused(t404, t571, T::fused(-t368, t573, t311 * t570));
+            let t581 = row10 - (t574 - t575);
+            let t582 = row11 + (t576 + t577);
+            let t583 = row12 + (t578 + t579);
+            let t584 = t507 + T::fused(t405, t571, T::fused(-t369, t573, t324 * t570));
+            let t585 = T::fused(t290, t580, t322 * t584)
+                - T::fused(t343, t583, -T::fused(-t329, t581, t336 * t582));
+            let t586 = t297 * (t502 + t585);
+            let t587 = T::fused(t239, t580, t278 * t586);
+            let t588 = t581 - t587;
+            let t589 = T::fused(t247, t580, t279 * t586);
+            let t590 = t582 + t589;
+            let t591 = T::fused(-t256, t580, t280 * t586);
             let t592 = t583 + t591;
-            let t593 = T::fused(t386, t588, t360 * t585);
-            let t594 = t584 + t593;
-            let t595 = t520 + T::fused(t418, t586, T::fused(-t380, t588, t320 * t585));
-            let t596 = row10 - (t589 - t590);
-            let t597 = row11 + (t591 + t592);
-            let t598 = row12 + (t593 + t594);
-            let t599 = t521 + T::fused(t419, t586, T::fused(-t381, t588, t333 * t585));
+            let t593 = row15 - (t587 - t588);
+            let t594 = row16 + (t589 + t590);
+            let t595 = row17 + (t591 + t592);
+            let t596 = t488 + T::fused(t315, t584, T::fused(t215, t580, t273 * t586));
+            let t597 = t489 + T::fused(t316, t584, T::fused(t228, t580, t274 * t586));
+            let t598 = T::fused(t197, t596, t226 * t597)
+                + T::fused(t248, t595, -T::fused(-t233, t593, t240 * t594));
+            let t599 = t202 * (t484 + t598);
             (
-                t468,
+                t454,
+                t456,
+                t466,
                 t470,
-                t480,
-                t484,
-                t485,
-                t498,
-                t502,
-                t503,
-                t516,
-                t572,
+                t471,
+                t557,
+                t560,
+                t562,
+                t564,
+                t566,
+                t570,
+                t571,
+                t573,
                 t575,
                 t577,
                 t579,
-                t581,
-                t585,
+                t580,
+                t584,
                 t586,
                 t588,
                 t590,
                 t592,
+                t593,
                 t594,
                 t595,
                 t596,
                 t597,
-                t598,
                 t599,
             )
         };
@@ -8564,129 +8742,98 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for Chain<T> {
             t601,
             t603,
             t605,
-            t607,
-            t611,
+            t606,
+            t610,
             t612,
             t614,
             t616,
             t618,
+            t619,
             t620,
             t621,
-            t625,
-            t627,
-            t629,
-            t631,
-            t633,
-            t634,
-            t635,
-            t636,
-            t637,
-            t638,
+            t622,
+            t623,
         ) = {
-            let t600 = T::fused(t299, t595, t331 * t599)
-                - T::fused(t352, t598, -T::fused(-t338, t596, t345 * t597));
-            let t601 = t306 * (t516 + t600);
-            let t602 = T::fused(t246, t595, t287 * t601);
-            let t603 = t596 - t602;
-            let t604 = T::fused(t253, t595, t288 * t601);
-            let t605 = t597 + t604;
-            let t606 = T::fused(-t262, t595, t289 * t601);
-            let t607 = t598 + t606;
-            let t608 = row15 - (t602 - t603);
-            let t609 = row16 + (t604 + t605);
-            let t610 = row17 + (t606 + t607);
-            let t611 = t502 + T::fused(t324, t599, T::fused(t222, t595, t282 * t601));
-            let t612 = t503 + T::fused(t325, t599, T::fused(t235, t595, t283 * t601));
-            let t613 = T::fused(t203, t611, t233 * t612)
-                + T::fused(t254, t610, -T::fused(-t240, t608, t247 * t609));
-            let t614 = t208 * (t498 + t613);
-            let t615 = T::fused(t188, t614, t148 * t611);
-            let t616 = t608 - t615;
-            let t617 = T::fused(t189, t614, t155 * t611);
+            let t600 = T::fused(t182, t599, t145 * t596);
+            let t601 = t593 - t600;
+            let t602 = T::fused(t183, t599, t152 * t596);
+            let t603 = t594 + t602;
+            let t604 = T::fused(-t184, t599, t161 * t596);
+            let t605 = t595 + t604;
+            let t606 = t470 + T::fused(t219, t597, T::fused(t178, t599, t122 * t596));
+            let t607 = row20 - (t600 - t601);
+            let t608 = row21 + (t602 + t603);
+            let t609 = row22 + (t604 + t605);
+            let t610 = t471 + T::fused(t220, t597, T::fused(t179, t599, t135 * t596));
+            let t611 = T::fused(t101, t606, t133 * t610)
+                - T::fused(t153, t609, -T::fused(-t139, t607, t146 * t608));
+            let t612 = t108 * (t466 + t611);
+            let t613 = T::fused(t41, t606, t88 * t612);
+            let t614 = t607 - t613;
+            let t615 = T::fused(t47, t606, t89 * t612);
+            let t616 = t608 + t615;
+            let t617 = T::fused(-t56, t606, t90 * t612);
             let t618 = t609 + t617;
-            let t619 = T::fused(-t190, t614, t164 * t611);
-            let t620 = t610 + t619;
-            let t621 = t484 + T::fused(t226, t612, T::fused(t184, t614, t125 * t611));
-            let t622 = row20 - (t615 - t616);
-            let t623 = row21 + (t617 + t618);
-            let t624 = row22 + (t619 + t620);
-            let t625 = t485 + T::fused(t227, t612, T::fused(t185, t614, t138 * t611));
-            let t626 = T::fused(t104, t621, t136 * t625)
-                - T::fused(t156, t624, -T::fused(-t142, t622, t149 * t623));
-            let t627 = t111 * (t480 + t626);
-            let t628 = T::fused(t42, t621, t91 * t627);
-            let t629 = t622 - t628;
-            let t630 = T::fused(t47, t621, t92 * t627);
-            let t631 = t623 + t630;
-            let t632 = T::fused(-t56, t621, t93 * t627);
-            let t633 = t624 + t632;
-            let t634 = row25 - (t628 - t629);
-            let t635 = row26 + (t630 + t631);
-            let t636 = row27 + (t632 + t633);
-            let t637 = k(149.2537313432836)
-                * T::fused(t62, t636, -T::fused(-t57, t634, t60 * t635));
-            let t638 = t468 + T::fused(t129, t625, T::fused(t39, t621, t87 * t627));
+            let t619 = row25 - (t613 - t614);
+            let t620 = row26 + (t615 + t616);
+            let t621 = row27 + (t617 + t618);
+            let t622 = k(149.2537313432836)
+                * T::fused(t62, t621, -T::fused(-t57, t619, t60 * t620));
+            let t623 = t454 + T::fused(t126, t610, T::fused(t38, t606, t84 * t612));
             (
                 t601,
                 t603,
                 t605,
-                t607,
-                t611,
+                t606,
+                t610,
                 t612,
                 t614,
                 t616,
                 t618,
+                t619,
                 t620,
                 t621,
-                t625,
-                t627,
-                t629,
-                t631,
-                t633,
-                t634,
-                t635,
-                t636,
-                t637,
-                t638,
+                t622,
+                t623,
             )
         };
         *out = [
+            t562,
+            t564,
+            t566,
+            t10,
+            t560,
+            -t557,
+            t575,
             t577,
             t579,
-            t581,
-            t10,
-            t575,
-            -t572,
+            t573,
+            -t570,
+            t571,
+            t588,
             t590,
             t592,
-            t594,
-            t588,
-            -t585,
-            t586,
+            -t580,
+            -t586,
+            t584,
+            t601,
             t603,
             t605,
-            t607,
-            -t595,
-            -t601,
-            t599,
+            -t599,
+            -t596,
+            t597,
+            t614,
             t616,
             t618,
-            t620,
-            -t614,
-            -t611,
-            t612,
-            t629,
-            t631,
-            t633,
-            -t621,
-            -t627,
-            t625,
-            t634 - T::fused(k(0.2) * t20, t637, k(0.2) * t16 * t638),
-            t635 + T::fused(k(0.2) * t25, t637, k(0.2) * t43 * t638),
-            t636 + T::fused(-(k(0.2) * t33), t637, k(0.2) * t50 * t638),
-            -t637,
-            -t638,
-            t470 + T::fused(t134, t625, T::fused(t77, t621, t99 * t627)),
+            -t606,
+            -t612,
+            t610,
+            t619 - T::fused(k(0.1) * t22, t622, k(0.1) * t18 * t623),
+            t620 + T::fused(k(0.1) * t28, t622, k(0.1) * t42 * t623),
+            t621 + T::fused(-(k(0.1) * t34), t622, k(0.1) * t50 * t623),
+            -t622,
+            -t623,
+            t456 + T::fused(t131, t610, T::fused(t77, t606, t96 * t612)),
         ];
     }
 }
@@ -14037,7 +14184,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 5652 operations (2486 ±, 3161 ×, 5 ÷) and 12 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 5639 operations (2480 ±, 3154 ×, 5 ÷) and 12 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -14060,487 +14207,507 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
         let u5 = x[11];
         let (
             t0,
-            t3,
+            t2,
             t4,
+            t5,
             t6,
+            t7,
+            t8,
+            t9,
             t10,
+            t11,
             t12,
+            t13,
             t14,
             t15,
+            t16,
             t17,
             t18,
+            t19,
             t20,
             t21,
+            t22,
             t23,
             t24,
             t25,
             t26,
+            t27,
+            t28,
             t29,
+            t30,
+            t32,
             t33,
             t35,
             t36,
             t38,
             t39,
-            t40,
             t41,
+            t42,
+            t44,
+            t45,
+            t46,
             t48,
-            t52,
+            t49,
             t55,
-            t57,
-            t58,
-            t61,
+            t56,
+            t60,
             t62,
-            t64,
+            t63,
+            t66,
             t70,
-            t71,
-            t73,
-            t77,
+            t74,
             t78,
             t80,
             t81,
-            t82,
-            t84,
+            t83,
             t89,
             t91,
-            t92,
-            t93,
-            t99,
-            t101,
-            t102,
-            t104,
+            t95,
+            t97,
+            t98,
+            t100,
             t105,
             t107,
             t108,
             t110,
-            t111,
-            t114,
-            t115,
+            t116,
+            t118,
+            t120,
+            t121,
+            t123,
+            t124,
             t125,
-            t129,
-            t131,
-            t133,
-            t134,
-            t135,
+            t127,
+            t128,
+            t138,
             t139,
-            t145,
+            t142,
+            t143,
+            t144,
             t146,
+            t147,
             t148,
             t149,
             t151,
-            t153,
-            t154,
-            t156,
-            t157,
+            t152,
             t158,
-            t160,
-            t163,
+            t159,
+            t161,
+            t162,
             t164,
-            t165,
+            t166,
             t167,
-            t168,
+            t169,
             t170,
             t171,
-            t172,
             t173,
-            t174,
-            t175,
+            t176,
             t177,
             t178,
             t179,
+            t180,
+            t181,
             t183,
             t184,
             t185,
+            t186,
             t187,
             t188,
-            t189,
             t190,
             t191,
             t192,
-            t193,
             t194,
+            t195,
             t196,
             t197,
-            t198,
             t199,
         ) = {
-            let t0 = x5.cos();
-            let t1 = k(0.746268656716418) * t0;
-            let t2 = t1 + (k(1.0) + t1);
-            let t3 = x4.cos();
-            let t4 = t1 + T::fused(t3, t2, t1);
-            let t5 = k(0.373134328358209) * t0;
-            let t6 = t0 * t5;
-            let t7 = k(0.01) * t6;
-            let t8 = k(0.1) * t6;
-            let t9 = k(0.05) - t8;
-            let t10 = T::fused(-k(0.2), t9, t7)
-                - (k(0.01) + (k(0.0017) + (k(0.005) - t7)));
-            let t11 = t3 * t10;
-            let t12 = x5.sin();
-            let t13 = k(0.0066) * t0;
-            let t14 = k(0.0002) * t12;
-            let t15 = t0 * t14;
-            let t16 = k(0.005) * t12;
-            let t17 = t16 + (t16 - T::fused(-t12, t13, t15));
-            let t18 = k(0.05) * t0;
-            let t19 = k(0.05) + t18;
-            let t20 = k(0.01) * t0;
-            let t21 = t12 * t14;
-            let t22 = T::fused(
+            let t0 = x4.cos();
+            let t1 = T::fused(k(0.1), k(1.0) + t0, k(0.1));
+            let t2 = T::fused(k(0.1), t0, t1);
+            let t3 = k(0.5) * t2;
+            let t4 = x5.sin();
+            let t5 = t4 * t3;
+            let t6 = x5.cos();
+            let t7 = T::fused(t6, t3, k(0.05) * t0);
+            let t8 = T::fused(-t6, t5, t4 * t7);
+            let t9 = x4.sin();
+            let t10 = t9 * t4;
+            let t11 = k(0.05) * t10;
+            let t12 = T::fused(-t9, t8, t0 * t11);
+            let t13 = x2.cos();
+            let t14 = T::fused(t0, t8, t9 * t11);
+            let t15 = x3.cos();
+            let t16 = T::fused(t4, t5, t6 * t7);
+            let t17 = T::fused(k(0.5), t1, t16);
+            let t18 = k(0.05) + t17;
+            let t19 = x3.sin();
+            let t20 = T::fused(t15, t14, t19 * t18);
+            let t21 = x2.sin();
+            let t22 = T::fused(-t13, t12, t21 * t20);
+            let t23 = x0.cos();
+            let t24 = T::fused(t21, t12, t13 * t20);
+            let t25 = x1.cos();
+            let t26 = T::fused(-t19, t14, t15 * t18);
+            let t27 = x1.sin();
+            let t28 = T::fused(t25, t24, t27 * t26);
+            let t29 = x0.sin();
+            let t30 = T::fused(t23, k(9.81) * t22, t29 * (k(9.81) * t28));
+            let t31 = k(0.373134328358209) * t6;
+            let t32 = t4 * t31;
+            let t33 = k(0.2) * t32;
+            let t34 = t9 * t33;
+            let t35 = k(0.05) * t4;
+            let t36 = k(0.05) * t6;
+            let t37 = k(0.05) + t36;
+            let t38 = k(0.1) + t37;
+            let t39 = k(0.01) * t6;
+            let t40 = k(0.0066) * t6;
+            let t41 = k(0.0002) * t4;
+            let t42 = t4 * t41;
+            let t43 = T::fused(
                 k(0.2),
-                t19,
-                k(0.01) + (k(0.0016) + (k(0.005) + T::fused(t0, t13, t21) + t20)),
+                t37,
+                k(0.01) + (k(0.0016) + (k(0.005) + T::fused(t6, t40, t42) + t39)),
             );
-            let t23 = k(1.0) / t22;
-            let t24 = t23 * t17;
-            let t25 = T::fused(
-                t17,
-                t24,
-                -(k(0.0002) + T::fused(t12, k(0.0066) * t12, t0 * (k(0.0002) * t0))),
-            );
-            let t26 = x4.sin();
-            let t27 = t26 * t25;
-            let t28 = k(0.1) - t8;
-            let t29 = t28 + t9;
-            let t30 = t3 * t29;
-            let t31 = T::fused(-k(0.2), t30, t7)
-                - (k(0.01) - T::fused(t3, t11, t26 * t27));
-            let t32 = t28 + t30;
-            let t33 = k(1.0)
-                / (T::fused(k(0.2), t32, -t7) + (k(0.015) + (k(0.0017) - t31)));
-            let t34 = t33 * t4;
-            let t35 = t12 * t5;
-            let t36 = k(0.2) * t35;
-            let t37 = t26 * t36;
-            let t38 = k(0.05) * t12;
-            let t39 = k(0.1) + t19;
-            let t40 = t23 * t39;
-            let t41 = T::fused(t17, t40, -t38);
-            let t42 = t3 * t41;
-            let t43 = T::fused(-t3, t37, t26 * t42);
-            let t44 = t26 * t35;
-            let t45 = k(0.01) * t44;
-            let t46 = k(0.1) * t44;
-            let t47 = t46 - t43;
-            let t48 = t45 + T::fused(k(0.1), t47, t45) + T::fused(-k(0.1), t43, t45);
-            let t49 = k(7.462686567164179) * t12;
-            let t50 = t26 * t49;
-            let t51 = T::fused(t48, t34, k(0.2) * t50);
-            let t52 = x3.cos();
-            let t53 = t26 * t29;
-            let t54 = k(0.1) * t53;
-            let t55 = t54 + (t54 + T::fused(-t26, t11, t3 * t27));
-            let t56 = T::fused(-t26, t2, t55 * t34);
-            let t57 = x3.sin();
-            let t58 = t46 + t47;
-            let t59 = T::fused(t58, t34, t50);
-            let t60 = k(0.1) * t59;
-            let t61 = t60 + (t60 + T::fused(t52, t51, t57 * t56));
-            let t62 = t39 * t40;
-            let t63 = t3 * t62;
-            let t64 = t12 * (k(0.373134328358209) * t12);
-            let t65 = t26 * t64;
-            let t66 = T::fused(t3, t63, t26 * t65);
-            let t67 = k(0.01) * t66;
-            let t68 = k(0.1) * t66;
-            let t69 = k(0.1) - t68;
-            let t70 = t33 * t48;
-            let t71 = T::fused(
+            let t44 = k(1.0) / t43;
+            let t45 = t44 * t38;
+            let t46 = t6 * t41;
+            let t47 = k(0.005) * t4;
+            let t48 = t47 + (t47 - T::fused(-t4, t40, t46));
+            let t49 = T::fused(t48, t45, -t35);
+            let t50 = t0 * t49;
+            let t51 = T::fused(-t0, t34, t9 * t50);
+            let t52 = t9 * t32;
+            let t53 = k(0.1) * t52;
+            let t54 = t53 - t51;
+            let t55 = t53 + t54;
+            let t56 = t6 * t31;
+            let t57 = k(0.01) * t56;
+            let t58 = k(0.1) * t56;
+            let t59 = k(0.05) - t58;
+            let t60 = T::fused(-k(0.2), t59, t57)
+                - (k(0.01) + (k(0.0017) + (k(0.005) - t57)));
+            let t61 = t0 * t60;
+            let t62 = t44 * t48;
+            let t63 = T::fused(
                 t48,
-                t70,
-                -(T::fused(k(0.2), t69, -t67)
-                    + (k(0.015) + (k(0.0016) + (k(0.01) - t67)))),
+                t62,
+                -(k(0.0002) + T::fused(t4, k(0.0066) * t4, t6 * (k(0.0002) * t6))),
             );
-            let t72 = T::fused(t26, t37, t3 * t42);
-            let t73 = T::fused(-k(0.2), t72, t55 * t70);
-            let t74 = t57 * t73;
-            let t75 = T::fused(t52, t71, t74);
-            let t76 = t52 * t73;
-            let t77 = t33 * t55;
-            let t78 = T::fused(
-                t55,
-                t77,
-                -(k(0.0002) - T::fused(t26, t26 * t10, t3 * (t3 * t25))),
+            let t64 = t9 * t63;
+            let t65 = k(0.1) - t58;
+            let t66 = t65 + t59;
+            let t67 = t0 * t66;
+            let t68 = T::fused(-k(0.2), t67, t57)
+                - (k(0.01) - T::fused(t0, t61, t9 * t64));
+            let t69 = t65 + t67;
+            let t70 = k(1.0)
+                / (T::fused(k(0.2), t69, -t57) + (k(0.015) + (k(0.0017) - t68)));
+            let t71 = t70 * t55;
+            let t72 = k(0.1) * t71;
+            let t73 = k(0.01) * t52;
+            let t74 = t73 + T::fused(k(0.1), t54, t73) + T::fused(-k(0.1), t51, t73);
+            let t75 = t70 * t74;
+            let t76 = t9 * t66;
+            let t77 = k(0.1) * t76;
+            let t78 = t77 + (t77 + T::fused(-t9, t61, t0 * t64));
+            let t79 = t70 * t78;
+            let t80 = t72 + (T::fused(t15, t75, t19 * t79) + t72);
+            let t81 = t38 * t45;
+            let t82 = t0 * t81;
+            let t83 = t4 * (k(0.373134328358209) * t4);
+            let t84 = t9 * t83;
+            let t85 = T::fused(t0, t82, t9 * t84);
+            let t86 = k(0.01) * t85;
+            let t87 = k(0.1) * t85;
+            let t88 = k(0.1) - t87;
+            let t89 = T::fused(
+                t74,
+                t75,
+                -(T::fused(k(0.2), t88, -t86)
+                    + (k(0.015) + (k(0.0016) + (k(0.01) - t86)))),
             );
-            let t79 = T::fused(t57, t78, t76);
-            let t80 = t33 * t58;
-            let t81 = T::fused(t80, t48, -(k(0.15) - t68 + t69));
-            let t82 = T::fused(t80, t55, -t72);
-            let t83 = T::fused(t52, t81, t57 * t82);
-            let t84 = T::fused(t58, t80, t66);
-            let t85 = k(0.01) * t84;
-            let t86 = T::fused(k(0.2), t83, t85)
-                - (k(0.015) - T::fused(t52, t75, t57 * t79));
-            let t87 = k(0.1) * t84;
-            let t88 = k(0.15) - t87 - t83;
-            let t89 = k(1.0)
-                / (T::fused(k(0.2), t88, -t85) + (k(0.02) + (k(0.0016) - t86)));
-            let t90 = t89 * t61;
-            let t91 = t88 + (k(0.2) - t87);
-            let t92 = x2.cos();
-            let t93 = t32 + (k(0.15) - t8);
-            let t94 = T::fused(-t93, t34, k(7.462686567164179) * t0);
-            let t95 = t3 * t36;
-            let t96 = t26 * t41;
-            let t97 = t3 * t35;
-            let t98 = k(0.1) * t97;
-            let t99 = t98 + (t98 + T::fused(t3, t95, t26 * t96));
-            let t100 = T::fused(t99, t34, t3 * t49);
-            let t101 = t33 * t93;
-            let t102 = T::fused(-k(0.2), t44, t48 * t101);
-            let t103 = T::fused(-t26, t63, t3 * t65);
-            let t104 = t33 * t99;
-            let t105 = T::fused(k(0.2), t103, t48 * t104);
-            let t106 = T::fused(-t57, t102, t52 * t105);
-            let t107 = T::fused(-t55, t101, t53);
-            let t108 = T::fused(t55, t104, T::fused(-t26, t95, t3 * t96));
-            let t109 = T::fused(t57, t107, t52 * t108);
-            let t110 = T::fused(-t80, t93, t44);
-            let t111 = T::fused(t80, t99, t103);
-            let t112 = T::fused(t57, t110, t52 * t111);
-            let t113 = k(0.1) * t112;
-            let t114 = t113 + (t113 + T::fused(t52, t106, t57 * t109));
-            let t115 = x2.sin();
-            let t116 = T::fused(
-                t92,
-                T::fused(-t91, t90, t59),
-                t115 * T::fused(t114, t90, T::fused(t57, t94, t52 * t100)),
+            let t90 = T::fused(t9, t34, t0 * t50);
+            let t91 = T::fused(-k(0.2), t90, t78 * t75);
+            let t92 = t19 * t91;
+            let t93 = T::fused(t15, t89, t92);
+            let t94 = t15 * t91;
+            let t95 = T::fused(
+                t78,
+                t79,
+                -(k(0.0002) - T::fused(t9, t9 * t60, t0 * (t0 * t63))),
             );
-            let t117 = T::fused(-t52, t94, t57 * t100);
-            let t118 = T::fused(t52, t102, t57 * t105);
-            let t119 = T::fused(-t52, t107, t57 * t108);
-            let t120 = T::fused(t52, t118, t57 * t119);
-            let t121 = T::fused(-t52, t110, t57 * t111);
-            let t122 = k(0.01) * t121;
-            let t123 = k(0.1) * t121;
-            let t124 = t123 + t120;
-            let t125 = t122 + T::fused(k(0.1), t124, t122)
-                + T::fused(k(0.1), t120, t122);
-            let t126 = T::fused(k(0.2), t117, t125 * t90);
-            let t127 = T::fused(-t57, t81, t52 * t82);
-            let t128 = k(0.1) * t127;
-            let t129 = t128 + (t128 + T::fused(-t57, t75, t52 * t79));
-            let t130 = T::fused(t129, t90, T::fused(-t57, t51, t52 * t56));
-            let t131 = t123 + t124;
-            let t132 = k(0.1) * T::fused(t131, t90, t117);
-            let t133 = t132 + (t132 - T::fused(-t92, t126, t115 * t130));
-            let t134 = T::fused(t93, t101, t6);
-            let t135 = T::fused(-t99, t101, t97);
-            let t136 = t57 * t135;
-            let t137 = T::fused(-t52, t134, t136);
-            let t138 = t52 * t135;
-            let t139 = T::fused(t99, t104, T::fused(t26, t26 * t62, t3 * (t3 * t64)));
-            let t140 = T::fused(t57, t139, -t138);
-            let t141 = T::fused(-t52, t137, t57 * t140);
-            let t142 = k(0.01) * t141;
-            let t143 = k(0.1) * t141;
-            let t144 = k(0.15) - t143;
-            let t145 = t89 * t125;
-            let t146 = T::fused(
-                t125,
-                t145,
-                -(T::fused(k(0.2), t144, -t142)
-                    + (k(0.02) + (k(0.0017) + (k(0.015) - t142)))),
+            let t96 = T::fused(t19, t95, t94);
+            let t97 = T::fused(t71, t74, -(k(0.15) - t87 + t88));
+            let t98 = T::fused(t71, t78, -t90);
+            let t99 = T::fused(t15, t97, t19 * t98);
+            let t100 = T::fused(t55, t71, t85);
+            let t101 = k(0.01) * t100;
+            let t102 = T::fused(k(0.2), t99, t101)
+                - (k(0.015) - T::fused(t15, t93, t19 * t96));
+            let t103 = k(0.1) * t100;
+            let t104 = k(0.15) - t103 - t99;
+            let t105 = k(1.0)
+                / (T::fused(k(0.2), t104, -t101) + (k(0.02) + (k(0.0016) - t102)));
+            let t106 = t105 * t80;
+            let t107 = t104 + (k(0.2) - t103);
+            let t108 = t69 + (k(0.15) - t58);
+            let t109 = t70 * t108;
+            let t110 = T::fused(-k(0.2), t52, t74 * t109);
+            let t111 = T::fused(-t9, t82, t0 * t84);
+            let t112 = t0 * t33;
+            let t113 = t9 * t49;
+            let t114 = t0 * t32;
+            let t115 = k(0.1) * t114;
+            let t116 = t115 + (t115 + T::fused(t0, t112, t9 * t113));
+            let t117 = t70 * t116;
+            let t118 = T::fused(k(0.2), t111, t74 * t117);
+            let t119 = T::fused(-t19, t110, t15 * t118);
+            let t120 = T::fused(-t78, t109, t76);
+            let t121 = T::fused(t78, t117, T::fused(-t9, t112, t0 * t113));
+            let t122 = T::fused(t19, t120, t15 * t121);
+            let t123 = T::fused(-t71, t108, t52);
+            let t124 = T::fused(t71, t116, t111);
+            let t125 = T::fused(t19, t123, t15 * t124);
+            let t126 = k(0.1) * t125;
+            let t127 = t126 + (t126 + T::fused(t15, t119, t19 * t122));
+            let t128 = T::fused(
+                t13,
+                T::fused(-t107, t106, t71),
+                t21 * T::fused(t127, t106, T::fused(-t19, t109, t15 * t117)),
             );
-            let t147 = T::fused(-t57, t118, t52 * t119);
-            let t148 = T::fused(k(0.2), t147, t129 * t145);
-            let t149 = t115 * t148;
-            let t150 = T::fused(-t92, t146, t149);
-            let t151 = t92 * t148;
-            let t152 = T::fused(
-                t57,
-                T::fused(-t57, t71, t76),
-                t52 * T::fused(-t52, t78, t74),
+            let t129 = T::fused(t15, t109, t19 * t117);
+            let t130 = k(0.1) * t129;
+            let t131 = T::fused(t15, t110, t19 * t118);
+            let t132 = T::fused(-t15, t120, t19 * t121);
+            let t133 = T::fused(t15, t131, t19 * t132);
+            let t134 = T::fused(-t15, t123, t19 * t124);
+            let t135 = k(0.01) * t134;
+            let t136 = k(0.1) * t134;
+            let t137 = t136 + t133;
+            let t138 = t135 + T::fused(k(0.1), t137, t135)
+                + T::fused(k(0.1), t133, t135);
+            let t139 = T::fused(t138, t106, t130 + (k(1.0) + t130));
+            let t140 = T::fused(-t19, t97, t15 * t98);
+            let t141 = k(0.1) * t140;
+            let t142 = t141 + (t141 + T::fused(-t19, t93, t15 * t96));
+            let t143 = T::fused(t142, t106, T::fused(-t19, t75, t15 * t79));
+            let t144 = t136 + t137;
+            let t145 = k(0.1) * T::fused(t144, t106, t129);
+            let t146 = t145 + (t145 - T::fused(-t13, t139, t21 * t143));
+            let t147 = T::fused(t108, t109, t56);
+            let t148 = T::fused(-t116, t109, t114);
+            let t149 = t19 * t148;
+            let t150 = T::fused(-t15, t147, t149);
+            let t151 = t15 * t148;
+            let t152 = T::fused(t116, t117, T::fused(t9, t9 * t81, t0 * (t0 * t83)));
+            let t153 = T::fused(t19, t152, -t151);
+            let t154 = T::fused(-t15, t150, t19 * t153);
+            let t155 = k(0.01) * t154;
+            let t156 = k(0.1) * t154;
+            let t157 = k(0.15) - t156;
+            let t158 = t105 * t138;
+            let t159 = T::fused(
+                t138,
+                t158,
+                -(T::fused(k(0.2), t157, -t155)
+                    + (k(0.02) + (k(0.0017) + (k(0.015) - t155)))),
             );
-            let t153 = t89 * t129;
-            let t154 = T::fused(t129, t153, -(k(0.0002) + t152));
-            let t155 = T::fused(t115, t154, -t151);
-            let t156 = t89 * t131;
-            let t157 = T::fused(t156, t125, -(k(0.2) - t143 + t144));
-            let t158 = T::fused(t156, t129, t147);
-            let t159 = T::fused(-t92, t157, t115 * t158);
-            let t160 = T::fused(t131, t156, t141);
-            let t161 = k(0.01) * t160;
-            let t162 = T::fused(-k(0.2), t159, t161)
-                - (k(0.02) - T::fused(-t92, t150, t115 * t155));
-            let t163 = k(0.1) * t160;
-            let t164 = k(0.2) - t163 + t159;
-            let t165 = k(1.0)
-                / (T::fused(k(0.2), t164, -t161) + (k(0.025) + (k(0.0017) - t162)));
-            let t166 = t165 * t133;
-            let t167 = t89 * t91;
-            let t168 = T::fused(-k(0.2), t121, t125 * t167);
-            let t169 = T::fused(t57, t137, t52 * t140);
-            let t170 = t89 * t114;
-            let t171 = T::fused(k(0.2), t169, t125 * t170);
-            let t172 = T::fused(-t92, t168, t115 * t171);
-            let t173 = T::fused(-t129, t167, t127);
-            let t174 = T::fused(t129, t170, T::fused(-t57, t106, t52 * t109));
-            let t175 = T::fused(t92, t173, t115 * t174);
-            let t176 = T::fused(-t92, t172, t115 * t175);
-            let t177 = T::fused(-t131, t167, t121);
-            let t178 = T::fused(t156, t114, t169);
-            let t179 = T::fused(t92, t177, t115 * t178);
-            let t180 = k(0.01) * t179;
-            let t181 = k(0.1) * t179;
-            let t182 = t181 - t176;
-            let t183 = t180 + T::fused(k(0.1), t182, t180)
-                + T::fused(-k(0.1), t176, t180);
-            let t184 = x1.cos();
-            let t185 = T::fused(t115, t157, t92 * t158);
-            let t186 = k(0.1) * t185;
-            let t187 = t186 + (t186 - T::fused(t115, t150, t92 * t155));
-            let t188 = x1.sin();
-            let t189 = T::fused(
-                t184,
-                T::fused(k(0.2), t116, t183 * t166),
-                t188 * T::fused(t187, t166, T::fused(t115, t126, t92 * t130)),
+            let t160 = T::fused(-t19, t131, t15 * t132);
+            let t161 = T::fused(k(0.2), t160, t142 * t158);
+            let t162 = t21 * t161;
+            let t163 = T::fused(-t13, t159, t162);
+            let t164 = t13 * t161;
+            let t165 = T::fused(
+                t19,
+                T::fused(-t19, t89, t94),
+                t15 * T::fused(-t15, t95, t92),
             );
-            let t190 = t181 + t182;
-            let t191 = k(0.1) * T::fused(t190, t166, t116);
-            let t192 = T::fused(t91, t167, t84);
-            let t193 = T::fused(-t114, t167, t112);
-            let t194 = T::fused(t92, t192, t115 * t193);
-            let t195 = T::fused(
-                t57,
-                T::fused(t57, t134, t138),
-                t52 * T::fused(t52, t139, t136),
-            );
-            let t196 = T::fused(t114, t170, t195);
-            let t197 = T::fused(t92, t193, t115 * t196);
-            let t198 = T::fused(t92, t194, t115 * t197);
-            let t199 = k(0.01) * t198;
+            let t166 = t105 * t142;
+            let t167 = T::fused(t142, t166, -(k(0.0002) + t165));
+            let t168 = T::fused(t21, t167, -t164);
+            let t169 = t105 * t144;
+            let t170 = T::fused(t169, t138, -(k(0.2) - t156 + t157));
+            let t171 = T::fused(t169, t142, t160);
+            let t172 = T::fused(-t13, t170, t21 * t171);
+            let t173 = T::fused(t144, t169, t154);
+            let t174 = k(0.01) * t173;
+            let t175 = T::fused(-k(0.2), t172, t174)
+                - (k(0.02) - T::fused(-t13, t163, t21 * t168));
+            let t176 = k(0.1) * t173;
+            let t177 = k(0.2) - t176 + t172;
+            let t178 = k(1.0)
+                / (T::fused(k(0.2), t177, -t174) + (k(0.025) + (k(0.0017) - t175)));
+            let t179 = t178 * t146;
+            let t180 = t105 * t107;
+            let t181 = T::fused(-k(0.2), t134, t138 * t180);
+            let t182 = T::fused(t19, t150, t15 * t153);
+            let t183 = t105 * t127;
+            let t184 = T::fused(k(0.2), t182, t138 * t183);
+            let t185 = T::fused(-t13, t181, t21 * t184);
+            let t186 = T::fused(-t142, t180, t140);
+            let t187 = T::fused(t142, t183, T::fused(-t19, t119, t15 * t122));
+            let t188 = T::fused(t13, t186, t21 * t187);
+            let t189 = T::fused(-t13, t185, t21 * t188);
+            let t190 = T::fused(-t144, t180, t134);
+            let t191 = T::fused(t169, t127, t182);
+            let t192 = T::fused(t13, t190, t21 * t191);
+            let t193 = k(0.01) * t192;
+            let t194 = k(0.1) * t192;
+            let t195 = t194 - t189;
+            let t196 = t193 + T::fused(k(0.1), t195, t193)
+                + T::fused(-k(0.1), t189, t193);
+            let t197 = T::fused(t21, t170, t13 * t171);
+            let t198 = k(0.1) * t197;
+            let t199 = t198 + (t198 - T::fused(t21, t163, t13 * t168));
             (
                 t0,
-                t3,
+                t2,
                 t4,
+                t5,
                 t6,
+                t7,
+                t8,
+                t9,
                 t10,
+                t11,
                 t12,
+                t13,
                 t14,
                 t15,
+                t16,
                 t17,
                 t18,
+                t19,
                 t20,
                 t21,
+                t22,
                 t23,
                 t24,
                 t25,
                 t26,
+                t27,
+                t28,
                 t29,
+                t30,
+                t32,
                 t33,
                 t35,
                 t36,
                 t38,
                 t39,
-                t40,
                 t41,
+                t42,
+                t44,
+                t45,
+                t46,
                 t48,
-                t52,
+                t49,
                 t55,
-                t57,
-                t58,
-                t61,
+                t56,
+                t60,
                 t62,
-                t64,
+                t63,
+                t66,
                 t70,
-                t71,
-                t73,
-                t77,
+                t74,
                 t78,
                 t80,
                 t81,
-                t82,
-                t84,
+                t83,
                 t89,
                 t91,
-                t92,
-                t93,
-                t99,
-                t101,
-                t102,
-                t104,
+                t95,
+                t97,
+                t98,
+                t100,
                 t105,
                 t107,
                 t108,
                 t110,
-                t111,
-                t114,
-                t115,
+                t116,
+                t118,
+                t120,
+                t121,
+                t123,
+                t124,
                 t125,
-                t129,
-                t131,
-                t133,
-                t134,
-                t135,
+                t127,
+                t128,
+                t138,
                 t139,
-                t145,
+                t142,
+                t143,
+                t144,
                 t146,
+                t147,
                 t148,
                 t149,
                 t151,
-                t153,
-                t154,
-                t156,
-                t157,
+                t152,
                 t158,
-                t160,
-                t163,
+                t159,
+                t161,
+                t162,
                 t164,
-                t165,
+                t166,
                 t167,
-                t168,
+                t169,
                 t170,
                 t171,
-                t172,
                 t173,
-                t174,
-                t175,
+                t176,
                 t177,
                 t178,
                 t179,
+                t180,
+                t181,
                 t183,
                 t184,
                 t185,
+                t186,
                 t187,
                 t188,
-                t189,
                 t190,
                 t191,
                 t192,
-                t193,
                 t194,
+                t195,
                 t196,
                 t197,
-                t198,
                 t199,
             )
         };
         let (
+            t201,
             t203,
+            t204,
             t205,
+            t207,
             t208,
-            t210,
-            t211,
-            t212,
             t214,
             t216,
-            t217,
             t219,
-            t220,
             t221,
             t222,
             t223,
-            t224,
             t225,
-            t226,
             t227,
             t228,
-            t229,
             t230,
-            t233,
+            t231,
+            t235,
             t239,
+            t240,
+            t241,
+            t243,
+            t245,
+            t246,
+            t247,
             t248,
+            t249,
+            t251,
             t252,
             t253,
             t254,
@@ -14552,9 +14719,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t260,
             t261,
             t262,
+            t263,
             t264,
-            t272,
+            t265,
+            t266,
+            t268,
+            t269,
+            t270,
+            t273,
             t276,
+            t277,
             t278,
             t279,
             t280,
@@ -14569,39 +14743,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t289,
             t290,
             t291,
-            t292,
-            t293,
             t294,
+            t295,
+            t296,
+            t297,
             t298,
+            t299,
+            t300,
+            t301,
             t302,
             t303,
             t304,
+            t305,
             t306,
+            t307,
             t308,
             t309,
             t310,
             t311,
             t312,
-            t314,
-            t315,
+            t313,
             t316,
-            t317,
-            t318,
             t319,
             t320,
             t321,
             t322,
-            t323,
             t324,
             t325,
             t326,
             t327,
-            t328,
-            t329,
+            t330,
             t331,
             t332,
             t333,
+            t334,
+            t335,
             t336,
+            t337,
+            t338,
             t339,
             t340,
             t341,
@@ -14619,314 +14798,301 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t353,
             t354,
             t357,
-            t358,
-            t359,
-            t360,
-            t361,
-            t362,
             t363,
-            t364,
-            t365,
-            t366,
-            t367,
-            t368,
-            t369,
-            t370,
-            t371,
             t372,
-            t373,
-            t374,
-            t375,
             t376,
             t377,
+            t378,
             t379,
             t380,
+            t381,
             t382,
             t383,
             t384,
             t385,
-            t387,
-            t388,
+            t386,
             t389,
             t390,
             t391,
-            t392,
             t393,
             t394,
             t395,
-            t396,
             t397,
             t398,
             t399,
         ) = {
-            let t200 = k(0.1) * t198;
-            let t201 = k(0.2) - t200;
-            let t202 = t165 * t183;
-            let t203 = T::fused(
-                t183,
-                t202,
-                -(T::fused(k(0.2), t201, -t199)
-                    + (k(0.025) + (k(0.0016) + (k(0.02) - t199)))),
+            let t200 = T::fused(
+                t25,
+                T::fused(k(0.2), t128, t196 * t179),
+                t27 * T::fused(t199, t179, T::fused(t21, t139, t13 * t143)),
             );
-            let t204 = T::fused(t115, t172, t92 * t175);
-            let t205 = T::fused(k(0.2), t204, t187 * t202);
+            let t201 = t194 + t195;
+            let t202 = k(0.1) * T::fused(t201, t179, t128);
+            let t203 = T::fused(t107, t180, t100);
+            let t204 = T::fused(-t127, t180, t125);
+            let t205 = T::fused(t13, t203, t21 * t204);
             let t206 = T::fused(
-                t115,
-                T::fused(t115, t146, t151),
-                t92 * T::fused(t92, t154, t149),
+                t19,
+                T::fused(t19, t147, t151),
+                t15 * T::fused(t15, t152, t149),
             );
-            let t207 = t165 * t187;
-            let t208 = T::fused(t187, t207, -(k(0.0002) - t206));
-            let t209 = T::fused(
-                t184,
-                T::fused(t184, t203, t188 * t205),
-                t188 * T::fused(t184, t205, t188 * t208),
+            let t207 = T::fused(t127, t183, t206);
+            let t208 = T::fused(t13, t204, t21 * t207);
+            let t209 = T::fused(t13, t205, t21 * t208);
+            let t210 = k(0.01) * t209;
+            let t211 = k(0.1) * t209;
+            let t212 = k(0.2) - t211;
+            let t213 = t178 * t196;
+            let t214 = T::fused(
+                t196,
+                t213,
+                -(T::fused(k(0.2), t212, -t210)
+                    + (k(0.025) + (k(0.0016) + (k(0.02) - t210)))),
             );
-            let t210 = t165 * t190;
-            let t211 = T::fused(t210, t183, -(k(0.25) - t200 + t201));
-            let t212 = T::fused(t210, t187, t204);
-            let t213 = T::fused(t184, t211, t188 * t212);
-            let t214 = T::fused(t190, t210, t198);
-            let t215 = k(0.01) * t214;
-            let t216 = k(0.1) * t214;
-            let t217 = k(0.25) - t216 - t213;
-            let t218 = T::fused(k(0.2), t217, -t215)
+            let t215 = T::fused(t21, t185, t13 * t188);
+            let t216 = T::fused(k(0.2), t215, t199 * t213);
+            let t217 = T::fused(
+                t21,
+                T::fused(t21, t159, t164),
+                t13 * T::fused(t13, t167, t162),
+            );
+            let t218 = t178 * t199;
+            let t219 = T::fused(t199, t218, -(k(0.0002) - t217));
+            let t220 = T::fused(
+                t25,
+                T::fused(t25, t214, t27 * t216),
+                t27 * T::fused(t25, t216, t27 * t219),
+            );
+            let t221 = t178 * t201;
+            let t222 = T::fused(t221, t196, -(k(0.25) - t211 + t212));
+            let t223 = T::fused(t221, t199, t215);
+            let t224 = T::fused(t25, t222, t27 * t223);
+            let t225 = T::fused(t201, t221, t209);
+            let t226 = k(0.01) * t225;
+            let t227 = k(0.1) * t225;
+            let t228 = k(0.25) - t227 - t224;
+            let t229 = T::fused(k(0.2), t228, -t226)
                 + (k(0.03)
-                    + (k(0.0016) - (T::fused(k(0.2), t213, t215) - (k(0.025) - t209))));
-            let t219 = k(1.0) / t218;
-            let t220 = t219 * (t191 + (t191 + t189));
-            let t221 = t3 * t38;
-            let t222 = T::fused(-t52, t18, t57 * t221);
-            let t223 = T::fused(t57, t18, t52 * t221);
-            let t224 = t26 * t38;
-            let t225 = T::fused(-t92, t223, t115 * t224);
-            let t226 = T::fused(t188, t222, t184 * t225);
-            let t227 = x0.sin();
-            let t228 = T::fused(t115, t223, t92 * t224);
-            let t229 = x0.cos();
-            let t230 = T::fused(-t227, k(9.81) * t226, t229 * (k(9.81) * t228));
-            let t231 = t3 * t40;
-            let t232 = k(0.1) * t231;
-            let t233 = t26 * t24;
-            let t234 = t33 * t233;
-            let t235 = T::fused(t48, t234, -(t232 + (k(1.0) + t232)));
-            let t236 = T::fused(t55, t234, t3 * t24);
-            let t237 = T::fused(t58, t234, -t231);
-            let t238 = k(0.1) * t237;
-            let t239 = t238 + (t238 + T::fused(t52, t235, t57 * t236));
-            let t240 = t89 * t239;
-            let t241 = T::fused(t26, t40, t99 * t234);
-            let t242 = t93 * t234;
-            let t243 = T::fused(
-                -t92,
-                T::fused(-t91, t240, t237),
-                t115 * T::fused(-t114, t240, T::fused(-t52, t241, t57 * t242)),
+                    + (k(0.0016) - (T::fused(k(0.2), t224, t226) - (k(0.025) - t220))));
+            let t230 = k(1.0) / t229;
+            let t231 = t230 * (t202 + (t202 + t200));
+            let t232 = T::fused(-t13, t180, t21 * t183);
+            let t233 = k(0.1) * t232;
+            let t234 = k(0.1) * t169;
+            let t235 = t234 - (T::fused(-t13, t158, t21 * t166) - t234);
+            let t236 = t178 * t235;
+            let t237 = T::fused(
+                t25,
+                T::fused(t196, t236, t233 - (k(1.0) - t233)),
+                t27 * T::fused(t199, t236, T::fused(t21, t158, t13 * t166)),
             );
-            let t244 = T::fused(t57, t241, t52 * t242);
-            let t245 = T::fused(t125, t240, k(0.2) * t244);
-            let t246 = T::fused(t129, t240, T::fused(-t57, t235, t52 * t236));
-            let t247 = k(0.1) * T::fused(t131, t240, t244);
-            let t248 = t247 + (t247 - T::fused(-t92, t245, t115 * t246));
-            let t249 = t165 * t248;
-            let t250 = T::fused(
-                t184,
-                T::fused(-k(0.2), t243, t183 * t249),
-                t188 * T::fused(t187, t249, T::fused(t115, t245, t92 * t246)),
+            let t238 = k(0.1) * T::fused(t201, t236, t232);
+            let t239 = t230 * (t238 + (t238 + t237));
+            let t240 = t19 * t0;
+            let t241 = T::fused(-t4, t240, t15 * t6);
+            let t242 = T::fused(k(0.1), k(1.0) + t15, k(0.1));
+            let t243 = T::fused(k(0.1), t15, t242);
+            let t244 = T::fused(k(0.05), t15, k(0.5) * (t0 * t243));
+            let t245 = T::fused(k(0.05), t15 + t241, t244);
+            let t246 = t244 + t245;
+            let t247 = t9 * t243;
+            let t248 = t19 * t9;
+            let t249 = k(0.2) * t248;
+            let t250 = k(0.05) * t248;
+            let t251 = T::fused(k(0.5), T::fused(-t4, t247, t6 * t249), t250);
+            let t252 = k(0.5) * T::fused(t6, t247, t4 * t249);
+            let t253 = T::fused(-t4, t251, t6 * t252);
+            let t254 = T::fused(k(0.5), t247, t253);
+            let t255 = T::fused(t0, t246, t9 * t254);
+            let t256 = T::fused(k(0.5), t242, t255);
+            let t257 = k(0.05) + t256;
+            let t258 = T::fused(-t9, t246, t0 * t254);
+            let t259 = T::fused(t6, t251, t4 * t252);
+            let t260 = t250 + t259;
+            let t261 = T::fused(-t15, t258, t19 * t260);
+            let t262 = T::fused(-t13, t257, t21 * t261);
+            let t263 = T::fused(t21, t257, t13 * t261);
+            let t264 = T::fused(t19, t258, t15 * t260);
+            let t265 = T::fused(t25, t263, t27 * t264);
+            let t266 = T::fused(t23, k(9.81) * t262, t29 * (k(9.81) * t265));
+            let t267 = k(0.1) * t221;
+            let t268 = t230 * (t267 + (T::fused(t25, t213, t27 * t218) + t267));
+            let t269 = t21 * t15;
+            let t270 = T::fused(-t9, t269, t13 * t0);
+            let t271 = T::fused(k(0.1), k(1.0) + t13, k(0.1));
+            let t272 = k(0.1) * t13;
+            let t273 = t272 + t271;
+            let t274 = T::fused(t15, t273, t272);
+            let t275 = T::fused(k(0.1), t13 + t270, t274);
+            let t276 = T::fused(k(0.1), t270, t275);
+            let t277 = t19 * t273;
+            let t278 = t21 * t19;
+            let t279 = k(0.2) * t278;
+            let t280 = T::fused(t0, t277, t9 * t279);
+            let t281 = T::fused(-k(0.05), t270, k(0.5) * T::fused(-t6, t276, t4 * t280));
+            let t282 = k(0.5) * T::fused(t4, t276, t6 * t280);
+            let t283 = T::fused(-t6, t281, t4 * t282);
+            let t284 = T::fused(k(0.5), t275, t283);
+            let t285 = T::fused(k(0.5), t274, t284);
+            let t286 = t4 * t281;
+            let t287 = t6 * t282;
+            let t288 = T::fused(k(0.5), t280, t287) + t286;
+            let t289 = t0 * t288;
+            let t290 = T::fused(t0, t269, t13 * t9);
+            let t291 = T::fused(t4, t290, t6 * t278);
+            let t292 = k(0.05) * t278;
+            let t293 = T::fused(k(0.5), T::fused(-t9, t277, t0 * t279), t292);
+            let t294 = T::fused(k(0.05), t278 + t291, t293);
+            let t295 = t293 + t294;
+            let t296 = t9 * t295;
+            let t297 = T::fused(k(0.5), t277, -t296) + t289;
+            let t298 = T::fused(t15, t285, t19 * t297);
+            let t299 = T::fused(k(0.5), t271, t298);
+            let t300 = k(0.05) + t299;
+            let t301 = T::fused(-t19, t285, t15 * t297);
+            let t302 = T::fused(t9, t288, t0 * t295);
+            let t303 = t292 + t302;
+            let t304 = T::fused(-t13, t301, t21 * t303);
+            let t305 = T::fused(t27, t300, t25 * t304);
+            let t306 = T::fused(t21, t301, t13 * t303);
+            let t307 = T::fused(-t29, k(9.81) * t305, t23 * (k(9.81) * t306));
+            let t308 = t27 * t13;
+            let t309 = T::fused(t15, t308, t25 * t19);
+            let t310 = t27 * t21;
+            let t311 = T::fused(-t0, t309, t9 * t310);
+            let t312 = T::fused(-t19, t308, t25 * t15);
+            let t313 = T::fused(t4, t311, t6 * t312);
+            let t314 = T::fused(k(0.1), k(1.0) + t25, k(0.1));
+            let t315 = k(0.1) * t25;
+            let t316 = t315 + t314;
+            let t317 = T::fused(t13, t316, t315);
+            let t318 = T::fused(k(0.1), t25 + t312, t317);
+            let t319 = T::fused(k(0.1), t312, t318);
+            let t320 = t21 * t316;
+            let t321 = k(0.2) * t310;
+            let t322 = T::fused(t15, t320, t19 * t321);
+            let t323 = T::fused(-k(0.05), t312, k(0.5) * T::fused(-t0, t319, t9 * t322));
+            let t324 = T::fused(-k(0.05), t312 + t313, t323);
+            let t325 = t323 + t324;
+            let t326 = T::fused(t9, t319, t0 * t322);
+            let t327 = T::fused(t9, t309, t0 * t310);
+            let t328 = T::fused(-t19, t320, T::fused(t15, t321, k(0.1) * t310));
+            let t329 = T::fused(k(0.1), t310 + t327, t328);
+            let t330 = T::fused(k(0.1), t327, t329);
+            let t331 = T::fused(k(0.5), T::fused(-t4, t326, t6 * t330), k(0.05) * t327);
+            let t332 = k(0.5) * T::fused(t6, t326, t4 * t330);
+            let t333 = T::fused(-t4, t331, t6 * t332);
+            let t334 = T::fused(k(0.5), t326, t333);
+            let t335 = T::fused(-t0, t325, t9 * t334);
+            let t336 = T::fused(k(0.5), t318, t335);
+            let t337 = T::fused(k(0.5), t317, t336);
+            let t338 = t9 * t325;
+            let t339 = t0 * t334;
+            let t340 = T::fused(k(0.5), t322, t339) + t338;
+            let t341 = t15 * t340;
+            let t342 = T::fused(t6, t331, t4 * t332);
+            let t343 = T::fused(k(0.5), t329, t342);
+            let t344 = T::fused(k(0.5), t328, t343);
+            let t345 = t19 * t344;
+            let t346 = T::fused(k(0.5), t320, -t345) + t341;
+            let t347 = T::fused(t13, t337, t21 * t346);
+            let t348 = T::fused(k(0.5), t314, t347);
+            let t349 = T::fused(-t21, t337, t13 * t346);
+            let t350 = T::fused(t19, t340, t15 * t344);
+            let t351 = T::fused(k(0.05), t310, t350);
+            let t352 = T::fused(-t25, t349, t27 * t351);
+            let t353 = T::fused(
+                -t23,
+                k(9.81) * (k(0.05) + t348),
+                t29 * (k(9.81) * t352),
             );
-            let t251 = k(0.1) * T::fused(t190, t249, -t243);
-            let t252 = t219 * (t251 + (t251 + t250));
-            let t253 = T::fused(k(0.05), k(1.0) + t0, k(0.05));
-            let t254 = k(0.05) + t253;
-            let t255 = t3 * t254;
-            let t256 = t26 * t254;
-            let t257 = t52 * t256;
-            let t258 = T::fused(-t92, t255, t115 * t257);
-            let t259 = T::fused(t115, t255, t92 * t257);
-            let t260 = t57 * t256;
-            let t261 = T::fused(-t184, t259, t188 * t260);
-            let t262 = T::fused(-t229, k(9.81) * t258, t227 * (k(9.81) * t261));
-            let t263 = k(0.1) * t80;
-            let t264 = t263 + (T::fused(t52, t70, t57 * t77) + t263);
-            let t265 = t89 * t264;
-            let t266 = T::fused(
-                t92,
-                T::fused(-t91, t265, t80),
-                t115 * T::fused(t114, t265, T::fused(-t57, t101, t52 * t104)),
+            let t354 = T::fused(
+                -t231,
+                t30,
+                T::fused(t266, t239, T::fused(-t307, t268, t230 * t353)),
             );
-            let t267 = T::fused(t52, t101, t57 * t104);
-            let t268 = k(0.1) * t267;
-            let t269 = T::fused(t125, t265, t268 + (k(1.0) + t268));
-            let t270 = T::fused(t129, t265, T::fused(-t57, t70, t52 * t77));
-            let t271 = k(0.1) * T::fused(t131, t265, t267);
-            let t272 = t271 + (t271 - T::fused(-t92, t269, t115 * t270));
-            let t273 = t165 * t272;
-            let t274 = T::fused(
-                t184,
-                T::fused(k(0.2), t266, t183 * t273),
-                t188 * T::fused(t187, t273, T::fused(t115, t269, t92 * t270)),
+            let t355 = t0 * t45;
+            let t356 = k(0.1) * t355;
+            let t357 = t9 * t62;
+            let t358 = t70 * t357;
+            let t359 = T::fused(t74, t358, -(t356 + (k(1.0) + t356)));
+            let t360 = T::fused(t78, t358, t0 * t62);
+            let t361 = T::fused(t55, t358, -t355);
+            let t362 = k(0.1) * t361;
+            let t363 = t362 + (t362 + T::fused(t15, t359, t19 * t360));
+            let t364 = t105 * t363;
+            let t365 = T::fused(t9, t45, t116 * t358);
+            let t366 = t108 * t358;
+            let t367 = T::fused(
+                -t13,
+                T::fused(-t107, t364, t361),
+                t21 * T::fused(-t127, t364, T::fused(-t15, t365, t19 * t366)),
             );
-            let t275 = k(0.1) * T::fused(t190, t273, t266);
-            let t276 = t219 * (t275 + (t275 + t274));
-            let t277 = T::fused(k(0.1), k(1.0) + t3, k(0.1));
-            let t278 = T::fused(k(0.1), t3, t277);
-            let t279 = T::fused(k(0.05), t3, k(0.5) * (t0 * t278));
-            let t280 = k(0.5) * (t12 * t278);
-            let t281 = T::fused(t0, t279, t12 * t280);
-            let t282 = T::fused(k(0.5), t277, t281);
-            let t283 = k(0.05) + t282;
-            let t284 = T::fused(-t12, t279, t0 * t280);
-            let t285 = t26 * t12;
-            let t286 = k(0.05) * t285;
-            let t287 = T::fused(-t3, t284, t26 * t286);
-            let t288 = T::fused(-t52, t283, t57 * t287);
-            let t289 = T::fused(t57, t283, t52 * t287);
-            let t290 = T::fused(t26, t284, t3 * t286);
-            let t291 = T::fused(t92, t289, t115 * t290);
-            let t292 = T::fused(-t188, t288, t184 * t291);
-            let t293 = T::fused(-t115, t289, t92 * t290);
-            let t294 = T::fused(-t227, k(9.81) * t292, t229 * (k(9.81) * t293));
-            let t295 = T::fused(-t92, t167, t115 * t170);
-            let t296 = k(0.1) * t295;
-            let t297 = k(0.1) * t156;
-            let t298 = t297 - (T::fused(-t92, t145, t115 * t153) - t297);
-            let t299 = t165 * t298;
-            let t300 = T::fused(
-                t184,
-                T::fused(t183, t299, t296 - (k(1.0) - t296)),
-                t188 * T::fused(t187, t299, T::fused(t115, t145, t92 * t153)),
+            let t368 = T::fused(t19, t365, t15 * t366);
+            let t369 = T::fused(t138, t364, k(0.2) * t368);
+            let t370 = T::fused(t142, t364, T::fused(-t19, t359, t15 * t360));
+            let t371 = k(0.1) * T::fused(t144, t364, t368);
+            let t372 = t371 + (t371 - T::fused(-t13, t369, t21 * t370));
+            let t373 = t178 * t372;
+            let t374 = T::fused(
+                t25,
+                T::fused(-k(0.2), t367, t196 * t373),
+                t27 * T::fused(t199, t373, T::fused(t21, t369, t13 * t370)),
             );
-            let t301 = k(0.1) * T::fused(t190, t299, t295);
-            let t302 = t219 * (t301 + (t301 + t300));
-            let t303 = t57 * t3;
-            let t304 = T::fused(-t12, t303, t52 * t0);
-            let t305 = T::fused(k(0.1), k(1.0) + t52, k(0.1));
-            let t306 = T::fused(k(0.1), t52, t305);
-            let t307 = T::fused(k(0.05), t52, k(0.5) * (t3 * t306));
-            let t308 = T::fused(k(0.05), t52 + t304, t307);
-            let t309 = t307 + t308;
-            let t310 = t26 * t306;
-            let t311 = t57 * t26;
-            let t312 = k(0.2) * t311;
-            let t313 = k(0.05) * t311;
-            let t314 = T::fused(k(0.5), T::fused(-t12, t310, t0 * t312), t313);
-            let t315 = k(0.5) * T::fused(t0, t310, t12 * t312);
-            let t316 = T::fused(-t12, t314, t0 * t315);
-            let t317 = T::fused(k(0.5), t310, t316);
-            let t318 = T::fused(t3, t309, t26 * t317);
-            let t319 = T::fused(k(0.5), t305, t318);
-            let t320 = k(0.05) + t319;
-            let t321 = T::fused(-t26, t309, t3 * t317);
-            let t322 = T::fused(t0, t314, t12 * t315);
-            let t323 = t313 + t322;
-            let t324 = T::fused(-t52, t321, t57 * t323);
-            let t325 = T::fused(-t92, t320, t115 * t324);
-            let t326 = T::fused(t115, t320, t92 * t324);
-            let t327 = T::fused(t57, t321, t52 * t323);
-            let t328 = T::fused(t184, t326, t188 * t327);
-            let t329 = T::fused(t229, k(9.81) * t325, t227 * (k(9.81) * t328));
-            let t330 = k(0.1) * t210;
-            let t331 = t219 * (t330 + (T::fused(t184, t202, t188 * t207) + t330));
-            let t332 = t115 * t52;
-            let t333 = T::fused(-t26, t332, t92 * t3);
-            let t334 = T::fused(k(0.1), k(1.0) + t92, k(0.1));
-            let t335 = k(0.1) * t92;
-            let t336 = t335 + t334;
-            let t337 = T::fused(t52, t336, t335);
-            let t338 = T::fused(k(0.1), t92 + t333, t337);
-            let t339 = T::fused(k(0.1), t333, t338);
-            let t340 = t57 * t336;
-            let t341 = t115 * t57;
-            let t342 = k(0.2) * t341;
-            let t343 = T::fused(t3, t340, t26 * t342);
-            let t344 = T::fused(
-                -k(0.05),
-                t333,
-                k(0.5) * T::fused(-t0, t339, t12 * t343),
-            );
-            let t345 = k(0.5) * T::fused(t12, t339, t0 * t343);
-            let t346 = T::fused(-t0, t344, t12 * t345);
-            let t347 = T::fused(k(0.5), t338, t346);
-            let t348 = T::fused(k(0.5), t337, t347);
-            let t349 = t12 * t344;
-            let t350 = t0 * t345;
-            let t351 = T::fused(k(0.5), t343, t350) + t349;
-            let t352 = t3 * t351;
-            let t353 = T::fused(t3, t332, t92 * t26);
-            let t354 = T::fused(t12, t353, t0 * t341);
-            let t355 = k(0.05) * t341;
-            let t356 = T::fused(k(0.5), T::fused(-t26, t340, t3 * t342), t355);
-            let t357 = T::fused(k(0.05), t341 + t354, t356);
-            let t358 = t356 + t357;
-            let t359 = t26 * t358;
-            let t360 = T::fused(k(0.5), t340, -t359) + t352;
-            let t361 = T::fused(t52, t348, t57 * t360);
-            let t362 = T::fused(k(0.5), t334, t361);
-            let t363 = k(0.05) + t362;
-            let t364 = T::fused(-t57, t348, t52 * t360);
-            let t365 = T::fused(t26, t351, t3 * t358);
-            let t366 = t355 + t365;
-            let t367 = T::fused(-t92, t364, t115 * t366);
-            let t368 = T::fused(t188, t363, t184 * t367);
-            let t369 = T::fused(t115, t364, t92 * t366);
-            let t370 = T::fused(-t227, k(9.81) * t368, t229 * (k(9.81) * t369));
-            let t371 = t188 * t92;
-            let t372 = T::fused(t52, t371, t184 * t57);
-            let t373 = t188 * t115;
-            let t374 = T::fused(-t3, t372, t26 * t373);
-            let t375 = T::fused(-t57, t371, t184 * t52);
-            let t376 = T::fused(t12, t374, t0 * t375);
-            let t377 = T::fused(k(0.1), k(1.0) + t184, k(0.1));
-            let t378 = k(0.1) * t184;
-            let t379 = t378 + t377;
-            let t380 = T::fused(t92, t379, t378);
-            let t381 = T::fused(k(0.1), t184 + t375, t380);
-            let t382 = T::fused(k(0.1), t375, t381);
-            let t383 = t115 * t379;
-            let t384 = k(0.2) * t373;
-            let t385 = T::fused(t52, t383, t57 * t384);
-            let t386 = T::fused(
-                -k(0.05),
-                t375,
-                k(0.5) * T::fused(-t3, t382, t26 * t385),
-            );
-            let t387 = T::fused(-k(0.05), t375 + t376, t386);
-            let t388 = t386 + t387;
-            let t389 = T::fused(t26, t382, t3 * t385);
-            let t390 = T::fused(t26, t372, t3 * t373);
-            let t391 = T::fused(-t57, t383, T::fused(t52, t384, k(0.1) * t373));
-            let t392 = T::fused(k(0.1), t373 + t390, t391);
-            let t393 = T::fused(k(0.1), t390, t392);
-            let t394 = T::fused(k(0.5), T::fused(-t12, t389, t0 * t393), k(0.05) * t390);
-            let t395 = k(0.5) * T::fused(t0, t389, t12 * t393);
-            let t396 = T::fused(-t12, t394, t0 * t395);
-            let t397 = T::fused(k(0.5), t389, t396);
-            let t398 = T::fused(-t3, t388, t26 * t397);
-            let t399 = T::fused(k(0.5), t381, t398);
+            let t375 = k(0.1) * T::fused(t201, t373, -t367);
+            let t376 = t230 * (t375 + (t375 + t374));
+            let t377 = T::fused(k(0.05), k(1.0) + t6, k(0.05));
+            let t378 = k(0.05) + t377;
+            let t379 = t0 * t378;
+            let t380 = t9 * t378;
+            let t381 = t15 * t380;
+            let t382 = T::fused(-t13, t379, t21 * t381);
+            let t383 = T::fused(t21, t379, t13 * t381);
+            let t384 = t19 * t380;
+            let t385 = T::fused(-t25, t383, t27 * t384);
+            let t386 = T::fused(-t23, k(9.81) * t382, t29 * (k(9.81) * t385));
+            let t387 = k(0.746268656716418) * t6;
+            let t388 = t387 + (k(1.0) + t387);
+            let t389 = t387 + T::fused(t0, t388, t387);
+            let t390 = t70 * t389;
+            let t391 = k(7.462686567164179) * t4;
+            let t392 = t9 * t391;
+            let t393 = T::fused(t74, t390, k(0.2) * t392);
+            let t394 = T::fused(-t9, t388, t78 * t390);
+            let t395 = T::fused(t55, t390, t392);
+            let t396 = k(0.1) * t395;
+            let t397 = t396 + (t396 + T::fused(t15, t393, t19 * t394));
+            let t398 = t105 * t397;
+            let t399 = T::fused(-t108, t390, k(7.462686567164179) * t6);
             (
+                t201,
                 t203,
+                t204,
                 t205,
+                t207,
                 t208,
-                t210,
-                t211,
-                t212,
                 t214,
                 t216,
-                t217,
                 t219,
-                t220,
                 t221,
                 t222,
                 t223,
-                t224,
                 t225,
-                t226,
                 t227,
                 t228,
-                t229,
                 t230,
-                t233,
+                t231,
+                t235,
                 t239,
+                t240,
+                t241,
+                t243,
+                t245,
+                t246,
+                t247,
                 t248,
+                t249,
+                t251,
                 t252,
                 t253,
                 t254,
@@ -14938,9 +15104,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t260,
                 t261,
                 t262,
+                t263,
                 t264,
-                t272,
+                t265,
+                t266,
+                t268,
+                t269,
+                t270,
+                t273,
                 t276,
+                t277,
                 t278,
                 t279,
                 t280,
@@ -14955,39 +15128,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t289,
                 t290,
                 t291,
-                t292,
-                t293,
                 t294,
+                t295,
+                t296,
+                t297,
                 t298,
+                t299,
+                t300,
+                t301,
                 t302,
                 t303,
                 t304,
+                t305,
                 t306,
+                t307,
                 t308,
                 t309,
                 t310,
                 t311,
                 t312,
-                t314,
-                t315,
+                t313,
                 t316,
-                t317,
-                t318,
                 t319,
                 t320,
                 t321,
                 t322,
-                t323,
                 t324,
                 t325,
                 t326,
                 t327,
-                t328,
-                t329,
+                t330,
                 t331,
                 t332,
                 t333,
+                t334,
+                t335,
                 t336,
+                t337,
+                t338,
                 t339,
                 t340,
                 t341,
@@ -15005,58 +15183,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t353,
                 t354,
                 t357,
-                t358,
-                t359,
-                t360,
-                t361,
-                t362,
                 t363,
-                t364,
-                t365,
-                t366,
-                t367,
-                t368,
-                t369,
-                t370,
-                t371,
                 t372,
-                t373,
-                t374,
-                t375,
                 t376,
                 t377,
+                t378,
                 t379,
                 t380,
+                t381,
                 t382,
                 t383,
                 t384,
                 t385,
-                t387,
-                t388,
+                t386,
                 t389,
                 t390,
                 t391,
-                t392,
                 t393,
                 t394,
                 t395,
-                t396,
                 t397,
                 t398,
                 t399,
             )
         };
         let (
-            t400,
-            t401,
-            t402,
-            t403,
-            t404,
-            t405,
             t406,
-            t407,
-            t408,
-            t409,
             t410,
             t411,
             t412,
@@ -15078,7 +15230,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t428,
             t429,
             t430,
-            t431,
             t432,
             t433,
             t434,
@@ -15086,37 +15237,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t436,
             t437,
             t438,
-            t439,
             t440,
             t441,
             t442,
-            t444,
-            t445,
+            t443,
+            t446,
             t447,
             t448,
             t449,
+            t450,
             t453,
             t455,
-            t456,
             t457,
-            t458,
-            t459,
             t460,
-            t462,
-            t463,
+            t461,
             t464,
-            t465,
             t466,
-            t467,
             t469,
-            t472,
-            t473,
+            t470,
+            t471,
             t474,
+            t475,
+            t476,
+            t477,
             t478,
-            t479,
-            t483,
-            t487,
-            t489,
+            t480,
+            t481,
+            t484,
+            t486,
+            t488,
+            t490,
             t491,
             t492,
             t493,
@@ -15125,360 +15275,376 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t496,
             t497,
             t498,
+            t499,
             t501,
-            t507,
+            t502,
+            t504,
+            t505,
             t509,
-            t510,
             t511,
             t512,
             t513,
-            t515,
+            t514,
             t516,
+            t517,
             t518,
             t519,
-            t529,
-            t534,
-            t541,
+            t521,
+            t524,
+            t525,
+            t526,
+            t530,
+            t531,
+            t535,
+            t539,
+            t542,
             t543,
             t544,
             t545,
             t546,
-            t549,
-            t554,
+            t547,
+            t548,
+            t551,
             t557,
             t559,
-            t570,
-            t571,
+            t560,
+            t561,
+            t563,
+            t564,
+            t566,
+            t567,
             t575,
             t576,
             t577,
-            t578,
-            t579,
-            t580,
+            t581,
+            t582,
             t584,
-            t585,
-            t587,
-            t588,
             t589,
             t590,
+            t591,
             t592,
             t593,
             t594,
+            t595,
             t596,
             t597,
+            t598,
             t599,
         ) = {
-            let t400 = T::fused(k(0.5), t380, t399);
-            let t401 = t26 * t388;
-            let t402 = t3 * t397;
-            let t403 = T::fused(k(0.5), t385, t402) + t401;
-            let t404 = t52 * t403;
-            let t405 = T::fused(t0, t394, t12 * t395);
-            let t406 = T::fused(k(0.5), t392, t405);
-            let t407 = T::fused(k(0.5), t391, t406);
-            let t408 = t57 * t407;
-            let t409 = T::fused(k(0.5), t383, -t408) + t404;
-            let t410 = T::fused(t92, t400, t115 * t409);
-            let t411 = T::fused(k(0.5), t377, t410);
-            let t412 = T::fused(-t115, t400, t92 * t409);
-            let t413 = T::fused(t57, t403, t52 * t407);
-            let t414 = T::fused(k(0.05), t373, t413);
-            let t415 = T::fused(-t184, t412, t188 * t414);
-            let t416 = T::fused(
-                -t229,
-                k(9.81) * (k(0.05) + t411),
-                t227 * (k(9.81) * t415),
+            let t400 = T::fused(t116, t390, t0 * t391);
+            let t401 = T::fused(
+                t13,
+                T::fused(-t107, t398, t395),
+                t21 * T::fused(t127, t398, T::fused(t19, t399, t15 * t400)),
             );
-            let t417 = T::fused(
-                t294,
-                t276,
-                T::fused(t329, t302, T::fused(-t370, t331, t219 * t416)),
+            let t402 = T::fused(-t15, t399, t19 * t400);
+            let t403 = T::fused(k(0.2), t402, t138 * t398);
+            let t404 = T::fused(t142, t398, T::fused(-t19, t393, t15 * t394));
+            let t405 = k(0.1) * T::fused(t144, t398, t402);
+            let t406 = t405 + (t405 - T::fused(-t13, t403, t21 * t404));
+            let t407 = t178 * t406;
+            let t408 = T::fused(
+                t25,
+                T::fused(k(0.2), t401, t196 * t407),
+                t27 * T::fused(t199, t407, T::fused(t21, t403, t13 * t404)),
             );
-            let t418 = k(0.0067) + t20;
-            let t419 = t26 * t418;
-            let t420 = k(0.2) * t224;
-            let t421 = T::fused(
+            let t409 = k(0.1) * T::fused(t201, t407, t401);
+            let t410 = t230 * (t409 + (t409 + t408));
+            let t411 = t0 * t35;
+            let t412 = T::fused(-t15, t36, t19 * t411);
+            let t413 = T::fused(t19, t36, t15 * t411);
+            let t414 = t9 * t35;
+            let t415 = T::fused(-t13, t413, t21 * t414);
+            let t416 = T::fused(t27, t412, t25 * t415);
+            let t417 = T::fused(t21, t413, t13 * t414);
+            let t418 = T::fused(-t29, k(9.81) * t416, t23 * (k(9.81) * t417));
+            let t419 = k(0.1) * u0;
+            let t420 = u0 * t419;
+            let t421 = T::fused(k(9.81), t23, t420);
+            let t422 = k(2.0) * t22;
+            let t423 = k(0.1) * u1;
+            let t424 = k(2.0) * t26;
+            let t425 = u0 * t25;
+            let t426 = k(0.1) * t425;
+            let t427 = k(2.0) * t20;
+            let t428 = u0 * t27;
+            let t429 = T::fused(u1, t13, t21 * t428);
+            let t430 = k(0.1) * t429;
+            let t431 = k(2.0) * t12;
+            let t432 = T::fused(-u1, t21, t13 * t428);
+            let t433 = u3 + t429;
+            let t434 = u2 + t425;
+            let t435 = T::fused(t19, t434, t15 * t432);
+            let t436 = T::fused(t0, t433, t9 * t435);
+            let t437 = u5 + t436;
+            let t438 = k(0.1) * t437;
+            let t439 = k(0.0015) * t10;
+            let t440 = T::fused(-t15, t434, t19 * t432);
+            let t441 = u4 - t440;
+            let t442 = T::fused(-t9, t433, t0 * t435);
+            let t443 = T::fused(t4, t441, t6 * t442);
+            let t444 = t9 * t6;
+            let t445 = k(0.0001) * t444;
+            let t446 = T::fused(-t6, t441, t4 * t442);
+            let t447 = T::fused(
+                k(0.1),
+                T::fused(t437, t5, t443 * t11),
+                -T::fused(-t438, t5, T::fused(-t443, t439, t446 * t445)),
+            );
+            let t448 = k(0.0066) * t10;
+            let t449 = k(0.0002) * t444;
+            let t450 = T::fused(k(0.0002), t9, T::fused(t4, t448, t6 * t449));
+            let t451 = k(0.0001) * t9;
+            let t452 = k(2.0) * t8;
+            let t453 = k(0.1) * t436;
+            let t454 = k(0.1) * t10;
+            let t455 = T::fused(
+                k(0.1),
+                T::fused(-t436, t452, t442 * t454),
+                -T::fused(t453, t452, -(T::fused(-u4, t450, t441 * t451) + t447)),
+            );
+            let t456 = k(2.0) * t14;
+            let t457 = k(0.1) * t433;
+            let t458 = T::fused(
+                k(0.1),
+                T::fused(-t433, t456, t435 * t431),
+                -T::fused(-t0, t455, t457 * t456),
+            );
+            let t459 = t16 + t17;
+            let t460 = k(0.1) * t441;
+            let t461 = k(0.1) * t446;
+            let t462 = T::fused(
+                k(0.1),
+                T::fused(t446, t5, t443 * t7),
+                -T::fused(-t461, t5, T::fused(u5, t449, t437 * t445)),
+            );
+            let t463 = k(0.0014) * t0;
+            let t464 = T::fused(t443, t463, t462);
+            let t465 = T::fused(
+                t461,
+                t7,
+                T::fused(u5, t448, T::fused(t437, t439, t438 * t11)),
+            );
+            let t466 = T::fused(t446, t463, t465);
+            let t467 = T::fused(
+                t6,
+                t466,
+                T::fused(t4, t464, T::fused(-t460, t459, t453 * t454)),
+            );
+            let t468 = k(0.0017) * t0;
+            let t469 = t468 + T::fused(k(0.1), t459, T::fused(k(0.1), t7, t468));
+            let t470 = T::fused(u4, t469, T::fused(t441, t463, -t467));
+            let t471 = T::fused(t9, t470, t458);
+            let t472 = t471
+                - T::fused(t430, t427, k(0.1) * T::fused(-t432, t431, t429 * t427));
+            let t473 = k(0.2) * t12;
+            let t474 = T::fused(-t6, t448, T::fused(-k(0.01), t10, t4 * t449)) - t473;
+            let t475 = T::fused(-t9, t469, t0 * t450);
+            let t476 = T::fused(-t19, t474, t15 * t475);
+            let t477 = T::fused(u2, t476, -t472);
+            let t478 = T::fused(
                 k(0.2),
-                t228,
-                T::fused(-t57, t419, T::fused(t52, t420, t420)),
+                t22,
+                T::fused(t19, t475, -T::fused(-t15, t474, t473)),
             );
-            let t422 = u0 * t188;
-            let t423 = u1 * t422;
-            let t424 = k(0.0015) * t423;
-            let t425 = T::fused(-u1, t115, t92 * t422);
-            let t426 = T::fused(u1, t92, t115 * t422);
-            let t427 = k(0.0015) * (t426 * t425);
-            let t428 = u3 + t426;
-            let t429 = u0 * t184;
-            let t430 = u2 + t429;
-            let t431 = T::fused(t57, t430, t52 * t425);
-            let t432 = k(0.0015) * (t431 * t428);
-            let t433 = T::fused(t3, t428, t26 * t431);
-            let t434 = T::fused(-t26, t428, t3 * t431);
-            let t435 = k(0.0015) * (t434 * t433);
-            let t436 = T::fused(-t52, t430, t57 * t425);
-            let t437 = u4 - t436;
-            let t438 = T::fused(t12, t437, t0 * t434);
-            let t439 = u5 + t433;
-            let t440 = k(0.0015) * (t439 * t438);
-            let t441 = k(0.1) * t439;
-            let t442 = k(0.1) * t433;
-            let t443 = t434 * t442;
-            let t444 = T::fused(t441, t438, t443);
-            let t445 = u5 * t438;
-            let t446 = T::fused(k(0.05), t444, k(0.0066) * t445) + t440;
-            let t447 = T::fused(-t0, t437, t12 * t434);
-            let t448 = k(0.0001) * (t447 * t439);
-            let t449 = u5 * t447;
-            let t450 = T::fused(k(0.0002), t449, t448);
-            let t451 = T::fused(k(0.5), t444, k(0.05) * t445);
-            let t452 = k(0.1) * t451;
-            let t453 = t452 + (t452 + T::fused(t0, t446, t12 * t450) + t435);
-            let t454 = t23 * t453;
-            let t455 = k(0.1) * t428;
-            let t456 = t431 * t455;
-            let t457 = k(0.1) * t436;
-            let t458 = T::fused(t428, t455, t436 * t457);
-            let t459 = T::fused(-t3, t456, t26 * t458) - t443;
-            let t460 = u4 * t433;
-            let t461 = T::fused(t41, t460, -T::fused(-t62, t459, t459))
-                + T::fused(-t39, t454, t451);
-            let t462 = t447 * t438;
-            let t463 = k(0.1) * t447;
-            let t464 = k(0.1) * t437;
-            let t465 = t434 * t464;
-            let t466 = T::fused(t433, t442, t437 * t464);
-            let t467 = T::fused(-t463, t438, T::fused(t0, t465, t12 * t466));
-            let t468 = T::fused(
+            let t479 = T::fused(
+                u1,
+                t478,
+                T::fused(t21, t477, T::fused(t423, t422, t426 * t424)),
+            );
+            let t480 = k(0.1) * t434;
+            let t481 = k(0.1) * t440;
+            let t482 = t17 + t18;
+            let t483 = T::fused(
+                k(0.1),
+                T::fused(t441, t452, t442 * t459),
+                -T::fused(-t460, t452, t436 * t451),
+            );
+            let t484 = T::fused(
+                t442,
+                t463,
+                -T::fused(t4, t466, -T::fused(t6, t464, t483)),
+            );
+            let t485 = t484
+                + T::fused(-t481, t456, k(0.1) * T::fused(-t440, t456, t435 * t482));
+            let t486 = T::fused(k(0.0014), t435, -T::fused(u3, t475, -t485));
+            let t487 = T::fused(
+                t481,
+                t482,
+                T::fused(t457, t431, -T::fused(-t9, t455, u3 * t474)),
+            );
+            let t488 = T::fused(k(0.0014), t440, -T::fused(t0, t470, -t487));
+            let t489 = T::fused(
+                t15,
+                t488,
+                T::fused(t19, t486, -T::fused(-t430, t431, t480 * t424)),
+            );
+            let t490 = T::fused(
+                k(0.2),
+                t26,
+                k(0.0017) + T::fused(t0, t469, T::fused(k(0.1), t482, t9 * t450)),
+            );
+            let t491 = T::fused(u2, t490, -t489);
+            let t492 = T::fused(t13, t491, t479);
+            let t493 = T::fused(-t13, t476, t21 * t490);
+            let t494 = u1 * t428;
+            let t495 = k(0.0015) * t494;
+            let t496 = k(0.0015) * (t429 * t432);
+            let t497 = k(0.0015) * (t435 * t433);
+            let t498 = k(0.0015) * (t442 * t436);
+            let t499 = k(0.0015) * (t437 * t443);
+            let t500 = t442 * t453;
+            let t501 = T::fused(t438, t443, t500);
+            let t502 = u5 * t443;
+            let t503 = T::fused(k(0.05), t501, k(0.0066) * t502) + t499;
+            let t504 = k(0.0001) * (t446 * t437);
+            let t505 = u5 * t446;
+            let t506 = T::fused(k(0.0002), t505, t504);
+            let t507 = T::fused(k(0.5), t501, k(0.05) * t502);
+            let t508 = k(0.1) * t507;
+            let t509 = t508 + (t508 + T::fused(t6, t503, t4 * t506) + t498);
+            let t510 = t44 * t509;
+            let t511 = t435 * t457;
+            let t512 = T::fused(t433, t457, t440 * t481);
+            let t513 = T::fused(-t0, t511, t9 * t512) - t500;
+            let t514 = u4 * t436;
+            let t515 = T::fused(t49, t514, -T::fused(-t81, t513, t513))
+                + T::fused(-t38, t510, t507);
+            let t516 = t446 * t443;
+            let t517 = t442 * t460;
+            let t518 = T::fused(t436, t453, t441 * t460);
+            let t519 = T::fused(-t461, t443, T::fused(t6, t517, t4 * t518));
+            let t520 = T::fused(
                 k(0.010447761194029851),
-                t462,
-                k(0.12686567164179105) * t467,
-            );
-            let t469 = T::fused(-t12, t465, t0 * t466)
-                + T::fused(t439, t441, t447 * t463);
-            let t470 = k(0.5) * t469;
-            let t471 = t431 * t457;
-            let t472 = t471 - t465;
-            let t473 = T::fused(t26, t456, t3 * t458) + t466;
-            let t474 = u4 * t434;
-            let t475 = T::fused(t36, t474, -(t473 - T::fused(-t35, t472, t64 * t473)))
-                - T::fused(t12, t468, t0 * t470);
-            let t476 = T::fused(-t3, t461, t26 * t475);
-            let t477 = k(0.1) * t476;
-            let t478 = k(0.0014) * (t436 * t431);
-            let t479 = k(0.0014) * (t434 * t437);
-            let t480 = T::fused(-t0, t468, t12 * t470);
-            let t481 = k(0.1) * t480;
-            let t482 = T::fused(t10, t474, T::fused(t29, t472, t36 * t473))
-                + (t481 + (t481 - t479));
-            let t483 = k(0.0001) * (t437 * t433);
-            let t484 = T::fused(t41, t459, t25 * t460)
-                - T::fused(t17, t454, T::fused(-t12, t446, t0 * t450) - t483);
-            let t485 = T::fused(t29, t474, -(t472 + T::fused(-t6, t472, t35 * t473)))
-                - t480;
-            let t486 = k(0.1) * t485;
-            let t487 = t486 + (t486 - T::fused(t3, t482, t26 * t484) - t478);
-            let t488 = t33 * t487;
-            let t489 = k(0.1) * t426;
-            let t490 = t425 * t489;
-            let t491 = t490 + t456;
-            let t492 = k(0.1) * t430;
-            let t493 = t425 * t492;
-            let t494 = T::fused(t426, t489, t430 * t492);
-            let t495 = T::fused(t52, t493, t57 * t494) - t471;
-            let t496 = T::fused(-t57, t493, t52 * t494) + t458;
-            let t497 = u3 * t431;
-            let t498 = u3 * t436;
-            let t499 = T::fused(t71, t497, t73 * t498)
-                + T::fused(t105, t496, -T::fused(-t81, t491, t102 * t495));
-            let t500 = t499 - T::fused(t48, t488, -(t477 + (t477 - t432)));
-            let t501 = k(0.0001) * (t436 * t428);
-            let t502 = T::fused(t73, t497, t78 * t498)
-                + T::fused(t108, t496, T::fused(t82, t491, t107 * t495));
-            let t503 = t502
-                - T::fused(t55, t488, -(T::fused(-t26, t482, t3 * t484) - t501));
-            let t504 = T::fused(
-                -k(1.5),
-                t491,
-                T::fused(t111, t496, T::fused(t84, t491, t110 * t495)),
-            );
-            let t505 = T::fused(t81, t497, t82 * t498) + t504
-                - T::fused(t58, t488, -t476);
-            let t506 = k(0.1) * t505;
-            let t507 = t506 + (t506 + T::fused(t52, t500, t57 * t503) - t427);
-            let t508 = t89 * t507;
-            let t509 = k(0.1) * u1;
-            let t510 = t509 * t422;
-            let t511 = k(0.1) * t429;
-            let t512 = T::fused(t429, t511, u1 * t509);
-            let t513 = T::fused(-t92, t510, t115 * t512) - t490;
-            let t514 = t422 * t511;
-            let t515 = t514 + t493;
-            let t516 = T::fused(t115, t510, t92 * t512) + t494;
-            let t517 = T::fused(
-                k(2.0),
-                t513,
-                T::fused(t193, t516, -T::fused(t192, t513, t177 * t515)),
-            );
-            let t518 = u2 * t425;
-            let t519 = u2 * t426;
-            let t520 = T::fused(t168, t518, t173 * t519) + t517
-                + T::fused(-t91, t508, t505);
-            let t521 = T::fused(
-                -k(1.5),
-                t495,
-                T::fused(t135, t496, T::fused(t110, t491, t134 * t495)),
-            );
-            let t522 = T::fused(-t102, t497, t107 * t498) + t521
-                - T::fused(-t93, t488, t485);
-            let t523 = T::fused(
-                -k(1.5),
-                t496,
-                T::fused(t139, t496, T::fused(t111, t491, t135 * t495)),
-            );
-            let t524 = T::fused(t105, t497, t108 * t498) + t523
-                - T::fused(t99, t488, -T::fused(t26, t461, t3 * t475));
-            let t525 = T::fused(
-                -k(2.0),
                 t516,
-                T::fused(t196, t516, -T::fused(t193, t513, t178 * t515)),
+                k(0.12686567164179105) * t519,
             );
-            let t526 = T::fused(-t171, t518, t174 * t519) + t525
-                + T::fused(t114, t508, T::fused(t57, t522, t52 * t524));
-            let t527 = T::fused(t92, t520, t115 * t526);
-            let t528 = k(0.1) * t527;
-            let t529 = k(0.0014) * (t425 * t430);
-            let t530 = T::fused(-t52, t522, t57 * t524);
-            let t531 = k(0.1) * t530;
-            let t532 = T::fused(-t146, t518, t148 * t519)
-                + T::fused(t171, t516, -T::fused(-t168, t513, t157 * t515));
-            let t533 = t532 + T::fused(t125, t508, t531 + (t531 + t529));
-            let t534 = k(0.0001) * (t426 * t430);
-            let t535 = T::fused(-t148, t518, t154 * t519)
-                + T::fused(t174, t516, -T::fused(t173, t513, t158 * t515));
-            let t536 = t535
-                + T::fused(t129, t508, T::fused(-t57, t500, t52 * t503) + t534);
-            let t537 = T::fused(
+            let t521 = T::fused(-t4, t517, t6 * t518)
+                + T::fused(t437, t438, t446 * t461);
+            let t522 = k(0.5) * t521;
+            let t523 = t435 * t481;
+            let t524 = t523 - t517;
+            let t525 = T::fused(t9, t511, t0 * t512) + t518;
+            let t526 = u4 * t442;
+            let t527 = T::fused(t33, t526, -(t525 - T::fused(-t32, t524, t83 * t525)))
+                - T::fused(t4, t520, t6 * t522);
+            let t528 = T::fused(-t0, t515, t9 * t527);
+            let t529 = k(0.1) * t528;
+            let t530 = k(0.0014) * (t440 * t435);
+            let t531 = k(0.0014) * (t442 * t441);
+            let t532 = T::fused(-t6, t520, t4 * t522);
+            let t533 = k(0.1) * t532;
+            let t534 = T::fused(t60, t526, T::fused(t66, t524, t33 * t525))
+                + (t533 + (t533 - t531));
+            let t535 = k(0.0001) * (t441 * t436);
+            let t536 = T::fused(t49, t513, t63 * t514)
+                - T::fused(t48, t510, T::fused(-t4, t503, t6 * t506) - t535);
+            let t537 = T::fused(t66, t526, -(t524 + T::fused(-t56, t524, t32 * t525)))
+                - t532;
+            let t538 = k(0.1) * t537;
+            let t539 = t538 + (t538 - T::fused(t0, t534, t9 * t536) - t530);
+            let t540 = t70 * t539;
+            let t541 = t432 * t430;
+            let t542 = t541 + t511;
+            let t543 = t432 * t480;
+            let t544 = T::fused(t429, t430, t434 * t480);
+            let t545 = T::fused(t15, t543, t19 * t544) - t523;
+            let t546 = T::fused(-t19, t543, t15 * t544) + t512;
+            let t547 = u3 * t435;
+            let t548 = u3 * t440;
+            let t549 = T::fused(t89, t547, t91 * t548)
+                + T::fused(t118, t546, -T::fused(-t97, t542, t110 * t545));
+            let t550 = t549 - T::fused(t74, t540, -(t529 + (t529 - t497)));
+            let t551 = k(0.0001) * (t440 * t433);
+            let t552 = T::fused(t91, t547, t95 * t548)
+                + T::fused(t121, t546, T::fused(t98, t542, t120 * t545));
+            let t553 = t552
+                - T::fused(t78, t540, -(T::fused(-t9, t534, t0 * t536) - t551));
+            let t554 = T::fused(
+                -k(1.5),
+                t542,
+                T::fused(t124, t546, T::fused(t100, t542, t123 * t545)),
+            );
+            let t555 = T::fused(t97, t547, t98 * t548) + t554
+                - T::fused(t55, t540, -t528);
+            let t556 = k(0.1) * t555;
+            let t557 = t556 + (t556 + T::fused(t15, t550, t19 * t553) - t496);
+            let t558 = t105 * t557;
+            let t559 = t423 * t428;
+            let t560 = T::fused(t425, t426, u1 * t423);
+            let t561 = T::fused(-t13, t559, t21 * t560) - t541;
+            let t562 = t428 * t426;
+            let t563 = t562 + t543;
+            let t564 = T::fused(t21, t559, t13 * t560) + t544;
+            let t565 = T::fused(
                 k(2.0),
-                t515,
-                T::fused(t178, t516, -T::fused(t177, t513, t160 * t515)),
+                t561,
+                T::fused(t204, t564, -T::fused(t203, t561, t190 * t563)),
             );
-            let t538 = T::fused(-t157, t518, t158 * t519) + t537
-                + T::fused(t131, t508, t530);
-            let t539 = k(0.1) * t538;
-            let t540 = T::fused(
-                k(0.0014),
-                t429 * t422,
-                t539 - T::fused(-t92, t533, t115 * t536),
+            let t566 = u2 * t432;
+            let t567 = u2 * t429;
+            let t568 = T::fused(t181, t566, t186 * t567) + t565
+                + T::fused(-t107, t558, t555);
+            let t569 = T::fused(
+                -k(1.5),
+                t545,
+                T::fused(t148, t546, T::fused(t123, t542, t147 * t545)),
             );
-            let t541 = t539 + t540;
-            let t542 = t165 * t541;
-            let t543 = k(0.1) * u0;
-            let t544 = u0 * t543;
-            let t545 = T::fused(t188, t544, t514);
-            let t546 = t164 + (k(0.25) - t163);
-            let t547 = t165 * t546;
-            let t548 = T::fused(-k(0.2), t179, t547 * t183);
-            let t549 = T::fused(t184, t544, t512);
-            let t550 = T::fused(-t115, t194, t92 * t197);
-            let t551 = T::fused(t115, t168, t92 * t171);
-            let t552 = T::fused(-t115, t173, t92 * t174);
-            let t553 = k(0.1) * T::fused(-t115, t177, t92 * t178);
-            let t554 = t553 + (t553 - T::fused(-t92, t551, t115 * t552));
-            let t555 = t165 * t554;
-            let t556 = T::fused(k(0.2), t550, t555 * t183);
-            let t557 = u1 * t429;
-            let t558 = T::fused(-t423, t203, t557 * t205)
-                - T::fused(t556, t549, T::fused(t211, t510, t548 * t545));
-            let t559 = k(0.0001) * t557;
-            let t560 = T::fused(-t187, t547, t185);
-            let t561 = T::fused(t555, t187, T::fused(t115, t551, t92 * t552));
-            let t562 = T::fused(-t423, t205, t557 * t208)
-                - T::fused(t561, t549, -T::fused(-t212, t510, t560 * t545));
-            let t563 = t562
-                - T::fused(t187, t542, T::fused(t115, t533, t92 * t536) + t559);
-            let t564 = T::fused(
-                t184,
-                t558 - T::fused(t183, t542, t528 + (t528 - t424)),
-                t188 * t563,
+            let t570 = T::fused(-t110, t547, t120 * t548) + t569
+                - T::fused(-t108, t540, t537);
+            let t571 = T::fused(
+                -k(1.5),
+                t546,
+                T::fused(t152, t546, T::fused(t124, t542, t148 * t545)),
             );
-            let t565 = T::fused(-t210, t546, t179);
-            let t566 = T::fused(t210, t554, t550);
-            let t567 = T::fused(
-                -k(2.5),
-                t510,
-                T::fused(t566, t549, -T::fused(-t214, t510, t565 * t545)),
+            let t572 = T::fused(t118, t547, t121 * t548) + t571
+                - T::fused(t116, t540, -T::fused(t9, t515, t0 * t527));
+            let t573 = T::fused(
+                -k(2.0),
+                t564,
+                T::fused(t207, t564, -T::fused(t204, t561, t191 * t563)),
             );
-            let t568 = T::fused(-t211, t423, t212 * t557) - t567
-                - T::fused(t190, t542, t527);
-            let t569 = k(0.1) * t568;
-            let t570 = k(9.81) * t227;
-            let t571 = T::fused(k(9.81), t229, t544);
-            let t572 = T::fused(
-                t184,
-                T::fused(t188, t548, t184 * t556),
-                t188 * T::fused(-t188, t560, t184 * t561),
+            let t574 = T::fused(-t184, t566, t187 * t567) + t573
+                + T::fused(t127, t558, T::fused(t19, t570, t15 * t572));
+            let t575 = T::fused(t13, t568, t21 * t574);
+            let t576 = k(0.1) * t575;
+            let t577 = k(0.0014) * (t432 * t434);
+            let t578 = T::fused(-t15, t570, t19 * t572);
+            let t579 = k(0.1) * t578;
+            let t580 = T::fused(-t159, t566, t161 * t567)
+                + T::fused(t184, t564, -T::fused(-t181, t561, t170 * t563));
+            let t581 = t580 + T::fused(t138, t558, t579 + (t579 + t577));
+            let t582 = k(0.0001) * (t429 * t434);
+            let t583 = T::fused(-t161, t566, t167 * t567)
+                + T::fused(t187, t564, -T::fused(t186, t561, t171 * t563));
+            let t584 = t583
+                + T::fused(t142, t558, T::fused(-t19, t550, t15 * t553) + t582);
+            let t585 = T::fused(
+                k(2.0),
+                t563,
+                T::fused(t191, t564, -T::fused(t190, t561, t173 * t563)),
             );
-            let t573 = k(0.1) * T::fused(-t188, t565, t184 * t566);
-            let t574 = T::fused(
-                k(0.3) - t216 + t217,
-                t570,
-                (t573 + (t573 + t572)) * t571,
-            );
-            let t575 = (t574 - (t569 + (t569 + t564))) * t219;
-            let t576 = T::fused(k(0.2), t222, -T::fused(t3, t418, t20));
-            let t577 = T::fused(t52, t419, t57 * t420);
-            let t578 = T::fused(-t115, t576, t92 * t577);
-            let t579 = k(0.0064) * t447;
-            let t580 = k(0.0064) * t438;
-            let t581 = k(0.1) * t0;
-            let t582 = k(0.1) * t12;
-            let t583 = T::fused(
-                t0,
-                t580,
-                T::fused(k(0.1), T::fused(t434, t581, t437 * t582), t464 * t582),
-            );
-            let t584 = T::fused(-t12, t579, t583);
-            let t585 = k(2.0) * t221;
-            let t586 = T::fused(k(0.1), T::fused(-t431, t581, t436 * t585), t457 * t585)
-                - t584;
-            let t587 = T::fused(-u3, t419, t586);
+            let t586 = T::fused(-t170, t566, t171 * t567) + t585
+                + T::fused(t144, t558, t578);
+            let t587 = k(0.1) * t586;
             let t588 = T::fused(
-                u4,
-                t418,
-                T::fused(-t0, t579, T::fused(-t12, t580, t464 * t581)),
+                k(0.0014),
+                t425 * t428,
+                t587 - T::fused(-t13, t581, t21 * t584),
             );
-            let t589 = k(2.0) * t224;
-            let t590 = T::fused(k(0.1), t433 * t582, t442 * t582);
-            let t591 = T::fused(
-                -t457,
-                t581,
-                T::fused(t455, t589, T::fused(u3, t420, t26 * t590)),
-            );
-            let t592 = T::fused(t3, t588, t591);
-            let t593 = k(2.0) * t222;
-            let t594 = k(2.0) * t223;
-            let t595 = T::fused(
-                t57,
-                t592,
-                T::fused(k(0.1), T::fused(-t425, t593, t430 * t594), t492 * t594),
-            );
-            let t596 = T::fused(-t52, t587, t595);
-            let t597 = k(2.0) * t225;
-            let t598 = T::fused(k(0.1), T::fused(t422, t593, t429 * t597), t511 * t597)
-                - t596;
-            let t599 = T::fused(-u1, t578, t598);
+            let t589 = t587 + t588;
+            let t590 = t178 * t589;
+            let t591 = T::fused(t27, t420, t562);
+            let t592 = t177 + (k(0.25) - t176);
+            let t593 = t178 * t592;
+            let t594 = T::fused(-k(0.2), t192, t593 * t196);
+            let t595 = T::fused(t25, t420, t560);
+            let t596 = T::fused(-t21, t205, t13 * t208);
+            let t597 = T::fused(t21, t181, t13 * t184);
+            let t598 = T::fused(-t21, t186, t13 * t187);
+            let t599 = k(0.1) * T::fused(-t21, t190, t13 * t191);
             (
-                t400,
-                t401,
-                t402,
-                t403,
-                t404,
-                t405,
                 t406,
-                t407,
-                t408,
-                t409,
                 t410,
                 t411,
                 t412,
@@ -15500,7 +15666,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t428,
                 t429,
                 t430,
-                t431,
                 t432,
                 t433,
                 t434,
@@ -15508,37 +15673,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t436,
                 t437,
                 t438,
-                t439,
                 t440,
                 t441,
                 t442,
-                t444,
-                t445,
+                t443,
+                t446,
                 t447,
                 t448,
                 t449,
+                t450,
                 t453,
                 t455,
-                t456,
                 t457,
-                t458,
-                t459,
                 t460,
-                t462,
-                t463,
+                t461,
                 t464,
-                t465,
                 t466,
-                t467,
                 t469,
-                t472,
-                t473,
+                t470,
+                t471,
                 t474,
+                t475,
+                t476,
+                t477,
                 t478,
-                t479,
-                t483,
-                t487,
-                t489,
+                t480,
+                t481,
+                t484,
+                t486,
+                t488,
+                t490,
                 t491,
                 t492,
                 t493,
@@ -15547,1287 +15711,1281 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t496,
                 t497,
                 t498,
+                t499,
                 t501,
-                t507,
+                t502,
+                t504,
+                t505,
                 t509,
-                t510,
                 t511,
                 t512,
                 t513,
-                t515,
+                t514,
                 t516,
+                t517,
                 t518,
                 t519,
-                t529,
-                t534,
-                t541,
+                t521,
+                t524,
+                t525,
+                t526,
+                t530,
+                t531,
+                t535,
+                t539,
+                t542,
                 t543,
                 t544,
                 t545,
                 t546,
-                t549,
-                t554,
+                t547,
+                t548,
+                t551,
                 t557,
                 t559,
-                t570,
-                t571,
+                t560,
+                t561,
+                t563,
+                t564,
+                t566,
+                t567,
                 t575,
                 t576,
                 t577,
-                t578,
-                t579,
-                t580,
+                t581,
+                t582,
                 t584,
-                t585,
-                t587,
-                t588,
                 t589,
                 t590,
+                t591,
                 t592,
                 t593,
                 t594,
+                t595,
                 t596,
                 t597,
+                t598,
                 t599,
             )
         };
         let (
-            t602,
-            t604,
-            t606,
-            t607,
-            t609,
-            t611,
-            t612,
-            t615,
-            t616,
-            t617,
-            t618,
-            t619,
+            t605,
             t620,
-            t621,
+            t622,
             t624,
-            t625,
             t626,
-            t627,
             t628,
-            t632,
-            t635,
+            t630,
+            t633,
             t636,
             t637,
-            t638,
+            t640,
             t641,
             t642,
+            t643,
             t644,
-            t647,
-            t648,
-            t650,
-            t652,
+            t646,
+            t651,
             t655,
-            t656,
             t658,
-            t659,
             t660,
             t662,
-            t663,
             t665,
-            t666,
             t667,
             t671,
             t674,
-            t677,
+            t676,
+            t679,
             t680,
             t682,
-            t684,
+            t685,
             t686,
-            t689,
+            t688,
+            t690,
             t693,
             t694,
             t696,
-            t699,
-            t701,
+            t697,
+            t698,
             t703,
             t704,
-            t706,
-            t708,
+            t709,
             t710,
-            t713,
+            t711,
             t716,
-            t717,
-            t720,
-            t721,
+            t719,
             t722,
-            t723,
             t724,
-            t726,
+            t727,
+            t729,
             t731,
             t735,
-            t738,
-            t740,
-            t742,
-            t745,
+            t739,
+            t741,
+            t743,
             t747,
+            t749,
             t751,
+            t752,
             t754,
             t756,
-            t759,
-            t760,
+            t757,
+            t761,
             t762,
-            t765,
+            t763,
+            t764,
             t766,
             t768,
-            t770,
+            t771,
             t772,
             t773,
-            t774,
             t776,
-            t777,
             t778,
-            t779,
-            t780,
+            t782,
             t783,
             t784,
-            t786,
-            t787,
-            t789,
+            t785,
+            t788,
             t790,
             t791,
             t792,
             t793,
-            t794,
+            t795,
             t796,
-            t797,
+            t798,
             t799,
         ) = {
-            let t600 = T::fused(
-                u0,
-                t599,
-                T::fused(-t575, t421, T::fused(t571, t225, t544 * t225)),
-            );
-            let t601 = T::fused(
-                t57,
-                t587,
-                T::fused(t52, t592, T::fused(-t492, t593, t489 * t589)),
-            );
-            let t602 = T::fused(-u2, t576, t601);
-            let t603 = T::fused(
-                k(0.1),
-                T::fused(t431, t589, t428 * t585),
-                T::fused(t455, t585, t3 * t590),
-            );
-            let t604 = T::fused(-t26, t588, t603);
-            let t605 = T::fused(k(0.1), T::fused(t426, t594, t425 * t589), t489 * t594)
-                + t604;
-            let t606 = T::fused(-u2, t577, t605);
-            let t607 = k(2.0) * t228;
-            let t608 = T::fused(
-                u1,
-                t421,
-                T::fused(t115, t606, T::fused(-t511, t593, t509 * t607)),
-            );
-            let t609 = T::fused(t92, t602, t608);
+            let t600 = t599 + (t599 - T::fused(-t13, t597, t21 * t598));
+            let t601 = t178 * t600;
+            let t602 = T::fused(k(0.2), t596, t601 * t196);
+            let t603 = u1 * t425;
+            let t604 = T::fused(-t494, t214, t603 * t216)
+                - T::fused(t602, t595, T::fused(t222, t559, t594 * t591));
+            let t605 = k(0.0001) * t603;
+            let t606 = T::fused(-t199, t593, t197);
+            let t607 = T::fused(t601, t199, T::fused(t21, t597, t13 * t598));
+            let t608 = T::fused(-t494, t216, t603 * t219)
+                - T::fused(t607, t595, -T::fused(-t223, t559, t606 * t591));
+            let t609 = t608
+                - T::fused(t199, t590, T::fused(t21, t581, t13 * t584) + t605);
             let t610 = T::fused(
-                t575,
-                t578,
-                T::fused(-u0, t609, T::fused(t571, t222, t544 * t222)),
+                t25,
+                t604 - T::fused(t196, t590, t576 + (t576 - t495)),
+                t27 * t609,
             );
-            let t611 = T::fused(-t188, t600, t184 * t610);
-            let t612 = T::fused(k(0.0016), t0, k(0.1) * t253);
-            let t613 = t253 + t254;
-            let t614 = k(0.2) * t255;
-            let t615 = t614
-                + (k(0.0016) + T::fused(t0, t612, T::fused(k(0.1), t613, t21)));
-            let t616 = T::fused(-t12, t612, t15);
-            let t617 = t3 * t616;
-            let t618 = T::fused(-t57, t615, t52 * t617);
-            let t619 = T::fused(t26, t616, k(0.2) * t260);
-            let t620 = T::fused(-t92, t618, t115 * t619);
+            let t611 = T::fused(-t221, t592, t192);
+            let t612 = T::fused(t221, t600, t596);
+            let t613 = T::fused(
+                -k(2.5),
+                t559,
+                T::fused(t612, t595, -T::fused(-t225, t559, t611 * t591)),
+            );
+            let t614 = T::fused(-t222, t494, t223 * t603) - t613
+                - T::fused(t201, t590, t575);
+            let t615 = k(0.1) * t614;
+            let t616 = k(9.81) * t29;
+            let t617 = T::fused(
+                t25,
+                T::fused(t27, t594, t25 * t602),
+                t27 * T::fused(-t27, t606, t25 * t607),
+            );
+            let t618 = k(0.1) * T::fused(-t27, t611, t25 * t612);
+            let t619 = T::fused(
+                k(0.3) - t227 + t228,
+                t616,
+                (t618 + (t618 + t617)) * t421,
+            );
+            let t620 = (t619 - (t615 + (t615 + t610))) * t230;
             let t621 = T::fused(
-                k(0.2),
-                t258,
-                -T::fused(t52, t615, T::fused(t57, t617, t614)),
+                t620,
+                t493,
+                -T::fused(u0, t492, T::fused(t420, t26, t421 * t26)),
             );
-            let t622 = k(0.0015) * t0;
-            let t623 = k(0.0001) * t12;
-            let t624 = T::fused(t438, t622, T::fused(k(0.1), t438 * t253, t447 * t623));
-            let t625 = T::fused(
-                k(0.0015),
-                t434,
-                T::fused(u4, t616, T::fused(k(0.1), t434 * t613, t624)),
+            let t622 = k(2.0) * t24;
+            let t623 = T::fused(
+                t15,
+                t486,
+                T::fused(t480, t427, k(0.1) * T::fused(t434, t427, t432 * t424)),
             );
-            let t626 = T::fused(u5, t612, T::fused(t439, t622, t441 * t253));
-            let t627 = T::fused(u5, t14, t439 * t623);
-            let t628 = T::fused(
-                k(0.0015),
-                t433,
-                T::fused(t0, t626, T::fused(t442, t613, t12 * t627)),
+            let t624 = T::fused(t19, t488, -t623);
+            let t625 = t624
+                - T::fused(t426, t622, k(0.1) * T::fused(t425, t622, t428 * t424));
+            let t626 = T::fused(u1, t493, -t625);
+            let t627 = T::fused(
+                u0,
+                t626,
+                T::fused(t620, t478, T::fused(t420, t24, t421 * t24)),
             );
-            let t629 = k(2.0) * t255;
-            let t630 = k(2.0) * t256;
-            let t631 = T::fused(
-                t26,
-                t628,
-                T::fused(k(0.1), T::fused(-t431, t629, t428 * t630), t455 * t630),
+            let t628 = T::fused(t25, t621, t27 * t627);
+            let t629 = k(0.0016) * t15;
+            let t630 = T::fused(k(0.0016), t241, k(0.1) * t245);
+            let t631 = t245 + t246;
+            let t632 = T::fused(t6, t240, t15 * t4);
+            let t633 = k(0.0002) * t632;
+            let t634 = t255 + t256;
+            let t635 = T::fused(
+                k(0.1),
+                t634,
+                T::fused(t6, t630, T::fused(k(0.1), t631, t4 * t633)) + t629,
             );
-            let t632 = T::fused(-t3, t625, t631);
-            let t633 = k(2.0) * t257;
-            let t634 = T::fused(k(0.1), T::fused(-t425, t629, t426 * t633), t489 * t633)
-                + t632;
-            let t635 = T::fused(-u2, t618, t634);
-            let t636 = T::fused(
-                u3,
-                t615,
-                T::fused(t26, t625, T::fused(t3, t628, t455 * t629)),
-            );
-            let t637 = T::fused(-t12, t626, t0 * t627);
-            let t638 = T::fused(
-                -u3,
-                t617,
-                T::fused(k(0.1), t436 * t630, t457 * t630) - t637,
-            );
-            let t639 = k(2.0) * t260;
-            let t640 = T::fused(
-                u2,
-                t619,
-                T::fused(-t57, t638, T::fused(t489, t629, t492 * t639)),
-            );
-            let t641 = T::fused(t52, t636, t640);
-            let t642 = k(2.0) * t258;
+            let t636 = t629 + t635;
+            let t637 = T::fused(-t4, t630, T::fused(t6, t633, k(0.0002) * t240));
+            let t638 = t259 + t260;
+            let t639 = k(0.0017) * t248;
+            let t640 = T::fused(k(0.1), t638, t639 + T::fused(k(0.1), t251, t639));
+            let t641 = T::fused(t0, t637, T::fused(t9, t640, k(0.0002) * t19));
+            let t642 = T::fused(-t19, t636, t15 * t641);
             let t643 = T::fused(
-                -t115,
-                t635,
-                T::fused(t92, t641, T::fused(-t509, t642, t511 * t639)),
+                k(0.2),
+                t264,
+                T::fused(-t9, t637, T::fused(k(0.2), t260, t0 * t640)),
             );
-            let t644 = T::fused(-u1, t621, t643);
-            let t645 = T::fused(
-                u0,
-                t644,
-                T::fused(-t575, t620, T::fused(t571, t260, t544 * t260)),
-            );
+            let t644 = T::fused(t13, t642, t21 * t643);
+            let t645 = t256 + t257;
             let t646 = T::fused(
-                -t52,
-                t638,
-                T::fused(k(0.1), T::fused(-t425, t639, t430 * t633), t492 * t633),
-            );
-            let t647 = T::fused(-t57, t636, t646);
-            let t648 = k(2.0) * t259;
-            let t649 = T::fused(-k(0.1), T::fused(-t429, t648, t422 * t639), t511 * t648)
-                + t647;
-            let t650 = T::fused(-u1, t620, t649);
-            let t651 = T::fused(
-                t575,
-                t621,
-                T::fused(u0, t650, T::fused(t571, t259, t544 * t259)),
-            );
-            let t652 = T::fused(t184, t645, t188 * t651);
-            let t653 = k(0.0017) * t3;
-            let t654 = t281 + t282;
-            let t655 = t653 + T::fused(k(0.1), t654, T::fused(k(0.1), t279, t653));
-            let t656 = k(0.0066) * t285;
-            let t657 = t26 * t0;
-            let t658 = k(0.0002) * t657;
-            let t659 = T::fused(k(0.0002), t26, T::fused(t12, t656, t0 * t658));
-            let t660 = T::fused(-t26, t655, t3 * t659);
-            let t661 = k(0.2) * t290;
-            let t662 = T::fused(-t0, t656, T::fused(-k(0.01), t285, t12 * t658)) - t661;
-            let t663 = T::fused(
                 k(0.2),
-                t293,
-                T::fused(-t57, t660, T::fused(-t52, t662, t661)),
+                t262,
+                -(k(0.0016) + T::fused(t15, t636, T::fused(t19, t641, k(0.1) * t645))),
             );
-            let t664 = t282 + t283;
-            let t665 = T::fused(
-                k(0.2),
-                t288,
-                -(k(0.0017) + T::fused(t3, t655, T::fused(k(0.1), t664, t26 * t659))),
+            let t647 = k(0.0015) * t15;
+            let t648 = k(0.0015) * t241;
+            let t649 = k(0.0001) * t632;
+            let t650 = T::fused(
+                k(0.1),
+                T::fused(t443, t245, t437 * t252),
+                T::fused(t446, t649, t438 * t252),
             );
-            let t666 = T::fused(-t52, t660, t57 * t662);
-            let t667 = T::fused(-t115, t665, t92 * t666);
-            let t668 = k(0.0014) * t3;
-            let t669 = k(0.0015) * t285;
+            let t651 = T::fused(t443, t648, t650);
+            let t652 = t253 + t254;
+            let t653 = k(0.0001) * t240;
+            let t654 = T::fused(
+                -k(0.1),
+                T::fused(t442, t631, t436 * t652),
+                T::fused(-t453, t652, t441 * t653),
+            );
+            let t655 = T::fused(-t442, t647, T::fused(-u4, t637, t654 - t651));
+            let t656 = k(0.0014) * t248;
+            let t657 = T::fused(
+                t437,
+                t648,
+                T::fused(t438, t245, T::fused(t461, t251, t446 * t656)),
+            );
+            let t658 = T::fused(u5, t630, t657);
+            let t659 = T::fused(
+                k(0.1),
+                T::fused(t443, t251, t446 * t252),
+                T::fused(t461, t252, t443 * t656),
+            );
+            let t660 = T::fused(u5, t633, T::fused(t437, t649, t659));
+            let t661 = T::fused(
+                -t4,
+                t660,
+                T::fused(t460, t638, T::fused(u4, t640, t441 * t656)),
+            );
+            let t662 = T::fused(
+                -t436,
+                t647,
+                T::fused(-t6, t658, T::fused(-t453, t631, t661)),
+            );
+            let t663 = k(2.0) * t260;
+            let t664 = T::fused(
+                -t9,
+                t655,
+                T::fused(-t0, t662, T::fused(t457, t634, t481 * t663)),
+            );
+            let t665 = T::fused(u3, t636, T::fused(t433, t647, t664));
+            let t666 = T::fused(
+                k(0.1),
+                T::fused(-t441, t652, t442 * t638),
+                T::fused(-t460, t652, T::fused(t442, t656, t436 * t653)),
+            );
+            let t667 = T::fused(-t4, t658, T::fused(t6, t660, t666));
+            let t668 = k(2.0) * t258;
+            let t669 = k(0.0001) * t19;
             let t670 = T::fused(
-                t463,
-                t279,
-                T::fused(u5, t656, T::fused(t439, t669, t441 * t286)),
+                k(0.1),
+                T::fused(t440, t668, t435 * t663),
+                T::fused(t481, t668, t433 * t669),
             );
-            let t671 = T::fused(t447, t668, t670);
-            let t672 = k(0.0001) * t657;
+            let t671 = T::fused(u3, t641, t670 + t667);
+            let t672 = k(2.0) * t264;
             let t673 = T::fused(
-                -k(0.1),
-                T::fused(t438, t279, t447 * t280),
-                T::fused(-t463, t280, T::fused(u5, t658, t439 * t672)),
+                u2,
+                t643,
+                T::fused(-t19, t671, T::fused(-t430, t645, t480 * t672)),
             );
-            let t674 = T::fused(-t438, t668, t673);
-            let t675 = k(0.1) * t285;
+            let t674 = T::fused(-k(0.0015), t429, T::fused(-t15, t665, t673));
+            let t675 = T::fused(
+                k(0.1),
+                T::fused(t435, t634, t433 * t668),
+                T::fused(t457, t668, t440 * t669),
+            );
             let t676 = T::fused(
-                t0,
-                t671,
-                T::fused(-t12, t674, T::fused(-t464, t654, t442 * t675)),
+                t435,
+                t647,
+                T::fused(-t0, t655, T::fused(t9, t662, t675)),
             );
-            let t677 = T::fused(-u4, t655, T::fused(-t437, t668, t676));
-            let t678 = k(2.0) * t290;
-            let t679 = k(2.0) * t284;
-            let t680 = T::fused(
-                -k(0.1),
-                T::fused(t439, t280, t438 * t286),
-                T::fused(-t441, t280, T::fused(-t438, t669, t447 * t672)),
+            let t677 = k(2.0) * t261;
+            let t678 = T::fused(k(0.1), T::fused(-t432, t645, t429 * t677), t430 * t677)
+                - t676;
+            let t679 = T::fused(-k(0.0015), t432, T::fused(-u2, t642, t678));
+            let t680 = k(2.0) * t262;
+            let t681 = T::fused(
+                t13,
+                t674,
+                T::fused(t21, t679, T::fused(t423, t680, t426 * t672)),
             );
-            let t681 = k(0.0001) * t26;
-            let t682 = T::fused(
-                k(0.1),
-                T::fused(t433, t679, t434 * t675),
-                T::fused(t442, t679, T::fused(-u4, t659, t437 * t681) - t680),
-            );
+            let t682 = T::fused(u1, t646, t681);
             let t683 = T::fused(
-                t457,
-                t664,
-                T::fused(t455, t678, T::fused(-u3, t662, t26 * t682)),
-            );
-            let t684 = T::fused(k(0.0014), t436, T::fused(t3, t677, t683));
-            let t685 = T::fused(
-                k(0.1),
-                T::fused(-t434, t654, t437 * t679),
-                T::fused(t464, t679, t433 * t681),
-            );
-            let t686 = T::fused(
-                -t434,
-                t668,
-                T::fused(t12, t671, T::fused(t0, t674, t685)),
-            );
-            let t687 = k(2.0) * t287;
-            let t688 = T::fused(k(0.1), T::fused(-t431, t664, t436 * t687), t457 * t687)
-                + t686;
-            let t689 = T::fused(-k(0.0014), t431, T::fused(u3, t660, t688));
-            let t690 = k(2.0) * t288;
-            let t691 = k(2.0) * t289;
-            let t692 = T::fused(
-                -t52,
-                t689,
-                T::fused(k(0.1), T::fused(-t425, t690, t430 * t691), t492 * t691),
-            );
-            let t693 = T::fused(-t57, t684, t692);
-            let t694 = k(2.0) * t291;
-            let t695 = T::fused(k(0.1), T::fused(-t422, t690, t429 * t694), t511 * t694)
-                + t693;
-            let t696 = T::fused(u1, t667, t695);
-            let t697 = T::fused(
                 u0,
-                t696,
-                T::fused(-t575, t663, T::fused(t571, t291, t544 * t291)),
+                t682,
+                T::fused(-t620, t644, T::fused(t421, t264, t420 * t264)),
             );
-            let t698 = T::fused(
-                t52,
-                t684,
-                T::fused(-t57, t689, T::fused(t492, t690, t489 * t678)),
+            let t684 = T::fused(
+                t15,
+                t671,
+                T::fused(k(0.1), T::fused(t432, t672, t434 * t677), t480 * t677),
             );
-            let t699 = T::fused(u2, t665, t698);
-            let t700 = T::fused(
-                -k(0.1),
-                T::fused(-t431, t678, t428 * t687),
-                T::fused(-t455, t687, t3 * t682),
+            let t685 = T::fused(-t19, t665, t684);
+            let t686 = k(2.0) * t263;
+            let t687 = T::fused(k(0.1), T::fused(t425, t686, t428 * t672), t426 * t686)
+                + t685;
+            let t688 = T::fused(u1, t644, t687);
+            let t689 = T::fused(
+                t620,
+                t646,
+                T::fused(u0, t688, T::fused(t421, t263, t420 * t263)),
             );
-            let t701 = T::fused(-t26, t677, t700);
-            let t702 = T::fused(-k(0.1), T::fused(-t426, t691, t425 * t678), t489 * t691)
-                - t701;
-            let t703 = T::fused(-u2, t666, t702);
-            let t704 = k(2.0) * t293;
-            let t705 = T::fused(
-                u1,
-                t663,
-                T::fused(-t115, t703, T::fused(t511, t690, t509 * t704)),
+            let t690 = T::fused(-t25, t683, t27 * t689);
+            let t691 = k(0.0017) * t270;
+            let t692 = t283 + t284;
+            let t693 = t691 + T::fused(k(0.1), t692, -T::fused(k(0.1), t281, -t691));
+            let t694 = T::fused(k(0.0016), t291, k(0.1) * t294);
+            let t695 = T::fused(-t6, t290, t4 * t278);
+            let t696 = k(0.0002) * t695;
+            let t697 = T::fused(-k(0.0002), t290, T::fused(-t4, t694, t6 * t696));
+            let t698 = T::fused(-t9, t693, T::fused(-t0, t697, k(0.0002) * t269));
+            let t699 = t302 + t303;
+            let t700 = t294 + t295;
+            let t701 = k(0.0016) * t278;
+            let t702 = t701
+                + T::fused(t6, t694, T::fused(k(0.1), t700, T::fused(t4, t696, t701)));
+            let t703 = T::fused(k(0.1), t699, t702);
+            let t704 = T::fused(
+                k(0.2),
+                t306,
+                T::fused(-t19, t698, T::fused(k(0.2), t303, t15 * t703)),
             );
-            let t706 = T::fused(t92, t699, t705);
-            let t707 = T::fused(
-                t575,
-                t667,
-                T::fused(u0, t706, T::fused(t571, t288, t544 * t288)),
-            );
-            let t708 = T::fused(t188, t697, t184 * t707);
-            let t709 = k(0.0016) * t52;
-            let t710 = T::fused(k(0.0016), t304, k(0.1) * t308);
-            let t711 = t308 + t309;
-            let t712 = T::fused(t0, t303, t52 * t12);
-            let t713 = k(0.0002) * t712;
-            let t714 = t318 + t319;
-            let t715 = T::fused(
+            let t705 = k(0.0017) * t13;
+            let t706 = t284 + t285;
+            let t707 = t298 + t299;
+            let t708 = T::fused(
                 k(0.1),
-                t714,
-                T::fused(t0, t710, T::fused(k(0.1), t711, t12 * t713)) + t709,
+                t707,
+                -(T::fused(-t0, t693, T::fused(-k(0.1), t706, t9 * t697)) - t705),
             );
-            let t716 = t709 + t715;
-            let t717 = T::fused(-t12, t710, T::fused(t0, t713, k(0.0002) * t303));
-            let t718 = t322 + t323;
-            let t719 = k(0.0017) * t311;
-            let t720 = T::fused(k(0.1), t718, t719 + T::fused(k(0.1), t314, t719));
-            let t721 = T::fused(t3, t717, T::fused(t26, t720, k(0.0002) * t57));
-            let t722 = T::fused(-t57, t716, t52 * t721);
-            let t723 = T::fused(
-                k(0.2),
-                t327,
-                T::fused(-t26, t717, T::fused(k(0.2), t323, t3 * t720)),
+            let t709 = t705 + t708;
+            let t710 = T::fused(t15, t698, T::fused(t19, t703, k(0.0002) * t21));
+            let t711 = T::fused(-t21, t709, t13 * t710);
+            let t712 = k(0.0014) * t13;
+            let t713 = k(0.0014) * t270;
+            let t714 = k(0.0015) * t291;
+            let t715 = T::fused(
+                -t461,
+                t281,
+                T::fused(u5, t694, T::fused(t437, t714, t438 * t294)),
             );
-            let t724 = T::fused(t92, t722, t115 * t723);
-            let t725 = t319 + t320;
+            let t716 = T::fused(t446, t713, t715);
+            let t717 = k(0.0001) * t695;
+            let t718 = T::fused(
+                k(0.1),
+                T::fused(-t443, t281, t446 * t282),
+                T::fused(t461, t282, T::fused(u5, t696, t437 * t717)),
+            );
+            let t719 = T::fused(t443, t713, t718);
+            let t720 = k(0.0015) * t278;
+            let t721 = T::fused(
+                t4,
+                t719,
+                T::fused(-t460, t692, T::fused(t453, t700, t436 * t720)),
+            );
+            let t722 = T::fused(
+                -u4,
+                t693,
+                T::fused(-t441, t713, T::fused(t6, t716, t721)),
+            );
+            let t723 = t287 + t286 + t288;
+            let t724 = T::fused(
+                k(0.1),
+                T::fused(t437, t282, t443 * t294),
+                T::fused(t438, t282, T::fused(t443, t714, t446 * t717)),
+            );
+            let t725 = k(0.0001) * t290;
             let t726 = T::fused(
-                k(0.2),
-                t325,
-                -(k(0.0016) + T::fused(t52, t716, T::fused(t57, t721, k(0.1) * t725))),
+                t453,
+                t723,
+                T::fused(u4, t697, T::fused(t441, t725, t442 * t720)) + t724,
             );
-            let t727 = k(0.0015) * t52;
-            let t728 = k(0.0015) * t304;
-            let t729 = k(0.0001) * t712;
+            let t727 = T::fused(k(0.1), T::fused(t436, t723, t442 * t700), t726);
+            let t728 = T::fused(
+                t457,
+                t699,
+                T::fused(u3, t703, T::fused(t9, t727, t433 * t720)),
+            );
+            let t729 = T::fused(
+                t440,
+                t712,
+                T::fused(t0, t722, T::fused(t481, t706, t728)),
+            );
             let t730 = T::fused(
                 k(0.1),
-                T::fused(t438, t308, t439 * t315),
-                T::fused(t447, t729, t441 * t315),
+                T::fused(-t442, t692, t441 * t723),
+                T::fused(t460, t723, t436 * t725),
             );
-            let t731 = T::fused(t438, t728, t730);
-            let t732 = t316 + t317;
-            let t733 = k(0.0001) * t303;
+            let t731 = T::fused(
+                -t442,
+                t713,
+                T::fused(t4, t716, T::fused(-t6, t719, t730)),
+            );
+            let t732 = t296 - t289 - t297;
+            let t733 = k(0.0001) * t269;
             let t734 = T::fused(
-                -k(0.1),
-                T::fused(t434, t711, t433 * t732),
-                T::fused(-t442, t732, t437 * t733),
+                k(0.1),
+                T::fused(-t435, t706, t440 * t732),
+                T::fused(t481, t732, t433 * t733),
             );
-            let t735 = T::fused(-t434, t727, T::fused(-u4, t717, t734 - t731));
-            let t736 = k(0.0014) * t311;
-            let t737 = T::fused(
-                t439,
-                t728,
-                T::fused(t441, t308, T::fused(t463, t314, t447 * t736)),
+            let t735 = T::fused(-t435, t712, T::fused(u3, t698, t734 + t731));
+            let t736 = k(2.0) * t301;
+            let t737 = k(0.0001) * t21;
+            let t738 = T::fused(
+                k(0.1),
+                T::fused(-t432, t707, t434 * t736),
+                T::fused(t480, t736, t429 * t737),
             );
-            let t738 = T::fused(u5, t710, t737);
             let t739 = T::fused(
-                k(0.1),
-                T::fused(t438, t314, t447 * t315),
-                T::fused(t463, t315, t438 * t736),
+                -t432,
+                t712,
+                T::fused(t19, t729, T::fused(t15, t735, t738)),
             );
-            let t740 = T::fused(u5, t713, T::fused(t439, t729, t739));
-            let t741 = T::fused(
-                -t12,
-                t740,
-                T::fused(t464, t718, T::fused(u4, t720, t437 * t736)),
-            );
-            let t742 = T::fused(
-                -t433,
-                t727,
-                T::fused(-t0, t738, T::fused(-t442, t711, t741)),
-            );
-            let t743 = k(2.0) * t323;
+            let t740 = t299 + t300;
+            let t741 = k(2.0) * t304;
+            let t742 = T::fused(k(0.1), T::fused(t428, t740, t425 * t741), t426 * t741)
+                - t739;
+            let t743 = T::fused(k(0.0014), t428, T::fused(-u1, t711, t742));
             let t744 = T::fused(
-                -t26,
-                t735,
-                T::fused(-t3, t742, T::fused(t455, t714, t457 * t743)),
+                u0,
+                t743,
+                T::fused(-t620, t704, T::fused(t421, t304, t420 * t304)),
             );
-            let t745 = T::fused(u3, t716, T::fused(t428, t727, t744));
+            let t745 = k(2.0) * t303;
             let t746 = T::fused(
-                k(0.1),
-                T::fused(-t437, t732, t434 * t718),
-                T::fused(-t464, t732, T::fused(t434, t736, t433 * t733)),
+                t15,
+                t729,
+                T::fused(-t19, t735, T::fused(-t480, t707, t430 * t745)),
             );
-            let t747 = T::fused(-t12, t738, T::fused(t0, t740, t746));
-            let t748 = k(2.0) * t321;
-            let t749 = k(0.0001) * t57;
+            let t747 = T::fused(-u2, t709, T::fused(-t434, t712, t746));
+            let t748 = T::fused(
+                t457,
+                t732,
+                T::fused(-t0, t727, T::fused(-t435, t720, t440 * t733)),
+            );
+            let t749 = T::fused(
+                t9,
+                t722,
+                T::fused(k(0.1), T::fused(-t435, t699, t433 * t732), t748),
+            );
             let t750 = T::fused(
                 k(0.1),
-                T::fused(t436, t748, t431 * t743),
-                T::fused(t457, t748, t428 * t749),
+                T::fused(t429, t736, t432 * t745),
+                T::fused(t430, t736, t434 * t737),
             );
-            let t751 = T::fused(u3, t721, t750 + t747);
-            let t752 = k(2.0) * t327;
+            let t751 = T::fused(-u2, t710, t750 - t749);
+            let t752 = k(2.0) * t306;
             let t753 = T::fused(
-                u2,
-                t723,
-                T::fused(-t57, t751, T::fused(-t489, t725, t492 * t752)),
+                u1,
+                t704,
+                T::fused(t21, t751, T::fused(-t426, t740, t423 * t752)),
             );
-            let t754 = T::fused(-k(0.0015), t426, T::fused(-t52, t745, t753));
+            let t754 = T::fused(-k(0.0014), t425, T::fused(t13, t747, t753));
             let t755 = T::fused(
-                k(0.1),
-                T::fused(t431, t714, t428 * t748),
-                T::fused(t455, t748, t436 * t749),
-            );
-            let t756 = T::fused(
-                t431,
-                t727,
-                T::fused(-t3, t735, T::fused(t26, t742, t755)),
-            );
-            let t757 = k(2.0) * t324;
-            let t758 = T::fused(k(0.1), T::fused(-t425, t725, t426 * t757), t489 * t757)
-                - t756;
-            let t759 = T::fused(-k(0.0015), t425, T::fused(-u2, t722, t758));
-            let t760 = k(2.0) * t325;
-            let t761 = T::fused(
-                t92,
-                t754,
-                T::fused(t115, t759, T::fused(t509, t760, t511 * t752)),
-            );
-            let t762 = T::fused(u1, t726, t761);
-            let t763 = T::fused(
                 u0,
-                t762,
-                T::fused(-t575, t724, T::fused(t571, t327, t544 * t327)),
+                t754,
+                -T::fused(t620, t711, T::fused(t421, t300, t420 * t300)),
             );
-            let t764 = T::fused(
-                t52,
-                t751,
-                T::fused(k(0.1), T::fused(t425, t752, t430 * t757), t492 * t757),
+            let t756 = T::fused(t27, t744, t25 * t755);
+            let t757 = T::fused(t25, t620, t494);
+            let t758 = k(0.1) * t757;
+            let t759 = k(0.1) * t620;
+            let t760 = t559 + (t759 - (t616 - t759));
+            let t761 = t760 + t758;
+            let t762 = t758 + t761;
+            let t763 = T::fused(t25, t421, t595);
+            let t764 = t561 + T::fused(-t13, t762, t21 * t763);
+            let t765 = T::fused(t27, t421, t591);
+            let t766 = T::fused(-t27, t620, t603);
+            let t767 = T::fused(-t196, t757, t199 * t766)
+                - T::fused(t600, t763, T::fused(t201, t760, t592 * t765));
+            let t768 = t178 * (t589 - t767);
+            let t769 = k(0.1) * t768;
+            let t770 = t563 - (t769 - (t765 - t769));
+            let t771 = t564 + T::fused(t21, t762, t13 * t763);
+            let t772 = t566 + T::fused(-t13, t768, t21 * t766);
+            let t773 = t567 - T::fused(t21, t768, t13 * t766);
+            let t774 = T::fused(-t138, t772, t142 * t773)
+                + T::fused(t127, t771, -T::fused(-t107, t764, t144 * t770));
+            let t775 = t105 * (t557 + t774);
+            let t776 = t757 - (t757 - t775);
+            let t777 = t15 * t773;
+            let t778 = t548 + T::fused(t19, t776, t777);
+            let t779 = k(0.1) * t775;
+            let t780 = t542 + (t779 - (t764 - t779));
+            let t781 = k(0.1) * t772;
+            let t782 = t770 + t781;
+            let t783 = t781 + t782;
+            let t784 = t545 + T::fused(t15, t783, t19 * t771);
+            let t785 = t546 + T::fused(-t19, t783, t15 * t771);
+            let t786 = t19 * t773;
+            let t787 = t547 - T::fused(-t15, t775, t786);
+            let t788 = t548 + T::fused(t19, t775, t777);
+            let t789 = T::fused(t74, t787, t78 * t788)
+                + T::fused(t116, t785, -T::fused(-t55, t780, t108 * t784));
+            let t790 = t70 * (t539 - t789);
+            let t791 = t772 - (t772 + t790);
+            let t792 = t514 + T::fused(t0, t778, t9 * t791);
+            let t793 = t547 - T::fused(-t15, t776, t786);
+            let t794 = k(0.1) * t787;
+            let t795 = t794 + (t780 + t794);
+            let t796 = t9 * t785;
+            let t797 = T::fused(
+                t38,
+                t513 + T::fused(-t0, t795, t796),
+                t48 * (t514 + T::fused(-t9, t790, t0 * t788)),
             );
-            let t765 = T::fused(-t57, t745, t764);
-            let t766 = k(2.0) * t326;
-            let t767 = T::fused(k(0.1), T::fused(t429, t766, t422 * t752), t511 * t766)
-                + t765;
-            let t768 = T::fused(u1, t724, t767);
-            let t769 = T::fused(
-                t575,
-                t726,
-                T::fused(u0, t768, T::fused(t571, t326, t544 * t326)),
-            );
-            let t770 = T::fused(-t184, t763, t188 * t769);
-            let t771 = k(0.0017) * t333;
-            let t772 = t346 + t347;
-            let t773 = t771 + T::fused(k(0.1), t772, -T::fused(k(0.1), t344, -t771));
-            let t774 = T::fused(k(0.0016), t354, k(0.1) * t357);
-            let t775 = T::fused(-t0, t353, t12 * t341);
-            let t776 = k(0.0002) * t775;
-            let t777 = T::fused(-k(0.0002), t353, T::fused(-t12, t774, t0 * t776));
-            let t778 = T::fused(-t26, t773, T::fused(-t3, t777, k(0.0002) * t332));
-            let t779 = t365 + t366;
-            let t780 = t357 + t358;
-            let t781 = k(0.0016) * t341;
-            let t782 = t781
-                + T::fused(t0, t774, T::fused(k(0.1), t780, T::fused(t12, t776, t781)));
-            let t783 = T::fused(k(0.1), t779, t782);
-            let t784 = T::fused(
-                k(0.2),
-                t369,
-                T::fused(-t57, t778, T::fused(k(0.2), t366, t52 * t783)),
-            );
-            let t785 = k(0.0017) * t92;
-            let t786 = t347 + t348;
-            let t787 = t361 + t362;
-            let t788 = T::fused(
-                k(0.1),
-                t787,
-                -(T::fused(-t3, t773, T::fused(-k(0.1), t786, t26 * t777)) - t785),
-            );
-            let t789 = t785 + t788;
-            let t790 = T::fused(t52, t778, T::fused(t57, t783, k(0.0002) * t115));
-            let t791 = T::fused(-t115, t789, t92 * t790);
-            let t792 = k(0.0014) * t92;
-            let t793 = k(0.0014) * t333;
-            let t794 = k(0.0015) * t354;
-            let t795 = T::fused(
-                -t463,
-                t344,
-                T::fused(u5, t774, T::fused(t439, t794, t441 * t357)),
-            );
-            let t796 = T::fused(t447, t793, t795);
-            let t797 = k(0.0001) * t775;
-            let t798 = T::fused(
-                k(0.1),
-                T::fused(-t438, t344, t447 * t345),
-                T::fused(t463, t345, T::fused(u5, t776, t439 * t797)),
-            );
-            let t799 = T::fused(t438, t793, t798);
+            let t798 = T::fused(t44, t509 - t797, t787) - t793;
+            let t799 = T::fused(k(0.0002), t505 - T::fused(-t6, t792, t4 * t798), t504);
             (
-                t602,
-                t604,
-                t606,
-                t607,
-                t609,
-                t611,
-                t612,
-                t615,
-                t616,
-                t617,
-                t618,
-                t619,
+                t605,
                 t620,
-                t621,
+                t622,
                 t624,
-                t625,
                 t626,
-                t627,
                 t628,
-                t632,
-                t635,
+                t630,
+                t633,
                 t636,
                 t637,
-                t638,
+                t640,
                 t641,
                 t642,
+                t643,
                 t644,
-                t647,
-                t648,
-                t650,
-                t652,
+                t646,
+                t651,
                 t655,
-                t656,
                 t658,
-                t659,
                 t660,
                 t662,
-                t663,
                 t665,
-                t666,
                 t667,
                 t671,
                 t674,
-                t677,
+                t676,
+                t679,
                 t680,
                 t682,
-                t684,
+                t685,
                 t686,
-                t689,
+                t688,
+                t690,
                 t693,
                 t694,
                 t696,
-                t699,
-                t701,
+                t697,
+                t698,
                 t703,
                 t704,
-                t706,
-                t708,
+                t709,
                 t710,
-                t713,
+                t711,
                 t716,
-                t717,
-                t720,
-                t721,
+                t719,
                 t722,
-                t723,
                 t724,
-                t726,
+                t727,
+                t729,
                 t731,
                 t735,
-                t738,
-                t740,
-                t742,
-                t745,
+                t739,
+                t741,
+                t743,
                 t747,
+                t749,
                 t751,
+                t752,
                 t754,
                 t756,
-                t759,
-                t760,
+                t757,
+                t761,
                 t762,
-                t765,
+                t763,
+                t764,
                 t766,
                 t768,
-                t770,
+                t771,
                 t772,
                 t773,
-                t774,
                 t776,
-                t777,
                 t778,
-                t779,
-                t780,
+                t782,
                 t783,
                 t784,
-                t786,
-                t787,
-                t789,
+                t785,
+                t788,
                 t790,
                 t791,
                 t792,
                 t793,
-                t794,
+                t795,
                 t796,
-                t797,
+                t798,
                 t799,
             )
         };
         let (
-            t802,
-            t804,
-            t807,
-            t809,
+            t806,
+            t810,
             t811,
-            t815,
+            t818,
             t819,
-            t821,
-            t823,
-            t827,
-            t829,
-            t831,
-            t832,
+            t820,
+            t828,
+            t833,
             t834,
-            t836,
-            t842,
+            t835,
+            t837,
             t843,
+            t844,
+            t845,
             t846,
-            t848,
-            t851,
+            t850,
             t853,
             t856,
-            t858,
+            t859,
+            t860,
             t863,
+            t864,
             t865,
-            t871,
-            t872,
-            t878,
-            t879,
+            t869,
+            t873,
+            t877,
+            t882,
             t886,
-            t890,
+            t889,
             t891,
+            t893,
+            t896,
             t898,
-            t899,
-            t900,
-            t908,
+            t902,
+            t904,
+            t906,
+            t910,
             t913,
             t914,
             t915,
-            t917,
+            t920,
+            t922,
             t923,
-            t924,
             t925,
             t926,
-            t930,
+            t927,
+            t928,
             t931,
+            t932,
             t933,
+            t934,
+            t935,
             t936,
-            t939,
+            t937,
             t940,
+            t941,
+            t942,
             t943,
             t944,
-            t945,
             t948,
-            t949,
-            t950,
+            t951,
+            t952,
             t953,
-            t955,
+            t954,
             t957,
-            t962,
+            t958,
+            t960,
+            t963,
+            t964,
             t966,
+            t968,
             t969,
+            t970,
             t971,
+            t972,
             t973,
             t974,
+            t975,
             t976,
-            t978,
+            t977,
+            t981,
             t982,
             t984,
+            t985,
             t986,
             t987,
-            t988,
+            t989,
             t990,
             t991,
             t993,
             t994,
-            t995,
+            t996,
+            t997,
             t999,
         ) = {
-            let t800 = k(0.0015) * t341;
-            let t801 = T::fused(
-                t12,
-                t799,
-                T::fused(-t464, t772, T::fused(t442, t780, t433 * t800)),
+            let t800 = t502 - T::fused(t4, t792, t6 * t798);
+            let t801 = k(0.1) * t798;
+            let t802 = k(0.1) * t793;
+            let t803 = k(0.1) * t776;
+            let t804 = t764 - t803;
+            let t805 = t542 + (t803 - t804) + t802;
+            let t806 = t802 + t805;
+            let t807 = t513 + T::fused(-t0, t806, t796) + t801;
+            let t808 = T::fused(k(0.1), t800, t501 - (t801 + t807));
+            let t809 = k(0.05) * t808;
+            let t810 = T::fused(k(0.0016), t800, t499) + t809;
+            let t811 = T::fused(-k(0.0002), t792, t535) + T::fused(-t6, t799, t4 * t810);
+            let t812 = t526 + T::fused(-t9, t778, t0 * t791);
+            let t813 = k(0.1) * t812;
+            let t814 = k(0.1) * t791;
+            let t815 = t784 + t814;
+            let t816 = t524 - (t814 + t815) - t813;
+            let t817 = t0 * t785;
+            let t818 = t525 + T::fused(t9, t806, t817);
+            let t819 = t813 - t816;
+            let t820 = k(0.5) * (t521 - T::fused(-t6, t818, t4 * t819));
+            let t821 = k(0.0014) * t516;
+            let t822 = k(0.1) * t790;
+            let t823 = t526 - T::fused(t0, t790, t9 * t788);
+            let t824 = k(0.1) * t823;
+            let t825 = T::fused(
+                t6,
+                t824 + (t824 - (t524 + (t822 - (t784 - t822)))),
+                t4 * (t525 + T::fused(t9, t795, t817)),
             );
-            let t802 = T::fused(
-                -u4,
-                t773,
-                T::fused(-t437, t793, T::fused(t0, t796, t801)),
-            );
-            let t803 = t350 + t349 + t351;
-            let t804 = T::fused(
-                k(0.1),
-                T::fused(t439, t345, t438 * t357),
-                T::fused(t441, t345, T::fused(t438, t794, t447 * t797)),
-            );
-            let t805 = k(0.0001) * t353;
-            let t806 = T::fused(
-                t442,
-                t803,
-                T::fused(u4, t777, T::fused(t437, t805, t434 * t800)) + t804,
-            );
-            let t807 = T::fused(k(0.1), T::fused(t433, t803, t434 * t780), t806);
-            let t808 = T::fused(
-                t455,
-                t779,
-                T::fused(u3, t783, T::fused(t26, t807, t428 * t800)),
-            );
-            let t809 = T::fused(
-                t436,
-                t792,
-                T::fused(t3, t802, T::fused(t457, t786, t808)),
-            );
-            let t810 = T::fused(
-                k(0.1),
-                T::fused(-t434, t772, t437 * t803),
-                T::fused(t464, t803, t433 * t805),
-            );
-            let t811 = T::fused(
-                -t434,
-                t793,
-                T::fused(t12, t796, T::fused(-t0, t799, t810)),
-            );
-            let t812 = t359 - t352 - t360;
-            let t813 = k(0.0001) * t332;
-            let t814 = T::fused(
-                k(0.1),
-                T::fused(-t431, t786, t436 * t812),
-                T::fused(t457, t812, t428 * t813),
-            );
-            let t815 = T::fused(-t431, t792, T::fused(u3, t778, t814 + t811));
-            let t816 = k(2.0) * t364;
-            let t817 = k(0.0001) * t115;
-            let t818 = T::fused(
-                k(0.1),
-                T::fused(-t425, t787, t430 * t816),
-                T::fused(t492, t816, t426 * t817),
-            );
-            let t819 = T::fused(
-                -t425,
-                t792,
-                T::fused(t57, t809, T::fused(t52, t815, t818)),
-            );
-            let t820 = t362 + t363;
-            let t821 = k(2.0) * t367;
-            let t822 = T::fused(k(0.1), T::fused(t422, t820, t429 * t821), t511 * t821)
-                - t819;
-            let t823 = T::fused(k(0.0014), t422, T::fused(-u1, t791, t822));
-            let t824 = T::fused(
-                u0,
-                t823,
-                T::fused(-t575, t784, T::fused(t571, t367, t544 * t367)),
-            );
-            let t825 = k(2.0) * t366;
             let t826 = T::fused(
-                t52,
-                t809,
-                T::fused(-t57, t815, T::fused(-t492, t787, t489 * t825)),
-            );
-            let t827 = T::fused(-u2, t789, T::fused(-t430, t792, t826));
-            let t828 = T::fused(
-                t455,
-                t812,
-                T::fused(-t3, t807, T::fused(-t431, t800, t436 * t813)),
-            );
-            let t829 = T::fused(
-                t26,
-                t802,
-                T::fused(k(0.1), T::fused(-t431, t779, t428 * t812), t828),
-            );
-            let t830 = T::fused(
-                k(0.1),
-                T::fused(t426, t816, t425 * t825),
-                T::fused(t489, t816, t430 * t817),
-            );
-            let t831 = T::fused(-u2, t790, t830 - t829);
-            let t832 = k(2.0) * t369;
-            let t833 = T::fused(
-                u1,
-                t784,
-                T::fused(t115, t831, T::fused(-t511, t820, t509 * t832)),
-            );
-            let t834 = T::fused(-k(0.0014), t429, T::fused(t92, t827, t833));
-            let t835 = T::fused(
-                u0,
-                t834,
-                -T::fused(t575, t791, T::fused(t571, t363, t544 * t363)),
-            );
-            let t836 = T::fused(t188, t824, t184 * t835);
-            let t837 = T::fused(t184, t575, t423);
-            let t838 = k(0.1) * t837;
-            let t839 = k(0.1) * t575;
-            let t840 = t510 + (t839 - (t570 - t839));
-            let t841 = t840 + t838;
-            let t842 = t838 + t841;
-            let t843 = T::fused(t184, t571, t549);
-            let t844 = t513 + T::fused(-t92, t842, t115 * t843);
-            let t845 = T::fused(t188, t571, t545);
-            let t846 = T::fused(-t188, t575, t557);
-            let t847 = T::fused(-t183, t837, t187 * t846)
-                - T::fused(t554, t843, T::fused(t190, t840, t546 * t845));
-            let t848 = t165 * (t541 - t847);
-            let t849 = k(0.1) * t848;
-            let t850 = t515 - (t849 - (t845 - t849));
-            let t851 = t516 + T::fused(t115, t842, t92 * t843);
-            let t852 = t518 + T::fused(-t92, t848, t115 * t846);
-            let t853 = t519 - T::fused(t115, t848, t92 * t846);
-            let t854 = T::fused(-t125, t852, t129 * t853)
-                + T::fused(t114, t851, -T::fused(-t91, t844, t131 * t850));
-            let t855 = t89 * (t507 + t854);
-            let t856 = t837 - (t837 - t855);
-            let t857 = t52 * t853;
-            let t858 = t498 + T::fused(t57, t856, t857);
-            let t859 = k(0.1) * t855;
-            let t860 = t491 + (t859 - (t844 - t859));
-            let t861 = k(0.1) * t852;
-            let t862 = t850 + t861;
-            let t863 = t861 + t862;
-            let t864 = t495 + T::fused(t52, t863, t57 * t851);
-            let t865 = t496 + T::fused(-t57, t863, t52 * t851);
-            let t866 = t57 * t853;
-            let t867 = t497 - T::fused(-t52, t855, t866);
-            let t868 = t498 + T::fused(t57, t855, t857);
-            let t869 = T::fused(t48, t867, t55 * t868)
-                + T::fused(t99, t865, -T::fused(-t58, t860, t93 * t864));
-            let t870 = t33 * (t487 - t869);
-            let t871 = t852 - (t852 + t870);
-            let t872 = t460 + T::fused(t3, t858, t26 * t871);
-            let t873 = t497 - T::fused(-t52, t856, t866);
-            let t874 = k(0.1) * t867;
-            let t875 = t874 + (t860 + t874);
-            let t876 = t26 * t865;
-            let t877 = T::fused(
-                t39,
-                t459 + T::fused(-t3, t875, t876),
-                t17 * (t460 + T::fused(-t26, t870, t3 * t868)),
-            );
-            let t878 = T::fused(t23, t453 - t877, t867) - t873;
-            let t879 = T::fused(k(0.0002), t449 - T::fused(-t0, t872, t12 * t878), t448);
-            let t880 = t445 - T::fused(t12, t872, t0 * t878);
-            let t881 = k(0.1) * t878;
-            let t882 = k(0.1) * t873;
-            let t883 = k(0.1) * t856;
-            let t884 = t844 - t883;
-            let t885 = t491 + (t883 - t884) + t882;
-            let t886 = t882 + t885;
-            let t887 = t459 + T::fused(-t3, t886, t876) + t881;
-            let t888 = T::fused(k(0.1), t880, t444 - (t881 + t887));
-            let t889 = k(0.05) * t888;
-            let t890 = T::fused(k(0.0016), t880, t440) + t889;
-            let t891 = T::fused(-k(0.0002), t872, t483)
-                + T::fused(-t0, t879, t12 * t890);
-            let t892 = t474 + T::fused(-t26, t858, t3 * t871);
-            let t893 = k(0.1) * t892;
-            let t894 = k(0.1) * t871;
-            let t895 = t864 + t894;
-            let t896 = t472 - (t894 + t895) - t893;
-            let t897 = t3 * t865;
-            let t898 = t473 + T::fused(t26, t886, t897);
-            let t899 = t893 - t896;
-            let t900 = k(0.5) * (t469 - T::fused(-t0, t898, t12 * t899));
-            let t901 = k(0.0014) * t462;
-            let t902 = k(0.1) * t870;
-            let t903 = t474 - T::fused(t3, t870, t26 * t868);
-            let t904 = k(0.1) * t903;
-            let t905 = T::fused(
-                t0,
-                t904 + (t904 - (t472 + (t902 - (t864 - t902)))),
-                t12 * (t473 + T::fused(t26, t875, t897)),
-            );
-            let t906 = T::fused(
                 k(149.2537313432836),
-                T::fused(k(0.05), t467 + t905, -t901),
-                t903,
-            ) - t892;
-            let t907 = T::fused(-k(0.1), t906, t467 + T::fused(t12, t898, t0 * t899));
-            let t908 = k(0.5) * t907;
-            let t909 = T::fused(-t12, t900, t0 * t908);
-            let t910 = T::fused(-k(0.5), t896, t909);
-            let t911 = k(0.1) * t910;
-            let t912 = T::fused(k(0.0017), t892, t479)
+                T::fused(k(0.05), t519 + t825, -t821),
+                t823,
+            ) - t812;
+            let t827 = T::fused(-k(0.1), t826, t519 + T::fused(t4, t818, t6 * t819));
+            let t828 = k(0.5) * t827;
+            let t829 = T::fused(-t4, t820, t6 * t828);
+            let t830 = T::fused(-k(0.5), t816, t829);
+            let t831 = k(0.1) * t830;
+            let t832 = T::fused(k(0.0017), t812, t531)
                 - T::fused(
                     -k(0.1),
-                    t909,
-                    T::fused(-k(0.05), t907, T::fused(k(0.0017), t906, t901)),
+                    t829,
+                    T::fused(-k(0.05), t827, T::fused(k(0.0017), t826, t821)),
                 );
-            let t913 = t912 + t911;
-            let t914 = T::fused(k(0.0002), t858, t501) - T::fused(t3, t891, t26 * t913);
-            let t915 = T::fused(k(0.5), t898, T::fused(t0, t900, t12 * t908));
-            let t916 = t887 - t888;
-            let t917 = k(0.5) * t916;
-            let t918 = T::fused(-t26, t915, t3 * t917);
-            let t919 = T::fused(-k(0.5), t885, t918);
-            let t920 = k(0.1) * t919;
-            let t921 = T::fused(-k(0.0016), t878, t435)
-                + (t889 + T::fused(t12, t879, t0 * t890));
-            let t922 = T::fused(k(0.0016), t873, t432)
-                + T::fused(-k(0.1), t918, T::fused(-k(0.05), t916, t921));
-            let t923 = t922 - t920;
-            let t924 = T::fused(-k(0.0002), t853, t534)
-                + T::fused(-t52, t914, t57 * t923);
-            let t925 = T::fused(k(0.5), t865, T::fused(t3, t915, t26 * t917));
-            let t926 = T::fused(k(0.5), t895, t910);
-            let t927 = T::fused(-t57, t925, t52 * t926);
-            let t928 = T::fused(-k(0.0017), t871, t478)
-                - (t911 + T::fused(-t26, t891, t3 * t913));
-            let t929 = T::fused(k(0.0017), t852, t529)
-                - T::fused(-k(0.1), t927, T::fused(-k(0.1), t926, t928));
-            let t930 = T::fused(k(0.1), T::fused(k(0.5), t862, t927), t929);
-            let t931 = T::fused(
-                t544,
-                t414,
-                T::fused(k(0.0002), t846, t559) + T::fused(t92, t924, t115 * t930),
+            let t833 = t832 + t831;
+            let t834 = T::fused(k(0.0002), t778, t551) - T::fused(t0, t811, t9 * t833);
+            let t835 = T::fused(k(0.5), t818, T::fused(t6, t820, t4 * t828));
+            let t836 = t807 - t808;
+            let t837 = k(0.5) * t836;
+            let t838 = T::fused(-t9, t835, t0 * t837);
+            let t839 = T::fused(-k(0.5), t805, t838);
+            let t840 = k(0.1) * t839;
+            let t841 = T::fused(-k(0.0016), t798, t498)
+                + (t809 + T::fused(t4, t799, t6 * t810));
+            let t842 = T::fused(k(0.0016), t793, t497)
+                + T::fused(-k(0.1), t838, T::fused(-k(0.05), t836, t841));
+            let t843 = t842 - t840;
+            let t844 = T::fused(-k(0.0002), t773, t582)
+                + T::fused(-t15, t834, t19 * t843);
+            let t845 = T::fused(k(0.5), t785, T::fused(t0, t835, t9 * t837));
+            let t846 = T::fused(k(0.5), t815, t830);
+            let t847 = T::fused(-t19, t845, t15 * t846);
+            let t848 = T::fused(-k(0.0017), t791, t530)
+                - (t831 + T::fused(-t9, t811, t0 * t833));
+            let t849 = T::fused(k(0.0017), t772, t577)
+                - T::fused(-k(0.1), t847, T::fused(-k(0.1), t846, t848));
+            let t850 = T::fused(k(0.1), T::fused(k(0.5), t782, t847), t849);
+            let t851 = T::fused(
+                t420,
+                t351,
+                T::fused(k(0.0002), t766, t605) + T::fused(t13, t844, t21 * t850),
             );
-            let t932 = k(0.0016) * t375;
-            let t933 = T::fused(-k(0.0016), t376, k(0.1) * t387);
-            let t934 = t387 + t388;
-            let t935 = T::fused(-t0, t374, t12 * t375);
-            let t936 = k(0.0002) * t935;
-            let t937 = t398 + t399;
-            let t938 = T::fused(
+            let t852 = k(0.0016) * t312;
+            let t853 = T::fused(-k(0.0016), t313, k(0.1) * t324);
+            let t854 = t324 + t325;
+            let t855 = T::fused(-t6, t311, t4 * t312);
+            let t856 = k(0.0002) * t855;
+            let t857 = t335 + t336;
+            let t858 = T::fused(
                 k(0.1),
-                t937,
-                T::fused(-t0, t933, T::fused(-k(0.1), t934, t12 * t936)) + t932,
+                t857,
+                T::fused(-t6, t853, T::fused(-k(0.1), t854, t4 * t856)) + t852,
             );
-            let t939 = t932 + t938;
-            let t940 = T::fused(-t12, t933, T::fused(-t0, t936, k(0.0002) * t374));
-            let t941 = t405 + t406;
-            let t942 = k(0.0017) * t390;
-            let t943 = T::fused(k(0.1), t941, t942 + T::fused(k(0.1), t394, t942));
-            let t944 = T::fused(-t3, t940, T::fused(t26, t943, k(0.0002) * t372));
-            let t945 = T::fused(-t57, t939, T::fused(t52, t944, k(0.0002) * t371));
-            let t946 = t406 + t407;
-            let t947 = k(0.0017) * t373;
-            let t948 = t413 + t414;
-            let t949 = T::fused(k(0.1), t948, t947)
-                + T::fused(t26, t940, T::fused(k(0.1), t946, T::fused(t3, t943, t947)));
-            let t950 = T::fused(t92, t945, T::fused(t115, t949, k(0.0002) * t188));
-            let t951 = k(0.0016) * t184;
-            let t952 = t399 + t400;
-            let t953 = t410 + t411;
-            let t954 = T::fused(
+            let t859 = t852 + t858;
+            let t860 = T::fused(-t4, t853, T::fused(-t6, t856, k(0.0002) * t311));
+            let t861 = t342 + t343;
+            let t862 = k(0.0017) * t327;
+            let t863 = T::fused(k(0.1), t861, t862 + T::fused(k(0.1), t331, t862));
+            let t864 = T::fused(-t0, t860, T::fused(t9, t863, k(0.0002) * t309));
+            let t865 = T::fused(-t19, t859, T::fused(t15, t864, k(0.0002) * t308));
+            let t866 = t343 + t344;
+            let t867 = k(0.0017) * t310;
+            let t868 = t350 + t351;
+            let t869 = T::fused(k(0.1), t868, t867)
+                + T::fused(t9, t860, T::fused(k(0.1), t866, T::fused(t0, t863, t867)));
+            let t870 = T::fused(t13, t865, T::fused(t21, t869, k(0.0002) * t27));
+            let t871 = k(0.0016) * t25;
+            let t872 = t336 + t337;
+            let t873 = t347 + t348;
+            let t874 = T::fused(
                 k(0.1),
-                t953,
-                T::fused(t52, t939, T::fused(t57, t944, k(0.1) * t952)) + t951,
+                t873,
+                T::fused(t15, t859, T::fused(t19, t864, k(0.1) * t872)) + t871,
             );
-            let t955 = t951 + t954;
-            let t956 = k(0.0015) * t184;
-            let t957 = t956 + t955;
-            let t958 = k(0.0015) * t375;
-            let t959 = k(0.0015) * t376;
-            let t960 = k(0.0001) * t935;
-            let t961 = T::fused(
+            let t875 = t871 + t874;
+            let t876 = k(0.0015) * t25;
+            let t877 = t876 + t875;
+            let t878 = k(0.0015) * t312;
+            let t879 = k(0.0015) * t313;
+            let t880 = k(0.0001) * t855;
+            let t881 = T::fused(
                 k(0.1),
-                T::fused(-t438, t387, t439 * t395),
-                T::fused(t447, t960, t441 * t395),
+                T::fused(-t443, t324, t437 * t332),
+                T::fused(t446, t880, t438 * t332),
             );
-            let t962 = T::fused(t438, t959, t961);
-            let t963 = t396 + t397;
-            let t964 = k(0.0001) * t374;
-            let t965 = T::fused(
+            let t882 = T::fused(t443, t879, t881);
+            let t883 = t333 + t334;
+            let t884 = k(0.0001) * t311;
+            let t885 = T::fused(
                 k(0.1),
-                T::fused(-t434, t934, t433 * t963),
-                T::fused(t442, t963, t437 * t964),
+                T::fused(-t442, t854, t436 * t883),
+                T::fused(t453, t883, t441 * t884),
             );
-            let t966 = T::fused(t434, t958, T::fused(-u4, t940, t965 + t962));
-            let t967 = k(0.0014) * t390;
-            let t968 = T::fused(
-                t439,
-                t959,
-                T::fused(-t441, t387, T::fused(t463, t394, t447 * t967)),
+            let t886 = T::fused(t442, t878, T::fused(-u4, t860, t885 + t882));
+            let t887 = k(0.0014) * t327;
+            let t888 = T::fused(
+                t437,
+                t879,
+                T::fused(-t438, t324, T::fused(t461, t331, t446 * t887)),
             );
-            let t969 = T::fused(-u5, t933, t968);
-            let t970 = T::fused(
+            let t889 = T::fused(-u5, t853, t888);
+            let t890 = T::fused(
                 k(0.1),
-                T::fused(t438, t394, t447 * t395),
-                T::fused(t463, t395, t438 * t967),
+                T::fused(t443, t331, t446 * t332),
+                T::fused(t461, t332, t443 * t887),
             );
-            let t971 = T::fused(u5, t936, T::fused(t439, t960, t970));
-            let t972 = T::fused(
-                -t12,
-                t971,
-                T::fused(t464, t941, T::fused(u4, t943, t437 * t967)),
+            let t891 = T::fused(u5, t856, T::fused(t437, t880, t890));
+            let t892 = T::fused(
+                -t4,
+                t891,
+                T::fused(t460, t861, T::fused(u4, t863, t441 * t887)),
             );
-            let t973 = T::fused(
-                -t433,
-                t958,
-                T::fused(-t0, t969, T::fused(t442, t934, t972)),
+            let t893 = T::fused(
+                -t436,
+                t878,
+                T::fused(-t6, t889, T::fused(t453, t854, t892)),
             );
-            let t974 = k(0.0014) * t373;
-            let t975 = T::fused(
-                -t3,
-                t973,
-                T::fused(t455, t937, T::fused(t457, t946, t436 * t974)),
+            let t894 = k(0.0014) * t310;
+            let t895 = T::fused(
+                -t0,
+                t893,
+                T::fused(t457, t857, T::fused(t481, t866, t440 * t894)),
             );
-            let t976 = T::fused(
+            let t896 = T::fused(
                 u3,
-                t939,
-                T::fused(t428, t958, T::fused(t26, t966, t975)),
+                t859,
+                T::fused(t433, t878, T::fused(t9, t886, t895)),
             );
-            let t977 = T::fused(
+            let t897 = T::fused(
                 -k(0.1),
-                T::fused(-t437, t963, t434 * t941),
-                T::fused(t464, t963, T::fused(-t434, t967, t433 * t964)),
+                T::fused(-t441, t883, t442 * t861),
+                T::fused(t460, t883, T::fused(-t442, t887, t436 * t884)),
             );
-            let t978 = T::fused(t12, t969, T::fused(-t0, t971, t977));
-            let t979 = t402 + t401 + t403;
-            let t980 = k(0.0001) * t372;
-            let t981 = T::fused(
+            let t898 = T::fused(t4, t889, T::fused(-t6, t891, t897));
+            let t899 = t339 + t338 + t340;
+            let t900 = k(0.0001) * t309;
+            let t901 = T::fused(
                 k(0.1),
-                T::fused(t436, t979, t431 * t946),
-                T::fused(t457, t979, T::fused(t428, t980, t431 * t974)),
+                T::fused(t440, t899, t435 * t866),
+                T::fused(t481, t899, T::fused(t433, t900, t435 * t894)),
             );
-            let t982 = T::fused(u3, t944, t981 - t978);
-            let t983 = T::fused(
-                -t57,
-                t982,
-                T::fused(-t489, t952, T::fused(t492, t948, t430 * t974)),
+            let t902 = T::fused(u3, t864, t901 - t898);
+            let t903 = T::fused(
+                -t19,
+                t902,
+                T::fused(-t430, t872, T::fused(t480, t868, t434 * t894)),
             );
-            let t984 = T::fused(
-                -t426,
-                t956,
-                T::fused(-t52, t976, T::fused(u2, t949, t983)),
+            let t904 = T::fused(
+                -t429,
+                t876,
+                T::fused(-t15, t896, T::fused(u2, t869, t903)),
             );
-            let t985 = T::fused(
+            let t905 = T::fused(
                 k(0.1),
-                T::fused(t431, t937, t428 * t979),
-                T::fused(t455, t979, t436 * t980),
+                T::fused(t435, t857, t433 * t899),
+                T::fused(t457, t899, t440 * t900),
             );
-            let t986 = T::fused(
-                t431,
-                t958,
-                T::fused(t3, t966, T::fused(t26, t973, t985)),
+            let t906 = T::fused(
+                t435,
+                t878,
+                T::fused(t0, t886, T::fused(t9, t893, t905)),
             );
-            let t987 = t408 - t404 - t409;
-            let t988 = k(0.0001) * t371;
-            let t989 = T::fused(
+            let t907 = t345 - t341 - t346;
+            let t908 = k(0.0001) * t308;
+            let t909 = T::fused(
                 k(0.1),
-                T::fused(-t425, t952, t426 * t987),
-                T::fused(t489, t987, t430 * t988),
+                T::fused(-t432, t872, t429 * t907),
+                T::fused(t430, t907, t434 * t908),
             );
-            let t990 = T::fused(-t425, t956, T::fused(-u2, t945, t989 - t986));
-            let t991 = k(2.0) * t414;
-            let t992 = T::fused(
-                t92,
-                t984,
-                T::fused(t115, t990, T::fused(-t509, t953, t511 * t991)),
+            let t910 = T::fused(-t432, t876, T::fused(-u2, t865, t909 - t906));
+            let t911 = k(2.0) * t351;
+            let t912 = T::fused(
+                t13,
+                t904,
+                T::fused(t21, t910, T::fused(-t423, t873, t426 * t911)),
             );
-            let t993 = T::fused(-u1, t957, t992);
-            let t994 = T::fused(k(0.5), t851, T::fused(t52, t925, t57 * t926));
-            let t995 = T::fused(k(0.5), t884, t919);
-            let t996 = T::fused(-t115, t994, t92 * t995);
-            let t997 = T::fused(k(0.0016), t856, t427)
-                - (t920 - T::fused(t57, t914, t52 * t923));
-            let t998 = T::fused(k(0.0016), t837, t424)
-                + T::fused(-k(0.1), t996, T::fused(-k(0.1), t995, t997));
-            let t999 = T::fused(
-                t571,
-                t412,
+            let t913 = T::fused(-u1, t877, t912);
+            let t914 = T::fused(k(0.5), t771, T::fused(t15, t845, t19 * t846));
+            let t915 = T::fused(k(0.5), t804, t839);
+            let t916 = T::fused(-t21, t914, t13 * t915);
+            let t917 = T::fused(k(0.0016), t776, t496)
+                - (t840 - T::fused(t19, t834, t15 * t843));
+            let t918 = T::fused(k(0.0016), t757, t495)
+                + T::fused(-k(0.1), t916, T::fused(-k(0.1), t915, t917));
+            let t919 = T::fused(
+                t421,
+                t349,
                 T::fused(
-                    t544,
-                    t412,
-                    T::fused(-k(0.1), T::fused(-k(0.5), t841, t996), t998),
+                    t420,
+                    t349,
+                    T::fused(-k(0.1), T::fused(-k(0.5), t761, t916), t918),
                 ),
             );
+            let t920 = T::fused(k(0.0001), t27, t870);
+            let t921 = T::fused(
+                k(0.1),
+                T::fused(t432, t868, t434 * t907),
+                T::fused(t480, t907, T::fused(t432, t894, t429 * t908)),
+            );
+            let t922 = T::fused(-t19, t896, T::fused(t15, t902, t921));
+            let t923 = k(2.0) * t349;
+            let t924 = T::fused(-k(0.1), T::fused(-t425, t923, t428 * t911), t426 * t923)
+                - t922;
+            let t925 = T::fused(-u1, t920, t924);
+            let t926 = T::fused(
+                t25,
+                T::fused(u0, t913, -T::fused(t620, t870, -T::fused(t421, t351, t851))),
+                t27 * T::fused(t620, t875, T::fused(u0, t925, t919)),
+            );
+            let t927 = T::fused(
+                t231,
+                t628,
+                T::fused(-t239, t690, T::fused(-t268, t756, t230 * t926)),
+            );
+            let t928 = T::fused(k(0.0016), t6, k(0.1) * t377);
+            let t929 = t377 + t378;
+            let t930 = k(0.2) * t379;
+            let t931 = t930
+                + (k(0.0016) + T::fused(t6, t928, T::fused(k(0.1), t929, t42)));
+            let t932 = T::fused(-t4, t928, t46);
+            let t933 = t0 * t932;
+            let t934 = T::fused(-t19, t931, t15 * t933);
+            let t935 = T::fused(t9, t932, k(0.2) * t384);
+            let t936 = T::fused(-t13, t934, t21 * t935);
+            let t937 = T::fused(
+                k(0.2),
+                t382,
+                -T::fused(t15, t931, T::fused(t19, t933, t930)),
+            );
+            let t938 = k(0.0015) * t6;
+            let t939 = k(0.0001) * t4;
+            let t940 = T::fused(t443, t938, T::fused(k(0.1), t443 * t377, t446 * t939));
+            let t941 = T::fused(
+                k(0.0015),
+                t442,
+                T::fused(u4, t932, T::fused(k(0.1), t442 * t929, t940)),
+            );
+            let t942 = T::fused(u5, t928, T::fused(t437, t938, t438 * t377));
+            let t943 = T::fused(u5, t41, t437 * t939);
+            let t944 = T::fused(
+                k(0.0015),
+                t436,
+                T::fused(t6, t942, T::fused(t453, t929, t4 * t943)),
+            );
+            let t945 = k(2.0) * t379;
+            let t946 = k(2.0) * t380;
+            let t947 = T::fused(
+                t9,
+                t944,
+                T::fused(k(0.1), T::fused(-t435, t945, t433 * t946), t457 * t946),
+            );
+            let t948 = T::fused(-t0, t941, t947);
+            let t949 = k(2.0) * t381;
+            let t950 = T::fused(k(0.1), T::fused(-t432, t945, t429 * t949), t430 * t949)
+                + t948;
+            let t951 = T::fused(-u2, t934, t950);
+            let t952 = T::fused(
+                u3,
+                t931,
+                T::fused(t9, t941, T::fused(t0, t944, t457 * t945)),
+            );
+            let t953 = T::fused(-t4, t942, t6 * t943);
+            let t954 = T::fused(
+                -u3,
+                t933,
+                T::fused(k(0.1), t440 * t946, t481 * t946) - t953,
+            );
+            let t955 = k(2.0) * t384;
+            let t956 = T::fused(
+                u2,
+                t935,
+                T::fused(-t19, t954, T::fused(t430, t945, t480 * t955)),
+            );
+            let t957 = T::fused(t15, t952, t956);
+            let t958 = k(2.0) * t382;
+            let t959 = T::fused(
+                -t21,
+                t951,
+                T::fused(t13, t957, T::fused(-t423, t958, t426 * t955)),
+            );
+            let t960 = T::fused(-u1, t937, t959);
+            let t961 = T::fused(
+                u0,
+                t960,
+                T::fused(-t620, t936, T::fused(t421, t384, t420 * t384)),
+            );
+            let t962 = T::fused(
+                -t15,
+                t954,
+                T::fused(k(0.1), T::fused(-t432, t955, t434 * t949), t480 * t949),
+            );
+            let t963 = T::fused(-t19, t952, t962);
+            let t964 = k(2.0) * t383;
+            let t965 = T::fused(-k(0.1), T::fused(-t425, t964, t428 * t955), t426 * t964)
+                + t963;
+            let t966 = T::fused(-u1, t936, t965);
+            let t967 = T::fused(
+                t620,
+                t937,
+                T::fused(u0, t966, T::fused(t421, t383, t420 * t383)),
+            );
+            let t968 = T::fused(t25, t961, t27 * t967);
+            let t969 = k(0.0067) + t39;
+            let t970 = t9 * t969;
+            let t971 = k(0.2) * t414;
+            let t972 = T::fused(
+                k(0.2),
+                t417,
+                T::fused(-t19, t970, T::fused(t15, t971, t971)),
+            );
+            let t973 = T::fused(k(0.2), t412, -T::fused(t0, t969, t39));
+            let t974 = T::fused(t15, t970, t19 * t971);
+            let t975 = T::fused(-t21, t973, t13 * t974);
+            let t976 = k(0.0064) * t446;
+            let t977 = k(0.0064) * t443;
+            let t978 = k(0.1) * t6;
+            let t979 = k(0.1) * t4;
+            let t980 = T::fused(
+                t6,
+                t977,
+                T::fused(k(0.1), T::fused(t442, t978, t441 * t979), t460 * t979),
+            );
+            let t981 = T::fused(-t4, t976, t980);
+            let t982 = k(2.0) * t411;
+            let t983 = T::fused(k(0.1), T::fused(-t435, t978, t440 * t982), t481 * t982)
+                - t981;
+            let t984 = T::fused(-u3, t970, t983);
+            let t985 = T::fused(
+                u4,
+                t969,
+                T::fused(-t6, t976, T::fused(-t4, t977, t460 * t978)),
+            );
+            let t986 = k(2.0) * t414;
+            let t987 = T::fused(k(0.1), t436 * t979, t453 * t979);
+            let t988 = T::fused(
+                -t481,
+                t978,
+                T::fused(t457, t986, T::fused(u3, t971, t9 * t987)),
+            );
+            let t989 = T::fused(t0, t985, t988);
+            let t990 = k(2.0) * t412;
+            let t991 = k(2.0) * t413;
+            let t992 = T::fused(
+                t19,
+                t989,
+                T::fused(k(0.1), T::fused(-t432, t990, t434 * t991), t480 * t991),
+            );
+            let t993 = T::fused(-t15, t984, t992);
+            let t994 = k(2.0) * t415;
+            let t995 = T::fused(k(0.1), T::fused(t428, t990, t425 * t994), t426 * t994)
+                - t993;
+            let t996 = T::fused(-u1, t975, t995);
+            let t997 = T::fused(
+                u0,
+                t996,
+                T::fused(-t620, t972, T::fused(t421, t415, t420 * t415)),
+            );
+            let t998 = T::fused(
+                t19,
+                t984,
+                T::fused(t15, t989, T::fused(-t480, t990, t430 * t986)),
+            );
+            let t999 = T::fused(-u2, t973, t998);
             (
-                t802,
-                t804,
-                t807,
-                t809,
+                t806,
+                t810,
                 t811,
-                t815,
+                t818,
                 t819,
-                t821,
-                t823,
-                t827,
-                t829,
-                t831,
-                t832,
+                t820,
+                t828,
+                t833,
                 t834,
-                t836,
-                t842,
+                t835,
+                t837,
                 t843,
+                t844,
+                t845,
                 t846,
-                t848,
-                t851,
+                t850,
                 t853,
                 t856,
-                t858,
+                t859,
+                t860,
                 t863,
+                t864,
                 t865,
-                t871,
-                t872,
-                t878,
-                t879,
+                t869,
+                t873,
+                t877,
+                t882,
                 t886,
-                t890,
+                t889,
                 t891,
+                t893,
+                t896,
                 t898,
-                t899,
-                t900,
-                t908,
+                t902,
+                t904,
+                t906,
+                t910,
                 t913,
                 t914,
                 t915,
-                t917,
+                t920,
+                t922,
                 t923,
-                t924,
                 t925,
                 t926,
-                t930,
+                t927,
+                t928,
                 t931,
+                t932,
                 t933,
+                t934,
+                t935,
                 t936,
-                t939,
+                t937,
                 t940,
+                t941,
+                t942,
                 t943,
                 t944,
-                t945,
                 t948,
-                t949,
-                t950,
+                t951,
+                t952,
                 t953,
-                t955,
+                t954,
                 t957,
-                t962,
+                t958,
+                t960,
+                t963,
+                t964,
                 t966,
+                t968,
                 t969,
+                t970,
                 t971,
+                t972,
                 t973,
                 t974,
+                t975,
                 t976,
-                t978,
+                t977,
+                t981,
                 t982,
                 t984,
+                t985,
                 t986,
                 t987,
-                t988,
+                t989,
                 t990,
                 t991,
                 t993,
                 t994,
-                t995,
+                t996,
+                t997,
                 t999,
             )
         };
         let (
-            t1006,
-            t1007,
-            t1012,
-            t1017,
-            t1022,
-            t1027,
-            t1032,
-            t1037,
-            t1038,
-            t1043,
-            t1046,
-            t1051,
-            t1056,
+            t1008,
+            t1013,
+            t1018,
+            t1023,
+            t1028,
+            t1029,
+            t1034,
+            t1039,
+            t1044,
+            t1049,
+            t1054,
             t1061,
-            t1068,
-            t1069,
-            t1072,
+            t1062,
+            t1065,
+            t1070,
             t1075,
             t1080,
-            t1085,
-            t1092,
-            t1099,
-            t1100,
+            t1087,
+            t1094,
+            t1095,
+            t1098,
             t1101,
-            t1104,
-            t1109,
-            t1116,
-            t1123,
-            t1130,
+            t1106,
+            t1113,
+            t1120,
+            t1127,
+            t1128,
             t1131,
+            t1132,
             t1133,
+            t1134,
             t1135,
+            t1136,
             t1137,
+            t1138,
             t1139,
             t1141,
             t1143,
-            t1144,
-            t1146,
+            t1145,
+            t1147,
             t1148,
             t1150,
             t1152,
+            t1153,
             t1154,
+            t1155,
             t1156,
             t1157,
             t1158,
@@ -16873,820 +17031,826 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t1198,
             t1199,
         ) = {
-            let t1000 = T::fused(k(0.0001), t188, t950);
-            let t1001 = T::fused(
+            let t1000 = T::fused(
                 k(0.1),
-                T::fused(t425, t948, t430 * t987),
-                T::fused(t492, t987, T::fused(t425, t974, t426 * t988)),
+                T::fused(t435, t986, t433 * t982),
+                T::fused(t457, t982, t0 * t987),
             );
-            let t1002 = T::fused(-t57, t976, T::fused(t52, t982, t1001));
-            let t1003 = k(2.0) * t412;
-            let t1004 = T::fused(
-                -k(0.1),
-                T::fused(-t429, t1003, t422 * t991),
-                t511 * t1003,
-            ) - t1002;
-            let t1005 = T::fused(-u1, t1000, t1004);
-            let t1006 = T::fused(
-                t184,
-                T::fused(u0, t993, -T::fused(t575, t950, -T::fused(t571, t414, t931))),
-                t188 * T::fused(t575, t955, T::fused(u0, t1005, t999)),
+            let t1001 = T::fused(-t9, t985, t1000);
+            let t1002 = T::fused(k(0.1), T::fused(t429, t991, t432 * t986), t430 * t991)
+                + t1001;
+            let t1003 = T::fused(-u2, t974, t1002);
+            let t1004 = k(2.0) * t417;
+            let t1005 = T::fused(
+                u1,
+                t972,
+                T::fused(t21, t1003, T::fused(-t426, t990, t423 * t1004)),
             );
+            let t1006 = T::fused(t13, t999, t1005);
             let t1007 = T::fused(
-                t276,
-                t708,
-                T::fused(-t302, t770, T::fused(-t331, t836, t219 * t1006)),
+                t620,
+                t975,
+                T::fused(-u0, t1006, T::fused(t421, t412, t420 * t412)),
             );
-            let t1008 = T::fused(
-                -t842,
-                t223,
-                T::fused(-t510, t223, T::fused(t843, t224, t512 * t224)),
-            );
+            let t1008 = T::fused(-t27, t997, t25 * t1007);
             let t1009 = T::fused(
-                t846,
-                t576,
-                T::fused(u1, t602, -T::fused(t848, t577, T::fused(t422, t606, -t1008))),
+                -t763,
+                t20,
+                T::fused(-t560, t20, T::fused(t559, t12, t762 * t12)),
             );
             let t1010 = T::fused(
-                t843,
-                t223,
-                T::fused(t512, t223, T::fused(t842, t224, t510 * t224)),
+                t768,
+                t490,
+                T::fused(-t428, t491, T::fused(t766, t476, T::fused(-u1, t477, t1009))),
             );
             let t1011 = T::fused(
-                t848,
-                t576,
-                T::fused(t422, t602, T::fused(t846, t577, T::fused(u1, t606, t1010))),
+                t762,
+                t20,
+                T::fused(t559, t20, T::fused(t560, t12, t763 * t12)),
             );
-            let t1012 = T::fused(t92, t1009, t115 * t1011);
-            let t1013 = T::fused(
-                -t842,
-                t255,
-                T::fused(-t510, t255, T::fused(t843, t257, t512 * t257)),
+            let t1012 = T::fused(
+                t766,
+                t490,
+                T::fused(-u1, t491, T::fused(-t768, t476, T::fused(t428, t477, t1011))),
             );
+            let t1013 = T::fused(t21, t1010, t13 * t1012);
             let t1014 = T::fused(
-                t846,
-                t618,
-                T::fused(u1, t635, -T::fused(t422, t641, -T::fused(t848, t619, t1013))),
+                -t762,
+                t257,
+                T::fused(-t559, t257, T::fused(t763, t261, t560 * t261)),
             );
             let t1015 = T::fused(
-                t843,
-                t255,
-                T::fused(t512, t255, T::fused(t842, t257, t510 * t257)),
+                t428,
+                t674,
+                T::fused(u1, t679, T::fused(t766, t642, -T::fused(t768, t643, -t1014))),
             );
             let t1016 = T::fused(
-                t848,
-                t618,
-                T::fused(t422, t635, T::fused(u1, t641, -T::fused(t846, t619, -t1015))),
+                t763,
+                t257,
+                T::fused(t560, t257, T::fused(t762, t261, t559 * t261)),
             );
-            let t1017 = T::fused(-t115, t1014, t92 * t1016);
-            let t1018 = T::fused(
-                t842,
-                t289,
-                T::fused(t510, t289, T::fused(t843, t290, t512 * t290)),
+            let t1017 = T::fused(
+                u1,
+                t674,
+                -T::fused(t428, t679, T::fused(t768, t642, T::fused(t766, t643, t1016))),
             );
+            let t1018 = T::fused(t21, t1015, t13 * t1017);
             let t1019 = T::fused(
-                t846,
-                t665,
-                -T::fused(u1, t699, T::fused(t848, t666, T::fused(t422, t703, t1018))),
+                t762,
+                t301,
+                T::fused(t559, t301, -T::fused(t763, t303, T::fused(t560, t303, -t844))),
             );
             let t1020 = T::fused(
-                t843,
-                t289,
-                T::fused(t512, t289, -T::fused(t842, t290, t510 * t290)),
+                t766,
+                t709,
+                T::fused(u1, t747, -T::fused(t768, t710, T::fused(t428, t751, t1019))),
             );
             let t1021 = T::fused(
-                t848,
-                t665,
-                -T::fused(t422, t699, -T::fused(t846, t666, T::fused(u1, t703, t1020))),
+                t763,
+                t301,
+                T::fused(t560, t301, T::fused(t762, t303, T::fused(t559, t303, -t850))),
             );
-            let t1022 = T::fused(t92, t1019, t115 * t1021);
-            let t1023 = T::fused(
-                -t842,
-                t320,
-                T::fused(-t510, t320, T::fused(t843, t324, t512 * t324)),
+            let t1022 = T::fused(
+                t768,
+                t709,
+                T::fused(t428, t747, T::fused(t766, t710, T::fused(u1, t751, t1021))),
             );
+            let t1023 = T::fused(t13, t1020, t21 * t1022);
             let t1024 = T::fused(
-                t422,
-                t754,
-                T::fused(u1, t759, T::fused(t846, t722, -T::fused(t848, t723, -t1023))),
+                t763,
+                t346,
+                T::fused(t560, t346, -T::fused(t27, t844, t316 * t915)),
             );
             let t1025 = T::fused(
-                t843,
-                t320,
-                T::fused(t512, t320, T::fused(t842, t324, t510 * t324)),
+                t766,
+                t865,
+                -T::fused(t768, t869, T::fused(t762, t337, T::fused(t559, t337, t1024))),
             );
             let t1026 = T::fused(
-                u1,
-                t754,
-                -T::fused(t422, t759, T::fused(t848, t722, T::fused(t846, t723, t1025))),
+                t762,
+                t346,
+                T::fused(t559, t346, T::fused(-t27, t850, t316 * t914)),
             );
-            let t1027 = T::fused(t115, t1024, t92 * t1026);
+            let t1027 = T::fused(
+                t768,
+                t865,
+                T::fused(t766, t869, T::fused(t763, t337, T::fused(t560, t337, -t1026))),
+            );
             let t1028 = T::fused(
-                t842,
-                t364,
-                T::fused(t510, t364, -T::fused(t843, t366, T::fused(t512, t366, -t924))),
+                t21,
+                T::fused(t428, t904, T::fused(u1, t910, t1025)),
+                t13 * T::fused(u1, t904, -T::fused(t428, t910, t1027)),
             );
             let t1029 = T::fused(
-                t846,
-                t789,
-                T::fused(u1, t827, -T::fused(t848, t790, T::fused(t422, t831, t1028))),
+                t231,
+                t1013,
+                T::fused(t239, t1018, T::fused(-t268, t1023, t230 * t1028)),
             );
             let t1030 = T::fused(
-                t843,
-                t364,
-                T::fused(t512, t364, T::fused(t842, t366, T::fused(t510, t366, -t930))),
+                -t762,
+                t379,
+                T::fused(-t559, t379, T::fused(t763, t381, t560 * t381)),
             );
             let t1031 = T::fused(
-                t848,
-                t789,
-                T::fused(t422, t827, T::fused(t846, t790, T::fused(u1, t831, t1030))),
+                t766,
+                t934,
+                T::fused(u1, t951, -T::fused(t428, t957, -T::fused(t768, t935, t1030))),
             );
-            let t1032 = T::fused(t92, t1029, t115 * t1031);
+            let t1032 = T::fused(
+                t763,
+                t379,
+                T::fused(t560, t379, T::fused(t762, t381, t559 * t381)),
+            );
             let t1033 = T::fused(
-                t843,
-                t409,
-                T::fused(t512, t409, -T::fused(t188, t924, t379 * t995)),
+                t768,
+                t934,
+                T::fused(t428, t951, T::fused(u1, t957, -T::fused(t766, t935, -t1032))),
             );
-            let t1034 = T::fused(
-                t846,
-                t945,
-                -T::fused(t848, t949, T::fused(t842, t400, T::fused(t510, t400, t1033))),
-            );
+            let t1034 = T::fused(-t21, t1031, t13 * t1033);
             let t1035 = T::fused(
-                t842,
-                t409,
-                T::fused(t510, t409, T::fused(-t188, t930, t379 * t994)),
+                -t762,
+                t413,
+                T::fused(-t559, t413, T::fused(t763, t414, t560 * t414)),
             );
             let t1036 = T::fused(
-                t848,
-                t945,
-                T::fused(t846, t949, T::fused(t843, t400, T::fused(t512, t400, -t1035))),
+                t766,
+                t973,
+                T::fused(u1, t999, -T::fused(t768, t974, T::fused(t428, t1003, -t1035))),
             );
             let t1037 = T::fused(
-                t115,
-                T::fused(t422, t984, T::fused(u1, t990, t1034)),
-                t92 * T::fused(u1, t984, -T::fused(t422, t990, t1036)),
+                t763,
+                t413,
+                T::fused(t560, t413, T::fused(t762, t414, t559 * t414)),
             );
             let t1038 = T::fused(
-                -t276,
-                t1022,
-                T::fused(t302, t1027, T::fused(-t331, t1032, t219 * t1037)),
+                t768,
+                t973,
+                T::fused(t428, t999, T::fused(t766, t974, T::fused(u1, t1003, t1037))),
             );
-            let t1039 = T::fused(
-                t18,
-                t493,
-                T::fused(t420, t856, T::fused(t851, t221, t494 * t221)),
-            );
+            let t1039 = T::fused(t13, t1036, t21 * t1038);
             let t1040 = T::fused(
-                t853,
-                t419,
-                T::fused(t430, t587, -T::fused(t425, t592, T::fused(t18, t863, t1039))),
+                -t544,
+                t18,
+                T::fused(t773, t474, T::fused(t543, t14, t783 * t14)),
             );
             let t1041 = T::fused(
-                t18,
-                t494,
-                -T::fused(t853, t420, T::fused(t863, t221, t493 * t221)),
+                t434,
+                t488,
+                T::fused(t432, t486, T::fused(-t776, t475, T::fused(-t771, t18, t1040))),
             );
             let t1042 = T::fused(
-                t419,
-                t856,
-                -T::fused(t425, t587, T::fused(t430, t592, T::fused(t18, t851, t1041))),
+                t543,
+                t18,
+                T::fused(t776, t474, T::fused(t544, t14, t771 * t14)),
             );
-            let t1043 = T::fused(-t57, t1040, t52 * t1042);
-            let t1044 = T::fused(
-                t617,
-                t856,
-                -T::fused(t425, t638, -T::fused(t863, t256, t493 * t256)),
+            let t1043 = T::fused(
+                -t432,
+                t488,
+                T::fused(t434, t486, T::fused(t773, t475, T::fused(t783, t18, t1042))),
             );
+            let t1044 = T::fused(t15, t1041, t19 * t1043);
             let t1045 = T::fused(
-                t853,
-                t617,
-                T::fused(t430, t638, -T::fused(t851, t256, t494 * t256)),
+                t783,
+                t258,
+                T::fused(t543, t258, T::fused(t771, t260, T::fused(t544, t260, -t834))),
             );
             let t1046 = T::fused(
-                t52,
-                T::fused(t853, t615, -T::fused(t430, t636, t1044)),
-                t57 * T::fused(t615, t856, T::fused(t425, t636, t1045)),
+                t773,
+                t636,
+                -T::fused(t434, t665, T::fused(t641, t776, T::fused(t432, t671, -t1045))),
             );
             let t1047 = T::fused(
-                t493,
-                t283,
-                T::fused(t662, t856, T::fused(t851, t287, t494 * t287)),
+                t771,
+                t258,
+                T::fused(t544, t258, -T::fused(t783, t260, T::fused(t543, t260, -t843))),
             );
             let t1048 = T::fused(
-                t425,
-                t684,
-                T::fused(t430, t689, -T::fused(t853, t660, T::fused(t863, t283, t1047))),
+                t636,
+                t776,
+                T::fused(t432, t665, T::fused(t773, t641, -T::fused(t434, t671, -t1047))),
             );
-            let t1049 = T::fused(
-                t494,
-                t283,
-                -T::fused(t853, t662, T::fused(t863, t287, t493 * t287)),
-            );
+            let t1049 = T::fused(t15, t1046, t19 * t1048);
             let t1050 = T::fused(
-                t430,
-                t684,
-                -T::fused(t425, t689, T::fused(t660, t856, T::fused(t851, t283, t1049))),
+                t771,
+                t297,
+                T::fused(t544, t297, -T::fused(t21, t834, t273 * t846)),
             );
-            let t1051 = T::fused(-t57, t1048, t52 * t1050);
+            let t1051 = T::fused(
+                t773,
+                t698,
+                T::fused(t783, t285, T::fused(t543, t285, -T::fused(t703, t776, t1050))),
+            );
             let t1052 = T::fused(
-                t863,
-                t321,
-                T::fused(t493, t321, T::fused(t851, t323, T::fused(t494, t323, -t914))),
+                t783,
+                t297,
+                T::fused(t543, t297, -T::fused(t21, t843, t273 * t845)),
             );
             let t1053 = T::fused(
-                t853,
-                t716,
-                -T::fused(t430, t745, T::fused(t721, t856, T::fused(t425, t751, -t1052))),
+                t698,
+                t776,
+                T::fused(t771, t285, T::fused(t544, t285, T::fused(t773, t703, t1052))),
             );
             let t1054 = T::fused(
-                t851,
-                t321,
-                T::fused(t494, t321, -T::fused(t863, t323, T::fused(t493, t323, -t923))),
+                -t19,
+                T::fused(t432, t729, T::fused(t434, t735, -t1051)),
+                t15 * T::fused(t434, t729, -T::fused(t432, t735, t1053)),
             );
             let t1055 = T::fused(
-                t716,
-                t856,
-                T::fused(t425, t745, T::fused(t853, t721, -T::fused(t430, t751, -t1054))),
+                t25,
+                t834,
+                T::fused(t320, t846, T::fused(-t308, t843, t321 * t845)),
             );
-            let t1056 = T::fused(t52, t1053, t57 * t1055);
+            let t1056 = T::fused(
+                t783,
+                t340,
+                T::fused(t543, t340, T::fused(t771, t344, T::fused(t544, t344, -t1055))),
+            );
             let t1057 = T::fused(
-                t851,
-                t360,
-                T::fused(t494, t360, -T::fused(t115, t914, t336 * t926)),
+                t773,
+                t859,
+                -T::fused(t434, t896, T::fused(t864, t776, T::fused(t432, t902, -t1056))),
             );
             let t1058 = T::fused(
-                t853,
-                t778,
-                T::fused(t863, t348, T::fused(t493, t348, -T::fused(t783, t856, t1057))),
+                t25,
+                t843,
+                T::fused(t320, t845, -T::fused(-t308, t834, t321 * t846)),
             );
             let t1059 = T::fused(
-                t863,
-                t360,
-                T::fused(t493, t360, -T::fused(t115, t923, t336 * t925)),
+                t771,
+                t340,
+                T::fused(t544, t340, -T::fused(t783, t344, T::fused(t543, t344, -t1058))),
             );
             let t1060 = T::fused(
-                t778,
-                t856,
-                T::fused(t851, t348, T::fused(t494, t348, T::fused(t853, t783, t1059))),
+                t859,
+                t776,
+                T::fused(t432, t896, T::fused(t773, t864, -T::fused(t434, t902, -t1059))),
             );
-            let t1061 = T::fused(
-                -t57,
-                T::fused(t425, t809, T::fused(t430, t815, -t1058)),
-                t52 * T::fused(t430, t809, -T::fused(t425, t815, t1060)),
-            );
+            let t1061 = T::fused(t15, t1057, t19 * t1060);
             let t1062 = T::fused(
-                t184,
-                t914,
-                T::fused(t383, t926, T::fused(-t371, t923, t384 * t925)),
+                t231,
+                t1044,
+                T::fused(t239, t1049, T::fused(-t268, t1054, t230 * t1061)),
             );
             let t1063 = T::fused(
-                t863,
-                t403,
-                T::fused(t493, t403, T::fused(t851, t407, T::fused(t494, t407, -t1062))),
+                t933,
+                t776,
+                -T::fused(t432, t954, -T::fused(t783, t380, t543 * t380)),
             );
             let t1064 = T::fused(
-                t853,
-                t939,
-                -T::fused(t430, t976, T::fused(t944, t856, T::fused(t425, t982, -t1063))),
+                t773,
+                t933,
+                T::fused(t434, t954, -T::fused(t771, t380, t544 * t380)),
             );
             let t1065 = T::fused(
-                t184,
-                t923,
-                T::fused(t383, t925, -T::fused(-t371, t914, t384 * t926)),
+                t15,
+                T::fused(t773, t931, -T::fused(t434, t952, t1063)),
+                t19 * T::fused(t931, t776, T::fused(t432, t952, t1064)),
             );
             let t1066 = T::fused(
-                t851,
-                t403,
-                T::fused(t494, t403, -T::fused(t863, t407, T::fused(t493, t407, -t1065))),
+                t36,
+                t543,
+                T::fused(t971, t776, T::fused(t771, t411, t544 * t411)),
             );
             let t1067 = T::fused(
-                t939,
-                t856,
-                T::fused(t425, t976, T::fused(t853, t944, -T::fused(t430, t982, -t1066))),
+                t773,
+                t970,
+                T::fused(t434, t984, -T::fused(t432, t989, T::fused(t36, t783, t1066))),
             );
-            let t1068 = T::fused(t52, t1064, t57 * t1067);
+            let t1068 = T::fused(
+                t36,
+                t544,
+                -T::fused(t773, t971, T::fused(t783, t411, t543 * t411)),
+            );
             let t1069 = T::fused(
-                t276,
-                t1051,
-                T::fused(t302, t1056, T::fused(-t331, t1061, t219 * t1068)),
+                t970,
+                t776,
+                -T::fused(t432, t984, T::fused(t434, t989, T::fused(t36, t771, t1068))),
             );
-            let t1070 = T::fused(
-                t428,
-                t588,
-                -T::fused(t38, t886, T::fused(t431, t590, t38 * t456)),
-            );
+            let t1070 = T::fused(-t19, t1067, t15 * t1069);
             let t1071 = T::fused(
-                t431,
-                t588,
-                T::fused(t38, t865, T::fused(t428, t590, t38 * t458)),
+                t512,
+                t8,
+                t833 + T::fused(t450, t778, -T::fused(t11, t806, t511 * t11)),
             );
             let t1072 = T::fused(
-                t3,
-                T::fused(t418, t858, t1070),
-                t26 * T::fused(t418, t871, t1071),
+                t791,
+                t469,
+                T::fused(t435, t470, T::fused(t785, t8, T::fused(-t433, t455, t1071))),
             );
             let t1073 = T::fused(
-                t428,
-                t628,
-                -T::fused(t616, t871, -T::fused(t865, t254, t458 * t254)),
+                t511,
+                t8,
+                T::fused(t450, t791, T::fused(t785, t11, T::fused(t512, t11, -t811))),
             );
             let t1074 = T::fused(
-                t431,
-                t628,
-                T::fused(t616, t858, T::fused(t254, t886, t456 * t254)),
+                -t778,
+                t469,
+                T::fused(-t433, t470, T::fused(t806, t8, T::fused(-t435, t455, t1073))),
             );
-            let t1075 = T::fused(
-                -t3,
-                T::fused(t431, t625, -t1073),
-                t26 * T::fused(t428, t625, t1074),
-            );
+            let t1075 = T::fused(-t9, t1072, t0 * t1074);
             let t1076 = T::fused(
-                t456,
-                t284,
-                -T::fused(t659, t871, T::fused(t865, t286, T::fused(t458, t286, -t891))),
+                t511,
+                t254,
+                T::fused(t640, t778, T::fused(-t19, t833, t243 * t835)),
             );
             let t1077 = T::fused(
-                t655,
-                t858,
-                -T::fused(t428, t677, -T::fused(t284, t886, T::fused(t431, t682, t1076))),
+                t637,
+                t791,
+                -T::fused(t785, t246, T::fused(t512, t246, -T::fused(t254, t806, t1076))),
             );
             let t1078 = T::fused(
-                t458,
-                t284,
-                -(t913 + T::fused(t659, t858, -T::fused(t286, t886, t456 * t286))),
+                t785,
+                t254,
+                T::fused(t512, t254, -T::fused(t19, t811, t640 * t791)),
             );
             let t1079 = T::fused(
-                t655,
-                t871,
-                -T::fused(t431, t677, T::fused(t865, t284, T::fused(t428, t682, t1078))),
+                t637,
+                t778,
+                T::fused(t246, t806, T::fused(t511, t246, -T::fused(t243, t837, -t1078))),
             );
-            let t1080 = T::fused(t3, t1077, t26 * t1079);
+            let t1080 = T::fused(
+                -t0,
+                T::fused(t435, t655, -T::fused(t433, t662, t1077)),
+                t9 * T::fused(t433, t655, T::fused(t435, t662, -t1079)),
+            );
             let t1081 = T::fused(
-                t456,
-                t317,
-                T::fused(t720, t858, T::fused(-t57, t913, t306 * t915)),
+                t13,
+                t811,
+                T::fused(t277, t837, T::fused(t269, t833, t279 * t835)),
             );
             let t1082 = T::fused(
-                t717,
-                t871,
-                -T::fused(t865, t309, T::fused(t458, t309, -T::fused(t317, t886, t1081))),
+                t511,
+                t288,
+                T::fused(t697, t791, -T::fused(t785, t295, T::fused(t512, t295, -t1081))),
             );
             let t1083 = T::fused(
-                t865,
-                t317,
-                T::fused(t458, t317, -T::fused(t57, t891, t720 * t871)),
+                t693,
+                t778,
+                -T::fused(t433, t722, -T::fused(t288, t806, T::fused(t435, t727, t1082))),
             );
             let t1084 = T::fused(
-                t717,
-                t858,
-                T::fused(t309, t886, T::fused(t456, t309, -T::fused(t306, t917, -t1083))),
+                t511,
+                t295,
+                T::fused(t277, t835, -T::fused(-t269, t811, t279 * t837)),
             );
             let t1085 = T::fused(
-                -t3,
-                T::fused(t431, t735, -T::fused(t428, t742, t1082)),
-                t26 * T::fused(t428, t735, T::fused(t431, t742, -t1084)),
+                t512,
+                t288,
+                -T::fused(t13, t833, -T::fused(t697, t778, T::fused(t295, t806, t1084))),
             );
             let t1086 = T::fused(
-                t92,
-                t891,
-                T::fused(t340, t917, T::fused(t332, t913, t342 * t915)),
+                t693,
+                t791,
+                -T::fused(t435, t722, T::fused(t785, t288, T::fused(t433, t727, t1085))),
             );
-            let t1087 = T::fused(
-                t456,
-                t351,
-                T::fused(t777, t871, -T::fused(t865, t358, T::fused(t458, t358, -t1086))),
-            );
+            let t1087 = T::fused(t0, t1083, t9 * t1086);
             let t1088 = T::fused(
-                t773,
-                t858,
-                -T::fused(t428, t802, -T::fused(t351, t886, T::fused(t431, t807, t1087))),
+                t319,
+                t835,
+                -T::fused(t309, t833, -T::fused(t310, t811, t322 * t837)),
             );
             let t1089 = T::fused(
-                t456,
-                t358,
-                T::fused(t340, t915, -T::fused(-t332, t891, t342 * t917)),
+                t512,
+                t325,
+                T::fused(t334, t806, T::fused(t511, t334, T::fused(t863, t778, t1088))),
             );
             let t1090 = T::fused(
-                t458,
-                t351,
-                -T::fused(t92, t913, -T::fused(t777, t858, T::fused(t358, t886, t1089))),
+                t435,
+                t886,
+                T::fused(t433, t893, -T::fused(t860, t791, -T::fused(t785, t325, t1089))),
             );
             let t1091 = T::fused(
-                t773,
-                t871,
-                -T::fused(t431, t802, T::fused(t865, t351, T::fused(t428, t807, t1090))),
+                t863,
+                t791,
+                T::fused(t309, t811, -T::fused(-t310, t833, t322 * t835)),
             );
-            let t1092 = T::fused(t3, t1088, t26 * t1091);
+            let t1092 = T::fused(
+                t511,
+                t325,
+                T::fused(t319, t837, -T::fused(t785, t334, T::fused(t512, t334, -t1091))),
+            );
             let t1093 = T::fused(
-                t382,
-                t915,
-                -T::fused(t372, t913, -T::fused(t373, t891, t385 * t917)),
+                t433,
+                t886,
+                -T::fused(t435, t893, T::fused(t860, t778, T::fused(t325, t806, t1092))),
             );
-            let t1094 = T::fused(
-                t458,
-                t388,
-                T::fused(t397, t886, T::fused(t456, t397, T::fused(t943, t858, t1093))),
-            );
+            let t1094 = T::fused(-t0, t1090, t9 * t1093);
             let t1095 = T::fused(
-                t431,
-                t966,
-                T::fused(t428, t973, -T::fused(t940, t871, -T::fused(t865, t388, t1094))),
+                -t231,
+                t1075,
+                T::fused(-t239, t1080, T::fused(-t268, t1087, t230 * t1094)),
             );
             let t1096 = T::fused(
-                t943,
-                t871,
-                T::fused(t372, t891, -T::fused(-t373, t913, t385 * t915)),
+                t433,
+                t944,
+                -T::fused(t932, t791, -T::fused(t785, t378, t512 * t378)),
             );
             let t1097 = T::fused(
-                t456,
-                t388,
-                T::fused(t382, t917, -T::fused(t865, t397, T::fused(t458, t397, -t1096))),
+                t435,
+                t944,
+                T::fused(t932, t778, T::fused(t378, t806, t511 * t378)),
             );
             let t1098 = T::fused(
-                t428,
-                t966,
-                -T::fused(t431, t973, T::fused(t940, t858, T::fused(t388, t886, t1097))),
+                -t0,
+                T::fused(t435, t941, -t1096),
+                t9 * T::fused(t433, t941, t1097),
             );
-            let t1099 = T::fused(-t3, t1095, t26 * t1098);
+            let t1099 = T::fused(
+                t433,
+                t985,
+                -T::fused(t35, t806, T::fused(t435, t987, t35 * t511)),
+            );
             let t1100 = T::fused(
-                t276,
-                t1080,
-                T::fused(-t302, t1085, T::fused(-t331, t1092, t219 * t1099)),
+                t435,
+                t985,
+                T::fused(t35, t785, T::fused(t433, t987, t35 * t512)),
             );
             let t1101 = T::fused(
-                -t12,
-                T::fused(t434, t579, -T::fused(k(0.05), t465 + t899, t437 * t580)),
-                t0 * T::fused(t437, t579, T::fused(-k(0.05), t466 + t898, t434 * t580)),
+                t0,
+                T::fused(t969, t778, t1099),
+                t9 * T::fused(t969, t791, t1100),
             );
             let t1102 = T::fused(
-                t612,
-                t872,
-                -T::fused(t437, t626, -T::fused(t14, t878, -T::fused(t434, t627, t879))),
+                t2,
+                t820,
+                -T::fused(t448, t792, -T::fused(t449, t798, t9 * t810)),
             );
             let t1103 = T::fused(
-                t612,
-                t878,
-                -T::fused(t434, t626, t890 - T::fused(-t14, t872, t437 * t627)),
+                -t818,
+                t7,
+                T::fused(-t518, t7, T::fused(-t819, t5, T::fused(-t517, t5, t1102))),
             );
-            let t1104 = T::fused(-t0, t1102, t12 * t1103);
+            let t1104 = T::fused(
+                -t518,
+                t5,
+                T::fused(t448, t798, T::fused(t9, t799, t449 * t792)),
+            );
             let t1105 = T::fused(
-                t466,
-                t280,
-                -T::fused(t656, t878, T::fused(t26, t879, t658 * t872)),
+                t819,
+                t7,
+                T::fused(t517, t7, T::fused(t2, t828, T::fused(-t818, t5, t1104))),
             );
             let t1106 = T::fused(
-                t279,
-                t899,
-                T::fused(t465, t279, T::fused(t278, t908, -T::fused(t280, t898, t1105))),
+                t6,
+                T::fused(t441, t466, T::fused(t442, t464, t1103)),
+                t4 * T::fused(-t442, t466, T::fused(t441, t464, t1105)),
             );
             let t1107 = T::fused(
-                t278,
-                t900,
-                -T::fused(t656, t872, -T::fused(t658, t878, t26 * t890)),
+                t252,
+                t819,
+                T::fused(t517, t252, -T::fused(-t240, t810, t249 * t820)),
             );
             let t1108 = T::fused(
-                t279,
-                t898,
-                T::fused(t466, t279, T::fused(t280, t899, T::fused(t465, t280, -t1107))),
+                t15,
+                t799,
+                -T::fused(
+                    t251,
+                    t818,
+                    T::fused(t518, t251, -T::fused(t247, t828, -t1107)),
+                ),
             );
             let t1109 = T::fused(
-                -t12,
-                T::fused(t434, t671, T::fused(t437, t674, -t1106)),
-                t0 * T::fused(t437, t671, -T::fused(t434, t674, t1108)),
+                t630,
+                t792,
+                -T::fused(
+                    t441,
+                    t658,
+                    -T::fused(t633, t798, -T::fused(t442, t660, t1108)),
+                ),
             );
             let t1110 = T::fused(
-                t315,
-                t899,
-                T::fused(t465, t315, -T::fused(-t303, t890, t312 * t900)),
+                t518,
+                t252,
+                T::fused(t247, t820, -T::fused(-t240, t799, t249 * t828)),
             );
             let t1111 = T::fused(
-                t52,
-                t879,
-                -T::fused(
-                    t314,
-                    t898,
-                    T::fused(t466, t314, -T::fused(t310, t908, -t1110)),
-                ),
+                t441,
+                t660,
+                T::fused(t251, t819, T::fused(t517, t251, -T::fused(t252, t818, t1110))),
             );
             let t1112 = T::fused(
-                t710,
-                t872,
-                -T::fused(
-                    t437,
-                    t738,
-                    -T::fused(t713, t878, -T::fused(t434, t740, t1111)),
-                ),
+                t630,
+                t798,
+                -T::fused(t442, t658, T::fused(t15, t810, T::fused(t633, t792, -t1111))),
             );
-            let t1113 = T::fused(
-                t466,
-                t315,
-                T::fused(t310, t900, -T::fused(-t303, t879, t312 * t908)),
-            );
+            let t1113 = T::fused(-t6, t1109, t4 * t1112);
             let t1114 = T::fused(
-                t437,
-                t740,
-                T::fused(t314, t899, T::fused(t465, t314, -T::fused(t315, t898, t1113))),
+                t696,
+                t792,
+                -T::fused(t290, t799, -T::fused(t278, t810, t280 * t820)),
             );
             let t1115 = T::fused(
-                t710,
-                t878,
-                -T::fused(t434, t738, T::fused(t52, t890, T::fused(t713, t872, -t1114))),
+                t276,
+                t828,
+                -T::fused(
+                    t282,
+                    t818,
+                    T::fused(t518, t282, -T::fused(t694, t798, -t1114)),
+                ),
             );
-            let t1116 = T::fused(-t0, t1112, t12 * t1115);
+            let t1116 = T::fused(
+                t442,
+                t716,
+                -T::fused(
+                    t441,
+                    t719,
+                    -T::fused(t281, t819, T::fused(t517, t281, -t1115)),
+                ),
+            );
             let t1117 = T::fused(
-                t776,
-                t872,
-                -T::fused(t353, t879, -T::fused(t341, t890, t343 * t900)),
+                t290,
+                t810,
+                -T::fused(t696, t798, -T::fused(t278, t799, t280 * t828)),
             );
             let t1118 = T::fused(
-                t339,
-                t908,
-                -T::fused(
-                    t345,
-                    t898,
-                    T::fused(t466, t345, -T::fused(t774, t878, -t1117)),
+                t282,
+                t819,
+                T::fused(
+                    t517,
+                    t282,
+                    -T::fused(t276, t820, -T::fused(t694, t792, -t1117)),
                 ),
             );
             let t1119 = T::fused(
-                t434,
-                t796,
-                -T::fused(
-                    t437,
-                    t799,
-                    -T::fused(t344, t899, T::fused(t465, t344, -t1118)),
-                ),
+                t441,
+                t716,
+                T::fused(t442, t719, T::fused(t281, t818, T::fused(t518, t281, -t1118))),
             );
-            let t1120 = T::fused(
-                t353,
-                t890,
-                -T::fused(t776, t878, -T::fused(t341, t879, t343 * t908)),
-            );
+            let t1120 = T::fused(-t4, t1116, t6 * t1119);
             let t1121 = T::fused(
-                t345,
-                t899,
-                T::fused(
-                    t465,
-                    t345,
-                    -T::fused(t339, t900, -T::fused(t774, t872, -t1120)),
-                ),
+                t332,
+                t819,
+                T::fused(t517, t332, -T::fused(t311, t810, t330 * t820)),
             );
             let t1122 = T::fused(
-                t437,
-                t796,
-                T::fused(t434, t799, T::fused(t344, t898, T::fused(t466, t344, -t1121))),
-            );
-            let t1123 = T::fused(-t12, t1119, t0 * t1122);
-            let t1124 = T::fused(
-                t395,
-                t899,
-                T::fused(t465, t395, -T::fused(t374, t890, t393 * t900)),
-            );
-            let t1125 = T::fused(
-                t375,
-                t879,
+                t312,
+                t799,
                 -T::fused(
-                    t394,
-                    t898,
-                    T::fused(t466, t394, -T::fused(t389, t908, -t1124)),
+                    t331,
+                    t818,
+                    T::fused(t518, t331, -T::fused(t326, t828, -t1121)),
                 ),
             );
+            let t1123 = T::fused(
+                t853,
+                t792,
+                T::fused(t441, t889, -T::fused(t856, t798, -T::fused(t442, t891, t1122))),
+            );
+            let t1124 = T::fused(
+                t518,
+                t332,
+                T::fused(t326, t820, -T::fused(t311, t799, t330 * t828)),
+            );
+            let t1125 = T::fused(
+                t441,
+                t891,
+                T::fused(t331, t819, T::fused(t517, t331, -T::fused(t332, t818, t1124))),
+            );
             let t1126 = T::fused(
-                t933,
-                t872,
-                T::fused(t437, t969, -T::fused(t936, t878, -T::fused(t434, t971, t1125))),
+                t853,
+                t798,
+                T::fused(t442, t889, T::fused(t312, t810, T::fused(t856, t792, -t1125))),
             );
-            let t1127 = T::fused(
-                t466,
-                t395,
-                T::fused(t389, t900, -T::fused(t374, t879, t393 * t908)),
-            );
+            let t1127 = T::fused(-t6, t1123, t4 * t1126);
             let t1128 = T::fused(
-                t437,
-                t971,
-                T::fused(t394, t899, T::fused(t465, t394, -T::fused(t395, t898, t1127))),
+                t231,
+                t1106,
+                T::fused(-t239, t1113, T::fused(-t268, t1120, t230 * t1127)),
             );
             let t1129 = T::fused(
-                t933,
-                t878,
-                T::fused(t434, t969, T::fused(t375, t890, T::fused(t936, t872, -t1128))),
+                t928,
+                t792,
+                -T::fused(t441, t942, -T::fused(t41, t798, -T::fused(t442, t943, t799))),
             );
-            let t1130 = T::fused(-t0, t1126, t12 * t1129);
-            let t1131 = T::fused(
-                t276,
-                t1109,
-                T::fused(-t302, t1116, T::fused(-t331, t1123, t219 * t1130)),
+            let t1130 = T::fused(
+                t928,
+                t798,
+                -T::fused(t442, t942, t810 - T::fused(-t41, t792, t441 * t943)),
             );
-            let t1132 = k(2.0) * t226;
+            let t1131 = T::fused(-t6, t1129, t4 * t1130);
+            let t1132 = T::fused(
+                -t4,
+                T::fused(t442, t976, -T::fused(k(0.05), t517 + t819, t441 * t977)),
+                t6 * T::fused(t441, t976, T::fused(-k(0.05), t518 + t818, t442 * t977)),
+            );
             let t1133 = T::fused(
-                t184,
-                t599,
-                T::fused(-t188, t609, T::fused(k(0.1), u0 * t1132, t543 * t1132)),
+                t27,
+                t913,
+                -T::fused(-k(2.0), t419 * (k(2.0) * t352), t25 * t925),
             );
-            let t1134 = k(2.0) * t261;
+            let t1134 = T::fused(
+                t27,
+                t754,
+                -T::fused(k(2.0), t419 * (k(2.0) * t305), t25 * t743),
+            );
             let t1135 = T::fused(
-                t188,
-                t644,
-                T::fused(-t184, t650, T::fused(k(0.1), u0 * t1134, t543 * t1134)),
+                t27,
+                t682,
+                T::fused(k(2.0), t419 * (k(2.0) * t265), t25 * t688),
             );
-            let t1136 = k(2.0) * t292;
+            let t1136 = T::fused(
+                t25,
+                t626,
+                T::fused(k(2.0), t419 * (k(2.0) * t28), t27 * t492),
+            );
             let t1137 = T::fused(
-                t184,
-                t696,
-                T::fused(-t188, t706, T::fused(k(0.1), u0 * t1136, t543 * t1136)),
+                t231,
+                t1136,
+                -T::fused(t239, t1135, -T::fused(-t230, t1133, t268 * t1134)),
             );
-            let t1138 = k(2.0) * t328;
+            let t1138 = T::fused(
+                t27,
+                t960,
+                -T::fused(-k(2.0), t419 * (k(2.0) * t385), t25 * t966),
+            );
             let t1139 = T::fused(
-                t188,
-                t762,
-                T::fused(t184, t768, T::fused(k(0.1), u0 * t1138, t543 * t1138)),
+                t25,
+                t996,
+                -T::fused(-k(2.0), t419 * (k(2.0) * t416), t27 * t1006),
             );
-            let t1140 = k(2.0) * t368;
+            let t1140 = T::fused(
+                t13,
+                t477,
+                T::fused(t423, t622, k(0.1) * T::fused(u1, t622, t428 * t422)),
+            );
             let t1141 = T::fused(
-                -t188,
-                t834,
-                T::fused(t184, t823, T::fused(k(0.1), u0 * t1140, t543 * t1140)),
+                t425,
+                t493,
+                -T::fused(t21, t491, -T::fused(t428, t478, t1140)),
             );
-            let t1142 = k(2.0) * t415;
+            let t1142 = T::fused(
+                t425,
+                t644,
+                T::fused(k(0.1), T::fused(t428, t680, u1 * t686), t423 * t686),
+            );
             let t1143 = T::fused(
-                t188,
-                t993,
-                T::fused(-t184, t1005, T::fused(k(0.1), u0 * t1142, t543 * t1142)),
+                t428,
+                t646,
+                T::fused(-t21, t674, T::fused(t13, t679, t1142)),
             );
             let t1144 = T::fused(
-                -t1137,
-                t276,
-                T::fused(t1139, t302, T::fused(t1141, t331, t219 * t1143)),
+                -t13,
+                t751,
+                T::fused(k(0.1), T::fused(-t428, t752, u1 * t741), t423 * t741),
             );
             let t1145 = T::fused(
-                -t92,
-                t606,
-                T::fused(k(0.1), T::fused(-t422, t607, u1 * t597), t509 * t597),
+                -t425,
+                t711,
+                T::fused(t21, t747, T::fused(-t428, t704, t1144)),
             );
             let t1146 = T::fused(
-                -t429,
-                t578,
-                T::fused(t115, t602, T::fused(-t422, t421, t1145)),
+                -t425,
+                t920,
+                T::fused(k(0.1), T::fused(t428, t873, u1 * t923), t423 * t923),
             );
             let t1147 = T::fused(
-                t115,
-                t641,
-                T::fused(k(0.1), T::fused(t422, t642, u1 * t648), t509 * t648),
+                t428,
+                t877,
+                T::fused(t21, t904, T::fused(-t13, t910, t1146)),
             );
             let t1148 = T::fused(
-                t422,
-                t621,
-                T::fused(-t429, t620, T::fused(t92, t635, t1147)),
+                t231,
+                t1141,
+                T::fused(-t1143, t239, T::fused(-t1145, t268, t230 * t1147)),
             );
             let t1149 = T::fused(
-                t92,
-                t703,
-                T::fused(k(0.1), T::fused(-t422, t704, u1 * t694), t509 * t694),
+                t21,
+                t957,
+                T::fused(k(0.1), T::fused(t428, t958, u1 * t964), t423 * t964),
             );
             let t1150 = T::fused(
-                t429,
-                t667,
-                T::fused(t115, t699, T::fused(-t422, t663, t1149)),
+                t428,
+                t937,
+                T::fused(-t425, t936, T::fused(t13, t951, t1149)),
             );
             let t1151 = T::fused(
-                t429,
-                t724,
-                T::fused(k(0.1), T::fused(t422, t760, u1 * t766), t509 * t766),
+                -t13,
+                t1003,
+                T::fused(k(0.1), T::fused(-t428, t1004, u1 * t994), t423 * t994),
             );
             let t1152 = T::fused(
-                t422,
-                t726,
-                T::fused(-t115, t754, T::fused(t92, t759, t1151)),
+                -t425,
+                t975,
+                T::fused(t21, t999, T::fused(-t428, t972, t1151)),
             );
-            let t1153 = T::fused(
-                -t92,
-                t831,
-                T::fused(k(0.1), T::fused(-t422, t832, u1 * t821), t509 * t821),
-            );
-            let t1154 = T::fused(
-                -t429,
-                t791,
-                T::fused(t115, t827, T::fused(-t422, t784, t1153)),
-            );
-            let t1155 = T::fused(
-                -t429,
-                t1000,
-                T::fused(k(0.1), T::fused(t422, t953, u1 * t1003), t509 * t1003),
-            );
-            let t1156 = T::fused(
-                t422,
-                t957,
-                T::fused(t115, t984, T::fused(-t92, t990, t1155)),
-            );
+            let t1153 = T::fused(t432, t490, -T::fused(-t429, t476, t624));
+            let t1154 = T::fused(-t429, t642, T::fused(t432, t643, t685));
+            let t1155 = T::fused(t432, t709, T::fused(t429, t710, -t739));
+            let t1156 = T::fused(-t429, t865, T::fused(t432, t869, t922));
             let t1157 = T::fused(
-                t1150,
-                t276,
-                T::fused(-t1152, t302, T::fused(-t1154, t331, t219 * t1156)),
+                -t231,
+                t1153,
+                T::fused(t1154, t239, T::fused(t1155, t268, t230 * t1156)),
             );
-            let t1158 = T::fused(-t425, t576, T::fused(-t426, t577, t596));
-            let t1159 = T::fused(t426, t618, T::fused(t425, t619, -t647));
-            let t1160 = T::fused(t425, t665, T::fused(t426, t666, -t693));
-            let t1161 = T::fused(-t426, t722, T::fused(t425, t723, t765));
-            let t1162 = T::fused(t425, t789, T::fused(t426, t790, -t819));
-            let t1163 = T::fused(-t426, t945, T::fused(t425, t949, t1002));
+            let t1158 = T::fused(t429, t934, T::fused(t432, t935, -t963));
+            let t1159 = T::fused(-t432, t973, T::fused(-t429, t974, t993));
+            let t1160 = T::fused(t440, t475, -T::fused(-t435, t474, t471));
+            let t1161 = T::fused(t435, t636, T::fused(t440, t641, t676));
+            let t1162 = T::fused(-t440, t698, T::fused(t435, t703, -t749));
+            let t1163 = T::fused(t435, t859, T::fused(t440, t864, t906));
             let t1164 = T::fused(
+                t231,
                 t1160,
-                t276,
-                T::fused(t1161, t302, T::fused(t1162, t331, t219 * t1163)),
+                T::fused(t1161, t239, T::fused(t1162, t268, t230 * t1163)),
             );
-            let t1165 = T::fused(-t436, t419, T::fused(t431, t420, t604));
-            let t1166 = T::fused(t431, t615, T::fused(t436, t617, -t632));
-            let t1167 = T::fused(t436, t660, T::fused(t431, t662, -t701));
-            let t1168 = T::fused(t431, t716, T::fused(t436, t721, t756));
-            let t1169 = T::fused(-t436, t778, T::fused(t431, t783, -t829));
-            let t1170 = T::fused(t431, t939, T::fused(t436, t944, t986));
+            let t1165 = T::fused(t435, t931, T::fused(t440, t933, -t948));
+            let t1166 = T::fused(-t440, t970, T::fused(t435, t971, t1001));
+            let t1167 = T::fused(t442, t469, T::fused(t436, t450, t484));
+            let t1168 = T::fused(-t436, t637, T::fused(t442, t640, t667));
+            let t1169 = T::fused(-t442, t693, T::fused(t436, t697, t731));
+            let t1170 = T::fused(t436, t860, T::fused(t442, t863, -t898));
             let t1171 = T::fused(
+                -t231,
                 t1167,
-                t276,
-                T::fused(t1168, t302, T::fused(t1169, t331, t219 * t1170)),
+                T::fused(t1168, t239, T::fused(-t1169, t268, t230 * t1170)),
             );
-            let t1172 = T::fused(t434, t418, t584);
-            let t1173 = T::fused(-t433, t616, t637);
-            let t1174 = T::fused(t434, t655, T::fused(t433, t659, -t686));
-            let t1175 = T::fused(-t433, t717, T::fused(t434, t720, t747));
-            let t1176 = T::fused(-t434, t773, T::fused(t433, t777, t811));
-            let t1177 = T::fused(t433, t940, T::fused(t434, t943, -t978));
+            let t1172 = T::fused(-t436, t932, t953);
+            let t1173 = T::fused(t442, t969, t981);
+            let t1174 = T::fused(-t443, t448, t446 * t449) - t447;
+            let t1175 = T::fused(t443, t630, T::fused(t446, t633, t651));
+            let t1176 = T::fused(t443, t694, t446 * t696) + t724;
+            let t1177 = T::fused(-t443, t853, T::fused(t446, t856, t882));
             let t1178 = T::fused(
-                -t1174,
-                t276,
-                T::fused(t1175, t302, T::fused(-t1176, t331, t219 * t1177)),
+                t231,
+                t1174,
+                T::fused(t1175, t239, T::fused(t1176, t268, t230 * t1177)),
             );
-            let t1179 = T::fused(t438, t612, T::fused(t14, t447, t624));
-            let t1180 = T::fused(-t438, t656, t447 * t658) + t680;
-            let t1181 = T::fused(t438, t710, T::fused(t447, t713, t731));
-            let t1182 = T::fused(t438, t774, t447 * t776) + t804;
-            let t1183 = T::fused(-t438, t933, T::fused(t447, t936, t962));
-            let t1184 = T::fused(
-                t1180,
-                t276,
-                T::fused(t1181, t302, T::fused(t1182, t331, t219 * t1183)),
+            let t1179 = T::fused(t443, t928, T::fused(t41, t446, t940));
+            let t1180 = k(0.2) * t231;
+            let t1181 = t25 * t231;
+            let t1182 = t27 * t231;
+            let t1183 = t178
+                * (t146 + T::fused(t201, t1180, T::fused(t196, t1181, t199 * t1182)));
+            let t1184 = k(0.2) * t239;
+            let t1185 = t25 * t239;
+            let t1186 = t27 * t239;
+            let t1187 = t178
+                * (t235 + T::fused(t201, t1184, T::fused(t196, t1185, t199 * t1186)));
+            let t1188 = k(0.2) * t268;
+            let t1189 = t25 * t268;
+            let t1190 = t27 * t268;
+            let t1191 = t178
+                * (k(1.0) + T::fused(t201, t1188, T::fused(t196, t1189, t199 * t1190)));
+            let t1192 = t25 * t230;
+            let t1193 = t27 * t230;
+            let t1194 = k(0.2) * t230;
+            let t1195 = t178
+                * T::fused(t201, t1194, T::fused(t196, t1192, t199 * t1193));
+            let t1196 = T::fused(
+                -t1183,
+                t30,
+                T::fused(t266, t1187, T::fused(-t307, t1191, t353 * t1195)),
             );
-            let t1185 = k(0.2) * t220;
-            let t1186 = t184 * t220;
-            let t1187 = t188 * t220;
-            let t1188 = t165
-                * (t133 + T::fused(t190, t1185, T::fused(t183, t1186, t187 * t1187)));
-            let t1189 = k(0.2) * t252;
-            let t1190 = t184 * t252;
-            let t1191 = t188 * t252;
-            let t1192 = t165
-                * (t248 + T::fused(t190, t1189, T::fused(t183, t1190, t187 * t1191)));
-            let t1193 = k(0.2) * t276;
-            let t1194 = t184 * t276;
-            let t1195 = t188 * t276;
-            let t1196 = t165
-                * (t272 + T::fused(t190, t1193, T::fused(t183, t1194, t187 * t1195)));
-            let t1197 = k(0.2) * t302;
-            let t1198 = t184 * t302;
-            let t1199 = t188 * t302;
+            let t1197 = k(0.2) * t376;
+            let t1198 = t25 * t376;
+            let t1199 = t27 * t376;
             (
-                t1006,
-                t1007,
-                t1012,
-                t1017,
-                t1022,
-                t1027,
-                t1032,
-                t1037,
-                t1038,
-                t1043,
-                t1046,
-                t1051,
-                t1056,
+                t1008,
+                t1013,
+                t1018,
+                t1023,
+                t1028,
+                t1029,
+                t1034,
+                t1039,
+                t1044,
+                t1049,
+                t1054,
                 t1061,
-                t1068,
-                t1069,
-                t1072,
+                t1062,
+                t1065,
+                t1070,
                 t1075,
                 t1080,
-                t1085,
-                t1092,
-                t1099,
-                t1100,
+                t1087,
+                t1094,
+                t1095,
+                t1098,
                 t1101,
-                t1104,
-                t1109,
-                t1116,
-                t1123,
-                t1130,
+                t1106,
+                t1113,
+                t1120,
+                t1127,
+                t1128,
                 t1131,
+                t1132,
                 t1133,
+                t1134,
                 t1135,
+                t1136,
                 t1137,
+                t1138,
                 t1139,
                 t1141,
                 t1143,
-                t1144,
-                t1146,
+                t1145,
+                t1147,
                 t1148,
                 t1150,
                 t1152,
+                t1153,
                 t1154,
+                t1155,
                 t1156,
                 t1157,
                 t1158,
@@ -17734,6 +17898,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             )
         };
         let (
+            t1200,
+            t1204,
+            t1205,
+            t1206,
+            t1207,
+            t1208,
             t1209,
             t1210,
             t1211,
@@ -17741,13 +17911,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t1213,
             t1214,
             t1215,
-            t1216,
-            t1217,
-            t1218,
-            t1219,
-            t1220,
-            t1230,
-            t1240,
+            t1256,
+            t1266,
+            t1276,
+            t1277,
+            t1278,
+            t1279,
+            t1280,
             t1281,
             t1282,
             t1283,
@@ -17755,37 +17925,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t1285,
             t1286,
             t1287,
-            t1288,
-            t1289,
-            t1290,
-            t1291,
             t1292,
+            t1293,
+            t1295,
             t1297,
-            t1298,
-            t1300,
-            t1302,
             t1303,
+            t1304,
+            t1306,
             t1308,
-            t1309,
-            t1311,
-            t1313,
             t1314,
+            t1315,
+            t1317,
             t1319,
-            t1320,
-            t1322,
-            t1324,
+            t1325,
+            t1326,
+            t1328,
             t1330,
-            t1331,
-            t1333,
-            t1335,
-            t1341,
+            t1332,
+            t1337,
+            t1338,
+            t1340,
             t1342,
-            t1344,
-            t1346,
-            t1352,
+            t1343,
+            t1348,
+            t1349,
+            t1351,
             t1353,
+            t1354,
             t1355,
+            t1356,
             t1357,
+            t1358,
             t1359,
             t1360,
             t1361,
@@ -17793,22 +17963,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t1363,
             t1364,
             t1365,
-            t1366,
             t1367,
-            t1368,
             t1369,
-            t1370,
-            t1372,
-            t1374,
-            t1376,
-            t1378,
-            t1380,
+            t1371,
+            t1373,
+            t1375,
+            t1377,
+            t1379,
+            t1381,
             t1382,
             t1384,
             t1386,
             t1388,
             t1390,
+            t1391,
             t1392,
+            t1393,
             t1394,
             t1395,
             t1396,
@@ -17816,410 +17986,431 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t1398,
             t1399,
         ) = {
-            let t1200 = t165
-                * (t298 + T::fused(t190, t1197, T::fused(t183, t1198, t187 * t1199)));
-            let t1201 = k(0.2) * t331;
-            let t1202 = t184 * t331;
-            let t1203 = t188 * t331;
-            let t1204 = t165
-                * (k(1.0) + T::fused(t190, t1201, T::fused(t183, t1202, t187 * t1203)));
-            let t1205 = t184 * t219;
-            let t1206 = t188 * t219;
-            let t1207 = k(0.2) * t219;
-            let t1208 = t165
-                * T::fused(t190, t1207, T::fused(t183, t1205, t187 * t1206));
+            let t1200 = t178
+                * (t372 + T::fused(t201, t1197, T::fused(t196, t1198, t199 * t1199)));
+            let t1201 = k(0.2) * t410;
+            let t1202 = t25 * t410;
+            let t1203 = t27 * t410;
+            let t1204 = t178
+                * (t406 + T::fused(t201, t1201, T::fused(t196, t1202, t199 * t1203)));
+            let t1205 = T::fused(
+                t1183,
+                t628,
+                T::fused(-t1187, t690, T::fused(-t1191, t756, t1195 * t926)),
+            );
+            let t1206 = T::fused(
+                t1183,
+                t1013,
+                T::fused(t1187, t1018, T::fused(-t1191, t1023, t1195 * t1028)),
+            );
+            let t1207 = T::fused(
+                t1183,
+                t1044,
+                T::fused(t1187, t1049, T::fused(-t1191, t1054, t1195 * t1061)),
+            );
+            let t1208 = T::fused(
+                -t1183,
+                t1075,
+                T::fused(-t1187, t1080, T::fused(-t1191, t1087, t1195 * t1094)),
+            );
             let t1209 = T::fused(
-                t294,
-                t1196,
-                T::fused(t329, t1200, T::fused(-t370, t1204, t416 * t1208)),
+                t1183,
+                t1106,
+                T::fused(-t1187, t1113, T::fused(-t1191, t1120, t1195 * t1127)),
             );
             let t1210 = T::fused(
-                t1196,
-                t708,
-                T::fused(-t1200, t770, T::fused(-t1204, t836, t1208 * t1006)),
+                t1183,
+                t1136,
+                -T::fused(t1187, t1135, -T::fused(-t1195, t1133, t1191 * t1134)),
             );
             let t1211 = T::fused(
-                -t1196,
-                t1022,
-                T::fused(t1200, t1027, T::fused(-t1204, t1032, t1208 * t1037)),
+                t1183,
+                t1141,
+                T::fused(-t1143, t1187, T::fused(-t1145, t1191, t1147 * t1195)),
             );
             let t1212 = T::fused(
-                t1196,
-                t1051,
-                T::fused(t1200, t1056, T::fused(-t1204, t1061, t1208 * t1068)),
+                -t1183,
+                t1153,
+                T::fused(t1154, t1187, T::fused(t1155, t1191, t1156 * t1195)),
             );
             let t1213 = T::fused(
-                t1196,
-                t1080,
-                T::fused(-t1200, t1085, T::fused(-t1204, t1092, t1208 * t1099)),
+                t1183,
+                t1160,
+                T::fused(t1161, t1187, T::fused(t1162, t1191, t1163 * t1195)),
             );
             let t1214 = T::fused(
-                t1196,
-                t1109,
-                T::fused(-t1200, t1116, T::fused(-t1204, t1123, t1208 * t1130)),
+                -t1183,
+                t1167,
+                T::fused(t1168, t1187, T::fused(-t1169, t1191, t1170 * t1195)),
             );
             let t1215 = T::fused(
-                -t1137,
-                t1196,
-                T::fused(t1139, t1200, T::fused(t1141, t1204, t1143 * t1208)),
+                t1183,
+                t1174,
+                T::fused(t1175, t1187, T::fused(t1176, t1191, t1177 * t1195)),
             );
-            let t1216 = T::fused(
-                t1150,
-                t1196,
-                T::fused(-t1152, t1200, T::fused(-t1154, t1204, t1156 * t1208)),
+            let t1216 = k(0.1) * t1181;
+            let t1217 = t1216 + (t1180 + t1216);
+            let t1218 = t13 * t1217;
+            let t1219 = k(0.2) * t1183;
+            let t1220 = t21 * t1217;
+            let t1221 = T::fused(t13, t1183, t21 * t1182);
+            let t1222 = T::fused(-t21, t1183, t13 * t1182);
+            let t1223 = T::fused(t138, t1221, t142 * t1222)
+                + T::fused(t127, t1220, T::fused(-t107, t1218, t144 * t1219));
+            let t1224 = t105 * (t80 + t1223);
+            let t1225 = t1181 - t1224;
+            let t1226 = k(0.1) * t1185;
+            let t1227 = t1226 + (t1184 + t1226);
+            let t1228 = t13 * t1227;
+            let t1229 = k(0.2) * t1187;
+            let t1230 = t21 * t1227;
+            let t1231 = T::fused(t13, t1187, t21 * t1186);
+            let t1232 = T::fused(-t21, t1187, t13 * t1186);
+            let t1233 = T::fused(t138, t1231, t142 * t1232)
+                + T::fused(t127, t1230, T::fused(-t107, t1228, t144 * t1229));
+            let t1234 = t105 * (k(1.0) + t1233);
+            let t1235 = t1185 - t1234;
+            let t1236 = k(0.1) * t1189;
+            let t1237 = t1236 + (t1188 + t1236);
+            let t1238 = t13 * t1237;
+            let t1239 = k(0.2) * t1191;
+            let t1240 = t21 * t1237;
+            let t1241 = T::fused(t13, t1191, t21 * t1190);
+            let t1242 = T::fused(-t21, t1191, t13 * t1190);
+            let t1243 = T::fused(t138, t1241, t142 * t1242)
+                + T::fused(t127, t1240, T::fused(-t107, t1238, t144 * t1239));
+            let t1244 = t105 * t1243;
+            let t1245 = t1189 - t1244;
+            let t1246 = k(0.1) * t1192;
+            let t1247 = t1246 + (t1194 + t1246);
+            let t1248 = t13 * t1247;
+            let t1249 = k(0.2) * t1195;
+            let t1250 = t21 * t1247;
+            let t1251 = T::fused(t13, t1195, t21 * t1193);
+            let t1252 = T::fused(-t21, t1195, t13 * t1193);
+            let t1253 = T::fused(t138, t1251, t142 * t1252)
+                + T::fused(t127, t1250, T::fused(-t107, t1248, t144 * t1249));
+            let t1254 = t105 * t1253;
+            let t1255 = t1192 - t1254;
+            let t1256 = T::fused(
+                -t1225,
+                t30,
+                T::fused(t266, t1235, T::fused(-t307, t1245, t353 * t1255)),
             );
-            let t1217 = T::fused(
-                t1160,
-                t1196,
-                T::fused(t1161, t1200, T::fused(t1162, t1204, t1163 * t1208)),
+            let t1257 = k(0.1) * t1198;
+            let t1258 = t1257 + (t1197 + t1257);
+            let t1259 = t13 * t1258;
+            let t1260 = k(0.2) * t1200;
+            let t1261 = t21 * t1258;
+            let t1262 = T::fused(t13, t1200, t21 * t1199);
+            let t1263 = T::fused(-t21, t1200, t13 * t1199);
+            let t1264 = T::fused(t138, t1262, t142 * t1263)
+                + T::fused(t127, t1261, T::fused(-t107, t1259, t144 * t1260));
+            let t1265 = t105 * (t363 + t1264);
+            let t1266 = t1198 - t1265;
+            let t1267 = k(0.1) * t1202;
+            let t1268 = t1267 + (t1201 + t1267);
+            let t1269 = t13 * t1268;
+            let t1270 = k(0.2) * t1204;
+            let t1271 = t21 * t1268;
+            let t1272 = T::fused(t13, t1204, t21 * t1203);
+            let t1273 = T::fused(-t21, t1204, t13 * t1203);
+            let t1274 = T::fused(t138, t1272, t142 * t1273)
+                + T::fused(t127, t1271, T::fused(-t107, t1269, t144 * t1270));
+            let t1275 = t105 * (t397 + t1274);
+            let t1276 = t1202 - t1275;
+            let t1277 = T::fused(
+                t1225,
+                t628,
+                T::fused(-t1235, t690, T::fused(-t1245, t756, t1255 * t926)),
             );
-            let t1218 = T::fused(
-                t1167,
-                t1196,
-                T::fused(t1168, t1200, T::fused(t1169, t1204, t1170 * t1208)),
+            let t1278 = T::fused(
+                t1225,
+                t1013,
+                T::fused(t1235, t1018, T::fused(-t1245, t1023, t1255 * t1028)),
             );
-            let t1219 = T::fused(
-                -t1174,
-                t1196,
-                T::fused(t1175, t1200, T::fused(-t1176, t1204, t1177 * t1208)),
+            let t1279 = T::fused(
+                t1225,
+                t1044,
+                T::fused(t1235, t1049, T::fused(-t1245, t1054, t1255 * t1061)),
             );
-            let t1220 = T::fused(
-                t1180,
-                t1196,
-                T::fused(t1181, t1200, T::fused(t1182, t1204, t1183 * t1208)),
+            let t1280 = T::fused(
+                -t1225,
+                t1075,
+                T::fused(-t1235, t1080, T::fused(-t1245, t1087, t1255 * t1094)),
             );
-            let t1221 = k(0.1) * t1186;
-            let t1222 = t1221 + (t1185 + t1221);
-            let t1223 = t92 * t1222;
-            let t1224 = k(0.2) * t1188;
-            let t1225 = t115 * t1222;
-            let t1226 = T::fused(t92, t1188, t115 * t1187);
-            let t1227 = T::fused(-t115, t1188, t92 * t1187);
-            let t1228 = T::fused(t125, t1226, t129 * t1227)
-                + T::fused(t114, t1225, T::fused(-t91, t1223, t131 * t1224));
-            let t1229 = t89 * (t61 + t1228);
-            let t1230 = t1186 - t1229;
-            let t1231 = k(0.1) * t1190;
-            let t1232 = t1231 + (t1189 + t1231);
-            let t1233 = t92 * t1232;
-            let t1234 = k(0.2) * t1192;
-            let t1235 = t115 * t1232;
-            let t1236 = T::fused(t92, t1192, t115 * t1191);
-            let t1237 = T::fused(-t115, t1192, t92 * t1191);
-            let t1238 = T::fused(t125, t1236, t129 * t1237)
-                + T::fused(t114, t1235, T::fused(-t91, t1233, t131 * t1234));
-            let t1239 = t89 * (t239 + t1238);
-            let t1240 = t1190 - t1239;
-            let t1241 = k(0.1) * t1194;
-            let t1242 = t1241 + (t1193 + t1241);
-            let t1243 = t92 * t1242;
-            let t1244 = k(0.2) * t1196;
-            let t1245 = t115 * t1242;
-            let t1246 = T::fused(t92, t1196, t115 * t1195);
-            let t1247 = T::fused(-t115, t1196, t92 * t1195);
-            let t1248 = T::fused(t125, t1246, t129 * t1247)
-                + T::fused(t114, t1245, T::fused(-t91, t1243, t131 * t1244));
-            let t1249 = t89 * (t264 + t1248);
-            let t1250 = t1194 - t1249;
-            let t1251 = k(0.1) * t1198;
-            let t1252 = t1251 + (t1197 + t1251);
-            let t1253 = t92 * t1252;
-            let t1254 = k(0.2) * t1200;
-            let t1255 = t115 * t1252;
-            let t1256 = T::fused(t92, t1200, t115 * t1199);
-            let t1257 = T::fused(-t115, t1200, t92 * t1199);
-            let t1258 = T::fused(t125, t1256, t129 * t1257)
-                + T::fused(t114, t1255, T::fused(-t91, t1253, t131 * t1254));
-            let t1259 = t89 * (k(1.0) + t1258);
-            let t1260 = t1198 - t1259;
-            let t1261 = k(0.1) * t1202;
-            let t1262 = t1261 + (t1201 + t1261);
-            let t1263 = t92 * t1262;
-            let t1264 = k(0.2) * t1204;
-            let t1265 = t115 * t1262;
-            let t1266 = T::fused(t92, t1204, t115 * t1203);
-            let t1267 = T::fused(-t115, t1204, t92 * t1203);
-            let t1268 = T::fused(t125, t1266, t129 * t1267)
-                + T::fused(t114, t1265, T::fused(-t91, t1263, t131 * t1264));
-            let t1269 = t89 * t1268;
-            let t1270 = t1202 - t1269;
-            let t1271 = k(0.1) * t1205;
-            let t1272 = t1271 + (t1207 + t1271);
-            let t1273 = t92 * t1272;
-            let t1274 = k(0.2) * t1208;
-            let t1275 = t115 * t1272;
-            let t1276 = T::fused(t92, t1208, t115 * t1206);
-            let t1277 = T::fused(-t115, t1208, t92 * t1206);
-            let t1278 = T::fused(t125, t1276, t129 * t1277)
-                + T::fused(t114, t1275, T::fused(-t91, t1273, t131 * t1274));
-            let t1279 = t89 * t1278;
-            let t1280 = t1205 - t1279;
             let t1281 = T::fused(
-                t294,
-                t1250,
-                T::fused(t329, t1260, T::fused(-t370, t1270, t416 * t1280)),
+                t1225,
+                t1106,
+                T::fused(-t1235, t1113, T::fused(-t1245, t1120, t1255 * t1127)),
             );
             let t1282 = T::fused(
-                t1250,
-                t708,
-                T::fused(-t1260, t770, T::fused(-t1270, t836, t1280 * t1006)),
+                t1225,
+                t1136,
+                -T::fused(t1235, t1135, -T::fused(-t1255, t1133, t1245 * t1134)),
             );
             let t1283 = T::fused(
-                -t1250,
-                t1022,
-                T::fused(t1260, t1027, T::fused(-t1270, t1032, t1280 * t1037)),
+                t1225,
+                t1141,
+                T::fused(-t1143, t1235, T::fused(-t1145, t1245, t1147 * t1255)),
             );
             let t1284 = T::fused(
-                t1250,
-                t1051,
-                T::fused(t1260, t1056, T::fused(-t1270, t1061, t1280 * t1068)),
+                -t1225,
+                t1153,
+                T::fused(t1154, t1235, T::fused(t1155, t1245, t1156 * t1255)),
             );
             let t1285 = T::fused(
-                t1250,
-                t1080,
-                T::fused(-t1260, t1085, T::fused(-t1270, t1092, t1280 * t1099)),
+                t1225,
+                t1160,
+                T::fused(t1161, t1235, T::fused(t1162, t1245, t1163 * t1255)),
             );
             let t1286 = T::fused(
-                t1250,
-                t1109,
-                T::fused(-t1260, t1116, T::fused(-t1270, t1123, t1280 * t1130)),
+                -t1225,
+                t1167,
+                T::fused(t1168, t1235, T::fused(-t1169, t1245, t1170 * t1255)),
             );
             let t1287 = T::fused(
-                -t1137,
-                t1250,
-                T::fused(t1139, t1260, T::fused(t1141, t1270, t1143 * t1280)),
+                t1225,
+                t1174,
+                T::fused(t1175, t1235, T::fused(t1176, t1245, t1177 * t1255)),
             );
-            let t1288 = T::fused(
-                t1150,
-                t1250,
-                T::fused(-t1152, t1260, T::fused(-t1154, t1270, t1156 * t1280)),
+            let t1288 = k(0.1) * t1224;
+            let t1289 = t1288 + (t1218 + t1288);
+            let t1290 = k(0.1) * t1221;
+            let t1291 = t1290 + (t1219 + t1290);
+            let t1292 = T::fused(-t15, t1291, t19 * t1220);
+            let t1293 = T::fused(t19, t1291, t15 * t1220);
+            let t1294 = T::fused(-t15, t1224, t19 * t1222);
+            let t1295 = T::fused(t19, t1224, t15 * t1222);
+            let t1296 = T::fused(-t74, t1294, t78 * t1295)
+                + T::fused(t116, t1293, -T::fused(-t55, t1289, t108 * t1292));
+            let t1297 = t70 * (k(1.0) + t1296);
+            let t1298 = t1221 + t1297;
+            let t1299 = k(0.1) * t1234;
+            let t1300 = t1299 + (t1228 + t1299);
+            let t1301 = k(0.1) * t1231;
+            let t1302 = t1301 + (t1229 + t1301);
+            let t1303 = T::fused(-t15, t1302, t19 * t1230);
+            let t1304 = T::fused(t19, t1302, t15 * t1230);
+            let t1305 = T::fused(-t15, t1234, t19 * t1232);
+            let t1306 = T::fused(t19, t1234, t15 * t1232);
+            let t1307 = T::fused(-t74, t1305, t78 * t1306)
+                + T::fused(t116, t1304, -T::fused(-t55, t1300, t108 * t1303));
+            let t1308 = t70 * t1307;
+            let t1309 = t1231 + t1308;
+            let t1310 = k(0.1) * t1244;
+            let t1311 = t1310 + (t1238 + t1310);
+            let t1312 = k(0.1) * t1241;
+            let t1313 = t1312 + (t1239 + t1312);
+            let t1314 = T::fused(-t15, t1313, t19 * t1240);
+            let t1315 = T::fused(t19, t1313, t15 * t1240);
+            let t1316 = T::fused(-t15, t1244, t19 * t1242);
+            let t1317 = T::fused(t19, t1244, t15 * t1242);
+            let t1318 = T::fused(-t74, t1316, t78 * t1317)
+                + T::fused(t116, t1315, -T::fused(-t55, t1311, t108 * t1314));
+            let t1319 = t70 * t1318;
+            let t1320 = t1241 + t1319;
+            let t1321 = k(0.1) * t1254;
+            let t1322 = t1321 + (t1248 + t1321);
+            let t1323 = k(0.1) * t1251;
+            let t1324 = t1323 + (t1249 + t1323);
+            let t1325 = T::fused(-t15, t1324, t19 * t1250);
+            let t1326 = T::fused(t19, t1324, t15 * t1250);
+            let t1327 = T::fused(-t15, t1254, t19 * t1252);
+            let t1328 = T::fused(t19, t1254, t15 * t1252);
+            let t1329 = T::fused(-t74, t1327, t78 * t1328)
+                + T::fused(t116, t1326, -T::fused(-t55, t1322, t108 * t1325));
+            let t1330 = t70 * t1329;
+            let t1331 = t1251 + t1330;
+            let t1332 = T::fused(
+                -t1298,
+                t30,
+                T::fused(t266, t1309, T::fused(-t307, t1320, t353 * t1331)),
             );
-            let t1289 = T::fused(
-                t1160,
-                t1250,
-                T::fused(t1161, t1260, T::fused(t1162, t1270, t1163 * t1280)),
+            let t1333 = k(0.1) * t1265;
+            let t1334 = t1333 + (t1259 + t1333);
+            let t1335 = k(0.1) * t1262;
+            let t1336 = t1335 + (t1260 + t1335);
+            let t1337 = T::fused(-t15, t1336, t19 * t1261);
+            let t1338 = T::fused(t19, t1336, t15 * t1261);
+            let t1339 = T::fused(-t15, t1265, t19 * t1263);
+            let t1340 = T::fused(t19, t1265, t15 * t1263);
+            let t1341 = T::fused(-t74, t1339, t78 * t1340)
+                + T::fused(t116, t1338, -T::fused(-t55, t1334, t108 * t1337));
+            let t1342 = t70 * (t357 + t1341);
+            let t1343 = t1262 + t1342;
+            let t1344 = k(0.1) * t1275;
+            let t1345 = t1344 + (t1269 + t1344);
+            let t1346 = k(0.1) * t1272;
+            let t1347 = t1346 + (t1270 + t1346);
+            let t1348 = T::fused(-t15, t1347, t19 * t1271);
+            let t1349 = T::fused(t19, t1347, t15 * t1271);
+            let t1350 = T::fused(-t15, t1275, t19 * t1273);
+            let t1351 = T::fused(t19, t1275, t15 * t1273);
+            let t1352 = T::fused(-t74, t1350, t78 * t1351)
+                + T::fused(t116, t1349, -T::fused(-t55, t1345, t108 * t1348));
+            let t1353 = t70 * (t389 + t1352);
+            let t1354 = t1272 + t1353;
+            let t1355 = T::fused(
+                t1298,
+                t628,
+                T::fused(-t1309, t690, T::fused(-t1320, t756, t1331 * t926)),
             );
-            let t1290 = T::fused(
-                t1167,
-                t1250,
-                T::fused(t1168, t1260, T::fused(t1169, t1270, t1170 * t1280)),
+            let t1356 = T::fused(
+                t1298,
+                t1013,
+                T::fused(t1309, t1018, T::fused(-t1320, t1023, t1331 * t1028)),
             );
-            let t1291 = T::fused(
-                -t1174,
-                t1250,
-                T::fused(t1175, t1260, T::fused(-t1176, t1270, t1177 * t1280)),
+            let t1357 = T::fused(
+                t1298,
+                t1044,
+                T::fused(t1309, t1049, T::fused(-t1320, t1054, t1331 * t1061)),
             );
-            let t1292 = T::fused(
-                t1180,
-                t1250,
-                T::fused(t1181, t1260, T::fused(t1182, t1270, t1183 * t1280)),
+            let t1358 = T::fused(
+                -t1298,
+                t1075,
+                T::fused(-t1309, t1080, T::fused(-t1320, t1087, t1331 * t1094)),
             );
-            let t1293 = k(0.1) * t1229;
-            let t1294 = t1293 + (t1223 + t1293);
-            let t1295 = k(0.1) * t1226;
-            let t1296 = t1295 + (t1224 + t1295);
-            let t1297 = T::fused(-t52, t1296, t57 * t1225);
-            let t1298 = T::fused(t57, t1296, t52 * t1225);
-            let t1299 = T::fused(-t52, t1229, t57 * t1227);
-            let t1300 = T::fused(t57, t1229, t52 * t1227);
-            let t1301 = T::fused(-t48, t1299, t55 * t1300)
-                + T::fused(t99, t1298, -T::fused(-t58, t1294, t93 * t1297));
-            let t1302 = t33 * (t4 + t1301);
-            let t1303 = t1226 + t1302;
-            let t1304 = k(0.1) * t1239;
-            let t1305 = t1304 + (t1233 + t1304);
-            let t1306 = k(0.1) * t1236;
-            let t1307 = t1306 + (t1234 + t1306);
-            let t1308 = T::fused(-t52, t1307, t57 * t1235);
-            let t1309 = T::fused(t57, t1307, t52 * t1235);
-            let t1310 = T::fused(-t52, t1239, t57 * t1237);
-            let t1311 = T::fused(t57, t1239, t52 * t1237);
-            let t1312 = T::fused(-t48, t1310, t55 * t1311)
-                + T::fused(t99, t1309, -T::fused(-t58, t1305, t93 * t1308));
-            let t1313 = t33 * (t233 + t1312);
-            let t1314 = t1236 + t1313;
-            let t1315 = k(0.1) * t1249;
-            let t1316 = t1315 + (t1243 + t1315);
-            let t1317 = k(0.1) * t1246;
-            let t1318 = t1317 + (t1244 + t1317);
-            let t1319 = T::fused(-t52, t1318, t57 * t1245);
-            let t1320 = T::fused(t57, t1318, t52 * t1245);
-            let t1321 = T::fused(-t52, t1249, t57 * t1247);
-            let t1322 = T::fused(t57, t1249, t52 * t1247);
-            let t1323 = T::fused(-t48, t1321, t55 * t1322)
-                + T::fused(t99, t1320, -T::fused(-t58, t1316, t93 * t1319));
-            let t1324 = t33 * (k(1.0) + t1323);
-            let t1325 = t1246 + t1324;
-            let t1326 = k(0.1) * t1259;
-            let t1327 = t1326 + (t1253 + t1326);
-            let t1328 = k(0.1) * t1256;
-            let t1329 = t1328 + (t1254 + t1328);
-            let t1330 = T::fused(-t52, t1329, t57 * t1255);
-            let t1331 = T::fused(t57, t1329, t52 * t1255);
-            let t1332 = T::fused(-t52, t1259, t57 * t1257);
-            let t1333 = T::fused(t57, t1259, t52 * t1257);
-            let t1334 = T::fused(-t48, t1332, t55 * t1333)
-                + T::fused(t99, t1331, -T::fused(-t58, t1327, t93 * t1330));
-            let t1335 = t33 * t1334;
-            let t1336 = t1256 + t1335;
-            let t1337 = k(0.1) * t1269;
-            let t1338 = t1337 + (t1263 + t1337);
-            let t1339 = k(0.1) * t1266;
-            let t1340 = t1339 + (t1264 + t1339);
-            let t1341 = T::fused(-t52, t1340, t57 * t1265);
-            let t1342 = T::fused(t57, t1340, t52 * t1265);
-            let t1343 = T::fused(-t52, t1269, t57 * t1267);
-            let t1344 = T::fused(t57, t1269, t52 * t1267);
-            let t1345 = T::fused(-t48, t1343, t55 * t1344)
-                + T::fused(t99, t1342, -T::fused(-t58, t1338, t93 * t1341));
-            let t1346 = t33 * t1345;
-            let t1347 = t1266 + t1346;
-            let t1348 = k(0.1) * t1279;
-            let t1349 = t1348 + (t1273 + t1348);
-            let t1350 = k(0.1) * t1276;
-            let t1351 = t1350 + (t1274 + t1350);
-            let t1352 = T::fused(-t52, t1351, t57 * t1275);
-            let t1353 = T::fused(t57, t1351, t52 * t1275);
-            let t1354 = T::fused(-t52, t1279, t57 * t1277);
-            let t1355 = T::fused(t57, t1279, t52 * t1277);
-            let t1356 = T::fused(-t48, t1354, t55 * t1355)
-                + T::fused(t99, t1353, -T::fused(-t58, t1349, t93 * t1352));
-            let t1357 = t33 * t1356;
-            let t1358 = t1276 + t1357;
             let t1359 = T::fused(
-                t294,
-                t1325,
-                T::fused(t329, t1336, T::fused(-t370, t1347, t416 * t1358)),
+                t1298,
+                t1106,
+                T::fused(-t1309, t1113, T::fused(-t1320, t1120, t1331 * t1127)),
             );
             let t1360 = T::fused(
-                t1325,
-                t708,
-                T::fused(-t1336, t770, T::fused(-t1347, t836, t1358 * t1006)),
+                t1298,
+                t1136,
+                -T::fused(t1309, t1135, -T::fused(-t1331, t1133, t1320 * t1134)),
             );
             let t1361 = T::fused(
-                -t1325,
-                t1022,
-                T::fused(t1336, t1027, T::fused(-t1347, t1032, t1358 * t1037)),
+                t1298,
+                t1141,
+                T::fused(-t1143, t1309, T::fused(-t1145, t1320, t1147 * t1331)),
             );
             let t1362 = T::fused(
-                t1325,
-                t1051,
-                T::fused(t1336, t1056, T::fused(-t1347, t1061, t1358 * t1068)),
+                -t1298,
+                t1153,
+                T::fused(t1154, t1309, T::fused(t1155, t1320, t1156 * t1331)),
             );
             let t1363 = T::fused(
-                t1325,
-                t1080,
-                T::fused(-t1336, t1085, T::fused(-t1347, t1092, t1358 * t1099)),
+                t1298,
+                t1160,
+                T::fused(t1161, t1309, T::fused(t1162, t1320, t1163 * t1331)),
             );
             let t1364 = T::fused(
-                t1325,
-                t1109,
-                T::fused(-t1336, t1116, T::fused(-t1347, t1123, t1358 * t1130)),
+                -t1298,
+                t1167,
+                T::fused(t1168, t1309, T::fused(-t1169, t1320, t1170 * t1331)),
             );
             let t1365 = T::fused(
-                -t1137,
-                t1325,
-                T::fused(t1139, t1336, T::fused(t1141, t1347, t1143 * t1358)),
+                t1298,
+                t1174,
+                T::fused(t1175, t1309, T::fused(t1176, t1320, t1177 * t1331)),
             );
-            let t1366 = T::fused(
-                t1150,
-                t1325,
-                T::fused(-t1152, t1336, T::fused(-t1154, t1347, t1156 * t1358)),
-            );
-            let t1367 = T::fused(
-                t1160,
-                t1325,
-                T::fused(t1161, t1336, T::fused(t1162, t1347, t1163 * t1358)),
-            );
+            let t1366 = k(0.1) * t1294;
+            let t1367 = t1366 - (t1289 - t1366);
             let t1368 = T::fused(
-                t1167,
-                t1325,
-                T::fused(t1168, t1336, T::fused(t1169, t1347, t1170 * t1358)),
+                t38,
+                T::fused(t0, t1367, t9 * t1293),
+                t48 * T::fused(t9, t1297, t0 * t1295),
             );
-            let t1369 = T::fused(
-                -t1174,
-                t1325,
-                T::fused(t1175, t1336, T::fused(-t1176, t1347, t1177 * t1358)),
+            let t1369 = T::fused(t44, t1368, t1294);
+            let t1370 = k(0.1) * t1305;
+            let t1371 = t1370 - (t1300 - t1370);
+            let t1372 = T::fused(
+                t38,
+                T::fused(t0, t1371, t9 * t1304),
+                t48 * T::fused(t9, t1308, t0 * t1306),
             );
-            let t1370 = T::fused(
-                t1180,
-                t1325,
-                T::fused(t1181, t1336, T::fused(t1182, t1347, t1183 * t1358)),
+            let t1373 = T::fused(t44, t1372, t1305);
+            let t1374 = k(0.1) * t1316;
+            let t1375 = t1374 - (t1311 - t1374);
+            let t1376 = T::fused(
+                t38,
+                T::fused(t0, t1375, t9 * t1315),
+                t48 * T::fused(t9, t1319, t0 * t1317),
             );
-            let t1371 = k(0.1) * t1299;
-            let t1372 = t1371 - (t1294 - t1371);
-            let t1373 = T::fused(
-                t39,
-                T::fused(t3, t1372, t26 * t1298),
-                t17 * T::fused(t26, t1302, t3 * t1300),
+            let t1377 = T::fused(t44, t1376, t1316);
+            let t1378 = k(0.1) * t1327;
+            let t1379 = t1378 - (t1322 - t1378);
+            let t1380 = T::fused(
+                t38,
+                T::fused(t0, t1379, t9 * t1326),
+                t48 * T::fused(t9, t1330, t0 * t1328),
             );
-            let t1374 = T::fused(t23, t1373, t1299);
-            let t1375 = k(0.1) * t1310;
-            let t1376 = t1375 - (t1305 - t1375);
-            let t1377 = T::fused(
-                t39,
-                T::fused(t3, t1376, t26 * t1309),
-                t17 * T::fused(t26, t1313, t3 * t1311),
+            let t1381 = T::fused(t44, t1380, t1327);
+            let t1382 = T::fused(
+                -t1369,
+                t30,
+                T::fused(t266, t1373, T::fused(-t307, t1377, t353 * t1381)),
             );
-            let t1378 = T::fused(t23, k(1.0) + t1377, t1310);
-            let t1379 = k(0.1) * t1321;
-            let t1380 = t1379 - (t1316 - t1379);
-            let t1381 = T::fused(
-                t39,
-                T::fused(t3, t1380, t26 * t1320),
-                t17 * T::fused(t26, t1324, t3 * t1322),
-            );
-            let t1382 = T::fused(t23, t1381, t1321);
-            let t1383 = k(0.1) * t1332;
-            let t1384 = t1383 - (t1327 - t1383);
+            let t1383 = k(0.1) * t1339;
+            let t1384 = t1383 - (t1334 - t1383);
             let t1385 = T::fused(
-                t39,
-                T::fused(t3, t1384, t26 * t1331),
-                t17 * T::fused(t26, t1335, t3 * t1333),
+                t38,
+                T::fused(t0, t1384, t9 * t1338),
+                t48 * T::fused(t9, t1342, t0 * t1340),
             );
-            let t1386 = T::fused(t23, t1385, t1332);
-            let t1387 = k(0.1) * t1343;
-            let t1388 = t1387 - (t1338 - t1387);
+            let t1386 = T::fused(t44, k(1.0) + t1385, t1339);
+            let t1387 = k(0.1) * t1350;
+            let t1388 = t1387 - (t1345 - t1387);
             let t1389 = T::fused(
-                t39,
-                T::fused(t3, t1388, t26 * t1342),
-                t17 * T::fused(t26, t1346, t3 * t1344),
+                t38,
+                T::fused(t0, t1388, t9 * t1349),
+                t48 * T::fused(t9, t1353, t0 * t1351),
             );
-            let t1390 = T::fused(t23, t1389, t1343);
-            let t1391 = k(0.1) * t1354;
-            let t1392 = t1391 - (t1349 - t1391);
+            let t1390 = T::fused(t44, t1389, t1350);
+            let t1391 = T::fused(
+                t1369,
+                t628,
+                T::fused(-t1373, t690, T::fused(-t1377, t756, t1381 * t926)),
+            );
+            let t1392 = T::fused(
+                t1369,
+                t1013,
+                T::fused(t1373, t1018, T::fused(-t1377, t1023, t1381 * t1028)),
+            );
             let t1393 = T::fused(
-                t39,
-                T::fused(t3, t1392, t26 * t1353),
-                t17 * T::fused(t26, t1357, t3 * t1355),
+                t1369,
+                t1044,
+                T::fused(t1373, t1049, T::fused(-t1377, t1054, t1381 * t1061)),
             );
-            let t1394 = T::fused(t23, t1393, t1354);
+            let t1394 = T::fused(
+                -t1369,
+                t1075,
+                T::fused(-t1373, t1080, T::fused(-t1377, t1087, t1381 * t1094)),
+            );
             let t1395 = T::fused(
-                t294,
-                t1382,
-                T::fused(t329, t1386, T::fused(-t370, t1390, t416 * t1394)),
+                t1369,
+                t1106,
+                T::fused(-t1373, t1113, T::fused(-t1377, t1120, t1381 * t1127)),
             );
             let t1396 = T::fused(
-                t1382,
-                t708,
-                T::fused(-t1386, t770, T::fused(-t1390, t836, t1394 * t1006)),
+                t1369,
+                t1136,
+                -T::fused(t1373, t1135, -T::fused(-t1381, t1133, t1377 * t1134)),
             );
             let t1397 = T::fused(
-                -t1382,
-                t1022,
-                T::fused(t1386, t1027, T::fused(-t1390, t1032, t1394 * t1037)),
+                t1369,
+                t1141,
+                T::fused(-t1143, t1373, T::fused(-t1145, t1377, t1147 * t1381)),
             );
             let t1398 = T::fused(
-                t1382,
-                t1051,
-                T::fused(t1386, t1056, T::fused(-t1390, t1061, t1394 * t1068)),
+                -t1369,
+                t1153,
+                T::fused(t1154, t1373, T::fused(t1155, t1377, t1156 * t1381)),
             );
             let t1399 = T::fused(
-                t1382,
-                t1080,
-                T::fused(-t1386, t1085, T::fused(-t1390, t1092, t1394 * t1099)),
+                t1369,
+                t1160,
+                T::fused(t1161, t1373, T::fused(t1162, t1377, t1163 * t1381)),
             );
             (
+                t1200,
+                t1204,
+                t1205,
+                t1206,
+                t1207,
+                t1208,
                 t1209,
                 t1210,
                 t1211,
@@ -18227,13 +18418,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t1213,
                 t1214,
                 t1215,
-                t1216,
-                t1217,
-                t1218,
-                t1219,
-                t1220,
-                t1230,
-                t1240,
+                t1256,
+                t1266,
+                t1276,
+                t1277,
+                t1278,
+                t1279,
+                t1280,
                 t1281,
                 t1282,
                 t1283,
@@ -18241,37 +18432,37 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t1285,
                 t1286,
                 t1287,
-                t1288,
-                t1289,
-                t1290,
-                t1291,
                 t1292,
+                t1293,
+                t1295,
                 t1297,
-                t1298,
-                t1300,
-                t1302,
                 t1303,
+                t1304,
+                t1306,
                 t1308,
-                t1309,
-                t1311,
-                t1313,
                 t1314,
+                t1315,
+                t1317,
                 t1319,
-                t1320,
-                t1322,
-                t1324,
+                t1325,
+                t1326,
+                t1328,
                 t1330,
-                t1331,
-                t1333,
-                t1335,
-                t1341,
+                t1332,
+                t1337,
+                t1338,
+                t1340,
                 t1342,
-                t1344,
-                t1346,
-                t1352,
+                t1343,
+                t1348,
+                t1349,
+                t1351,
                 t1353,
+                t1354,
                 t1355,
+                t1356,
                 t1357,
+                t1358,
                 t1359,
                 t1360,
                 t1361,
@@ -18279,22 +18470,22 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t1363,
                 t1364,
                 t1365,
-                t1366,
                 t1367,
-                t1368,
                 t1369,
-                t1370,
-                t1372,
-                t1374,
-                t1376,
-                t1378,
-                t1380,
+                t1371,
+                t1373,
+                t1375,
+                t1377,
+                t1379,
+                t1381,
                 t1382,
                 t1384,
                 t1386,
                 t1388,
                 t1390,
+                t1391,
                 t1392,
+                t1393,
                 t1394,
                 t1395,
                 t1396,
@@ -18306,13 +18497,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
         let (
             t1400,
             t1401,
-            t1402,
-            t1403,
-            t1404,
-            t1405,
-            t1406,
-            t1411,
-            t1416,
+            t1422,
+            t1427,
+            t1432,
+            t1433,
+            t1434,
+            t1435,
+            t1436,
             t1437,
             t1438,
             t1439,
@@ -18320,175 +18511,145 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t1441,
             t1442,
             t1443,
-            t1444,
-            t1445,
-            t1446,
-            t1447,
-            t1448,
         ) = {
             let t1400 = T::fused(
-                t1382,
-                t1109,
-                T::fused(-t1386, t1116, T::fused(-t1390, t1123, t1394 * t1130)),
+                -t1369,
+                t1167,
+                T::fused(t1168, t1373, T::fused(-t1169, t1377, t1170 * t1381)),
             );
             let t1401 = T::fused(
-                -t1137,
-                t1382,
-                T::fused(t1139, t1386, T::fused(t1141, t1390, t1143 * t1394)),
+                t1369,
+                t1174,
+                T::fused(t1175, t1373, T::fused(t1176, t1377, t1177 * t1381)),
             );
-            let t1402 = T::fused(
-                t1150,
-                t1382,
-                T::fused(-t1152, t1386, T::fused(-t1154, t1390, t1156 * t1394)),
-            );
-            let t1403 = T::fused(
-                t1160,
-                t1382,
-                T::fused(t1161, t1386, T::fused(t1162, t1390, t1163 * t1394)),
-            );
-            let t1404 = T::fused(
-                t1167,
-                t1382,
-                T::fused(t1168, t1386, T::fused(t1169, t1390, t1170 * t1394)),
-            );
+            let t1402 = k(0.1) * t1297;
+            let t1403 = T::fused(-t0, t1297, t9 * t1295);
+            let t1404 = k(0.1) * t1403;
             let t1405 = T::fused(
-                -t1174,
-                t1382,
-                T::fused(t1175, t1386, T::fused(-t1176, t1390, t1177 * t1394)),
+                -t6,
+                t1404 + (t1404 - (t1402 + (t1292 + t1402))),
+                t4 * T::fused(-t9, t1367, t0 * t1293),
             );
-            let t1406 = T::fused(
-                t1180,
-                t1382,
-                T::fused(t1181, t1386, T::fused(t1182, t1390, t1183 * t1394)),
-            );
-            let t1407 = k(0.1) * t1302;
-            let t1408 = T::fused(-t3, t1302, t26 * t1300);
+            let t1406 = T::fused(-k(7.462686567164179), t1405, t1403);
+            let t1407 = k(0.1) * t1308;
+            let t1408 = T::fused(-t0, t1308, t9 * t1306);
             let t1409 = k(0.1) * t1408;
             let t1410 = T::fused(
-                -t0,
-                t1409 + (t1409 - (t1407 + (t1297 + t1407))),
-                t12 * T::fused(-t26, t1372, t3 * t1298),
+                -t6,
+                t1409 + (t1409 - (t1407 + (t1303 + t1407))),
+                t4 * T::fused(-t9, t1371, t0 * t1304),
             );
-            let t1411 = T::fused(
-                -k(149.2537313432836),
-                T::fused(k(0.05), t1410, k(1.0)),
-                t1408,
-            );
-            let t1412 = k(0.1) * t1313;
-            let t1413 = T::fused(-t3, t1313, t26 * t1311);
+            let t1411 = T::fused(-k(7.462686567164179), t1410, t1408);
+            let t1412 = k(0.1) * t1319;
+            let t1413 = T::fused(-t0, t1319, t9 * t1317);
             let t1414 = k(0.1) * t1413;
             let t1415 = T::fused(
-                -t0,
-                t1414 + (t1414 - (t1412 + (t1308 + t1412))),
-                t12 * T::fused(-t26, t1376, t3 * t1309),
+                -t6,
+                t1414 + (t1414 - (t1412 + (t1314 + t1412))),
+                t4 * T::fused(-t9, t1375, t0 * t1315),
             );
             let t1416 = T::fused(-k(7.462686567164179), t1415, t1413);
-            let t1417 = k(0.1) * t1324;
-            let t1418 = T::fused(-t3, t1324, t26 * t1322);
+            let t1417 = k(0.1) * t1330;
+            let t1418 = T::fused(-t0, t1330, t9 * t1328);
             let t1419 = k(0.1) * t1418;
             let t1420 = T::fused(
-                -t0,
-                t1419 + (t1419 - (t1417 + (t1319 + t1417))),
-                t12 * T::fused(-t26, t1380, t3 * t1320),
+                -t6,
+                t1419 + (t1419 - (t1417 + (t1325 + t1417))),
+                t4 * T::fused(-t9, t1379, t0 * t1326),
             );
             let t1421 = T::fused(-k(7.462686567164179), t1420, t1418);
-            let t1422 = k(0.1) * t1335;
-            let t1423 = T::fused(-t3, t1335, t26 * t1333);
-            let t1424 = k(0.1) * t1423;
-            let t1425 = T::fused(
-                -t0,
-                t1424 + (t1424 - (t1422 + (t1330 + t1422))),
-                t12 * T::fused(-t26, t1384, t3 * t1331),
+            let t1422 = T::fused(
+                -t1406,
+                t30,
+                T::fused(t266, t1411, T::fused(-t307, t1416, t353 * t1421)),
             );
-            let t1426 = T::fused(-k(7.462686567164179), t1425, t1423);
-            let t1427 = k(0.1) * t1346;
-            let t1428 = T::fused(-t3, t1346, t26 * t1344);
-            let t1429 = k(0.1) * t1428;
-            let t1430 = T::fused(
-                -t0,
-                t1429 + (t1429 - (t1427 + (t1341 + t1427))),
-                t12 * T::fused(-t26, t1388, t3 * t1342),
+            let t1423 = k(0.1) * t1342;
+            let t1424 = T::fused(-t0, t1342, t9 * t1340);
+            let t1425 = k(0.1) * t1424;
+            let t1426 = T::fused(
+                -t6,
+                t1425 + (t1425 - (t1423 + (t1337 + t1423))),
+                t4 * T::fused(-t9, t1384, t0 * t1338),
             );
-            let t1431 = T::fused(-k(7.462686567164179), t1430, t1428);
-            let t1432 = k(0.1) * t1357;
-            let t1433 = T::fused(-t3, t1357, t26 * t1355);
-            let t1434 = k(0.1) * t1433;
+            let t1427 = T::fused(-k(7.462686567164179), t1426, t1424);
+            let t1428 = k(0.1) * t1353;
+            let t1429 = T::fused(-t0, t1353, t9 * t1351);
+            let t1430 = k(0.1) * t1429;
+            let t1431 = T::fused(
+                -t6,
+                t1430 + (t1430 - (t1428 + (t1348 + t1428))),
+                t4 * T::fused(-t9, t1388, t0 * t1349),
+            );
+            let t1432 = T::fused(
+                -k(149.2537313432836),
+                T::fused(k(0.05), t1431, k(1.0)),
+                t1429,
+            );
+            let t1433 = T::fused(
+                t1406,
+                t628,
+                T::fused(-t1411, t690, T::fused(-t1416, t756, t1421 * t926)),
+            );
+            let t1434 = T::fused(
+                t1406,
+                t1013,
+                T::fused(t1411, t1018, T::fused(-t1416, t1023, t1421 * t1028)),
+            );
             let t1435 = T::fused(
-                -t0,
-                t1434 + (t1434 - (t1432 + (t1352 + t1432))),
-                t12 * T::fused(-t26, t1392, t3 * t1353),
+                t1406,
+                t1044,
+                T::fused(t1411, t1049, T::fused(-t1416, t1054, t1421 * t1061)),
             );
-            let t1436 = T::fused(-k(7.462686567164179), t1435, t1433);
+            let t1436 = T::fused(
+                -t1406,
+                t1075,
+                T::fused(-t1411, t1080, T::fused(-t1416, t1087, t1421 * t1094)),
+            );
             let t1437 = T::fused(
-                t294,
-                t1421,
-                T::fused(t329, t1426, T::fused(-t370, t1431, t416 * t1436)),
+                t1406,
+                t1106,
+                T::fused(-t1411, t1113, T::fused(-t1416, t1120, t1421 * t1127)),
             );
             let t1438 = T::fused(
-                t1421,
-                t708,
-                T::fused(-t1426, t770, T::fused(-t1431, t836, t1436 * t1006)),
+                t1406,
+                t1136,
+                -T::fused(t1411, t1135, -T::fused(-t1421, t1133, t1416 * t1134)),
             );
             let t1439 = T::fused(
-                -t1421,
-                t1022,
-                T::fused(t1426, t1027, T::fused(-t1431, t1032, t1436 * t1037)),
+                t1406,
+                t1141,
+                T::fused(-t1143, t1411, T::fused(-t1145, t1416, t1147 * t1421)),
             );
             let t1440 = T::fused(
-                t1421,
-                t1051,
-                T::fused(t1426, t1056, T::fused(-t1431, t1061, t1436 * t1068)),
+                -t1406,
+                t1153,
+                T::fused(t1154, t1411, T::fused(t1155, t1416, t1156 * t1421)),
             );
             let t1441 = T::fused(
-                t1421,
-                t1080,
-                T::fused(-t1426, t1085, T::fused(-t1431, t1092, t1436 * t1099)),
+                t1406,
+                t1160,
+                T::fused(t1161, t1411, T::fused(t1162, t1416, t1163 * t1421)),
             );
             let t1442 = T::fused(
-                t1421,
-                t1109,
-                T::fused(-t1426, t1116, T::fused(-t1431, t1123, t1436 * t1130)),
+                -t1406,
+                t1167,
+                T::fused(t1168, t1411, T::fused(-t1169, t1416, t1170 * t1421)),
             );
             let t1443 = T::fused(
-                -t1137,
-                t1421,
-                T::fused(t1139, t1426, T::fused(t1141, t1431, t1143 * t1436)),
-            );
-            let t1444 = T::fused(
-                t1150,
-                t1421,
-                T::fused(-t1152, t1426, T::fused(-t1154, t1431, t1156 * t1436)),
-            );
-            let t1445 = T::fused(
-                t1160,
-                t1421,
-                T::fused(t1161, t1426, T::fused(t1162, t1431, t1163 * t1436)),
-            );
-            let t1446 = T::fused(
-                t1167,
-                t1421,
-                T::fused(t1168, t1426, T::fused(t1169, t1431, t1170 * t1436)),
-            );
-            let t1447 = T::fused(
-                -t1174,
-                t1421,
-                T::fused(t1175, t1426, T::fused(-t1176, t1431, t1177 * t1436)),
-            );
-            let t1448 = T::fused(
-                t1180,
-                t1421,
-                T::fused(t1181, t1426, T::fused(t1182, t1431, t1183 * t1436)),
+                t1406,
+                t1174,
+                T::fused(t1175, t1411, T::fused(t1176, t1416, t1177 * t1421)),
             );
             (
                 t1400,
                 t1401,
-                t1402,
-                t1403,
-                t1404,
-                t1405,
-                t1406,
-                t1411,
-                t1416,
+                t1422,
+                t1427,
+                t1432,
+                t1433,
+                t1434,
+                t1435,
+                t1436,
                 t1437,
                 t1438,
                 t1439,
@@ -18496,11 +18657,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t1441,
                 t1442,
                 t1443,
-                t1444,
-                t1445,
-                t1446,
-                t1447,
-                t1448,
             )
         };
         *dfdx = [
@@ -18576,78 +18732,78 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             k(0.0),
             k(0.0),
             k(1.0),
-            T::fused(t230, t220, T::fused(-t262, t252, t417)),
-            T::fused(t220, t611, -T::fused(-t252, t652, t1007)),
-            T::fused(t220, t1012, T::fused(-t252, t1017, t1038)),
-            T::fused(t220, t1043, -T::fused(t252, t1046, t1069)),
-            T::fused(t220, t1072, -T::fused(t252, t1075, t1100)),
-            T::fused(t220, t1101, -T::fused(-t252, t1104, t1131)),
-            T::fused(t1133, t220, -T::fused(-t1135, t252, t1144)),
-            T::fused(t1146, t220, T::fused(-t1148, t252, t1157)),
-            -T::fused(t1158, t220, T::fused(-t1159, t252, t1164)),
-            T::fused(-t1165, t220, T::fused(t1166, t252, t1171)),
-            -T::fused(t1172, t220, T::fused(t1173, t252, t1178)),
-            T::fused(t1179, t252, t1184),
-            T::fused(t230, t1188, T::fused(-t262, t1192, t1209)),
-            T::fused(t1188, t611, -T::fused(-t1192, t652, t1210)),
-            T::fused(t1188, t1012, T::fused(-t1192, t1017, t1211)),
-            T::fused(t1188, t1043, -T::fused(t1192, t1046, t1212)),
-            T::fused(t1188, t1072, -T::fused(t1192, t1075, t1213)),
-            T::fused(t1188, t1101, -T::fused(-t1192, t1104, t1214)),
-            T::fused(t1133, t1188, -T::fused(-t1135, t1192, t1215)),
-            T::fused(t1146, t1188, T::fused(-t1148, t1192, t1216)),
-            -T::fused(t1158, t1188, T::fused(-t1159, t1192, t1217)),
-            T::fused(-t1165, t1188, T::fused(t1166, t1192, t1218)),
-            -T::fused(t1172, t1188, T::fused(t1173, t1192, t1219)),
-            T::fused(t1179, t1192, t1220),
-            -T::fused(t230, t1230, T::fused(-t262, t1240, t1281)),
-            T::fused(-t1230, t611, T::fused(-t1240, t652, t1282)),
-            -T::fused(t1230, t1012, T::fused(-t1240, t1017, t1283)),
-            T::fused(-t1230, t1043, T::fused(t1240, t1046, t1284)),
-            T::fused(-t1230, t1072, T::fused(t1240, t1075, t1285)),
-            T::fused(-t1230, t1101, T::fused(-t1240, t1104, t1286)),
-            T::fused(-t1133, t1230, T::fused(-t1135, t1240, t1287)),
-            -T::fused(t1146, t1230, T::fused(-t1148, t1240, t1288)),
-            T::fused(t1158, t1230, T::fused(-t1159, t1240, t1289)),
-            T::fused(t1165, t1230, -T::fused(t1166, t1240, t1290)),
-            T::fused(t1172, t1230, T::fused(t1173, t1240, t1291)),
-            -T::fused(t1179, t1240, t1292),
-            -T::fused(t230, t1303, T::fused(-t262, t1314, t1359)),
-            T::fused(-t1303, t611, T::fused(-t1314, t652, t1360)),
-            -T::fused(t1303, t1012, T::fused(-t1314, t1017, t1361)),
-            T::fused(-t1303, t1043, T::fused(t1314, t1046, t1362)),
-            T::fused(-t1303, t1072, T::fused(t1314, t1075, t1363)),
-            T::fused(-t1303, t1101, T::fused(-t1314, t1104, t1364)),
-            T::fused(-t1133, t1303, T::fused(-t1135, t1314, t1365)),
-            -T::fused(t1146, t1303, T::fused(-t1148, t1314, t1366)),
-            T::fused(t1158, t1303, T::fused(-t1159, t1314, t1367)),
-            T::fused(t1165, t1303, -T::fused(t1166, t1314, t1368)),
-            T::fused(t1172, t1303, T::fused(t1173, t1314, t1369)),
-            -T::fused(t1179, t1314, t1370),
-            T::fused(t230, t1374, T::fused(-t262, t1378, t1395)),
-            T::fused(t1374, t611, -T::fused(-t1378, t652, t1396)),
-            T::fused(t1374, t1012, T::fused(-t1378, t1017, t1397)),
-            T::fused(t1374, t1043, -T::fused(t1378, t1046, t1398)),
-            T::fused(t1374, t1072, -T::fused(t1378, t1075, t1399)),
-            T::fused(t1374, t1101, -T::fused(-t1378, t1104, t1400)),
-            T::fused(t1133, t1374, -T::fused(-t1135, t1378, t1401)),
-            T::fused(t1146, t1374, T::fused(-t1148, t1378, t1402)),
-            -T::fused(t1158, t1374, T::fused(-t1159, t1378, t1403)),
-            T::fused(-t1165, t1374, T::fused(t1166, t1378, t1404)),
-            -T::fused(t1172, t1374, T::fused(t1173, t1378, t1405)),
-            T::fused(t1179, t1378, t1406),
-            -T::fused(t230, t1411, T::fused(-t262, t1416, t1437)),
-            T::fused(-t1411, t611, T::fused(-t1416, t652, t1438)),
-            -T::fused(t1411, t1012, T::fused(-t1416, t1017, t1439)),
-            T::fused(-t1411, t1043, T::fused(t1416, t1046, t1440)),
-            T::fused(-t1411, t1072, T::fused(t1416, t1075, t1441)),
-            T::fused(-t1411, t1101, T::fused(-t1416, t1104, t1442)),
-            T::fused(-t1133, t1411, T::fused(-t1135, t1416, t1443)),
-            -T::fused(t1146, t1411, T::fused(-t1148, t1416, t1444)),
-            T::fused(t1158, t1411, T::fused(-t1159, t1416, t1445)),
-            T::fused(t1165, t1411, -T::fused(t1166, t1416, t1446)),
-            T::fused(t1172, t1411, T::fused(t1173, t1416, t1447)),
-            -T::fused(t1179, t1416, t1448),
+            T::fused(t418, t410, -T::fused(t386, t376, -t354)),
+            T::fused(t410, t1008, T::fused(t376, t968, -t927)),
+            T::fused(t410, t1039, -T::fused(t376, t1034, -t1029)),
+            T::fused(t410, t1070, -T::fused(t376, t1065, t1062)),
+            T::fused(t410, t1101, -T::fused(t376, t1098, t1095)),
+            T::fused(t410, t1132, T::fused(t376, t1131, -t1128)),
+            T::fused(t410, t1139, T::fused(t376, t1138, t1137)),
+            T::fused(t1152, t410, -T::fused(t1150, t376, -t1148)),
+            T::fused(-t1159, t410, T::fused(t1158, t376, -t1157)),
+            T::fused(-t1166, t410, T::fused(t1165, t376, t1164)),
+            -T::fused(t1173, t410, T::fused(t1172, t376, t1171)),
+            T::fused(t1179, t376, t1178),
+            T::fused(t418, t1204, -T::fused(t386, t1200, -t1196)),
+            T::fused(t1204, t1008, T::fused(t1200, t968, -t1205)),
+            T::fused(t1204, t1039, -T::fused(t1200, t1034, -t1206)),
+            T::fused(t1204, t1070, -T::fused(t1200, t1065, t1207)),
+            T::fused(t1204, t1101, -T::fused(t1200, t1098, t1208)),
+            T::fused(t1204, t1132, T::fused(t1200, t1131, -t1209)),
+            T::fused(t1204, t1139, T::fused(t1200, t1138, t1210)),
+            T::fused(t1152, t1204, -T::fused(t1150, t1200, -t1211)),
+            T::fused(-t1159, t1204, T::fused(t1158, t1200, -t1212)),
+            T::fused(-t1166, t1204, T::fused(t1165, t1200, t1213)),
+            -T::fused(t1173, t1204, T::fused(t1172, t1200, t1214)),
+            T::fused(t1179, t1200, t1215),
+            T::fused(-t418, t1276, T::fused(t386, t1266, -t1256)),
+            -T::fused(t1276, t1008, T::fused(t1266, t968, -t1277)),
+            T::fused(-t1276, t1039, T::fused(t1266, t1034, -t1278)),
+            T::fused(-t1276, t1070, T::fused(t1266, t1065, t1279)),
+            T::fused(-t1276, t1101, T::fused(t1266, t1098, t1280)),
+            -T::fused(t1276, t1132, T::fused(t1266, t1131, -t1281)),
+            -T::fused(t1276, t1139, T::fused(t1266, t1138, t1282)),
+            T::fused(-t1152, t1276, T::fused(t1150, t1266, -t1283)),
+            T::fused(t1159, t1276, -T::fused(t1158, t1266, -t1284)),
+            T::fused(t1166, t1276, -T::fused(t1165, t1266, t1285)),
+            T::fused(t1173, t1276, T::fused(t1172, t1266, t1286)),
+            -T::fused(t1179, t1266, t1287),
+            T::fused(-t418, t1354, T::fused(t386, t1343, -t1332)),
+            -T::fused(t1354, t1008, T::fused(t1343, t968, -t1355)),
+            T::fused(-t1354, t1039, T::fused(t1343, t1034, -t1356)),
+            T::fused(-t1354, t1070, T::fused(t1343, t1065, t1357)),
+            T::fused(-t1354, t1101, T::fused(t1343, t1098, t1358)),
+            -T::fused(t1354, t1132, T::fused(t1343, t1131, -t1359)),
+            -T::fused(t1354, t1139, T::fused(t1343, t1138, t1360)),
+            T::fused(-t1152, t1354, T::fused(t1150, t1343, -t1361)),
+            T::fused(t1159, t1354, -T::fused(t1158, t1343, -t1362)),
+            T::fused(t1166, t1354, -T::fused(t1165, t1343, t1363)),
+            T::fused(t1173, t1354, T::fused(t1172, t1343, t1364)),
+            -T::fused(t1179, t1343, t1365),
+            T::fused(t418, t1390, -T::fused(t386, t1386, -t1382)),
+            T::fused(t1390, t1008, T::fused(t1386, t968, -t1391)),
+            T::fused(t1390, t1039, -T::fused(t1386, t1034, -t1392)),
+            T::fused(t1390, t1070, -T::fused(t1386, t1065, t1393)),
+            T::fused(t1390, t1101, -T::fused(t1386, t1098, t1394)),
+            T::fused(t1390, t1132, T::fused(t1386, t1131, -t1395)),
+            T::fused(t1390, t1139, T::fused(t1386, t1138, t1396)),
+            T::fused(t1152, t1390, -T::fused(t1150, t1386, -t1397)),
+            T::fused(-t1159, t1390, T::fused(t1158, t1386, -t1398)),
+            T::fused(-t1166, t1390, T::fused(t1165, t1386, t1399)),
+            -T::fused(t1173, t1390, T::fused(t1172, t1386, t1400)),
+            T::fused(t1179, t1386, t1401),
+            T::fused(-t418, t1432, T::fused(t386, t1427, -t1422)),
+            -T::fused(t1432, t1008, T::fused(t1427, t968, -t1433)),
+            T::fused(-t1432, t1039, T::fused(t1427, t1034, -t1434)),
+            T::fused(-t1432, t1070, T::fused(t1427, t1065, t1435)),
+            T::fused(-t1432, t1101, T::fused(t1427, t1098, t1436)),
+            -T::fused(t1432, t1132, T::fused(t1427, t1131, -t1437)),
+            -T::fused(t1432, t1139, T::fused(t1427, t1138, t1438)),
+            T::fused(-t1152, t1432, T::fused(t1150, t1427, -t1439)),
+            T::fused(t1159, t1432, -T::fused(t1158, t1427, -t1440)),
+            T::fused(t1166, t1432, -T::fused(t1165, t1427, t1441)),
+            T::fused(t1173, t1432, T::fused(t1172, t1427, t1442)),
+            -T::fused(t1179, t1427, t1443),
         ];
         *dfdt = [
             k(0.0),
