@@ -10,6 +10,9 @@ use std::collections::BTreeMap;
 pub fn reassociate(graph: &mut Graph, functions: &mut Functions) {
     for roots in functions.recurring_mut() {
         let better = reassociated(graph, roots);
+        if better == *roots {
+            continue;
+        }
         let [now, then] = [&*roots, &better].map(|roots| Operations::recurring(graph, roots).total());
         if then < now {
             *roots = better;
@@ -19,8 +22,11 @@ pub fn reassociate(graph: &mut Graph, functions: &mut Functions) {
 
 fn reassociated(graph: &mut Graph, roots: &[ExprId]) -> Vec<ExprId> {
     let uses = Uses::count(graph, roots);
-    let mut memo = HashMap::default();
     let shared = shared_factors(graph, &uses);
+    if shared.is_empty() {
+        return roots.to_vec();
+    }
+    let mut memo = HashMap::default();
     for &id in &uses.order {
         let node = graph.node(id).with_operands(|operand| memo[&operand]);
         let value = match shared.get(&id) {

@@ -6,7 +6,7 @@
 //! *Roots.* Of a number that varies a root exists modulo p at every other point only. Where it does not, a number drawn at random stands
 //! for it: an identity that holds for any number in its place holds for the root. So a residual that is zero decides for the claim. One
 //! that is not decides against it only where all roots exist; if there are too many to find such a point, floats of
-//! 384 bits decide.
+//! 384 bits decide. Roots of parameters alone are never too many: they are few for each joint, and joints are drawn one by one.
 
 use super::case::Case;
 use super::claim::Claim;
@@ -15,7 +15,7 @@ use crate::atoms::{Drawn, Elementary, Formal};
 use crate::field::{Degree, Field, Modular, Precision, Prime, Real, sum_log2};
 use crate::interpreter::DivisionByZero;
 use crate::module::Module;
-use crate::program::{Function, Id, Node};
+use crate::program::{Function, Id, Node, Source};
 use crate::tape::{Formulas, Tape, Term};
 use crate::textbook::Textbook;
 use gyro_model::{Model, Rational};
@@ -24,6 +24,7 @@ use num_integer::Integer;
 use num_traits::ToPrimitive;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use std::collections::HashSet;
 use std::f64::consts::LOG10_2;
 
 /// How a claim was decided.
@@ -71,6 +72,44 @@ pub struct Statements<'a> {
     formulas: Formulas,
     /// `None` of a claim whose textbook side divides by the number zero.
     claims: Vec<Option<Vec<Id>>>,
+}
+
+/// The way to a point at which all roots exist. Those of parameters are found one group after the other, as many as there are: parameters
+/// whose roots all exist stay as they are.
+struct Search<F: Field> {
+    last: Draw<F>,
+    /// The parameters that are to be drawn anew.
+    stale: HashSet<usize>,
+    /// Whether all but the parameters is to be drawn anew too.
+    rest_is_stale: bool,
+}
+
+impl<F: Field> Search<F> {
+    /// What to do about roots that were missed, given the parameters that each is a root of, if of nothing else.
+    fn after(draw: Draw<F>, groups: &[Option<Vec<usize>>], missed: &[bool]) -> Self {
+        let missed = groups.iter().zip(missed).filter(|(_, missed)| **missed).map(|(group, _)| group);
+        let rest_is_stale = missed.clone().any(Option::is_none);
+        let mut stale: HashSet<usize> = missed.flatten().flatten().copied().collect();
+        // Whatever shares a root with them.
+        loop {
+            let touched = groups.iter().flatten().filter(|group| group.iter().any(|k| stale.contains(k)));
+            let wider: HashSet<usize> = touched.flatten().chain(&stale).copied().collect();
+            if wider.len() == stale.len() {
+                return Self { last: draw, stale, rest_is_stale };
+            }
+            stale = wider;
+        }
+    }
+
+    /// The last point with what is stale taken from a new one.
+    fn next(self, new: Draw<F>) -> Draw<F> {
+        let both = self.last.point.parameters.iter().zip(&new.point.parameters).enumerate();
+        let parameters = both.map(|(k, (last, new))| if self.stale.contains(&k) { new } else { last });
+        let parameters = parameters.cloned().collect();
+        let mut draw = if self.rest_is_stale { new } else { self.last };
+        draw.point.parameters = parameters;
+        draw
+    }
 }
 
 /// What residuals are at one point.
@@ -149,6 +188,17 @@ impl<'a> Statements<'a> {
             _ => None,
         };
         roots.filter_map(root).collect()
+    }
+
+    /// The parameters that a formula depends on if it depends on nothing else.
+    fn parameters_of(&self, id: Id) -> Option<Vec<usize>> {
+        let nodes = self.formulas.program.nodes.iter().zip(self.formulas.reach([id]));
+        let reads = nodes.filter(|(_, reached)| *reached).filter_map(|(node, _)| match *node {
+            Node::Read(source) => Some(source),
+            _ => None,
+        });
+        let parameter = |source| if let Source::Parameter(k) = source { Some(k) } else { None };
+        reads.map(parameter).collect()
     }
 
     /// Whether all of some residuals are zero.
@@ -251,16 +301,27 @@ impl<'a, const L: usize> Decider<'a, L> {
         let reach = statements.formulas.reach(residuals.iter().copied());
         let roots = statements.roots(&reach);
         let roots_reach = statements.formulas.reach(roots.iter().map(|&(root, _)| root));
-        let mut zeros = Vec::new();
+        let groups: Vec<_> = roots.iter().map(|&(_, radicand)| statements.parameters_of(radicand)).collect();
+        let (mut zeros, mut search) = (Vec::new(), None::<Search<_>>);
         for number in 0..DRAWS {
-            let Some(values) = self.values(statements, &roots_reach, seed, number) else { continue };
-            let exists = |&(root, radicand): &(Id, Id)| {
-                values[root].zip(values[radicand]).is_some_and(|(root, radicand)| root.mul(&root) == radicand)
+            let Some((new, atoms)) = self.draw(statements.module, seed, number) else { continue };
+            let draw = match search.take() {
+                Some(search) => search.next(new),
+                None => new,
             };
-            if !roots.iter().all(exists) {
+            let evaluate = |needed: &[bool]| {
+                statements.formulas.evaluate(needed, &self.prime, &atoms, &|source| draw.read(source))
+            };
+            let values = evaluate(&roots_reach);
+            let is_missed = |&(root, radicand): &(Id, Id)| {
+                values[root].zip(values[radicand]).is_none_or(|(root, radicand)| root.mul(&root) != radicand)
+            };
+            let missed: Vec<bool> = roots.iter().map(is_missed).collect();
+            if missed.contains(&true) {
+                search = Some(Search::after(draw, &groups, &missed));
                 continue;
             }
-            let Some(values) = self.values(statements, &reach, seed, number) else { continue };
+            let values = evaluate(&reach);
             match statements.outcome(residuals, &values, Field::is_zero) {
                 Outcome::Zero => return None,
                 Outcome::NotZero { residual } => return Some(Verdict::Refuted { residual }),

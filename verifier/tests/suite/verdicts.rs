@@ -51,6 +51,48 @@ fn many_roots_hide_neither_proof_nor_fault() {
     assert!(matches!(decide(&module), Verdict::Refuted { .. }));
 }
 
+/// A chain of revolute joints, each number of whose frames is a parameter.
+fn free_frames(joints: usize) -> Model {
+    let (mut parameters, mut parts) = (String::new(), "[[body]]\nname = \"b0\"\nfixed = true\n".to_owned());
+    let mut vector = |name: &str, values: [f64; 3]| {
+        let names = ["x", "y", "z"].map(|k| format!("{name}_{k}"));
+        for (name, value) in names.iter().zip(values) {
+            let _ = writeln!(parameters, "{name} = {value}");
+        }
+        format!("{names:?}")
+    };
+    for joint in 0..joints {
+        let mut frame = |side: &str| {
+            let axis = vector(&format!("axis{joint}_{side}"), [1.0, joint as f64, 2.0]);
+            let zero = vector(&format!("zero{joint}_{side}"), [0.0, 1.0, 0.5]);
+            format!("axis = {axis}, zero = {zero}")
+        };
+        let (first, second, next) = (frame("first"), frame("second"), joint + 1);
+        let _ = write!(
+            parts,
+            "[[body]]\nname = \"b{next}\"\nmass = 1\ninertia = [0.1, 0.2, 0.15]\n\
+             [[joint]]\nname = \"j{joint}\"\nkind = \"revolute\"\n\
+             first = {{ body = \"b{joint}\", {first} }}\nsecond = {{ body = \"b{next}\", {second} }}\n"
+        );
+    }
+    let page = format!("format = 1\nname = \"frames\"\n[parameters]\n{parameters}{parts}");
+    gyro_model::read("frames.toml", &page).expect("a good page")
+}
+
+/// Roots of parameters, a dozen of them: points that have them all are found joint by joint.
+#[test]
+fn roots_of_parameters_are_never_too_many() {
+    let model = free_frames(2);
+    let module = gyro_codegen::generate_model("frames.toml", &model).expect("a module");
+    let mut module = Module::read(&model, &module.code, &module.constants).expect("the emitted subset");
+    let prime: Prime<9> = prime(&model, &module, 1).expect("room for all roots");
+    let decider = Decider::new(&model, prime);
+    let decide = |module: &Module| decider.decide(module, Claim::ToMaximal, 1, 1);
+    assert!(matches!(decide(&module), Verdict::Proved { .. }));
+    module.programs.get_mut("to_maximal").expect("a function").results.swap(3, 4);
+    assert!(matches!(decide(&module), Verdict::Refuted { .. }));
+}
+
 /// A binding that nobody uses is no reason to refuse a module.
 #[test]
 fn a_flaw_is_neither_proved_nor_refuted() {
