@@ -44,8 +44,8 @@ pub fn close(
     let gradients: Vec<_> = rows.iter().map(|&row| gradient(kinematics, row)).collect();
     let respond = |gradient: &Vec<Twist>| {
         let bias = gradient.iter().map(|twist| twist.negated(graph)).collect();
-        let (forced, along) = (vec![Twist::ZERO; tree.joints.len()], vec![Vec::new(); tree.joints.len()]);
-        tree.respond(graph, Excitation { bias, forced, along }).motions
+        let none = Excitation::none(tree.n_slots(), tree.joints.len());
+        tree.respond(graph, &Excitation { bias, ..none }).motions
     };
     let responses: Vec<_> = gradients.iter().map(respond).collect();
     let mut matrix = BTreeMap::new();

@@ -2,19 +2,20 @@
 
 use crate::graph::{ExprId, Graph, Node};
 use crate::symbol::Symbol;
+use num_traits::Float;
 use rustc_hash::FxHashMap as HashMap;
 
 /// The values of some roots, each symbol having the value that `value` gives it.
-pub fn evaluate(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol) -> f64) -> Vec<f64> {
-    let mut values: HashMap<ExprId, f64> = HashMap::default();
+pub fn evaluate<F: Float>(graph: &Graph, roots: &[ExprId], value: impl Fn(Symbol) -> F) -> Vec<F> {
+    let mut values: HashMap<ExprId, F> = HashMap::default();
     for id in graph.reachable(roots) {
         let result = match graph.node(id) {
-            Node::Constant(constant) => constant.to_f64(),
+            Node::Constant(constant) => F::from(constant.to_f64()).unwrap_or_else(F::nan),
             Node::Symbol(symbol) => value(*symbol),
             Node::Add(a, b) => values[a] + values[b],
             Node::Mul(a, b) => values[a] * values[b],
             Node::Neg(a) => -values[a],
-            Node::Recip(a) => 1.0 / values[a],
+            Node::Recip(a) => values[a].recip(),
             Node::Sqrt(a) => values[a].sqrt(),
             Node::Sin(a) => values[a].sin(),
             Node::Cos(a) => values[a].cos(),

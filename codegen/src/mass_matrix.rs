@@ -6,8 +6,8 @@ use crate::freedom::{Freedom, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::ldl::Elimination;
 use crate::linear::{Mat3, UNIT3, Vec3, ZERO3};
-use crate::null_space::minus_applied_force;
 use crate::system::System;
+use crate::trees::minus_applied_force;
 use std::collections::BTreeMap;
 
 /// A body alone. What its inertia has in all directions alike need not be turned.

@@ -5,9 +5,10 @@ use crate::dynamics::Dynamics;
 use crate::freedom::{Freedom, Twist};
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
-use crate::null_space::{Arm, Inertia, minus_applied_force};
+use crate::null_space::{Arm, Inertia};
 use crate::symbol::Symbol;
 use crate::system::System;
+use crate::trees::minus_applied_force;
 use std::array::from_fn;
 
 /// The multiplier of each row, in terms of known accelerations and closing multipliers.

@@ -1,4 +1,4 @@
-//! The solve of eq. (17) for the trees of a mechanism, through the null space of the joints: `Bᵀ M B` is never formed but factored body by body
+//! Elimination of the free twists of all joints, the null space of their rows: `Bᵀ M B` is never formed but factored body by body
 //! from the leaves to the roots (articulated bodies: Featherstone, *Rigid Body Dynamics Algorithms* (2008), section 7.3),
 //! here in maximal coordinates and for any state, also off the constraint manifold.
 //!
@@ -6,122 +6,10 @@
 //! upon it (γ times their right inverse). Its free twists are eliminated one by one; what is left of its inertia and
 //! force acts on the parent. No pivot can vanish: each is the inertia that resists a twist.
 
-use crate::closing;
-use crate::dynamics::Dynamics;
 use crate::freedom::{Freedom, Parent, Twist};
 use crate::graph::{ExprId, Graph};
-use crate::kinematics::Kinematics;
 use crate::linear::{Mat3, UNIT3, Vec3, ZERO3, transposed};
-use crate::mass_matrix::ReducedTree;
-use crate::multipliers;
-use crate::schedule::Operations;
-use crate::symbol::Symbol;
 use crate::system::System;
-
-/// Accelerations and what follows from them.
-#[derive(Debug)]
-pub struct Solution {
-    /// (s̈, ẇ') of each slot.
-    pub accelerations: Vec<ExprId>,
-    /// Multipliers of the rows that close loops or couple joints, those that no joint of the tree owns.
-    pub closing: Vec<ExprId>,
-    /// The multiplier of each row, in terms of [`Symbol::Acceleration`] and [`Symbol::Closing`].
-    pub lambda: Vec<ExprId>,
-}
-
-/// With more rates than this a reduced mass matrix is seldom shorter.
-const MAX_REDUCED: usize = 4;
-
-/// The trees of a mechanism with the free twists of all joints eliminated.
-#[derive(Debug)]
-pub struct Trees {
-    freedoms: Vec<Freedom>,
-    /// In each basis that is tried.
-    eliminated: Vec<EliminatedTree>,
-    /// Of small open trees.
-    reduced: Option<ReducedTree>,
-    /// The rows that no joint of the trees owns.
-    closing: Vec<usize>,
-}
-
-impl Trees {
-    pub fn of(system: &mut System, kinematics: &Kinematics) -> Self {
-        let links = system.tree.links.clone();
-        let freedoms: Vec<_> = links.iter().map(|&link| Freedom::of(system, kinematics, link)).collect();
-        let closing = closing::closing_rows(system);
-        let mut eliminated = vec![EliminatedTree::new(system, freedoms.clone(), Basis::Mixed)];
-        // Near a singular pose rounding decides how a linkage goes on: there the form stays that was tried on them.
-        let mut reduced = None;
-        if closing.is_empty() {
-            let in_global_frame: Vec<_> =
-                freedoms.iter().map(|freedom| freedom.in_global_frame(system)).collect();
-            let n_rates: usize = freedoms.iter().map(|freedom| freedom.free.len()).sum();
-            if n_rates <= MAX_REDUCED {
-                reduced = Some(ReducedTree::new(system, in_global_frame.clone(), &freedoms));
-            }
-            let in_own_frames = freedoms.iter().map(|freedom| freedom.in_own_frames(system)).collect();
-            eliminated.push(EliminatedTree::new(system, in_global_frame, Basis::Global));
-            eliminated.push(EliminatedTree::new(system, in_own_frames, Basis::Own));
-        }
-        Self { freedoms, eliminated, reduced, closing }
-    }
-
-    /// Solves eq. (17); the result is expressed in symbols that are yet to be expanded.
-    pub fn solve(&self, system: &mut System, kinematics: &Kinematics, dynamics: &Dynamics) -> Solution {
-        let trees = self.eliminated.iter();
-        let solved: Vec<_> = trees.map(|tree| self.solved(system, kinematics, dynamics, tree)).collect();
-        let reduced = self.reduced.as_ref().map(|tree| listed(&tree.accelerations(system, dynamics)));
-        let cost = |(accelerations, closing): &(Vec<_>, Vec<_>)| {
-            Operations::recurring(&system.graph, &[&accelerations[..], closing].concat()).total()
-        };
-        let mut taken = solved.into_iter().min_by_key(cost).expect("at least one");
-        // Elimination keeps more digits where a body spins fast or is light: they are worth a quarter of the operations.
-        let is_worth_it = |reduced: &(Vec<_>, Vec<_>)| 4 * cost(reduced) < 3 * cost(&taken);
-        if let Some(reduced) = reduced.map(|accelerations| (accelerations, Vec::new())).filter(is_worth_it) {
-            taken = reduced;
-        }
-        let (accelerations, closing) = taken;
-        let lambda = multipliers::of(system, kinematics, dynamics, &self.freedoms);
-        Solution { accelerations, closing, lambda }
-    }
-
-    /// (s̈, ẇ') of each slot, and the multipliers that close loops.
-    fn solved(
-        &self,
-        system: &mut System,
-        kinematics: &Kinematics,
-        dynamics: &Dynamics,
-        tree: &EliminatedTree,
-    ) -> (Vec<ExprId>, Vec<ExprId>) {
-        let free = tree.accelerations(system, dynamics);
-        let rows = (&self.closing[..], &kinematics.gamma[..]);
-        let (motions, closing) = closing::close(&mut system.graph, kinematics, tree, rows, free);
-        (listed(&motions), closing)
-    }
-
-    /// The smallest (δr, δπ') of each slot, in the metric of the masses, that change the rows by [`Symbol::Change`]: eq. (17) without forces
-    /// and with these changes for γ. In symbols that are yet to be expanded.
-    pub fn project(&self, graph: &mut Graph, kinematics: &Kinematics) -> Vec<ExprId> {
-        let changes: Vec<_> =
-            (0..kinematics.phi.len()).map(|row| graph.symbol(Symbol::Change(row))).collect();
-        let projected = self.eliminated.iter().map(|tree| {
-            let forced = tree.joints.iter().map(|joint| joint.freedom.forced_by(graph, &changes)).collect();
-            let (bias, along) = (vec![Twist::ZERO; tree.frames.len()], vec![Vec::new(); tree.joints.len()]);
-            let free = tree.respond(graph, Excitation { bias, forced, along }).motions;
-            let (motions, _) = closing::close(graph, kinematics, tree, (&self.closing, &changes), free);
-            listed(&motions)
-        });
-        let mut projected: Vec<_> = projected.collect();
-        projected.extend(self.reduced.as_ref().map(|tree| listed(&tree.project(graph, &changes))));
-        let cost = |motions: &Vec<_>| Operations::recurring(graph, motions).total();
-        projected.into_iter().min_by_key(cost).expect("at least one")
-    }
-}
-
-/// The components of the motions of all slots.
-fn listed(motions: &[Twist]) -> Vec<ExprId> {
-    motions.iter().flat_map(|motion| motion.t.into_iter().chain(motion.rho)).collect()
-}
 
 /// The frames in which an elimination works.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,19 +22,31 @@ pub enum Basis {
     Own,
 }
 
-/// From the frames of eq. (17) to those of an elimination.
+impl Basis {
+    /// Of each slot.
+    pub fn frames(self, system: &System) -> Vec<Frames> {
+        let of = |&body: &usize| match self {
+            Self::Mixed => Frames { t: UNIT3, rho: UNIT3 },
+            Self::Global => Frames { t: UNIT3, rho: system.poses[body].a },
+            Self::Own => Frames { t: transposed(&system.poses[body].a), rho: UNIT3 },
+        };
+        system.slots.iter().map(of).collect()
+    }
+}
+
+/// From the frames of eq. (17) to those of a basis.
 #[derive(Clone, Copy, Debug)]
-struct Frames {
+pub struct Frames {
     t: Mat3,
     rho: Mat3,
 }
 
 impl Frames {
-    fn enter(&self, graph: &mut Graph, twist: &Twist) -> Twist {
+    pub fn enter(&self, graph: &mut Graph, twist: &Twist) -> Twist {
         Twist { t: graph.mat_vec(&self.t, &twist.t), rho: graph.mat_vec(&self.rho, &twist.rho) }
     }
 
-    fn leave(&self, graph: &mut Graph, twist: &Twist) -> Twist {
+    pub fn leave(&self, graph: &mut Graph, twist: &Twist) -> Twist {
         Twist { t: graph.transposed_vec(&self.t, &twist.t), rho: graph.transposed_vec(&self.rho, &twist.rho) }
     }
 }
@@ -180,15 +80,25 @@ pub struct Response {
     pub rates: Vec<Vec<ExprId>>,
 }
 
+impl Excitation {
+    /// Of nothing.
+    pub fn none(n_slots: usize, n_joints: usize) -> Self {
+        Self {
+            bias: vec![Twist::ZERO; n_slots],
+            forced: vec![Twist::ZERO; n_joints],
+            along: vec![Vec::new(); n_joints],
+        }
+    }
+}
+
 impl EliminatedTree {
+    pub fn n_slots(&self) -> usize {
+        self.frames.len()
+    }
+
     /// The links come root first.
     pub fn new(system: &mut System, freedoms: Vec<Freedom>, basis: Basis) -> Self {
-        let frames_of = |&body: &usize| match basis {
-            Basis::Mixed => Frames { t: UNIT3, rho: UNIT3 },
-            Basis::Global => Frames { t: UNIT3, rho: system.poses[body].a },
-            Basis::Own => Frames { t: transposed(&system.poses[body].a), rho: UNIT3 },
-        };
-        let frames: Vec<_> = system.slots.iter().map(frames_of).collect();
+        let frames = basis.frames(system);
         let rigid = |(slot, frames): (usize, &Frames)| {
             Inertia::rigid(system, slot).turned(&mut system.graph, &frames.rho)
         };
@@ -210,22 +120,14 @@ impl EliminatedTree {
         Self { joints, frames }
     }
 
-    /// The accelerations that the applied forces and the rows of the tree's own joints bring about.
-    fn accelerations(&self, system: &mut System, dynamics: &Dynamics) -> Vec<Twist> {
-        let forced = self.joints.iter().map(|joint| joint.freedom.bias).collect();
-        let n_slots = system.slots.len();
-        let bias = (0..n_slots).map(|slot| minus_applied_force(system, dynamics, slot)).collect();
-        let along = vec![Vec::new(); self.joints.len()];
-        self.respond(&mut system.graph, Excitation { bias, forced, along }).motions
-    }
-
-    pub fn respond(&self, graph: &mut Graph, excitation: Excitation) -> Response {
-        let Excitation { mut bias, forced, along } = excitation;
+    pub fn respond(&self, graph: &mut Graph, excitation: &Excitation) -> Response {
+        let Excitation { bias, forced, along } = excitation;
+        let mut bias = bias.clone();
         for (bias, frames) in bias.iter_mut().zip(&self.frames) {
             *bias = frames.enter(graph, bias);
         }
         let mut loads = Vec::new();
-        for ((joint, forced), along) in self.joints.iter().zip(&forced).zip(&along).rev() {
+        for ((joint, forced), along) in self.joints.iter().zip(forced).zip(along).rev() {
             let (own, on_parent) = joint.yield_to(graph, &bias[joint.freedom.slot], forced, along);
             loads.push(own);
             if let Some(parent) = joint.freedom.parent {
@@ -233,7 +135,7 @@ impl EliminatedTree {
             }
         }
         let mut response = Response { motions: vec![Twist::ZERO; bias.len()], rates: Vec::new() };
-        for ((joint, forced), loads) in self.joints.iter().zip(&forced).zip(loads.iter().rev()) {
+        for ((joint, forced), loads) in self.joints.iter().zip(forced).zip(loads.iter().rev()) {
             let (motion, rates) = joint.motion(graph, forced, loads, &response.motions);
             response.motions[joint.freedom.slot] = motion;
             response.rates.push(rates);
@@ -243,13 +145,6 @@ impl EliminatedTree {
         }
         response
     }
-}
-
-/// Minus (f, n' − w̃'J'w').
-pub fn minus_applied_force(system: &mut System, dynamics: &Dynamics, slot: usize) -> Twist {
-    let force = |k: usize| dynamics.applied_force[6 * slot + k];
-    let applied = Twist { t: [force(0), force(1), force(2)], rho: [force(3), force(4), force(5)] };
-    applied.negated(&mut system.graph)
 }
 
 impl Twist {
@@ -608,62 +503,4 @@ fn symmetric(m: &Mat3) -> Mat3 {
 
 fn sum(graph: &mut Graph, a: &Mat3, b: &Mat3) -> Mat3 {
     std::array::from_fn(|row| graph.add_vec(&a[row], &b[row]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::definitions::Expansion;
-    use crate::evaluate::{evaluate, sample};
-
-    /// A thousand operations on numbers of order one, and a solve.
-    const ROUNDING: f64 = 1e-9;
-
-    /// A state anyhow, but with unit Euler parameters, and positive parameters.
-    fn state(seed: u64) -> impl Fn(Symbol) -> f64 {
-        move |symbol| {
-            let value = sample(seed);
-            match symbol {
-                Symbol::Euler { slot, .. } => {
-                    let p: [f64; 4] = std::array::from_fn(|k| value(Symbol::Euler { slot, k }));
-                    value(symbol) / p.iter().map(|x| x * x).sum::<f64>().sqrt()
-                }
-                Symbol::Parameter(_) => value(symbol).abs(),
-                _ => value(symbol),
-            }
-        }
-    }
-
-    /// Through the reduced mass matrix and by elimination, in every basis, the accelerations are the same.
-    fn check(page: &str) {
-        let model = gyro_model::read("page.toml", page).expect("a page without mistakes");
-        let mut system = System::new(&model);
-        let kinematics = Kinematics::derive(&mut system);
-        let dynamics = Dynamics::derive(&mut system);
-        let trees = Trees::of(&mut system, &kinematics);
-        let mut forms = Vec::new();
-        for tree in &trees.eliminated {
-            forms.push(trees.solved(&mut system, &kinematics, &dynamics, tree).0);
-        }
-        let reduced = trees.reduced.as_ref().expect("few rates");
-        forms.push(listed(&reduced.accelerations(&mut system, &dynamics)));
-        let mut expansion = Expansion::new(&system.definitions);
-        let forms: Vec<_> = forms.iter().map(|form| expansion.all(&mut system.graph, form)).collect();
-        for seed in 0..10 {
-            let values: Vec<_> =
-                forms.iter().map(|form| evaluate(&system.graph, form, state(seed))).collect();
-            let size = values[0].iter().fold(0.0, |size: f64, x| size.max(x.abs()));
-            for (a, b) in values.iter().flat_map(|other| values[0].iter().zip(other)) {
-                assert!((a - b).abs() <= ROUNDING * size, "{a} {b} of {size}");
-            }
-        }
-    }
-
-    #[test]
-    fn a_reduced_mass_matrix_gives_what_elimination_gives() {
-        check(include_str!("../../models/gyroscope-misalignments.toml"));
-        check(include_str!("../../models/heavy-top.toml"));
-        check(include_str!("../../tests/models/universal.toml"));
-        check(include_str!("../../tests/models/cylindrical.toml"));
-    }
 }

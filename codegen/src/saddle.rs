@@ -10,9 +10,9 @@ use crate::dynamics::Dynamics;
 use crate::graph::{ExprId, Graph};
 use crate::kinematics::{Kinematics, Matrix};
 use crate::ldl::Elimination;
-use crate::null_space::Solution;
 use crate::schedule::Operations;
 use crate::system::System;
+use crate::trees::Solution;
 use gyro_model::{Attachment, RowOwner};
 use std::collections::BTreeMap;
 

@@ -113,12 +113,18 @@ const FAULTS: &[Fault] = &[
     fault("ldl.rs", "four-bar", "let moved = graph.mul(factor, rhs[pivot]);\n                rhs[i] = «graph.sub(rhs[i], moved)»;", "graph.add(rhs[i], moved)"),
     fault("ldl.rs", "four-bar", "x = «graph.sub(x, product)»;", "graph.add(x, product)"),
     // The projection in the metric of the masses.
-    fault("null_space.rs", "four-bar", "closing::close(graph, kinematics, tree, (&self.closing, «&changes»), free)", "&kinematics.gamma"),
-    fault("null_space.rs", "pair", "let free = «tree.respond(graph, Excitation { bias, forced, along }).motions»;", "forced"),
+    fault("trees.rs", "four-bar", "closing::close(graph, kinematics, tree, (&self.closing, «&changes»), free)", "&kinematics.gamma"),
+    fault("trees.rs", "pair", "let free = «tree.respond(graph, &excitation).motions»;", "excitation.forced.clone()"),
     fault("freedom.rs", "pair", "accelerated(graph, «&changes[self.rows.clone()]», &self.forced)", "changes"),
     fault("mass_matrix.rs", "gyroscope-combined-offsets", "let linear = «graph.mul(body.mass, linear)»;", "linear"),
     fault("mass_matrix.rs", "gyroscope-combined-offsets", "let product = «graph.mul(inertia, cosine)»;", "Graph::ZERO"),
     fault("mass_matrix.rs", "gyroscope-combined-offsets", "taken[parent.slot] = «taken[parent.slot].plus(graph, &carried)»;", "carried"),
+    // Orthogonal motions.
+    fault("orthogonal.rs", "gyroscope-light-rings", "let yielded = «part.motion.scaled(graph, share).negated(graph)»;", "part.motion.scaled(graph, share)"),
+    fault("orthogonal.rs", "gyroscope-light-rings", "let yielded = graph.mul(share, all[rate]);\n                all[other] = «graph.sub(all[other], yielded)»;", "all[other]"),
+    fault("orthogonal.rs", "carried", "let passed_on = graph.mul(share, forces[other]);\n                forces[rate] = «graph.sub(forces[rate], passed_on)»;", "forces[rate]"),
+    fault("orthogonal.rs", "gyroscope-light-rings", ".map(|((body, motion), bias)| «body.times(graph, motion).plus(graph, bias)».negated(graph))", "body.times(graph, motion)"),
+    fault("joint_space/maps.rs", "gyroscope-light-rings", "let (difference, sum) = («graph.sub(cosine, sine)», graph.add(cosine, sine));", "graph.sub(sine, cosine)"),
     // The coordinate partition.
     fault("partition.rs", "bob", "let factor = «graph.mul(half, difference)»;", "difference"),
     fault("partition.rs", "spherical", "let (residual, two) = (graph.sub(Graph::ONE, square), «graph.integer(2)»);", "graph.integer(1)"),

@@ -61,18 +61,20 @@ const KINDS: [(Kind, &str); 10] = [
 
 /// The whole report in Markdown; without pages, of the paper's gyroscope and of a chain of four bodies with skewed axes.
 pub(crate) fn report(pages: &[PathBuf], configurations: usize) -> Result<String, Failure> {
-    let models = if pages.is_empty() {
-        let chain =
-            gyro_model::read("chain.toml", &scaling::page(4)).map_err(|e| Failure::Usage(e.to_string()))?;
-        vec![scene::read(&crate::files::root().join("models/gyroscope.toml"))?, chain]
-    } else {
-        pages.iter().map(|page| scene::read(page)).collect::<Result<_, _>>()?
-    };
     let mut text = HEAD.to_owned();
-    for model in models {
+    for model in models(pages)? {
         text += &table(&model, configurations)?;
     }
     Ok(text)
+}
+
+fn models(pages: &[PathBuf]) -> Result<Vec<Model>, Failure> {
+    if pages.is_empty() {
+        let chain =
+            gyro_model::read("chain.toml", &scaling::page(4)).map_err(|e| Failure::Usage(e.to_string()))?;
+        return Ok(vec![scene::read(&crate::files::root().join("models/gyroscope.toml"))?, chain]);
+    }
+    pages.iter().map(|page| scene::read(page)).collect()
 }
 
 /// The model with its masses, inertias and joint points as parameters.
@@ -281,25 +283,37 @@ impl std::fmt::Display for Column {
 mod tests {
     use super::*;
 
-    /// Of the exact accelerations, whatever the configuration: digits that are left.
-    const MEDIAN: f64 = 1e-14;
+    /// Whatever the configuration.
+    const MEDIAN: f64 = 3e-15;
 
-    /// In gimbal lock with light rings half the digits are the state's own to lose; the dense twin loses as many.
-    const MEDIAN_IN_GIMBAL_LOCK: f64 = 1e-8;
+    /// The worst in terms of the dense twin's.
+    const WORST: f64 = 2.0;
 
     #[test]
-    fn no_kind_of_configuration_takes_the_digits_of_the_elimination() {
-        let page = std::fs::read_to_string(crate::files::root().join("models/gyroscope.toml")).unwrap();
-        let subject = Subject::new(&gyro_model::read("gyroscope.toml", &page).unwrap()).unwrap();
+    fn no_kind_of_configuration_takes_the_digits_of_the_kernels() {
+        for model in models(&[]).unwrap() {
+            check(&Subject::new(&model).unwrap());
+        }
+    }
+
+    fn check(subject: &Subject) {
         for (place, (kind, words)) in KINDS.into_iter().enumerate() {
-            let errors = subject.errors(place, 12);
-            assert!(errors.len() >= 10, "{words}: {}", errors.len());
-            let loses = matches!(kind, Kind::GimbalLock | Kind::Everything);
+            let errors = subject.errors(place, 24);
+            assert!(errors.len() >= 20, "{words}: {}", errors.len());
+            let twin = Column::of(errors.iter().map(|(_, twin)| *twin).collect());
             for (k, kernel) in KERNELS.iter().enumerate() {
                 let column = Column::of(errors.iter().map(|(own, _)| own[k]).collect());
-                assert_eq!(column.failures, 0, "{words}, {kernel}: {column}");
-                let allowed = if loses { MEDIAN_IN_GIMBAL_LOCK } else { MEDIAN };
-                assert!(column.median <= allowed, "{words}, {kernel}: {column}");
+                let words = format!("{}, {words}, {kernel}: {column}, twin {twin}", subject.model.name);
+                assert_eq!(column.failures, 0, "{words}");
+                // In gimbal lock with light rings half the digits are a maximal state's own to lose.
+                let is_lost = kind == Kind::GimbalLock && *kernel != "joint_accelerations";
+                // The multipliers follow from accelerations that are right in terms of the largest.
+                let is_balance = kind == Kind::Everything && *kernel == "corrected_solution";
+                let allowed = if is_lost || is_balance { MEDIAN.max(WORST * twin.median) } else { MEDIAN };
+                assert!(column.median <= allowed, "{words}");
+                if kind != Kind::Everything {
+                    assert!(column.worst <= WORST * twin.worst, "{words}");
+                }
             }
         }
     }

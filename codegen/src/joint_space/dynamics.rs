@@ -15,6 +15,7 @@ use crate::ldl::Elimination;
 use crate::linear::{UNIT3, Vec3, ZERO3};
 use crate::normal_form::normal_form_of;
 use crate::null_space::{Arm, Basis, EliminatedTree, Excitation, Inertia};
+use crate::orthogonal::OrthogonalTree;
 use crate::outputs::time_derivative;
 use crate::schedule::Operations;
 use crate::sheet::Reduction;
@@ -55,9 +56,7 @@ pub struct Reduced {
     rates: Vec<Vec<usize>>,
     freedoms: Vec<Freedom>,
     /// In the bodies' own frames.
-    bias: Vec<Twist>,
-    forced: Vec<Twist>,
-    along: Vec<Vec<ExprId>>,
+    excitation: Excitation,
     n_rates: usize,
 }
 
@@ -86,14 +85,21 @@ impl Reduced {
         let rates: Vec<Vec<_>> =
             carriages.iter().map(|carriage| carriage.free.iter().map(|free| free.rate).collect()).collect();
         let along = rates.iter().map(|rates| rates.iter().map(|&rate| along[rate]).collect()).collect();
-        Self { rates, freedoms, bias, forced, along, n_rates: layout.n_rates }
+        let excitation = Excitation { bias, forced, along };
+        Self { rates, freedoms, excitation, n_rates: layout.n_rates }
+    }
+
+    /// u̇ through orthogonal motions.
+    pub fn orthogonal(&self, system: &mut System) -> Vec<ExprId> {
+        let tree = OrthogonalTree::new(system, self.freedoms.clone(), Basis::Mixed);
+        let response = tree.respond(&mut system.graph, &self.excitation);
+        self.scattered(&response.rates)
     }
 
     /// u̇ by elimination from the leaves to the roots: operations grow linearly with the number of bodies.
     pub fn recursion(&self, system: &mut System) -> Vec<ExprId> {
         let tree = EliminatedTree::new(system, self.freedoms.clone(), Basis::Mixed);
-        let (bias, forced, along) = (self.bias.clone(), self.forced.clone(), self.along.clone());
-        let response = tree.respond(&mut system.graph, Excitation { bias, forced, along });
+        let response = tree.respond(&mut system.graph, &self.excitation);
         self.scattered(&response.rates)
     }
 
@@ -131,9 +137,9 @@ impl Reduced {
         let tree = EliminatedTree::new(system, self.freedoms.clone(), Basis::Mixed);
         let solved = |forces: &Vec<ExprId>| {
             let along = self.rates.iter().map(|rates| rates.iter().map(|&rate| forces[rate]).collect());
-            let (bias, forced) = (vec![Twist::ZERO; self.bias.len()], vec![Twist::ZERO; self.forced.len()]);
-            let excitation = Excitation { bias, forced, along: along.collect() };
-            self.scattered(&tree.respond(&mut system.graph, excitation).rates)
+            let none = Excitation::none(self.excitation.bias.len(), self.freedoms.len());
+            let excitation = Excitation { along: along.collect(), ..none };
+            self.scattered(&tree.respond(&mut system.graph, &excitation).rates)
         };
         columns.iter().map(solved).collect()
     }
@@ -174,7 +180,8 @@ impl Reduced {
     /// Lower triangle of `Bᵀ M B`: what a unit acceleration of one rate takes along each rate nearer to the root, the inertia
     /// beyond it moving as one body.
     fn mass_matrix(&self, system: &mut System) -> BTreeMap<(usize, usize), ExprId> {
-        let mut bodies: Vec<_> = (0..self.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
+        let mut bodies: Vec<_> =
+            (0..self.excitation.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
         let graph = &mut system.graph;
         let mut matrix = BTreeMap::new();
         for (freedom, rates) in self.freedoms.iter().zip(&self.rates).rev() {
@@ -220,10 +227,11 @@ impl Reduced {
 
     /// The force along each rate that is left over by the motion with these rates' rates.
     pub fn left_over(&self, system: &mut System, rates_of_rates: &[ExprId]) -> Vec<ExprId> {
-        let bodies: Vec<_> = (0..self.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
+        let bodies: Vec<_> =
+            (0..self.excitation.bias.len()).map(|slot| Inertia::rigid(system, slot)).collect();
         let graph = &mut system.graph;
-        let mut motions = vec![Twist::ZERO; self.bias.len()];
-        for ((freedom, forced), rates) in self.freedoms.iter().zip(&self.forced).zip(&self.rates) {
+        let mut motions = vec![Twist::ZERO; self.excitation.bias.len()];
+        for ((freedom, forced), rates) in self.freedoms.iter().zip(&self.excitation.forced).zip(&self.rates) {
             let mut motion = *forced;
             if let Some(parent) = freedom.parent {
                 let carried = parent.twist(graph, &motions[parent.slot]);
@@ -235,11 +243,13 @@ impl Reduced {
             }
             motions[freedom.slot] = Arm::on_body(graph, freedom).twist(graph, &motion);
         }
-        let mut taken: Vec<_> = (motions.iter().zip(&bodies).zip(&self.bias))
+        let mut taken: Vec<_> = (motions.iter().zip(&bodies).zip(&self.excitation.bias))
             .map(|((motion, inertia), bias)| inertia.times(graph, motion).plus(graph, bias))
             .collect();
         let mut forces = vec![Graph::ZERO; self.n_rates];
-        for ((freedom, rates), along) in self.freedoms.iter().zip(&self.rates).zip(&self.along).rev() {
+        for ((freedom, rates), along) in
+            self.freedoms.iter().zip(&self.rates).zip(&self.excitation.along).rev()
+        {
             let wrench = Arm::on_body(graph, freedom).wrench(graph, &taken[freedom.slot]);
             for ((twist, &rate), &along) in freedom.free.iter().zip(rates).zip(along) {
                 let resisted = twist.dot(graph, &wrench);

@@ -22,7 +22,7 @@ use crate::sheet::Form;
 use crate::symbol::Symbol;
 use crate::system::{Direction, System};
 
-/// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 9400 operations for six rates and 17600 for eight, and as many lines:
+/// Beyond this many rates the Jacobian is left out. A chain of skewed axes takes 16500 operations for six rates and 29300 for eight, and as many lines:
 /// then a module is longer than it is worth.
 pub const MAX_RATES: usize = 8;
 

@@ -17,6 +17,7 @@ pub use layout::Layout;
 
 use crate::closing::closing_rows;
 use crate::definitions::Expansion;
+use crate::digits::{self, Trials};
 use crate::dynamics::Dynamics;
 use crate::evaluate::evaluate;
 use crate::freedom::{Freedom, Parent, Twist};
@@ -24,6 +25,7 @@ use crate::graph::{ExprId, Graph};
 use crate::kinematics::Kinematics;
 use crate::linear::{UNIT3, Vec3, ZERO3, transposed};
 use crate::null_space::Arm;
+use crate::orthogonal;
 use crate::schedule::cheapest;
 use crate::sheet::{Form, Reduction};
 use crate::symbol::Symbol;
@@ -125,17 +127,34 @@ impl JointSpace {
         if layout.n_rates <= MAX_FACTORED {
             candidates.push((NORMAL_FORM, from_rates.factored(system, &unit, &mut reductions)));
         }
-        let of_rates = (candidates.iter())
-            .map(|(name, roots)| ((*name).to_owned(), expanded(system, &in_joints, roots)))
-            .collect();
-        let (accelerations, forms) = cheapest(&system.graph, of_rates);
-
+        let in_terms_of = |system: &mut System, values: &Values, candidates: &[(&str, Vec<ExprId>)]| {
+            let expanded =
+                |(name, roots): &(&str, Vec<ExprId>)| ((*name).to_owned(), expanded(system, values, roots));
+            candidates.iter().map(expanded).collect::<Vec<_>>()
+        };
+        let of_balance = in_terms_of(system, &in_joints, &candidates);
+        let (of_balance, _) = cheapest(&system.graph, of_balance);
         // A maximal state has the angular velocities at hand.
         let spins = spins_at_hand(system, &layout, &carriages_of_dynamics, &invariant);
-        candidates.push(("recursion on the bodies' spins", reduced(system, &spins).recursion(system)));
-        let at: Vec<_> = (candidates.iter())
-            .map(|(name, roots)| ((*name).to_owned(), expanded(system, &of_joints, roots)))
-            .collect();
+        let from_spins = reduced(system, &spins);
+        let mut candidates_at = candidates.clone();
+        candidates_at.push(("recursion on the bodies' spins", from_spins.recursion(system)));
+        if (2..=orthogonal::MAX_RATES).contains(&layout.n_rates) {
+            let motions = from_rates.orthogonal(system);
+            if digits::are_at_stake(system) {
+                let keeping = expanded(system, &in_joints, &motions);
+                let of_rates = in_terms_of(system, &in_joints, &candidates_at);
+                let losing = losing_digits(system, &layout, &of_rates, &keeping);
+                candidates.retain(|(name, _)| losing.iter().all(|losing| losing != name));
+                candidates_at.retain(|(name, _)| losing.iter().all(|losing| losing != name));
+            }
+            candidates.push(("orthogonal motions", motions.clone()));
+            candidates_at.push(("orthogonal motions", motions));
+            candidates_at.push(("orthogonal motions on the bodies' spins", from_spins.orthogonal(system)));
+        }
+        let of_rates = in_terms_of(system, &in_joints, &candidates);
+        let (accelerations, forms) = cheapest(&system.graph, of_rates);
+        let at = in_terms_of(system, &of_joints, &candidates_at);
         let (accelerations_at, forms_at) = cheapest(&system.graph, at.clone());
         let corrected = at.iter().flat_map(|(name, rates)| {
             let frames = ["the bodies' frames", "the global frame"].map(|frame| format!("{name} in {frame}"));
@@ -165,11 +184,13 @@ impl JointSpace {
         let reduced = Expansion::new(&system.definitions).all(&mut system.graph, &reduced);
         let rates_of_rates: Vec<_> =
             (0..layout.n_rates).map(|rate| system.graph.symbol(Symbol::RateOfRate(rate))).collect();
+        // Off the unit sphere of Euler parameters two forms of u̇ may differ: there the derivative is that of the form which is emitted.
+        let has_orientation = layout.links.iter().any(|link| link.orientation.is_some());
         let form = jacobian::JointForm {
             layout: &layout,
             in_joints: &in_joints,
             coordinates: &coordinates,
-            accelerations: &accelerations,
+            accelerations: if has_orientation { &accelerations } else { &of_balance },
             power: power_at(system, &rates_of_rates),
             reduced: &from_rates,
             unit: &unit,
@@ -195,6 +216,23 @@ impl JointSpace {
             layout,
         }
     }
+}
+
+/// The names of those ways of writing the rates' rates that lose digits which another keeps.
+fn losing_digits(
+    system: &System,
+    layout: &Layout,
+    ways: &[(String, Vec<ExprId>)],
+    keeping: &[ExprId],
+) -> Vec<String> {
+    // What turns freely is not among what is tried.
+    let is_tried = layout.links.iter().all(|link| link.orientation.is_none());
+    let scalars = layout.links.iter().flat_map(|link| &link.scalars);
+    let angles = scalars.filter(|scalar| scalar.kind.is_angle()).map(|scalar| scalar.place.x).collect();
+    let all: Vec<_> = ways.iter().flat_map(|(_, roots)| roots).chain(keeping).copied().collect();
+    let trials = Trials::draw(system, &all, &angles);
+    let loses = |roots: &[ExprId]| !is_tried || !trials.keep_digits(&system.graph, roots, keeping);
+    ways.iter().filter(|(_, roots)| loses(roots)).map(|(name, _)| name.clone()).collect()
 }
 
 fn carriages(system: &mut System, layout: &Layout, turned: carriage::Turned) -> Vec<Carriage> {

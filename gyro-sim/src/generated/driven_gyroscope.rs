@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 455 operations by relative Euler parameters, doubled; 465 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 389 operations by rotations of the bodies, doubled; 396 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 68 operations by normal form; 84 operations by recursion
-//! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 1 more compared
-//! * corrected_accelerations: 455 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * joint_accelerations: 68 operations by normal form; 84 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 105 operations by recursion on the bodies' spins; 99 operations by normal form; 3 more compared
+//! * corrected_accelerations: 455 operations by elimination in maximal coordinates; 203 operations by recursion on the bodies' spins in the bodies' frames; 9 more compared
 //! * joint_jacobian: 1406 operations by derivatives of u̇, from its roots; 1406 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,8 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 4 operations by rotations of the bodies; 4 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 0 operations by rotations of the bodies; 0 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations_at: 4 operations by recursion; 4 operations by recursion on the bodies' spins
-//! * corrected_accelerations: 4 operations by recursion in the bodies' frames; 4 operations by recursion in the global frame; 3 more compared
+//! * joint_accelerations: 4 operations by recursion; 4 operations by orthogonal motions
+//! * joint_accelerations_at: 4 operations by recursion; 4 operations by recursion on the bodies' spins; 2 more compared
+//! * corrected_accelerations: 4 operations by recursion in the bodies' frames; 4 operations by recursion in the global frame; 7 more compared
 //! * joint_jacobian: 10 operations by derivatives of u̇, from its leaves; 10 operations by derivatives of u̇, from its roots
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 762 operations by relative Euler parameters, doubled; 783 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 635 operations by rotations of the bodies, doubled; 656 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 138 operations by normal form; 366 operations by recursion
-//! * joint_accelerations_at: 176 operations by normal form; 404 operations by recursion; 1 more compared
-//! * corrected_accelerations: 321 operations by normal form in the bodies' frames; 421 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 138 operations by normal form; 285 operations by orthogonal motions; 1 more compared
+//! * joint_accelerations_at: 176 operations by normal form; 323 operations by orthogonal motions; 3 more compared
+//! * corrected_accelerations: 321 operations by normal form in the bodies' frames; 421 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 430 operations by derivatives of u̇, from its leaves; 430 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 417 operations by relative Euler parameters, doubled; 438 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 381 operations by rotations of the bodies, doubled; 381 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 23 operations by normal form; 42 operations by recursion
-//! * joint_accelerations_at: 43 operations by normal form; 62 operations by recursion; 1 more compared
-//! * corrected_accelerations: 153 operations by normal form in the bodies' frames; 155 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 23 operations by normal form; 42 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 43 operations by normal form; 62 operations by recursion; 3 more compared
+//! * corrected_accelerations: 153 operations by normal form in the bodies' frames; 155 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 68 operations by derivatives of the balance, from its leaves, normal form; 68 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

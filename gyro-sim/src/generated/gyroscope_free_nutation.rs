@@ -15,9 +15,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 331 operations by relative Euler parameters, doubled; 347 operations by relative Euler parameters; 2 more compared
 //! * project: 275 operations by relative Euler parameters, doubled; 284 operations by relative Euler parameters; 2 more compared
-//! * joint_accelerations: 19 operations by normal form; 29 operations by recursion
-//! * joint_accelerations_at: 39 operations by normal form; 49 operations by recursion; 1 more compared
-//! * corrected_accelerations: 80 operations by normal form in the bodies' frames; 80 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 19 operations by normal form; 29 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 39 operations by normal form; 49 operations by recursion; 3 more compared
+//! * corrected_accelerations: 80 operations by normal form in the bodies' frames; 80 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 55 operations by normal form of that; 56 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

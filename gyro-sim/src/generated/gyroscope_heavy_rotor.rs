@@ -12,11 +12,11 @@
 //! * left out: the work of non-conservative forces (there are none)
 //! * left out: parameters (all numbers are folded)
 //! * left out: outputs (the page asks for none)
-//! * accelerations: 413 operations by relative Euler parameters, doubled; 434 operations by rotations of the bodies, doubled; 2 more compared
+//! * accelerations: 485 operations by relative Euler parameters, doubled; 506 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 381 operations by rotations of the bodies, doubled; 381 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
-//! * joint_accelerations_at: 40 operations by normal form; 59 operations by recursion; 1 more compared
-//! * corrected_accelerations: 150 operations by normal form in the bodies' frames; 152 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 41 operations by normal form; 60 operations by recursion; 3 more compared
+//! * corrected_accelerations: 152 operations by normal form in the bodies' frames; 154 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 59 operations by derivatives of the balance, from its leaves, normal form; 59 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -30,7 +30,7 @@
 //! | gamma | γ | 116 | 178 | 0 | 294 | 6 of 15 | 1741 | 294 |
 //! | velocity_residual | Φ_r s + Φ_π' w' − ν | 84 | 113 | 0 | 197 | 0 of 15 | 701 | 197 |
 //! | applied_force | (f, n' − w̃'J'w') | 0 | 9 | 0 | 9 | 9 of 18 | 12 | 9 |
-//! | accelerations | (s̈, ẇ'), eq. (17) | 166 | 242 | 5 | 413 | 7 of 18 | 524034 | 417 |
+//! | accelerations | (s̈, ẇ'), eq. (17) | 203 | 277 | 5 | 485 | 6 of 18 | 2.8e6 | 489 |
 //! | multipliers | λ, the accelerations being known | 108 | 172 | 3 | 283 | 0 of 15 | 4499 | 283 |
 //! | project | (δr, δπ') that changes the rows as given | 144 | 232 | 5 | 381 | 1 of 18 | 474683 | 382 |
 //! | derivative | ẏ but for the accelerations: eqs. (14), (16) | 24 | 48 | 0 | 72 | 0 of 21 | 72 | 72 |
@@ -43,10 +43,10 @@
 //! | joint_derivative | ẋ but for u̇ | 0 | 0 | 0 | 0 | 0 of 3 | 0 | 0 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 291 | 78 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 14 | 25 | 1 | 40 | 0 of 3 | 242 | 41 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 56 | 93 | 1 | 150 | 6 of 18 | 2540 | 151 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 715 | 134 |
-//! | corrected_solution | both | 88 | 143 | 1 | 232 | 6 of 33 | 22234 | 233 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 | 354 | 42 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 58 | 93 | 1 | 152 | 6 of 18 | 3576 | 153 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 | 883 | 137 |
+//! | corrected_solution | both | 91 | 143 | 1 | 235 | 6 of 33 | 30998 | 236 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 14 | 44 | 1 | 59 | 28 of 42 | 178 | 59 |
 //!
 //! # Proof
@@ -504,7 +504,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeHeavyRotor<T> {
         let t17 = T::fused(
             t0,
             t15,
-            -T::fused(-(k(2.0) * (k(0.5) - (t7 + t16))), t11, t3 * t6),
+            T::fused(-t3, t6, k(2.0) * (k(0.5) - (t7 + t16)) * t11),
         );
         let t18 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t19 = inner_ring_e0 * inner_ring_e3;
@@ -826,29 +826,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeHeavyRotor<T> {
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
         let t5 = outer_ring_e3 * outer_ring_e3;
         let t6 = k(1.0) - (t5 + (t4 + t2));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e3;
-        let t11 = inner_ring_e1 * inner_ring_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e2 * inner_ring_e2;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = T::fused(
-            t12,
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = inner_ring_e2 * inner_ring_e2;
+        let t11 = inner_ring_e0 * inner_ring_e0;
+        let t12 = T::fused(inner_ring_e1, inner_ring_e1, t11);
+        let t13 = inner_ring_e3 * inner_ring_e3;
+        let t14 = k(1.0) - (t13 + (t12 + t10));
+        let t15 = T::fused(k(2.0), k(0.5) - t12, -t14);
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = T::fused(
+            t9,
             T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t20 - t19) * t18,
+            k(2.0) * (t17 - t16) * t15,
         );
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = k(2.0) * (t20 - t19);
         let t22 = T::fused(
-            k(2.0) * (t20 + t19),
-            t12,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+            T::fused(k(2.0), k(0.5) - t4, -t6),
+            t15,
+            k(2.0) * (t17 + t16) * t9,
         );
         let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t24 = rotor_e2 * rotor_e2;
@@ -862,11 +862,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeHeavyRotor<T> {
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
         let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t20 + t19) * t29);
         let t31 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
+            T::fused(k(2.0), k(0.5) - (t11 + t10), -t14),
             t26,
-            k(2.0) * (t11 - t10) * t29,
+            k(2.0) * (t8 - t7) * t29,
         );
         *out = [
             k(2.0) * (t1 + t0),
@@ -879,12 +879,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for GyroscopeHeavyRotor<T> {
                         outer_ring_e1,
                         outer_ring_e2 * outer_ring_e3,
                     ),
-                t9,
-                -t21,
+                t21,
+                -t18,
             ),
-            T::fused(k(2.0) * (t1 - t0), t9, t22),
+            T::fused(k(2.0) * (t1 - t0), t21, t22),
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
+            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t11 + t13), -t14), t30),
             T::fused(k(2.0) * (t28 + t27), t23, t31),
             rotor_wx - inner_ring_wx,
         ];
@@ -1401,61 +1401,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeHeavyRotor<T> {
         let t32 = inner_ring_e2 * inner_ring_e3;
         let t33 = k(2.0) * (t32 + t31);
         let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
-        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
+        let t35 = T::fused(t26, t33, T::fused(t16, t28, t20 * t29));
         let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
         let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
         let t38 = k(2.0) * (t22 + t21);
         let t39 = k(2.0) * (t32 - t31);
         let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
-        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
+        let t41 = T::fused(t1, t40, T::fused(t6, t38, k(2.0) * (t25 - t24) * t39));
         let t42 = T::fused(
-            t11,
             T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
-            t10 * t41,
+            t11,
+            t41 * t10,
         );
         let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
         let t44 = T::fused(
+            T::fused(t26, t40, T::fused(-t16, t38, t20 * t39)),
             t11,
-            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
             outer_ring_wy * t41,
         );
         let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
         let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
         let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
-        let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
-        let t50 = rotor_e0 * rotor_e3;
-        let t51 = rotor_e1 * rotor_e2;
-        let t52 = k(2.0) * (t51 - t50);
+        let t48 = rotor_e0 * rotor_e3;
+        let t49 = rotor_e1 * rotor_e2;
+        let t50 = k(2.0) * (t49 - t48);
+        let t51 = rotor_e0 * rotor_e0;
+        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t51));
         let t53 = rotor_e0 * rotor_e1;
         let t54 = rotor_e2 * rotor_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
-        let t57 = k(2.0) * (t54 - t53);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
-        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
-        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
-        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
+        let t56 = T::fused(t40, t55, T::fused(-t38, t50, t39 * t52));
+        let t57 = rotor_e0 * rotor_e2;
+        let t58 = rotor_e1 * rotor_e3;
+        let t59 = k(2.0) * (t58 + t57);
+        let t60 = k(2.0) * (t54 - t53);
+        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t51));
+        let t62 = T::fused(t33, t61, T::fused(-t28, t59, t29 * t60));
+        let t63 = T::fused(t33, t55, T::fused(t28, t50, t29 * t52));
+        let t64 = T::fused(t40, t61, T::fused(t38, t59, t39 * t60));
         let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
-        let t67 = k(2.0) * (t51 + t50);
-        let t68 = k(2.0) * (t59 - t58);
+        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t51));
+        let t67 = k(2.0) * (t49 + t48);
+        let t68 = k(2.0) * (t58 - t57);
         let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
         let t70 = T::fused(
-            -t47,
-            t69,
-            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+            -t69,
+            t47,
+            T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)) * t46,
         );
-        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t64);
         let t72 = T::fused(
             inner_ring_wz,
             t69,
-            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+            T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)) * t46,
         );
-        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
+        let t73 = t72 - T::fused(rotor_wz, t63, rotor_wy * t62);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
@@ -1469,8 +1469,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for GyroscopeHeavyRotor<T> {
         y[33] = -(k(0.000125) * T::fused(-t28, inner_ring_wz, t38 * t47));
         y[34] = -(k(0.000125) * T::fused(t29, inner_ring_wz, t39 * t47));
         y[35] = k(0.000125) * T::fused(t33, inner_ring_wz, t40 * t47);
-        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
-        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        y[37] = T::fused(-t71, t63 * t65, T::fused(-t73, t56 * t65, rotor_wy));
+        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t64 * t65, rotor_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for GyroscopeHeavyRotor<T> {
@@ -2153,7 +2153,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeHeavyRotor<T> {
             rotor_wy * t2,
         ];
     }
-    /// Solves eq. (17): 413 operations (166 ±, 242 ×, 5 ÷).
+    /// Solves eq. (17): 485 operations (203 ±, 277 ×, 5 ÷).
     fn accelerations(&self, _t: T, y: &Self::State, out: &mut Self::Accelerations) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -2187,64 +2187,6 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeHeavyRotor<T> {
             outer_ring_wy * outer_ring_wz,
         );
         let t4 = T::fused(
-            inner_ring_e3,
-            rotor_e3,
-            T::fused(
-                inner_ring_e2,
-                rotor_e2,
-                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
-            ),
-        );
-        let t5 = k(2.0) * t4;
-        let t6 = T::fused(
-            -inner_ring_e0,
-            rotor_e3,
-            T::fused(
-                inner_ring_e1,
-                rotor_e2,
-                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
-            ),
-        );
-        let t7 = t6 * t5;
-        let t8 = T::fused(
-            inner_ring_e2,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e3,
-                rotor_e2,
-                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
-            ),
-        );
-        let t9 = k(2.0) * t8;
-        let t10 = T::fused(
-            -inner_ring_e1,
-            rotor_e3,
-            T::fused(
-                -inner_ring_e0,
-                rotor_e2,
-                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
-            ),
-        );
-        let t11 = t10 * t9;
-        let t12 = t11 + t7;
-        let t13 = k(625000.0) * t12;
-        let t14 = t10 * t5;
-        let t15 = t6 * t9;
-        let t16 = t15 - t14;
-        let t17 = k(625000.0) * t16;
-        let t18 = t8 * t5;
-        let t19 = k(2.0) * t10;
-        let t20 = t6 * t19;
-        let t21 = t20 - t18;
-        let t22 = T::fused(-t4, t5, k(1.0));
-        let t23 = T::fused(-t6, k(2.0) * t6, t22);
-        let t24 = T::fused(-t21, t13, t23 * t17);
-        let t25 = k(1e-6)
-            + (k(156.25) + T::fused(t21, k(625000.0) * t21, t23 * (k(625000.0) * t23)));
-        let t26 = k(1.0) / t25;
-        let t27 = t26 * t24;
-        let t28 = T::fused(t24, t27, -(k(1e-6) + T::fused(t12, t13, t16 * t17)));
-        let t29 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -2253,8 +2195,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeHeavyRotor<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t30 = k(2.0) * t29;
-        let t31 = T::fused(
+        let t5 = k(2.0) * t4;
+        let t6 = T::fused(
             -outer_ring_e0,
             inner_ring_e3,
             T::fused(
@@ -2263,8 +2205,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeHeavyRotor<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t32 = t31 * t30;
-        let t33 = T::fused(
+        let t7 = t6 * t5;
+        let t8 = T::fused(
             outer_ring_e2,
             inner_ring_e3,
             T::fused(
@@ -2273,8 +2215,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeHeavyRotor<T> {
                 T::fused(-outer_ring_e0, inner_ring_e1, outer_ring_e1 * inner_ring_e0),
             ),
         );
-        let t34 = k(2.0) * t33;
-        let t35 = T::fused(
+        let t9 = k(2.0) * t8;
+        let t10 = T::fused(
             -outer_ring_e1,
             inner_ring_e3,
             T::fused(
@@ -2283,172 +2225,280 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeHeavyRotor<T> {
                 T::fused(outer_ring_e3, inner_ring_e1, outer_ring_e2 * inner_ring_e0),
             ),
         );
-        let t36 = t35 * t34;
-        let t37 = t36 - t32;
-        let t38 = T::fused(-t10, t19, t22);
-        let t39 = t20 + t18;
-        let t40 = k(625000.0) * t38;
-        let t41 = k(625000.0) * t39;
-        let t42 = T::fused(t21, t40, t23 * t41);
-        let t43 = T::fused(t42, t27, -T::fused(-t38, t13, t39 * t17));
-        let t44 = k(2.0) * t35;
-        let t45 = T::fused(-t29, t30, k(1.0));
-        let t46 = T::fused(-t35, t44, t45);
-        let t47 = T::fused(-t37, t28, t46 * t43);
-        let t48 = T::fused(
-            t42,
-            t26 * t42,
-            -(k(2e-6) + (k(156.25) + T::fused(t38, t40, t39 * t41))),
-        );
-        let t49 = T::fused(-t37, t43, t46 * t48);
-        let t50 = T::fused(-t8, t9, t22);
-        let t51 = T::fused(
-            inner_ring_wz,
-            t15 + t14,
-            T::fused(-inner_ring_wx, t50, inner_ring_wy * (t11 - t7)),
-        );
-        let t52 = rotor_wx - t51;
-        let t53 = T::fused(
-            inner_ring_wz,
-            t23,
-            -T::fused(inner_ring_wx, t16, inner_ring_wy * t39),
-        );
-        let t54 = rotor_wz + t53;
-        let t55 = T::fused(
-            inner_ring_wz,
-            t21,
-            -T::fused(-inner_ring_wx, t12, inner_ring_wy * t38),
-        );
-        let t56 = rotor_wy - t55;
-        let t57 = T::fused(t54, t54, t56 * t56) / t50;
-        let t58 = T::fused(rotor_wx, t53, rotor_wz * t51)
-            + T::fused(-t54, t52, t16 * t57);
-        let t59 = k(625000.0) * T::fused(rotor_wx, rotor_wz, -t58);
-        let t60 = T::fused(-rotor_wy, t51, rotor_wx * t55)
-            - T::fused(-t56, t52, t12 * t57);
-        let t61 = k(625000.0) * T::fused(rotor_wx, rotor_wy, t60);
-        let t62 = k(2.0) * inner_ring_e0;
-        let t63 = inner_ring_e3 * t62;
-        let t64 = k(2.0) * inner_ring_e1;
-        let t65 = inner_ring_e2 * t64;
-        let t66 = t65 - t63;
-        let t67 = k(0.000125) * t66;
-        let t68 = T::fused(-inner_ring_e0, t62, k(1.0));
-        let t69 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
-        let t70 = inner_ring_wx * inner_ring_wy;
-        let t71 = inner_ring_e2 * t62;
-        let t72 = inner_ring_e3 * t64;
-        let t73 = t72 + t71;
-        let t74 = inner_ring_wx * inner_ring_wz;
-        let t75 = T::fused(
-            t74,
-            t73,
-            T::fused(t69, T::fused(-inner_ring_e1, t64, t68), t70 * t66),
-        );
-        let t76 = k(1250000.0) * t75;
-        let t77 = k(2.0) * inner_ring_e2;
-        let t78 = T::fused(-inner_ring_e2, t77, t68);
-        let t79 = k(0.000125) * t78;
-        let t80 = inner_ring_e1 * t62;
-        let t81 = inner_ring_e3 * t77;
-        let t82 = t81 - t80;
-        let t83 = T::fused(t74, t82, -T::fused(t69, t65 + t63, t70 * t78));
-        let t84 = T::fused(k(1250000.0), t83, k(100000000000.0));
-        let t85 = t81 + t80;
-        let t86 = k(0.000125) * t85;
-        let t87 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t68);
-        let t88 = T::fused(t74, t87, -T::fused(-t69, t72 - t71, t70 * t85));
-        let t89 = k(1250000.0) * t88;
-        let t90 = T::fused(t89, t86, T::fused(-t76, t67, t84 * t79))
-            - T::fused(t21, t59, t23 * t61);
-        let t91 = T::fused(k(1e-6), t70, -t90);
-        let t92 = t26 * t91;
-        let t93 = T::fused(
-            t24,
-            t92,
-            -T::fused(
-                k(1e-6),
-                inner_ring_wy * inner_ring_wz,
-                T::fused(-t12, t59, t16 * t61),
+        let t11 = t10 * t9;
+        let t12 = t11 - t7;
+        let t13 = k(2.0) * t10;
+        let t14 = T::fused(-t4, t5, k(1.0));
+        let t15 = T::fused(-t10, t13, t14);
+        let t16 = t8 * t5;
+        let t17 = t6 * t13;
+        let t18 = t17 + t16;
+        let t19 = k(2.0) * inner_ring_e0;
+        let t20 = inner_ring_e2 * t19;
+        let t21 = k(2.0) * inner_ring_e1;
+        let t22 = inner_ring_e3 * t21;
+        let t23 = t22 + t20;
+        let t24 = k(0.000125) * t23;
+        let t25 = inner_ring_e3 * t19;
+        let t26 = inner_ring_e2 * t21;
+        let t27 = t26 - t25;
+        let t28 = k(0.000125) * t27;
+        let t29 = T::fused(t15, t24, t18 * t28);
+        let t30 = k(1250000.0) * t27;
+        let t31 = inner_ring_e1 * t19;
+        let t32 = k(2.0) * inner_ring_e2;
+        let t33 = inner_ring_e3 * t32;
+        let t34 = t33 - t31;
+        let t35 = k(0.000125) * t34;
+        let t36 = T::fused(-inner_ring_e0, t19, k(1.0));
+        let t37 = T::fused(-inner_ring_e2, t32, t36);
+        let t38 = k(0.000125) * t37;
+        let t39 = T::fused(-t15, t35, t18 * t38);
+        let t40 = k(1250000.0) * t37;
+        let t41 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t36);
+        let t42 = k(0.000125) * t41;
+        let t43 = t33 + t31;
+        let t44 = k(0.000125) * t43;
+        let t45 = T::fused(-t15, t42, t18 * t44);
+        let t46 = k(1250000.0) * t43;
+        let t47 = T::fused(
+            inner_ring_e3,
+            rotor_e3,
+            T::fused(
+                inner_ring_e2,
+                rotor_e2,
+                T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t94 = t35 * t30;
-        let t95 = t31 * t34;
-        let t96 = t33 * t30;
-        let t97 = t31 * t44;
-        let t98 = T::fused(-t31, k(2.0) * t31, t45);
-        let t99 = T::fused(
+        let t48 = k(2.0) * t47;
+        let t49 = T::fused(
+            -inner_ring_e0,
+            rotor_e3,
+            T::fused(
+                inner_ring_e1,
+                rotor_e2,
+                T::fused(-inner_ring_e2, rotor_e1, inner_ring_e3 * rotor_e0),
+            ),
+        );
+        let t50 = t49 * t48;
+        let t51 = T::fused(
+            inner_ring_e2,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e3,
+                rotor_e2,
+                T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
+            ),
+        );
+        let t52 = k(2.0) * t51;
+        let t53 = T::fused(
+            -inner_ring_e1,
+            rotor_e3,
+            T::fused(
+                -inner_ring_e0,
+                rotor_e2,
+                T::fused(inner_ring_e3, rotor_e1, inner_ring_e2 * rotor_e0),
+            ),
+        );
+        let t54 = t53 * t52;
+        let t55 = t54 + t50;
+        let t56 = k(2.0) * t53;
+        let t57 = T::fused(-t47, t48, k(1.0));
+        let t58 = T::fused(-t53, t56, t57);
+        let t59 = t51 * t48;
+        let t60 = t49 * t56;
+        let t61 = t60 - t59;
+        let t62 = T::fused(t18, t61, T::fused(t12, t55, t15 * t58));
+        let t63 = k(625000.0) * t61;
+        let t64 = t53 * t48;
+        let t65 = t49 * t52;
+        let t66 = t65 - t64;
+        let t67 = t60 + t59;
+        let t68 = T::fused(-t49, k(2.0) * t49, t57);
+        let t69 = T::fused(t18, t68, T::fused(-t12, t66, t15 * t67));
+        let t70 = k(625000.0) * t68;
+        let t71 = T::fused(t63, t62, t70 * t69)
+            + T::fused(t46, t45, T::fused(t30, t29, t40 * t39));
+        let t72 = T::fused(t44, t46, T::fused(t28, t30, t38 * t40))
+            + T::fused(t61, t63, t68 * t70);
+        let t73 = k(1.0) / (k(1e-6) + t72);
+        let t74 = t73 * T::fused(k(1e-6), t18, t71);
+        let t75 = t18 - t74;
+        let t76 = T::fused(
+            t75,
+            k(1e-6) * t75,
+            T::fused(t12, k(1e-6) * t12, t15 * (k(2e-6) * t15)),
+        );
+        let t77 = T::fused(-t28, t74, t29);
+        let t78 = T::fused(-t38, t74, t39);
+        let t79 = T::fused(-t44, t74, t45);
+        let t80 = T::fused(
+            t79,
+            k(10000000000.0) * t79,
+            T::fused(t77, k(10000000000.0) * t77, t78 * (k(10000000000.0) * t78)),
+        );
+        let t81 = T::fused(-t61, t74, t62);
+        let t82 = T::fused(-t68, t74, t69);
+        let t83 = T::fused(t81, k(625000.0) * t81, t82 * (k(625000.0) * t82)) + t80
+            + (k(1e-6) + t76);
+        let t84 = t10 * t5;
+        let t85 = t6 * t9;
+        let t86 = t85 - t84;
+        let t87 = T::fused(-t6, k(2.0) * t6, t14);
+        let t88 = T::fused(
             outer_ring_wz,
-            t98,
-            -T::fused(outer_ring_wx, t95 - t94, outer_ring_wy * (t97 + t96)),
+            t87,
+            -T::fused(outer_ring_wx, t86, outer_ring_wy * t18),
         );
-        let t100 = inner_ring_wz + t99;
-        let t101 = t36 + t32;
-        let t102 = t97 - t96;
-        let t103 = T::fused(
+        let t89 = inner_ring_wz + t88;
+        let t90 = t11 + t7;
+        let t91 = t17 - t16;
+        let t92 = T::fused(
             outer_ring_wz,
-            t102,
-            -T::fused(-outer_ring_wx, t101, outer_ring_wy * t46),
+            t91,
+            -T::fused(-outer_ring_wx, t90, outer_ring_wy * t15),
         );
-        let t104 = inner_ring_wy - t103;
-        let t105 = T::fused(-t33, t34, t45);
-        let t106 = t95 + t94;
-        let t107 = T::fused(
+        let t93 = inner_ring_wy - t92;
+        let t94 = T::fused(-t8, t9, t14);
+        let t95 = t85 + t84;
+        let t96 = T::fused(
             outer_ring_wz,
-            t106,
-            T::fused(-outer_ring_wx, t105, outer_ring_wy * t37),
+            t95,
+            T::fused(-outer_ring_wx, t94, outer_ring_wy * t12),
         );
-        let t108 = inner_ring_wx - t107;
-        let t109 = T::fused(t104, t104, t108 * t108) / t98;
-        let t110 = T::fused(inner_ring_wz, t103, inner_ring_wy * t99)
-            - T::fused(-t104, t100, t102 * t109);
-        let t111 = T::fused(inner_ring_wx, t99, inner_ring_wz * t107)
-            - T::fused(-t108, t100, t106 * t109);
-        let t112 = k(0.000125) * t73;
-        let t113 = k(0.000125) * t82;
-        let t114 = k(0.000125) * t87;
-        let t115 = T::fused(t89, t114, T::fused(t76, t112, t84 * t113))
-            + T::fused(t38, t59, t39 * t61);
-        let t116 = T::fused(
-            -t37,
-            T::fused(-t28, t110, t43 * t111) + t93,
-            t46 * (T::fused(-t43, t110, t48 * t111) + T::fused(t42, t92, -t115)),
-        );
-        let t117 = T::fused(
-            -t37,
-            T::fused(-t105, t28, t101 * t43),
-            t46 * T::fused(-t105, t43, t101 * t48),
-        );
-        let t118 = T::fused(
+        let t97 = inner_ring_wx - t96;
+        let t98 = T::fused(t93, t93, t97 * t97) / t87;
+        let t99 = T::fused(inner_ring_wz, t92, inner_ring_wy * t88)
+            - T::fused(-t93, t89, t91 * t98);
+        let t100 = t94 * t3;
+        let t101 = T::fused(
             -T::fused(outer_ring_e3, t1, outer_ring_e2 * (k(2.0) * outer_ring_e1)),
             t2,
             outer_ring_wx * outer_ring_wy,
         );
-        let t119 = T::fused(-t3, t117, t118 * T::fused(t106, t47, t102 * t49))
-            + T::fused(k(1e-6), outer_ring_wx * outer_ring_wz, -t116);
-        let t120 = t119 / (k(1e-6) - T::fused(-t37, t47, t46 * t49));
-        let t121 = t110 + T::fused(t106, t118, -T::fused(-t105, t3, t37 * t120));
-        let t122 = t111 - T::fused(t102, t118, T::fused(-t101, t3, t46 * t120));
-        let t123 = t26 * (t91 + T::fused(-t24, t121, t42 * t122));
+        let t102 = t95 * t101;
+        let t103 = t102 + t100 + t99;
+        let t104 = T::fused(inner_ring_wx, t88, inner_ring_wz * t96)
+            - T::fused(-t97, t89, t95 * t98);
+        let t105 = t90 * t3;
+        let t106 = t91 * t101;
+        let t107 = t106 - t105 - t104;
+        let t108 = T::fused(
+            t12,
+            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, -t103),
+            t15 * (k(2e-6) * t107),
+        );
+        let t109 = t86 * t3;
+        let t110 = t87 * t101;
+        let t111 = t110 + t109;
+        let t112 = inner_ring_wx * inner_ring_wy;
+        let t113 = t112 - t111;
+        let t114 = T::fused(inner_ring_wy, inner_ring_wy, inner_ring_wz * inner_ring_wz);
+        let t115 = inner_ring_wx * inner_ring_wz;
+        let t116 = T::fused(
+            t115,
+            t23,
+            T::fused(t114, T::fused(-inner_ring_e1, t21, t36), t112 * t27),
+        );
+        let t117 = k(0.000125) * t116;
+        let t118 = k(10000000000.0) * (t117 - T::fused(t24, t107, t28 * t111));
+        let t119 = k(0.000125)
+            * T::fused(t115, t34, -T::fused(t114, t26 + t25, t112 * t37));
+        let t120 = T::fused(
+            k(10000000000.0),
+            t119 + T::fused(-t35, t107, t38 * t111),
+            k(100000000000.0),
+        );
+        let t121 = k(0.000125)
+            * T::fused(t115, t41, -T::fused(-t114, t22 - t20, t112 * t43));
+        let t122 = k(10000000000.0) * (t121 + T::fused(-t42, t107, t44 * t111));
+        let t123 = T::fused(-t51, t52, t57);
+        let t124 = t54 - t50;
+        let t125 = t65 + t64;
+        let t126 = T::fused(
+            inner_ring_wz,
+            t125,
+            T::fused(-inner_ring_wx, t123, inner_ring_wy * t124),
+        );
+        let t127 = rotor_wx - t126;
+        let t128 = T::fused(
+            inner_ring_wz,
+            t68,
+            -T::fused(inner_ring_wx, t66, inner_ring_wy * t67),
+        );
+        let t129 = rotor_wz + t128;
+        let t130 = T::fused(
+            inner_ring_wz,
+            t61,
+            -T::fused(-inner_ring_wx, t55, inner_ring_wy * t58),
+        );
+        let t131 = rotor_wy - t130;
+        let t132 = T::fused(t129, t129, t131 * t131) / t123;
+        let t133 = T::fused(rotor_wx, t128, rotor_wz * t126)
+            + T::fused(-t129, t127, t66 * t132);
+        let t134 = T::fused(
+            rotor_wx,
+            rotor_wz,
+            -(T::fused(t61, t111, T::fused(-t55, t103, t58 * t107)) + t133),
+        );
+        let t135 = k(625000.0) * t134;
+        let t136 = T::fused(-rotor_wy, t126, rotor_wx * t130)
+            - T::fused(-t131, t127, t55 * t132);
+        let t137 = T::fused(
+            rotor_wx,
+            rotor_wy,
+            -(T::fused(t68, t111, T::fused(t66, t103, t67 * t107)) - t136),
+        );
+        let t138 = k(625000.0) * t137;
+        let t139 = T::fused(t61, t135, t68 * t138)
+            - T::fused(t44, t122, T::fused(-t28, t118, t38 * t120));
+        let t140 = T::fused(k(1e-6), t113, t139) * t73;
+        let t141 = T::fused(
+            k(1e-6),
+            outer_ring_wx * outer_ring_wz,
+            T::fused(k(1e-6) * (t113 - t140), t75, -t108),
+        );
+        let t142 = T::fused(
+            -T::fused(-t30, t140, t118),
+            t77,
+            T::fused(t40, t140, t120) * t78,
+        );
+        let t143 = T::fused(
+            T::fused(-t63, t140, t135),
+            t81,
+            T::fused(-t70, t140, t138) * t82,
+        );
+        let t144 = (t143 - T::fused(T::fused(t46, t140, t122), t79, t142) + t141) / t83;
+        let t145 = t99 + (t102 + T::fused(-t12, t144, t100));
+        let t146 = t104 - (t106 - T::fused(-t15, t144, t105));
+        let t147 = T::fused(-t74, t144, t140);
+        let t148 = t110 + T::fused(t18, t144, t109) + t147;
+        let t149 = T::fused(
+            t144,
+            T::fused(t18, t125, -T::fused(t12, t123, t15 * t124)),
+            T::fused(t125, t111, -T::fused(-t123, t103, t124 * t107)),
+        );
+        let t150 = T::fused(t125, t148, T::fused(t123, t145, t124 * t146))
+            - T::fused(t125, t147, t149);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t3,
-            -t120,
-            t118,
+            -t144,
+            t101,
             k(0.0),
             k(0.0),
             k(0.0),
-            t121,
-            -t122,
-            -t123,
-            T::fused(k(0.000125), t75, -T::fused(-t112, t122, t67 * t123)),
-            T::fused(k(0.000125), t83, T::fused(t113, t122, t79 * t123)),
-            -T::fused(k(0.000125), t88, T::fused(t114, t122, t86 * t123)),
-            k(0.0),
-            -(t58 + T::fused(t21, t123, -T::fused(t12, t121, t38 * t122))),
-            T::fused(t23, t123, -T::fused(-t16, t121, t39 * t122)) - t60,
+            t145,
+            -t146,
+            -t148,
+            t117 - T::fused(-t24, t146, t28 * t148),
+            t119 + T::fused(t35, t146, t38 * t148),
+            -(t121 + T::fused(t42, t146, t44 * t148)),
+            -t150,
+            -(t133 + T::fused(t61, t148, -T::fused(t55, t145, t58 * t146))),
+            T::fused(t68, t148, -T::fused(-t66, t145, t67 * t146)) - t136,
         ];
     }
     /// Writes λ: 283 operations (108 ±, 172 ×, 3 ÷).
@@ -2630,8 +2680,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Equations for GyroscopeHeavyRotor<T> {
         let t86 = t79 + t77;
         let t87 = T::fused(t86, t25, -T::fused(t84, t13, t85 * t19));
         let t88 = T::fused(t86, t57, T::fused(t84, t52, t85 * t54));
-        let t89 = k(1.0) / T::fused(-t87, t66, t88 * t51);
-        let t90 = k(1.0) / T::fused(-t67, t60, t69 * t58);
+        let t89 = k(1.0) / T::fused(-t66, t87, t51 * t88);
+        let t90 = k(1.0) / T::fused(-t60, t67, t69 * t58);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
@@ -2701,160 +2751,160 @@ impl<T: gyro_sim::Scalar> gyro_sim::Projection for GyroscopeHeavyRotor<T> {
         let t10 = T::fused(row3, t4 * t9, row4 * (t7 * t9));
         let t11 = k(2.0) * rotor_e0;
         let t12 = k(2.0) * rotor_e1;
-        let t13 = T::fused(rotor_e2, t11, rotor_e3 * t12);
-        let t14 = k(2.0) * inner_ring_e0;
-        let t15 = inner_ring_e3 * t14;
-        let t16 = k(2.0) * inner_ring_e1;
-        let t17 = inner_ring_e2 * t16;
-        let t18 = t17 - t15;
-        let t19 = rotor_e1 * t11;
-        let t20 = k(2.0) * rotor_e2;
-        let t21 = rotor_e3 * t20;
-        let t22 = t21 - t19;
-        let t23 = k(2.0) * inner_ring_e2;
-        let t24 = T::fused(-inner_ring_e0, t14, k(1.0));
-        let t25 = T::fused(-inner_ring_e2, t23, t24);
-        let t26 = T::fused(-rotor_e0, t11, k(1.0));
-        let t27 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t26);
-        let t28 = inner_ring_e1 * t14;
-        let t29 = inner_ring_e3 * t23;
-        let t30 = t29 + t28;
-        let t31 = T::fused(t30, t27, T::fused(-t18, t13, t25 * t22));
-        let t32 = T::fused(-rotor_e3, t11, rotor_e2 * t12);
-        let t33 = inner_ring_e2 * t14;
-        let t34 = inner_ring_e3 * t16;
-        let t35 = t34 + t33;
-        let t36 = T::fused(-rotor_e2, t20, t26);
-        let t37 = t29 - t28;
-        let t38 = t21 + t19;
-        let t39 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t24);
-        let t40 = T::fused(t39, t38, T::fused(-t35, t32, t37 * t36));
-        let t41 = T::fused(t30, t38, T::fused(t18, t32, t25 * t36));
-        let t42 = T::fused(t39, t27, T::fused(t35, t13, t37 * t22));
-        let t43 = k(1.0) / T::fused(-t40, t31, t42 * t41);
-        let t44 = T::fused(row13, t40 * t43, row14 * (t41 * t43));
-        let t45 = k(625000.0) * t44;
-        let t46 = T::fused(-inner_ring_e1, t16, t24);
-        let t47 = t17 + t15;
-        let t48 = t34 - t33;
-        let t49 = T::fused(t48, t38, -T::fused(t46, t32, t47 * t36));
-        let t50 = T::fused(row13, t42 * t43, row14 * (t31 * t43));
-        let t51 = k(625000.0) * t50;
-        let t52 = T::fused(t48, t27, -T::fused(-t46, t13, t47 * t22));
-        let t53 = k(10000000000.0) * row10;
-        let t54 = k(0.000125) * t18;
-        let t55 = k(10000000000.0) * row11;
-        let t56 = k(0.000125) * t25;
-        let t57 = k(10000000000.0) * row12;
-        let t58 = k(0.000125) * t30;
-        let t59 = T::fused(t58, t57, -T::fused(-t54, t53, t56 * t55))
-            + T::fused(t40, t45, t42 * t51);
-        let t60 = k(1e-6)
-            + (k(156.25) + T::fused(t40, k(625000.0) * t40, t42 * (k(625000.0) * t42)));
-        let t61 = k(1.0) / t60;
-        let t62 = t61 * t59;
-        let t63 = k(625000.0) * t49;
-        let t64 = k(625000.0) * t52;
-        let t65 = T::fused(t40, t63, t42 * t64);
-        let t66 = k(1250000.0) * t18;
-        let t67 = t61 * t66;
-        let t68 = t65 * t67;
-        let t69 = k(1250000.0) * t25;
-        let t70 = t61 * t69;
-        let t71 = t65 * t70;
-        let t72 = k(1250000.0) * t30;
-        let t73 = t61 * t72;
-        let t74 = t65 * t73;
-        let t75 = outer_ring_e3 * t0;
-        let t76 = outer_ring_e2 * t3;
-        let t77 = t76 + t75;
-        let t78 = T::fused(t7, t30, -T::fused(t4, t18, t77 * t25));
-        let t79 = t76 - t75;
-        let t80 = k(2.0) * outer_ring_e2;
-        let t81 = T::fused(-outer_ring_e2, t80, t1);
-        let t82 = outer_ring_e1 * t0;
-        let t83 = outer_ring_e3 * t80;
-        let t84 = t83 + t82;
-        let t85 = T::fused(t84, t48, -T::fused(t79, t46, t81 * t47));
-        let t86 = T::fused(t7, t48, T::fused(t4, t46, t77 * t47));
-        let t87 = T::fused(t84, t30, T::fused(t79, t18, t81 * t25));
-        let t88 = k(1.0) / T::fused(-t85, t78, t87 * t86);
-        let t89 = T::fused(-row8, t85 * t88, row9 * (t86 * t88));
-        let t90 = t61 * t65;
-        let t91 = T::fused(t65, t90, -(k(1e-6) + T::fused(t49, t63, t52 * t64)));
-        let t92 = T::fused(-row8, t87 * t88, row9 * (t78 * t88));
-        let t93 = k(625000.0) * t41;
-        let t94 = k(625000.0) * t31;
-        let t95 = T::fused(t40, t93, t42 * t94);
-        let t96 = T::fused(t95, t90, -T::fused(t41, t63, t31 * t64));
-        let t97 = T::fused(t91, t89, t96 * t92)
-            + T::fused(row7, t74, -T::fused(-row5, t68, row6 * t71));
-        let t98 = k(0.000125) * t35;
-        let t99 = k(0.000125) * t37;
-        let t100 = k(0.000125) * t39;
-        let t101 = T::fused(t100, t57, -T::fused(t98, t53, t99 * t55))
-            - T::fused(t41, t45, t31 * t51);
-        let t102 = T::fused(-k(1250000.0), t35, t95 * t67);
-        let t103 = T::fused(k(1250000.0), t37, t95 * t70);
-        let t104 = T::fused(k(1250000.0), t39, t95 * t73);
-        let t105 = T::fused(
-            t95,
-            t61 * t95,
-            -(k(2e-6) + (k(156.25) + T::fused(t41, t93, t31 * t94))),
+        let t13 = T::fused(-rotor_e3, t11, rotor_e2 * t12);
+        let t14 = k(2.0) * inner_ring_e1;
+        let t15 = k(2.0) * inner_ring_e0;
+        let t16 = T::fused(-inner_ring_e0, t15, k(1.0));
+        let t17 = T::fused(-inner_ring_e1, t14, t16);
+        let t18 = k(2.0) * rotor_e2;
+        let t19 = T::fused(-rotor_e0, t11, k(1.0));
+        let t20 = T::fused(-rotor_e2, t18, t19);
+        let t21 = inner_ring_e3 * t15;
+        let t22 = inner_ring_e2 * t14;
+        let t23 = t22 + t21;
+        let t24 = rotor_e1 * t11;
+        let t25 = rotor_e3 * t18;
+        let t26 = t25 + t24;
+        let t27 = inner_ring_e2 * t15;
+        let t28 = inner_ring_e3 * t14;
+        let t29 = t28 - t27;
+        let t30 = T::fused(t29, t26, -T::fused(t17, t13, t23 * t20));
+        let t31 = k(625000.0) * t30;
+        let t32 = T::fused(rotor_e2, t11, rotor_e3 * t12);
+        let t33 = t25 - t24;
+        let t34 = T::fused(-rotor_e3, k(2.0) * rotor_e3, t19);
+        let t35 = T::fused(t29, t34, -T::fused(-t17, t32, t23 * t33));
+        let t36 = k(625000.0) * t35;
+        let t37 = t28 + t27;
+        let t38 = inner_ring_e1 * t15;
+        let t39 = k(2.0) * inner_ring_e2;
+        let t40 = inner_ring_e3 * t39;
+        let t41 = t40 - t38;
+        let t42 = T::fused(-inner_ring_e3, k(2.0) * inner_ring_e3, t16);
+        let t43 = T::fused(t42, t26, T::fused(-t37, t13, t41 * t20));
+        let t44 = T::fused(t42, t34, T::fused(t37, t32, t41 * t33));
+        let t45 = T::fused(t43, t31, t44 * t36);
+        let t46 = k(1e-6)
+            + (k(156.25) + T::fused(t43, k(625000.0) * t43, t44 * (k(625000.0) * t44)));
+        let t47 = k(1.0) / t46;
+        let t48 = t47 * t45;
+        let t49 = T::fused(t45, t48, -(k(1e-6) + T::fused(t30, t31, t35 * t36)));
+        let t50 = outer_ring_e3 * t0;
+        let t51 = outer_ring_e2 * t3;
+        let t52 = t51 - t50;
+        let t53 = k(2.0) * outer_ring_e2;
+        let t54 = T::fused(-outer_ring_e2, t53, t1);
+        let t55 = outer_ring_e1 * t0;
+        let t56 = outer_ring_e3 * t53;
+        let t57 = t56 + t55;
+        let t58 = T::fused(t57, t29, -T::fused(t52, t17, t54 * t23));
+        let t59 = t22 - t21;
+        let t60 = T::fused(-inner_ring_e2, t39, t16);
+        let t61 = t40 + t38;
+        let t62 = T::fused(t61, t26, T::fused(t59, t13, t60 * t20));
+        let t63 = T::fused(t61, t34, T::fused(-t59, t32, t60 * t33));
+        let t64 = k(625000.0) * t62;
+        let t65 = k(625000.0) * t63;
+        let t66 = T::fused(t43, t64, t44 * t65);
+        let t67 = T::fused(t66, t48, -T::fused(t62, t31, t63 * t36));
+        let t68 = T::fused(t57, t61, T::fused(t52, t59, t54 * t60));
+        let t69 = T::fused(t58, t49, t68 * t67);
+        let t70 = T::fused(
+            t66,
+            t47 * t66,
+            -(k(2e-6) + (k(156.25) + T::fused(t62, t64, t63 * t65))),
         );
-        let t106 = T::fused(t96, t89, t105 * t92)
-            + T::fused(row7, t104, -T::fused(-row5, t102, row6 * t103));
-        let t107 = T::fused(
-            t85,
-            t97 + T::fused(t65, t62, -T::fused(t49, t45, t52 * t51)),
-            t87 * (t106 + T::fused(t95, t62, t101)),
-        );
-        let t108 = T::fused(
-            -row0,
-            T::fused(t85, t68, t87 * t102),
-            row1 * T::fused(t85, t71, t87 * t103),
-        );
+        let t71 = T::fused(t58, t67, t68 * t70);
+        let t72 = k(1.0) / T::fused(-t63, t43, t44 * t62);
+        let t73 = T::fused(row13, t43 * t72, row14 * (t62 * t72));
+        let t74 = k(625000.0) * t73;
+        let t75 = T::fused(row13, t44 * t72, row14 * (t63 * t72));
+        let t76 = k(625000.0) * t75;
+        let t77 = k(10000000000.0) * row10;
+        let t78 = k(0.000125) * t59;
+        let t79 = k(10000000000.0) * row11;
+        let t80 = k(0.000125) * t60;
+        let t81 = k(10000000000.0) * row12;
+        let t82 = k(0.000125) * t61;
+        let t83 = T::fused(t82, t81, -T::fused(-t78, t77, t80 * t79))
+            + T::fused(t43, t74, t44 * t76);
+        let t84 = t47 * t83;
+        let t85 = k(1250000.0) * t59;
+        let t86 = t85 * t47;
+        let t87 = t45 * t86;
+        let t88 = k(1250000.0) * t60;
+        let t89 = t88 * t47;
+        let t90 = t45 * t89;
+        let t91 = k(1250000.0) * t61;
+        let t92 = t91 * t47;
+        let t93 = t45 * t92;
+        let t94 = t51 + t50;
+        let t95 = T::fused(t7, t61, -T::fused(t4, t59, t94 * t60));
+        let t96 = T::fused(t7, t29, T::fused(t4, t17, t94 * t23));
+        let t97 = k(1.0) / T::fused(-t95, t58, t96 * t68);
+        let t98 = T::fused(-row8, t58 * t97, row9 * (t96 * t97));
+        let t99 = T::fused(-row8, t68 * t97, row9 * (t95 * t97));
+        let t100 = T::fused(t49, t98, t67 * t99)
+            + T::fused(row7, t93, -T::fused(-row5, t87, row6 * t90));
+        let t101 = k(0.000125) * t37;
+        let t102 = k(0.000125) * t41;
+        let t103 = k(0.000125) * t42;
+        let t104 = T::fused(t103, t81, -T::fused(t101, t77, t102 * t79))
+            - T::fused(t62, t74, t63 * t76);
+        let t105 = T::fused(-k(1250000.0), t37, t66 * t86);
+        let t106 = T::fused(k(1250000.0), t41, t66 * t89);
+        let t107 = T::fused(k(1250000.0), t42, t66 * t92);
+        let t108 = T::fused(t67, t98, t70 * t99)
+            + T::fused(row7, t107, -T::fused(-row5, t105, row6 * t106));
         let t109 = T::fused(
-            t85,
-            T::fused(t91, t86, t96 * t78),
-            t87 * T::fused(t96, t86, t105 * t78),
+            t58,
+            t100 + T::fused(t45, t84, -T::fused(t30, t74, t35 * t76)),
+            t68 * (t108 + T::fused(t66, t84, t104)),
         );
-        let t110 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
-        let t111 = t83 - t82;
-        let t112 = T::fused(t2, t48, -T::fused(-t8, t46, t111 * t47));
-        let t113 = T::fused(t85, t91, t87 * t96);
-        let t114 = T::fused(t2, t30, T::fused(-t8, t18, t111 * t25));
-        let t115 = T::fused(t96, t85, t105 * t87);
-        let t116 = T::fused(t109, t10, T::fused(t113, t112, t115 * t114) * t110)
-            - T::fused(row2, T::fused(t85, t74, t87 * t104), -t108);
-        let t117 = (t116 - t107) / (k(1e-6) - T::fused(t85, t113, t87 * t115));
+        let t110 = T::fused(
+            -row0,
+            T::fused(t58, t87, t68 * t105),
+            row1 * T::fused(t58, t90, t68 * t106),
+        );
+        let t111 = T::fused(
+            t58,
+            T::fused(t96, t49, t95 * t67),
+            t68 * T::fused(t96, t67, t95 * t70),
+        );
+        let t112 = t56 - t55;
+        let t113 = T::fused(t2, t29, -T::fused(-t8, t17, t112 * t23));
+        let t114 = T::fused(t2, t61, T::fused(-t8, t59, t112 * t60));
+        let t115 = T::fused(row3, t8 * t9, row4 * (t2 * t9));
+        let t116 = T::fused(t10, t111, t115 * T::fused(t113, t69, t114 * t71))
+            - T::fused(row2, T::fused(t58, t93, t68 * t107), -t110);
+        let t117 = (t116 - t109) / (k(1e-6) - T::fused(t58, t69, t68 * t71));
         let t118 = row0 + row5;
         let t119 = row1 + row6;
         let t120 = row2 + row7;
-        let t121 = t89 - T::fused(t112, t110, T::fused(t86, t10, t85 * t117));
-        let t122 = t92 - T::fused(t114, t110, T::fused(t78, t10, t87 * t117));
-        let t123 = T::fused(t65, t121, t95 * t122)
-            + T::fused(t120, t72, -T::fused(-t118, t66, t119 * t69));
-        let t124 = t61 * (t59 + t123);
+        let t121 = t98 - T::fused(t113, t115, T::fused(t96, t10, t58 * t117));
+        let t122 = t99 - T::fused(t114, t115, T::fused(t95, t10, t68 * t117));
+        let t123 = T::fused(t45, t121, t66 * t122)
+            + T::fused(t91, t120, -T::fused(-t85, t118, t88 * t119));
+        let t124 = t47 * (t83 + t123);
         *out = [
             row0,
             row1,
             row2,
             t10,
             t117,
-            -t110,
+            -t115,
             t118,
             t119,
             t120,
             -t121,
             -t122,
             -t124,
-            row10 + (t118 - T::fused(-t98, t122, t54 * t124)),
-            row11 + (t119 + T::fused(t99, t122, t56 * t124)),
-            row12 + (t120 - T::fused(t100, t122, t58 * t124)),
+            row10 + (t118 - T::fused(-t101, t122, t78 * t124)),
+            row11 + (t119 + T::fused(t102, t122, t80 * t124)),
+            row12 + (t120 - T::fused(t103, t122, t82 * t124)),
             k(0.0),
-            T::fused(t40, t124, -T::fused(t49, t121, t41 * t122)) - t44,
-            t50 - T::fused(t42, t124, -T::fused(t52, t121, t31 * t122)),
+            T::fused(t43, t124, -T::fused(t30, t121, t62 * t122)) - t73,
+            t75 - T::fused(t44, t124, -T::fused(t35, t121, t63 * t122)),
         ];
     }
 }
@@ -3028,39 +3078,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
         let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
         let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
         let t12 = x1.sin();
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
-        let t25 = outer_ring_e0 * outer_ring_e3;
-        let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = T::fused(
-            t18,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t26 - t25) * t24,
-        );
-        let t28 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
+        let t13 = inner_ring_e0 * inner_ring_e3;
+        let t14 = inner_ring_e1 * inner_ring_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = inner_ring_e2 * inner_ring_e2;
+        let t17 = inner_ring_e0 * inner_ring_e0;
+        let t18 = T::fused(inner_ring_e1, inner_ring_e1, t17);
+        let t19 = inner_ring_e3 * inner_ring_e3;
+        let t20 = k(1.0) - (t19 + (t18 + t16));
+        let t21 = T::fused(k(2.0), k(0.5) - t18, -t20);
+        let t22 = outer_ring_e0 * outer_ring_e3;
+        let t23 = outer_ring_e1 * outer_ring_e2;
+        let t24 = T::fused(
             t15,
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            k(2.0) * (t23 - t22) * t21,
+        );
+        let t25 = inner_ring_e0 * inner_ring_e2;
+        let t26 = inner_ring_e1 * inner_ring_e3;
+        let t27 = k(2.0) * (t26 - t25);
+        let t28 = T::fused(
+            k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
             t27,
+            -t24,
         );
         let t29 = x1.cos();
         let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t18,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+            T::fused(k(2.0), k(0.5) - t7, -t9),
+            t21,
+            k(2.0) * (t23 + t22) * t15,
         );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
-        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
+        let t31 = T::fused(k(2.0) * (t2 - t1), t27, t30);
+        let t32 = T::fused(-t31, t12, t28 * t29).atan2(T::fused(t28, t12, t31 * t29));
         let t33 = x2.sin();
         let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t35 = rotor_e2 * rotor_e2;
@@ -3074,13 +3124,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
         let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
-        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
+        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t26 + t25) * t40);
+        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t17 + t19), -t20), t41);
         let t43 = x2.cos();
         let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
+            T::fused(k(2.0), k(0.5) - (t17 + t16), -t20),
             t37,
-            k(2.0) * (t17 - t16) * t40,
+            k(2.0) * (t14 - t13) * t40,
         );
         let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
         let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
@@ -3091,7 +3141,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
         x[4] = inner_ring_wz - outer_ring_wz;
         x[5] = rotor_wx - inner_ring_wx;
     }
-    /// Writes u̇ at a state that satisfies the constraints: 40 operations (14 ±, 25 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 41 operations (15 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3116,11 +3166,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(-t0, t1, k(1.0));
-        let t3 = k(1250000.0) * t2;
-        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
-        let t5 = T::fused(
+        let t1 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3129,24 +3175,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t6 = t5 * t1;
-        let t7 = outer_ring_wy * t6;
-        let t8 = inner_ring_wx - rotor_wx;
-        let t9 = T::fused(-k(0.0002500000016), t7, t8) * t4
+        let t2 = (t1 + t0) * (t1 - t0);
+        let t3 = k(1250000.0) * t2;
+        let t4 = (outer_ring_wz - inner_ring_wz) * t3;
+        let t5 = t1 * (k(2.0) * t0);
+        let t6 = outer_ring_wy * t5;
+        let t7 = inner_ring_wx - rotor_wx;
+        let t8 = T::fused(-k(0.0002500000016), t6, t7) * t4
             / T::fused(k(625156.250001), t2 * t2, k(2e-6));
         *out = [
-            -t9,
+            -t8,
             -(k(1.5996000999724475e-6)
                 * (t3
                     * T::fused(
                         outer_ring_wy,
-                        T::fused(k(0.4998749999992), t7, t8),
+                        T::fused(k(0.4998749999992), t6, t7),
                         k(10.0),
                     ))),
-            T::fused(-t6, t9, k(8e-7) * (outer_ring_wy * t4)),
+            T::fused(-t5, t8, k(8e-7) * (outer_ring_wy * t4)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 150 operations (56 ±, 93 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 152 operations (58 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3185,12 +3234,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = k(1250000.0) * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3199,22 +3243,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t2;
-        let t9 = outer_ring_wy * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(-k(0.0002500000016), t9, t10) * t6
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = k(1250000.0) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = t2 * (k(2.0) * t1);
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = T::fused(-k(0.0002500000016), t8, t9) * t6
             / T::fused(k(625156.250001), t3 * t3, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t8 * t11;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
-        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
-        let t16 = T::fused(
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t7 * t10;
+        let t13 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t12));
+        let t14 = T::fused(inner_ring_wx, t5, -T::fused(t3, t10, t0 * t7));
+        let t15 = T::fused(
             -k(1.5996000999724475e-6),
-            t4 * T::fused(outer_ring_wy, T::fused(k(0.4998749999992), t9, t10), k(10.0)),
-            t12,
+            t4 * T::fused(outer_ring_wy, T::fused(k(0.4998749999992), t8, t9), k(10.0)),
+            t11,
         );
-        let t17 = k(0.000125) * t16;
-        let t18 = T::fused(
+        let t16 = k(0.000125) * t15;
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3223,10 +3271,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t18, t19, k(1.0));
-        let t21 = k(0.000125) * t15;
-        let t22 = T::fused(
+        let t18 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3235,54 +3280,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
+        let t19 = (t18 + t17) * (t18 - t17);
+        let t20 = k(0.000125) * t14;
+        let t21 = t18 * (k(2.0) * t17);
+        let t22 = k(0.000125) * inner_ring_wy;
+        let t23 = inner_ring_wx * t22;
+        let t24 = k(0.000125) * inner_ring_wz;
         let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(t20, t17, t23 * t21);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = T::fused(
-            -(k(2.0) * (t30 - t29)),
-            t28,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
+        let t26 = T::fused(-t23, t19, t25 * t21) - T::fused(t19, t16, t21 * t20);
+        let t27 = rotor_e0 * rotor_e3;
+        let t28 = rotor_e1 * rotor_e2;
+        let t29 = T::fused(inner_ring_wz, t24, inner_ring_wy * t22);
+        let t30 = rotor_e0 * rotor_e0;
+        let t31 = T::fused(
+            -(k(2.0) * (t28 - t27)),
+            t26,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t30)) * t29,
         );
-        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(-t23, t17, t20 * t21);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
-            t28,
-            k(2.0) * (t30 + t29) * t31,
+        let t32 = T::fused(t23, t21, t25 * t19) - T::fused(-t21, t16, t19 * t20);
+        let t33 = rotor_e0 * rotor_e2;
+        let t34 = rotor_e1 * rotor_e3;
+        let t35 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t30))),
+            t26,
+            k(2.0) * (t28 + t27) * t29,
         );
-        let t38 = rotor_e0 * rotor_e1;
-        let t39 = rotor_e2 * rotor_e3;
-        let t40 = T::fused(k(2.0) * (t39 + t38), t28, k(2.0) * (t36 - t35) * t31);
+        let t36 = rotor_e0 * rotor_e1;
+        let t37 = rotor_e2 * rotor_e3;
+        let t38 = T::fused(k(2.0) * (t37 + t36), t26, k(2.0) * (t34 - t33) * t29);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t11,
-            t12,
+            -t10,
+            t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t13,
+            t14,
             t15,
-            t16,
-            T::fused(k(2.0) * (t36 + t35), t34, t33),
-            T::fused(k(2.0) * (t39 - t38), t34, -t37),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)), t34, t40),
-            -(T::fused(-k(8e-7), outer_ring_wy * t6, t13) + t14),
-            -T::fused(rotor_wz, t10, T::fused(-t20, t15, t23 * t16)),
-            T::fused(rotor_wy, t10, T::fused(t23, t15, t20 * t16)),
+            T::fused(k(2.0) * (t34 + t33), t32, t31),
+            T::fused(k(2.0) * (t37 - t36), t32, -t35),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t30)), t32, t38),
+            -(T::fused(-k(8e-7), outer_ring_wy * t6, t12) + t13),
+            -T::fused(rotor_wz, t9, T::fused(-t19, t14, t21 * t15)),
+            T::fused(rotor_wy, t9, T::fused(t21, t14, t19 * t15)),
         ];
     }
-    /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
+    /// Writes λ: 137 operations (57 ±, 80 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3348,15 +3395,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = (t8 + t7) * (t8 - t7);
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
         let t12 = T::fused(
-            t0,
             k(0.00025)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3),
-            t2 * (k(0.00025) * (t11 - t10)),
+            t0,
+            k(0.00025) * (t11 - t10) * t2,
         );
         let t13 = inner_ring_e0 * inner_ring_e0;
         let t14 = T::fused(
@@ -3368,10 +3423,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t15 = k(2.0) * t14;
-        let t16 = T::fused(-t14, t15, k(1.0));
-        let t17 = k(625000.0) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t18 = T::fused(
+        let t15 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3380,67 +3432,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t19 = t18 * t15;
-        let t20 = k(625000.0) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t21 = T::fused(-t17, t16, t20 * t19);
-        let t22 = t21
+        let t16 = (t15 + t14) * (t15 - t14);
+        let t17 = k(625000.0) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t18 = t15 * (k(2.0) * t14);
+        let t19 = k(625000.0) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t20 = T::fused(-t17, t16, t19 * t18);
+        let t21 = t20
             - T::fused(
-                t4,
                 k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t13)),
+                t4,
                 -t12,
             );
-        let t23 = T::fused(k(2e-6), inner_ring_dwy, -t22);
-        let t24 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
+        let t22 = T::fused(k(2e-6), inner_ring_dwy, -t21);
+        let t23 = t8 * (k(2.0) * t7);
+        let t24 = T::fused(-t9, t6, t23 * t22);
+        let t25 = T::fused(k(2e-6), outer_ring_dwx, t24);
+        let t26 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t27 = T::fused(
+            -(k(0.00025)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_e3,
+                    inner_ring_e1 * inner_ring_e2,
+                )),
+            t0,
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13)) * t2,
         );
-        let t25 = t24 * t8;
-        let t26 = T::fused(-t9, t6, t25 * t23);
-        let t27 = T::fused(k(2e-6), outer_ring_dwx, t26);
-        let t28 = k(2.0) * outer_ring_e2;
-        let t29 = T::fused(-outer_ring_e2, t28, k(1.0));
-        let t30 = T::fused(
-            -t0,
-            k(0.00025)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
-            t2 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13))),
-        );
-        let t31 = T::fused(t17, t19, t20 * t16);
-        let t32 = T::fused(
+        let t28 = T::fused(t17, t18, t19 * t16);
+        let t29 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t31 - T::fused(t4, k(0.00025) * (t11 + t10), -t30)),
+            -(t28 - T::fused(k(0.00025) * (t11 + t10), t4, -t27)),
         );
-        let t33 = T::fused(
+        let t30 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t32,
+            -t29,
         );
-        let t34 = outer_ring_e0 * t28;
+        let t31 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t29, t27, t34 * t33),
-            -T::fused(t34, t27, t29 * t33),
+            T::fused(-t26, t25, t31 * t30),
+            -T::fused(t31, t25, t26 * t30),
             -t1,
             -t3,
             -t5,
-            -T::fused(t25, t6, t9 * t23),
-            t26,
+            -T::fused(t23, t6, t9 * t22),
+            t24,
             -t0,
             -t2,
             -t4,
-            t31,
-            -t21,
+            t28,
+            -t20,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 232 operations (88 ±, 143 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 235 operations (91 ±, 143 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3474,12 +3522,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(-t1, t2, k(1.0));
-        let t4 = k(1250000.0) * t3;
-        let t5 = outer_ring_wz - inner_ring_wz;
-        let t6 = t5 * t4;
-        let t7 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3488,22 +3531,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t8 = t7 * t2;
-        let t9 = outer_ring_wy * t8;
-        let t10 = inner_ring_wx - rotor_wx;
-        let t11 = T::fused(-k(0.0002500000016), t9, t10) * t6
+        let t3 = (t2 + t1) * (t2 - t1);
+        let t4 = k(1250000.0) * t3;
+        let t5 = outer_ring_wz - inner_ring_wz;
+        let t6 = t5 * t4;
+        let t7 = t2 * (k(2.0) * t1);
+        let t8 = outer_ring_wy * t7;
+        let t9 = inner_ring_wx - rotor_wx;
+        let t10 = T::fused(-k(0.0002500000016), t8, t9) * t6
             / T::fused(k(625156.250001), t3 * t3, k(2e-6));
-        let t12 = outer_ring_wx * outer_ring_wy;
-        let t13 = t8 * t11;
-        let t14 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t13));
-        let t15 = T::fused(inner_ring_wx, t5, -T::fused(t3, t11, t0 * t8));
-        let t16 = T::fused(
+        let t11 = outer_ring_wx * outer_ring_wy;
+        let t12 = t7 * t10;
+        let t13 = T::fused(inner_ring_wy, t5, -T::fused(-t0, t3, t12));
+        let t14 = T::fused(inner_ring_wx, t5, -T::fused(t3, t10, t0 * t7));
+        let t15 = T::fused(
             -k(1.5996000999724475e-6),
-            t4 * T::fused(outer_ring_wy, T::fused(k(0.4998749999992), t9, t10), k(10.0)),
-            t12,
+            t4 * T::fused(outer_ring_wy, T::fused(k(0.4998749999992), t8, t9), k(10.0)),
+            t11,
         );
-        let t17 = k(0.000125) * t16;
-        let t18 = T::fused(
+        let t16 = k(0.000125) * t15;
+        let t17 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3512,10 +3559,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(-t18, t19, k(1.0));
-        let t21 = k(0.000125) * t15;
-        let t22 = T::fused(
+        let t18 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3524,122 +3568,123 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for GyroscopeHeavyRotor<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t23 = t22 * t19;
-        let t24 = k(0.000125) * inner_ring_wy;
+        let t19 = (t18 + t17) * (t18 - t17);
+        let t20 = k(0.000125) * t14;
+        let t21 = t18 * (k(2.0) * t17);
+        let t22 = k(0.000125) * inner_ring_wy;
+        let t23 = inner_ring_wx * t22;
+        let t24 = k(0.000125) * inner_ring_wz;
         let t25 = inner_ring_wx * t24;
-        let t26 = k(0.000125) * inner_ring_wz;
-        let t27 = inner_ring_wx * t26;
-        let t28 = T::fused(-t25, t20, t27 * t23) - T::fused(t20, t17, t23 * t21);
-        let t29 = rotor_e0 * rotor_e3;
-        let t30 = rotor_e1 * rotor_e2;
-        let t31 = T::fused(inner_ring_wz, t26, inner_ring_wy * t24);
-        let t32 = rotor_e0 * rotor_e0;
-        let t33 = T::fused(
-            -(k(2.0) * (t30 - t29)),
-            t28,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
+        let t26 = T::fused(-t23, t19, t25 * t21) - T::fused(t19, t16, t21 * t20);
+        let t27 = rotor_e0 * rotor_e3;
+        let t28 = rotor_e1 * rotor_e2;
+        let t29 = T::fused(inner_ring_wz, t24, inner_ring_wy * t22);
+        let t30 = rotor_e0 * rotor_e0;
+        let t31 = T::fused(
+            -(k(2.0) * (t28 - t27)),
+            t26,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t30)) * t29,
         );
-        let t34 = T::fused(t25, t23, t27 * t20) - T::fused(-t23, t17, t20 * t21);
-        let t35 = rotor_e0 * rotor_e2;
-        let t36 = rotor_e1 * rotor_e3;
-        let t37 = T::fused(k(2.0) * (t36 + t35), t34, t33);
-        let t38 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
-            t28,
-            k(2.0) * (t30 + t29) * t31,
+        let t32 = T::fused(t23, t21, t25 * t19) - T::fused(-t21, t16, t19 * t20);
+        let t33 = rotor_e0 * rotor_e2;
+        let t34 = rotor_e1 * rotor_e3;
+        let t35 = T::fused(k(2.0) * (t34 + t33), t32, t31);
+        let t36 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t30))),
+            t26,
+            k(2.0) * (t28 + t27) * t29,
         );
-        let t39 = rotor_e0 * rotor_e1;
-        let t40 = rotor_e2 * rotor_e3;
-        let t41 = T::fused(k(2.0) * (t40 - t39), t34, -t38);
-        let t42 = T::fused(k(2.0) * (t40 + t39), t28, k(2.0) * (t36 - t35) * t31);
-        let t43 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)),
-            t34,
-            t42,
+        let t37 = rotor_e0 * rotor_e1;
+        let t38 = rotor_e2 * rotor_e3;
+        let t39 = T::fused(k(2.0) * (t38 - t37), t32, -t36);
+        let t40 = T::fused(k(2.0) * (t38 + t37), t26, k(2.0) * (t34 - t33) * t29);
+        let t41 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t30)),
+            t32,
+            t40,
         );
-        let t44 = T::fused(-k(8e-7), outer_ring_wy * t6, t13) + t14;
-        let t45 = T::fused(rotor_wz, t10, T::fused(-t20, t15, t23 * t16));
-        let t46 = T::fused(rotor_wy, t10, T::fused(t23, t15, t20 * t16));
-        let t47 = k(10000000000.0) * t37;
-        let t48 = T::fused(k(10000000000.0), t41, k(100000000000.0));
-        let t49 = k(0.1) + t48;
-        let t50 = k(10000000000.0) * t43;
-        let t51 = k(625000.0) * T::fused(rotor_wx, rotor_wy, -t46);
-        let t52 = k(625000.0) * T::fused(rotor_wx, rotor_wz, -t45);
-        let t53 = T::fused(t20, t51, t23 * t52);
-        let t54 = inner_ring_e0 * inner_ring_e1;
-        let t55 = inner_ring_e2 * inner_ring_e3;
-        let t56 = inner_ring_e0 * inner_ring_e0;
-        let t57 = T::fused(
-            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t56))),
-            t48,
+        let t42 = T::fused(-k(8e-7), outer_ring_wy * t6, t12) + t13;
+        let t43 = T::fused(rotor_wz, t9, T::fused(-t19, t14, t21 * t15));
+        let t44 = T::fused(rotor_wy, t9, T::fused(t21, t14, t19 * t15));
+        let t45 = k(10000000000.0) * t35;
+        let t46 = T::fused(k(10000000000.0), t39, k(100000000000.0));
+        let t47 = k(0.1) + t46;
+        let t48 = k(10000000000.0) * t41;
+        let t49 = k(625000.0) * T::fused(rotor_wx, rotor_wy, -t44);
+        let t50 = k(625000.0) * T::fused(rotor_wx, rotor_wz, -t43);
+        let t51 = T::fused(t19, t49, t21 * t50);
+        let t52 = inner_ring_e0 * inner_ring_e1;
+        let t53 = inner_ring_e2 * inner_ring_e3;
+        let t54 = inner_ring_e0 * inner_ring_e0;
+        let t55 = T::fused(
+            -(k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t54))),
+            t46,
             k(0.00025)
                 * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2)
-                * t47,
+                * t45,
         );
-        let t58 = T::fused(
+        let t56 = T::fused(
             k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t16),
-            T::fused(-(k(0.00025) * (t55 + t54)), t50, t57) - t53,
+            T::fused(inner_ring_wx, inner_ring_wy, t15),
+            T::fused(-(k(0.00025) * (t53 + t52)), t48, t55) - t51,
         );
-        let t59 = k(2.0) * outer_ring_e2;
-        let t60 = outer_ring_e0 * t59;
-        let t61 = T::fused(-t23, t51, t20 * t52);
-        let t62 = T::fused(
-            k(0.00025) * (t55 - t54),
-            t48,
+        let t57 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
+        let t58 = T::fused(-t21, t49, t19 * t50);
+        let t59 = T::fused(
+            k(0.00025) * (t53 - t52),
+            t46,
             k(0.00025)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3)
-                * t47,
+                * t45,
         );
-        let t63 = T::fused(
-            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t56)),
-            t50,
-            t62,
-        ) - t61;
-        let t64 = T::fused(-k(2e-6), t15, t63);
-        let t65 = T::fused(
+        let t60 = T::fused(
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t54)),
+            t48,
+            t59,
+        ) - t58;
+        let t61 = T::fused(-k(2e-6), t14, t60);
+        let t62 = T::fused(
             k(1e-6),
-            T::fused(inner_ring_wy, inner_ring_wz, t14),
-            k(1250000.0) * t44,
+            T::fused(inner_ring_wy, inner_ring_wz, t13),
+            k(1250000.0) * t42,
         );
-        let t66 = T::fused(t8, t64, t3 * t65);
-        let t67 = T::fused(k(2e-6), t0, t66);
-        let t68 = T::fused(-outer_ring_e2, t59, k(1.0));
+        let t63 = T::fused(t7, t61, t3 * t62);
+        let t64 = T::fused(k(2e-6), t0, t63);
+        let t65 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
-            -t11,
-            t12,
+            -t10,
+            t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t14,
+            -t13,
+            t14,
             t15,
-            t16,
-            t37,
-            t41,
+            t35,
+            t39,
+            -t41,
+            -t42,
             -t43,
-            -t44,
+            t44,
             -t45,
-            t46,
+            -(k(0.1) + t47),
+            t48,
+            T::fused(-t57, t56, t65 * t64),
+            T::fused(t65, t56, t57 * t64),
+            -t45,
             -t47,
-            -(k(0.1) + t49),
-            t50,
-            T::fused(-t60, t58, t68 * t67),
-            T::fused(t68, t58, t60 * t67),
-            -t47,
-            -t49,
-            t50,
-            T::fused(-t8, t65, t3 * t64),
-            -t66,
-            -t47,
-            -t48,
-            t50,
-            t53,
-            t61,
+            t48,
+            T::fused(-t7, t62, t3 * t61),
+            -t63,
+            -t45,
+            -t46,
+            t48,
+            t51,
+            t58,
         ];
     }
 }

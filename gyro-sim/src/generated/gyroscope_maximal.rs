@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 585 operations by relative Euler parameters, doubled; 616 operations by relative Euler parameters; 2 more compared
 //! * project: 484 operations by relative Euler parameters, doubled; 491 operations by relative Euler parameters; 2 more compared
-//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion
-//! * joint_accelerations_at: 41 operations by normal form; 60 operations by recursion; 1 more compared
-//! * corrected_accelerations: 151 operations by normal form in the bodies' frames; 153 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 20 operations by normal form; 39 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 41 operations by normal form; 60 operations by recursion; 3 more compared
+//! * corrected_accelerations: 151 operations by normal form in the bodies' frames; 153 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 59 operations by derivatives of the balance, from its leaves, normal form; 59 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

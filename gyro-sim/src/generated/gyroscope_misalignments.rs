@@ -12,9 +12,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 769 operations by relative Euler parameters, doubled; 790 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 742 operations by rotations of the bodies, doubled; 763 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations: 165 operations by normal form; 392 operations by recursion
-//! * joint_accelerations_at: 203 operations by normal form; 430 operations by recursion; 1 more compared
-//! * corrected_accelerations: 340 operations by normal form in the bodies' frames; 432 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 165 operations by normal form; 327 operations by orthogonal motions; 1 more compared
+//! * joint_accelerations_at: 203 operations by normal form; 365 operations by orthogonal motions; 3 more compared
+//! * corrected_accelerations: 340 operations by normal form in the bodies' frames; 432 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 496 operations by derivatives of u̇, from its leaves; 496 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 390 operations by relative Euler parameters, doubled; 411 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 388 operations by relative Euler parameters, doubled; 392 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 61 operations by normal form; 91 operations by recursion
-//! * joint_accelerations_at: 99 operations by normal form; 129 operations by recursion; 1 more compared
-//! * corrected_accelerations: 179 operations by normal form in the bodies' frames; 193 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 61 operations by normal form; 91 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 99 operations by normal form; 129 operations by recursion; 3 more compared
+//! * corrected_accelerations: 179 operations by normal form in the bodies' frames; 193 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 242 operations by derivatives of u̇, from its leaves; 242 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 419 operations by relative Euler parameters, doubled; 440 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 381 operations by rotations of the bodies, doubled; 381 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 28 operations by normal form; 50 operations by recursion
-//! * joint_accelerations_at: 48 operations by normal form; 70 operations by recursion; 1 more compared
-//! * corrected_accelerations: 158 operations by normal form in the bodies' frames; 160 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 28 operations by normal form; 50 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 48 operations by normal form; 70 operations by recursion; 3 more compared
+//! * corrected_accelerations: 158 operations by normal form in the bodies' frames; 160 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 81 operations by derivatives of u̇, from its leaves; 81 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 91 operations by rotations of the bodies, doubled; 91 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 58 operations by rotations of the bodies, doubled; 58 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 13 operations by normal form; 24 operations by recursion
-//! * joint_accelerations_at: 13 operations by normal form; 24 operations by recursion; 1 more compared
-//! * corrected_accelerations: 64 operations by normal form in the bodies' frames; 71 operations by recursion in the bodies' frames; 5 more compared
+//! * joint_accelerations: 13 operations by normal form; 24 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 13 operations by normal form; 24 operations by recursion; 3 more compared
+//! * corrected_accelerations: 64 operations by normal form in the bodies' frames; 71 operations by recursion in the bodies' frames; 9 more compared
 //! * joint_jacobian: 14 operations by derivatives of u̇, from its leaves; 14 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

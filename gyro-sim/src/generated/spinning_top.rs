@@ -13,9 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 82 operations by rotations of the bodies, doubled; 82 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 50 operations by rotations of the bodies, doubled; 50 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 14 operations by normal form; 21 operations by recursion
-//! * joint_accelerations_at: 14 operations by normal form; 21 operations by recursion; 1 more compared
-//! * corrected_accelerations: 62 operations by normal form in the bodies' frames; 65 operations by recursion in the bodies' frames; 5 more compared
+//! * joint_accelerations: 14 operations by normal form; 21 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 14 operations by normal form; 21 operations by recursion; 3 more compared
+//! * corrected_accelerations: 62 operations by normal form in the bodies' frames; 65 operations by recursion in the bodies' frames; 9 more compared
 //! * joint_jacobian: 16 operations by derivatives of u̇, from its leaves; 16 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

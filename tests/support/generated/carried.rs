@@ -12,9 +12,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 1935 operations by rotations of the bodies, doubled; 1942 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 977 operations by rotations of the bodies, doubled; 984 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 492 operations by normal form; 633 operations by recursion
-//! * joint_accelerations_at: 878 operations by normal form; 980 operations by recursion on the bodies' spins; 1 more compared
-//! * corrected_accelerations: 1935 operations by elimination in maximal coordinates; 1060 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * joint_accelerations: 466 operations by orthogonal motions; 492 operations by normal form; 1 more compared
+//! * joint_accelerations_at: 813 operations by orthogonal motions on the bodies' spins; 821 operations by orthogonal motions; 3 more compared
+//! * corrected_accelerations: 1935 operations by elimination in maximal coordinates; 913 operations by orthogonal motions on the bodies' spins in the bodies' frames; 9 more compared
 //! * joint_jacobian: 4815 operations by derivatives of u̇, from its leaves; 4815 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -35,11 +35,11 @@
 //! | energy | T and V | 116 | 162 | 0 | 278 | 0 of 2 | 4666 | 278 |
 //! | read_joints | joint coordinates and rates | 145 | 197 | 0 | 342 | 0 of 5 | 1798 | 342 |
 //! | outputs | outputs, the accelerations being known | 597 | 800 | 2 | 1399 | 0 of 20 | 6.4e6 | 1399 |
-//! | joint_accelerations | u̇ in joint coordinates | 200 | 291 | 1 | 492 | 0 of 2 | 3760 | 493 |
-//! | joint_derivative | ẋ but for u̇ | 804 | 1054 | 2 | 1860 | 0 of 3 | 1.1e7 | 1861 |
+//! | joint_accelerations | u̇ in joint coordinates | 205 | 260 | 1 | 466 | 0 of 2 | 70057 | 467 |
+//! | joint_derivative | ẋ but for u̇ | 770 | 952 | 2 | 1724 | 0 of 3 | 4.4e7 | 1725 |
 //! | to_maximal | (q, v) of a joint state | 130 | 178 | 0 | 308 | 0 of 27 | 19713 | 308 |
 //! | to_joints | (x, u) of a maximal state | 148 | 201 | 0 | 349 | 0 of 4 | 2966 | 349 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 358 | 519 | 1 | 878 | 0 of 2 | 88379 | 879 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 346 | 464 | 1 | 811 | 0 of 2 | 433011 | 812 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 836 | 1093 | 4 | 1933 | 0 of 12 | 2.9e8 | 1935 |
 //! | corrected_multipliers | λ at such a state and these accelerations | 342 | 458 | 0 | 800 | 0 of 10 | 258411 | 800 |
 //! | corrected_solution | both | 1137 | 1484 | 4 | 2625 | 0 of 22 | 1.4e10 | 2627 |
@@ -8586,375 +8586,226 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 22]
     }
-    /// Writes u̇: 492 operations (200 ±, 291 ×, 1 ÷) and 12 functions.
+    /// Writes u̇: 466 operations (205 ±, 260 ×, 1 ÷) and 12 functions.
     fn joint_accelerations(&self, t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
         let x1 = x[1];
         let u0 = x[2];
         let u1 = x[3];
-        let t0 = k(6.0) * t;
-        let t1 = t0.sin();
-        let t2 = k(0.5) * t1;
+        let t0 = x0.cos();
+        let t1 = T::fused(k(0.8888888888888888), t0, k(0.1111111111111111));
+        let t2 = k(6.0) * t;
         let t3 = t2.sin();
-        let t4 = t2.cos();
-        let t5 = x0.cos();
-        let t6 = T::fused(
-            t5,
-            T::fused(-k(1.5505273875327696), t3, t4),
-            k(0.12817586257052085) * (t3 * (x1 - k(2.44375))),
-        );
-        let t7 = T::fused(k(0.8027174905402471), t3, t4);
-        let t8 = x0.sin();
-        let t9 = T::fused(
-            k(1.652037617554859),
-            t8
-                * T::fused(
-                    k(2.3529411764705883),
-                    x1 * t7,
-                    T::fused(k(0.72088794948238), t3, t4),
-                ),
-            -t6,
-        );
-        let t10 = T::fused(
-            -t8,
-            t9,
-            k(3.2524625127269666)
-                * (t3
-                    * T::fused(
-                        -k(0.06896551724137931),
-                        t5 * (x1 - k(1.4285714285714286)),
-                        x1 + k(0.7745997536945812),
-                    )),
-        );
-        let t11 = T::fused(
-            k(193.0),
-            x1 + k(0.7366580310880829),
-            T::fused(t8, x1 - k(10.15), k(86.0) * (t5 * (x1 + k(0.5837209302325581)))),
-        );
-        let t12 = t0.cos();
-        let t13 = T::fused(k(4.0), t, k(0.2));
-        let t14 = t13.cos();
-        let t15 = t14 * t12;
-        let t16 = T::fused(
-            k(3.7136462289744983),
-            t5 * T::fused(-k(0.12901271775065906), t3, t4),
-            T::fused(-k(0.6793133264254652), t3, t4),
-        );
-        let t17 = T::fused(-t8, t8, k(0.5));
-        let t18 = T::fused(
-            T::fused(k(7.579093565841393), t3, t4),
-            t17,
-            k(1.3909774436090225) * (t5 * T::fused(k(1.353727640432305), t3, t4)),
-        );
-        let t19 = t13.sin();
-        let t20 = t19 * t19;
-        let t21 = t3 * T::fused(-k(6.360135566698069), t20, k(6.360135566698069));
-        let t22 = k(1.2951895043731778)
-            - T::fused(
-                -k(0.0803601191578524),
-                t21 * T::fused(-k(4.416234255562085), t3, t4),
-                t20,
-            );
-        let t23 = k(0.8367346938775511)
-            + T::fused(
-                k(0.246102864920923),
-                t21 * T::fused(k(0.25555062599997597), t3, t4),
-                t20,
-            );
-        let t24 = T::fused(
-            t21,
-            T::fused(-k(0.9934472611469121), t3, k(0.37568058076225047) * t4),
-            k(3.0388148148148146),
-        );
-        let t25 = T::fused(k(0.711476174659024), t4, t3);
-        let t26 = T::fused(-k(0.6136363636363636), t3, k(0.9147550817044594) * t4);
-        let t27 = T::fused(t5, t25, t8 * t26);
-        let t28 = T::fused(
-            -k(0.36134979423868313),
-            T::fused(t8, t22, k(1.2857142857142858) * (t5 * t23)),
-            T::fused(t24, t17, k(2.1766603443197954) * (t19 * t27)),
-        );
-        let t29 = T::fused(k(0.125), t8, t5);
-        let t30 = T::fused(-k(0.125), t5, t8);
-        let t31 = T::fused(-k(0.8944271909999159), t3, t4);
-        let t32 = T::fused(
-            k(3.2142857142857144),
-            t1 * T::fused(-k(0.4472135954999579), t1 * t29, t30),
-            t15 * T::fused(t31, t29, k(4.919349550499537) * t25),
-        );
-        let t33 = T::fused(
-            k(0.393547964039963),
-            T::fused(k(3.0), t, k(0.4)).sin(),
-            k(0.43727551559995886),
-        );
-        let t34 = T::fused(
-            x1,
-            T::fused(k(0.5936346393599442), t32, -t28),
-            t33 * T::fused(-t8, t25, t5 * t26),
-        );
+        let t4 = k(0.5) * t3;
+        let t5 = t4.cos();
+        let t6 = T::fused(k(4.0), t, k(0.2));
+        let t7 = k(2.8) * t6.cos();
+        let t8 = t7 * t5;
+        let t9 = x0.sin();
+        let t10 = k(0.6666666666666666) * t9;
+        let t11 = T::fused(-k(0.2222222222222222), t0, k(0.2222222222222222));
+        let t12 = t11 + t10;
+        let t13 = t2.cos();
+        let t14 = t4.sin();
+        let t15 = k(0.8944271909999159) * t14;
+        let t16 = T::fused(-k(1.3416407864998738), t13, t7 * t15);
+        let t17 = t11 - t10;
+        let t18 = k(0.4472135954999579) * t14;
+        let t19 = T::fused(k(2.6832815729997477), t13, t7 * t18);
+        let t20 = k(0.3333333333333333) * u0;
+        let t21 = t20 + T::fused(t19, t17, -T::fused(-t8, t1, t16 * t12));
+        let t22 = k(0.6666666666666666) * u0;
+        let t23 = t22 * t21;
+        let t24 = T::fused(k(0.5555555555555556), t0, k(0.4444444444444444));
+        let t25 = k(0.3333333333333333) * t9;
+        let t26 = T::fused(-k(0.4444444444444444), t0, k(0.4444444444444444));
+        let t27 = t26 + t25;
+        let t28 = t22 + T::fused(t19, t27, -T::fused(-t8, t17, t16 * t24));
+        let t29 = k(3.0) * t13;
+        let t30 = t6.sin();
+        let t31 = k(11.2) * t30;
+        let t32 = T::fused(t7, t29 * t14, t5 * t31);
+        let t33 = t26 - t25;
+        let t34 = t29 * t5;
         let t35 = T::fused(
-            -t21,
-            T::fused(k(13.585476419395064), t3, t4),
-            k(44.34900170631336),
+            k(8.049844718999243),
+            t3,
+            -T::fused(-t7, k(0.8944271909999159) * t34, t15 * t31),
         );
-        let t36 = k(0.7) * t19;
-        let t37 = t36.sin();
-        let t38 = (k(5.0) * t).sin();
-        let t39 = T::fused(-k(0.6956655929999346), t38, k(0.41739935579996074));
-        let t40 = t36.cos();
-        let t41 = T::fused(
-            k(2.24),
-            t37,
-            -T::fused(
-                k(1.0666666666666667),
-                t38 * t37,
-                k(0.7666518779999278) * (t40 * t39),
-            ),
+        let t36 = T::fused(
+            k(16.099689437998485),
+            t3,
+            T::fused(-t7, k(0.4472135954999579) * t34, t18 * t31),
         );
-        let t42 = T::fused(
-            t15,
-            T::fused(-k(1.3536465206072552), t3, t4),
-            k(0.5518621316880434) * (t21 * T::fused(-k(0.07136528672984159), t3, t4)),
+        let t37 = T::fused(t36, t24, T::fused(t32, t12, t35 * t33))
+            + T::fused(t20, t28, -t23);
+        let t38 = k(0.1) * t21;
+        let t39 = T::fused(k(0.2), t28, t38);
+        let t40 = t22 + T::fused(t19, t24, -T::fused(-t8, t12, t16 * t33));
+        let t41 = k(0.2) * t40;
+        let t42 = T::fused(-k(0.2), t8, k(0.1) * t19);
+        let t43 = k(0.1) * t16;
+        let t44 = T::fused(t19, t42, t16 * t43);
+        let t45 = k(0.2) * t16;
+        let t46 = T::fused(t8, t43, t19 * t45);
+        let t47 = T::fused(-t16, t45, t8 * t42);
+        let t48 = T::fused(t47, t17, -T::fused(t44, t1, t46 * t12))
+            - T::fused(t28, t39, t40 * t41);
+        let t49 = k(0.7) * t30;
+        let t50 = t49.cos();
+        let t51 = t49.sin();
+        let t52 = T::fused(-k(5.0), (k(5.0) * t).sin(), k(9.0));
+        let t53 = T::fused(k(0.9), T::fused(k(3.0), t, k(0.4)).sin(), k(1.0));
+        let t54 = T::fused(
+            k(3.0),
+            T::fused(-t50, t18, t51 * t15),
+            T::fused(-T::fused(t51, t18, t50 * t15), t52, t5 * t53),
         );
-        let t43 = k(0.12388655091064271) - t42;
-        let t44 = t19
-            * T::fused(
-                k(1.359529330319872),
-                t3 * (x1 + k(0.4826315789473684)),
-                t4 * (x1 + k(0.512)),
-            );
-        let t45 = x1 * t8;
-        let t46 = T::fused(
-            t15,
-            T::fused(-k(1.426962962962963), t3, k(2.9310710318397244) * t4),
-            t21 * T::fused(k(0.3747747327079956), t3, t4),
+        let t55 = T::fused(k(0.2), t35, t54);
+        let t56 = T::fused(k(0.8), t5, k(0.2));
+        let t57 = T::fused(-k(0.4), t5, k(0.4));
+        let t58 = t50 * t57;
+        let t59 = t51 * t57;
+        let t60 = T::fused(
+            -k(3.0),
+            T::fused(t51, t56, t58),
+            T::fused(T::fused(t50, t56, -t59), t52, t15 * t53),
         );
-        let t47 = T::fused(
-            -k(2.921795490599725),
-            t40,
-            T::fused(-t37, t39, k(1.3913311859998692) * (t38 * t40)),
+        let t61 = t60 - T::fused(-k(0.2), t32, k(0.1) * t36);
+        let t62 = T::fused(k(0.2), t5, k(0.8));
+        let t63 = T::fused(
+            k(3.0),
+            T::fused(t50, t62, t59),
+            T::fused(-T::fused(-t51, t62, t58), t52, t18 * t53),
         );
-        let t48 = T::fused(
-            t21,
-            T::fused(k(0.08254377978647137), t3, k(0.09882032667876588) * t4),
-            t47 * T::fused(k(1.2857142857142858), t3, k(0.8624833627499189) * t4),
-        );
-        let t49 = t1 * t1;
-        let t50 = k(0.06127407407407407)
-            - T::fused(k(1.6659423868312757), t45, k(0.944) * t49)
-            + (t48 + T::fused(t46, t45, k(0.8827259259259259) * t20));
-        let t51 = T::fused(
-            k(1.658466773711844),
-            T::fused(
-                t8,
-                T::fused(x1, t43, k(0.008590561306175786)),
-                k(1.2505973028522315) * t44,
-            ),
-            T::fused(-x1, t50, k(0.7718755555555555)),
-        );
-        let t52 = T::fused(
-            -(T::fused(k(3.144296296296296), t3, k(1.743801753119836) * t4) * t15),
-            t45,
-            k(0.09419237749546279) * (t4 * t21),
-        );
-        let t53 = t3 * t47;
-        let t54 = k(1.4055284429998678) * (t4 * t47);
-        let t55 = T::fused(-k(0.06581728395061728), t20, t54)
-            - (t53 + k(0.6221827160493827))
-            - (T::fused(-k(0.688), t49, k(0.11273678478211281) * (t3 * t21)) - t52);
-        let t56 = T::fused(
-            k(1.2191822222222222),
-            t8 - k(0.4400359034430689),
-            T::fused(x1, t55, k(2.0750710831198047) * (t1 * (k(0.1) + x1))),
-        );
-        let t57 = t8
-            * T::fused(
-                -k(1.084154170908989),
-                t4 * (x1 + k(0.53125)),
-                t3 * (x1 + k(0.6227272727272727)),
-            );
-        let t58 = T::fused(
-            -t1,
-            T::fused(-k(14.38), t8, t5),
-            k(31.304951684997057) * (t5 * (x1 + k(0.8042857142857143))),
-        );
-        let t59 = k(0.2582908163265306) * t49;
-        let t60 = t8 * t5;
-        let t61 = T::fused(-x1, x1 - k(0.6375), k(0.34125))
-            * T::fused(-t59, t17, t20 * t60);
-        let t62 = T::fused(x1, x1 + k(0.8714285714285714), k(0.3525))
-            * T::fused(t20, t17, t59 * t60);
-        let t63 = T::fused(k(2.583900773999757), x1, k(1.0077213018599052));
-        let t64 = T::fused(
-            -(t14 * t4),
-            T::fused(k(0.48118518518518516), t5, k(0.24888888888888888) * t8),
-            t12 * t63,
-        );
+        let t64 = T::fused(-k(0.1), t35, t63);
         let t65 = T::fused(
-            k(0.6360371135999402),
-            t12 * x1 * t30,
-            k(0.3478327964999673) * (t63 * (t14 * t31)),
+            k(0.1),
+            t37,
+            T::fused(t64, t17, -T::fused(-t55, t1, t61 * t12)) - t48,
         );
-        let t66 = T::fused(-k(0.3042377526719714), t5, k(0.4563566290079571) * t8);
-        let t67 = T::fused(
-            t14,
-            T::fused(-k(1.0883301721598977), x1 * t27, t3 * t66),
-            t12 * T::fused(k(0.08347987115999216), t5, k(0.2623653093599753) * t8),
+        let t66 = k(0.2) * t37;
+        let t67 = k(0.1) * t40;
+        let t68 = T::fused(t47, t27, -T::fused(t44, t17, t46 * t24))
+            + T::fused(t40, t67, t21 * t39);
+        let t69 = T::fused(t64, t27, -T::fused(-t55, t17, t61 * t24)) - t68 + t66;
+        let t70 = T::fused(t36, t17, T::fused(t32, t1, t35 * t12))
+            + T::fused(-t22, t28, t22 * t40);
+        let t71 = k(0.1) * t70;
+        let t72 = T::fused(t36, t27, T::fused(t32, t17, t35 * t24))
+            + T::fused(-t20, t40, t23);
+        let t73 = T::fused(t47, t24, -T::fused(t44, t12, t46 * t33))
+            - T::fused(-t21, t41, t28 * t67);
+        let t74 = T::fused(t64, t24, -T::fused(-t55, t12, t61 * t33)) - t73
+            - T::fused(k(0.2), t72, t71);
+        let t75 = k(0.02) * t40;
+        let t76 = k(0.03) * t28;
+        let t77 = t28 * t40;
+        let t78 = t40 * t40;
+        let t79 = t28 * t28;
+        let t80 = t79 - t78;
+        let t81 = T::fused(-t21, t76 + t75, T::fused(-k(0.05), t77, k(0.01) * t80))
+            + T::fused(k(0.03), t37, -T::fused(k(0.3), t70, k(0.02) * t72));
+        let t82 = k(0.02) * t70;
+        let t83 = k(0.01) * t21;
+        let t84 = t21 * t40;
+        let t85 = t21 * t21;
+        let t86 = t85 - t78;
+        let t87 = T::fused(-t28, t83 - t75, T::fused(k(0.1), t84, k(0.03) * t86))
+            - T::fused(k(0.01), t37, T::fused(k(0.25), t72, t82));
+        let t88 = t28 * t21;
+        let t89 = t85 - t79;
+        let t90 = T::fused(t40, t83 + t76, T::fused(-k(0.05), t88, k(0.02) * t89))
+            - (t66 + T::fused(-k(0.03), t70, k(0.01) * t72));
+        let t91 = T::fused(
+            k(0.6666666666666666),
+            t90,
+            T::fused(k(0.3333333333333333), t81, k(0.6666666666666666) * t87),
+        ) + T::fused(k(0.25), t74, -T::fused(k(0.1), t65, k(0.2) * t69));
+        let t92 = T::fused(-k(0.3333333333333333), x1, k(0.1));
+        let t93 = k(0.6666666666666666) * x1;
+        let t94 = k(0.2) + t93;
+        let t95 = k(0.6666666666666666) * t94;
+        let t96 = k(0.016666666666666666)
+            + (k(0.16666666666666666) + T::fused(-k(0.3333333333333333), t92, t95));
+        let t97 = k(0.1) + t93;
+        let t98 = k(0.03333333333333333)
+            - (k(0.13333333333333333) - T::fused(k(0.3333333333333333), t97, -t95));
+        let t99 = k(0.1)
+            + T::fused(-k(0.6666666666666666), t92 - t97, k(0.06666666666666667));
+        let t100 = T::fused(-k(0.4), t96, T::fused(k(0.2), t98, k(0.4) * t99));
+        let t101 = k(1.6666666666666667) * t100;
+        let t102 = T::fused(-k(30.0), k(0.1) - x1, k(0.5) * u1);
+        let t103 = T::fused(t102, t101, T::fused(-k(0.1), u0, k(2.0) * (k(0.3) - x0)))
+            - t91;
+        let t104 = k(0.05) * t21;
+        let t105 = k(0.3333333333333333) * u1;
+        let t106 = k(0.6666666666666666) * u1;
+        let t107 = t106 * t28;
+        let t108 = T::fused(-t92, t21, t94 * t28);
+        let t109 = T::fused(-t94, t40, t97 * t21);
+        let t110 = T::fused(
+            k(2.0),
+            T::fused(t105, t40, t107),
+            T::fused(-t28, t108, t40 * t109),
         );
-        let t68 = t67 + (t65 + t64);
-        let t69 = T::fused(x1, x1 + k(0.78), k(0.8867307692307692));
-        let t70 = T::fused(
-            k(1.797530864197531),
-            t69 * T::fused(k(4.312416813749595), t1, t19 * t31),
-            -T::fused(k(2.0), x0, k(0.009591111111111111)),
+        let t111 = t110 + T::fused(-t28, t104, t40 * t38)
+            + (T::fused(-t97, t72, t92 * t37) - t65);
+        let t112 = T::fused(k(0.1), t72, k(0.05) * t37) - t111;
+        let t113 = T::fused(k(0.1), t28, k(0.05) * t40);
+        let t114 = T::fused(-t97, t28, t92 * t40);
+        let t115 = T::fused(
+            -k(2.0),
+            T::fused(-t106, t40, t106 * t21),
+            T::fused(-t40, t114, t21 * t108),
         );
-        let t71 = T::fused(
-            -k(0.975),
-            t41 * T::fused(-k(0.4230769230769231), t8, t5),
-            T::fused(-u1, t68, t70),
+        let t116 = t115 + T::fused(t40, t113, t21 * t104)
+            - (T::fused(-t97, t70, t94 * t37) + t69);
+        let t117 = t71 + t116;
+        let t118 = T::fused(
+            -k(2.0),
+            T::fused(t105, t21, t107),
+            T::fused(-t21, t109, t28 * t114),
         );
-        let t72 = T::fused(
-            -k(1.084090909090909),
-            T::fused(t3, t33, -t54) * T::fused(k(0.5408805031446541), t8, t5),
-            t71,
+        let t119 = t118 - T::fused(t21, t38, t28 * t113)
+            + (T::fused(-t92, t70, t94 * t72) - t74);
+        let t120 = T::fused(k(0.05), t70, t119);
+        let t121 = t102 + T::fused(k(0.4), t120, -T::fused(k(0.4), t112, k(0.2) * t117));
+        let t122 = k(0.6666666666666666) * t121;
+        let t123 = k(1.1111111111111112) * t100;
+        let t124 = t99 - t123;
+        let t125 = T::fused(-k(0.5555555555555556), t100, t98);
+        let t126 = T::fused(
+            t124,
+            T::fused(k(0.6), t112, t122),
+            t125 * T::fused(k(0.6), t117, k(0.3333333333333333) * t121),
         );
-        let t73 = T::fused(
-            k(0.4573775408522297),
-            T::fused(k(1.4055284429998678), t53, t4 * t33)
-                * T::fused(-k(2.466666666666667), t8, t5),
-            t72,
+        let t127 = t96 + t123;
+        let t128 = k(0.001) * t40;
+        let t129 = k(0.002) * t28;
+        let t130 = T::fused(-t21, t129 - t128, T::fused(k(0.005), t77, k(0.003) * t80))
+            + T::fused(k(0.002), t37, T::fused(k(0.001), t72, t82));
+        let t131 = k(0.003) * t21;
+        let t132 = T::fused(-t28, t131 + t128, T::fused(k(0.005), t84, k(0.002) * t86))
+            - T::fused(k(0.003), t37, -T::fused(k(0.001), t70, k(0.03) * t72));
+        let t133 = T::fused(-t40, t131 + t129, T::fused(k(0.01), t88, k(0.001) * t89))
+            - T::fused(k(0.025), t37, -T::fused(-k(0.002), t70, k(0.003) * t72));
+        let t134 = T::fused(
+            k(0.6666666666666666),
+            t133,
+            -T::fused(k(0.3333333333333333), t130, k(0.6666666666666666) * t132),
+        ) + T::fused(t127, T::fused(-k(0.6), t120, t122), -t126);
+        let t135 = T::fused(
+            t127,
+            k(0.6) * t127,
+            T::fused(t125, k(0.6) * t125, t124 * (k(0.6) * t124)),
         );
-        let t74 = T::fused(
-            -k(3.252148148148148),
-            t62,
-            T::fused(
-                k(0.37267799624996495),
-                u0 * T::fused(u1, t63, k(0.2683281572999748)),
-                -t73,
-            ),
-        );
-        let t75 = T::fused(
-            -k(0.8118755555555556),
-            t19
-                * T::fused(
-                    t19,
-                    T::fused(-k(0.047687172150691466), t8, t5),
-                    k(2.7145399113731354) * t57,
-                ),
-            T::fused(-k(0.04), t1 * t58, T::fused(k(0.8259423868312757), t61, t74)),
-        );
-        let t76 = T::fused(
-            x1,
-            T::fused(k(0.06696914700544465), t35 * t17, t41 * t29) - t34,
-            T::fused(t5, t51, T::fused(-t8, t56, t75)),
-        );
-        let t77 = T::fused(
-            -k(0.6213685076675416),
-            t15 * T::fused(k(0.017913121361397222), t4 * t11, t10),
-            T::fused(
-                -k(0.1003448275862069),
-                t21 * T::fused(t8, t16, k(0.48711340206185566) * t18),
-                t76,
-            ),
-        );
-        let t78 = T::fused(
-            t8,
-            T::fused(
-                t5,
-                t7,
-                k(1.0441853535482888) * (t3 * (x1 + k(1.0342105263157895))),
-            ),
-            k(2.363156326451391)
-                * (t3
-                    * T::fused(
-                        -t5,
-                        x1 + k(0.2895348837209302),
-                        k(0.05813953488372093) * (x1 - k(1.095)),
-                    )),
-        );
-        let t79 = T::fused(
-            k(0.39655172413793105),
-            x1 + k(1.0239130434782608),
-            T::fused(
-                t5,
-                x1 + k(0.6413793103448275),
-                k(0.9655172413793104) * (t8 * (x1 - k(0.02142857142857143))),
-            ),
-        );
-        let t80 = T::fused(
-            k(0.8259423868312757),
-            (x1 - k(0.31875)) * T::fused(-t8, t20, t5 * t59),
-            -t50,
-        );
-        let t81 = T::fused(
-            -k(21.77777777777778),
-            (x1 + k(0.4357142857142857)) * T::fused(t5, t20, t8 * t59),
-            t19 * T::fused(k(10.73312629199899), t3, t4),
-        );
-        let t82 = T::fused(
-            -k(0.829233386855922),
-            T::fused(-t8, t43, k(1.1205351833555992) * (x1 * t23)),
-            t5 * T::fused(k(0.033484573502722326), t35, x1 * t24),
-        );
-        let t83 = T::fused(
-            k(1.036641975308642),
-            t1 * T::fused(x1, k(2.65625) + t30, k(1.0734375)),
-            k(0.6736693094879367) - t66,
-        );
-        let t84 = T::fused(
-            k(0.25555062599997597),
-            t47 * T::fused(k(1.118033988749895), t3, t4),
-            T::fused(-t41, t30, t41 - T::fused(k(0.5), u1, -k(6.230617283950617))),
-        );
-        let t85 = T::fused(
-            -k(0.7226995884773663),
-            x1 * T::fused(t5, t22, k(30.622175655976676)),
-            T::fused(t33, T::fused(k(0.20327890704543541), t31, t27), t84),
-        );
-        let t86 = T::fused(
-            t5,
-            T::fused(
-                k(1.3937777777777778),
-                t19 * T::fused(-k(0.27152254012497445), t3, t4),
-                -t55,
-            ),
-            T::fused(u0, T::fused(k(0.18633899812498247), u0 * t63, t68), t85),
-        );
-        let t87 = t19
-            * T::fused(
-                k(0.21635810997513125),
-                T::fused(-k(0.5243193878275368), t3, t4),
-                t19 * (x1 + k(0.4192456479690522)),
-            );
-        let t88 = T::fused(
-            t8,
-            t82 + T::fused(k(0.14933333333333335), t81, t80),
-            T::fused(
-                k(1.646341463414634),
-                t1 * t83,
-                T::fused(k(3.3360329218106997), t87, -t86),
-            ),
-        );
-        let t89 = t21
-            * T::fused(
-                k(2.778433401829526),
-                t4 * (x1 + k(0.4464041095890411)),
-                t3 * (x1 - k(0.184468085106383)),
-            );
-        let t90 = T::fused(
-            k(1.2076754694478864),
-            t15 * T::fused(k(1.781874039938556), t4 * t79, -t78),
-            T::fused(k(0.19073538102085322), t89, t88),
-        );
-        let t91 = T::fused(k(0.14444444444444443), t90, t77)
-            / T::fused(k(0.48148148148148145), t69, -k(0.012518518518518519));
-        *out = [
-            -t91,
-            -T::fused(k(1.6666666666666667), t90, k(0.14444444444444443) * t91),
-        ];
+        let t136 = (t134 - t103)
+            / (k(0.31277777777777777) + (t135 + k(0.025333333333333333)));
+        *out = [-t136, T::fused(-k(1.6666666666666667), t121, t101 * t136)];
     }
-    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 1860 operations (804 ±, 1054 ×, 2 ÷) and 20 functions.
+    /// Writes the derivative of the joint state; beyond what [`JointSpace::joint_accelerations`] takes: 1724 operations (770 ±, 952 ×, 2 ÷) and 20 functions.
     fn joint_derivative(&self, t: T, x: &Self::Joints, dx: &mut Self::Joints) {
         let mut rates = gyro_sim::JointSpace::rates(self);
         gyro_sim::JointSpace::joint_accelerations(self, t, x, &mut rates);
@@ -8964,91 +8815,86 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
         let u0 = x[2];
         let u1 = x[3];
         let (
-            t10,
             t12,
             t14,
             t15,
-            t16,
-            t19,
             t20,
             t21,
-            t22,
+            t23,
             t24,
             t25,
             t26,
-            t27,
-            t31,
+            t52,
             t53,
-            t54,
+            t56,
             t57,
-            t58,
+            t59,
             t60,
-            t61,
-            t63,
+            t62,
+            t65,
             t66,
-            t67,
+            t69,
             t70,
             t71,
-            t72,
+            t73,
             t74,
             t75,
             t76,
-            t77,
+            t78,
             t79,
             t80,
-            t81,
-            t83,
+            t82,
+            t84,
             t85,
             t86,
             t87,
             t88,
-            t89,
+            t90,
             t91,
             t92,
-            t93,
+            t94,
             t95,
             t96,
-            t97,
+            t98,
             t99,
             t100,
-            t101,
+            t105,
             t106,
-            t107,
+            t108,
             t109,
-            t110,
-            t113,
+            t112,
+            t117,
             t118,
             t119,
             t120,
-            t121,
+            t122,
             t123,
-            t124,
+            t126,
             t127,
             t128,
-            t129,
-            t131,
+            t130,
+            t135,
             t136,
-            t137,
-            t139,
+            t138,
             t140,
-            t141,
-            t144,
+            t143,
+            t146,
             t147,
             t148,
             t149,
-            t150,
+            t151,
             t152,
-            t153,
-            t157,
+            t156,
+            t161,
             t162,
-            t163,
-            t165,
+            t164,
             t166,
-            t167,
-            t170,
+            t169,
+            t172,
             t173,
             t174,
             t175,
+            t176,
             t177,
             t178,
             t179,
@@ -9057,9 +8903,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             t182,
             t183,
             t184,
-            t185,
+            t186,
             t187,
-            t188,
+            t189,
             t190,
             t191,
             t192,
@@ -9085,373 +8931,367 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             let t11 = k(0.5) * t10;
             let t12 = t11.cos();
             let t13 = T::fused(k(4.0), t, k(0.2));
-            let t14 = t13.cos();
-            let t15 = k(2.8) * t14;
-            let t16 = t15 * t12;
-            let t17 = k(0.3333333333333333) * t4;
-            let t18 = T::fused(-k(0.4444444444444444), t6, k(0.4444444444444444));
-            let t19 = t9.cos();
-            let t20 = t11.sin();
-            let t21 = k(0.8944271909999159) * t20;
-            let t22 = T::fused(-k(1.3416407864998738), t19, t15 * t21);
-            let t23 = T::fused(k(0.5555555555555556), t6, k(0.4444444444444444));
-            let t24 = k(0.4472135954999579) * t20;
-            let t25 = T::fused(k(2.6832815729997477), t19, t15 * t24);
-            let t26 = k(0.6666666666666666) * u0;
-            let t27 = t26 + T::fused(t25, t23, -T::fused(-t16, t8, t22 * (t18 - t17)));
-            let t28 = k(0.6666666666666666) * t1;
-            let t29 = k(0.25) * t10;
-            let t30 = t29.cos();
-            let t31 = t13.sin();
-            let t32 = k(0.35) * t31;
-            let t33 = t32.sin();
-            let t34 = t33 * t30;
-            let t35 = t34 * t28;
-            let t36 = t32.cos();
-            let t37 = t36 * t30;
-            let t38 = t37 * t28;
-            let t39 = k(0.3333333333333333) * t1;
-            let t40 = t29.sin();
-            let t41 = k(0.8944271909999159) * t40;
-            let t42 = k(0.4472135954999579) * t40;
-            let t43 = T::fused(t36, t41, t33 * t42);
-            let t44 = T::fused(-t33, t41, t36 * t42);
-            let t45 = T::fused(t44, t3, T::fused(t43, t39, t38) - t35);
-            let t46 = t43 * t28;
-            let t47 = t44 * t28;
-            let t48 = T::fused(t37, t3, -(T::fused(t34, t39, t47) + t46));
-            let t49 = t48 * t45;
-            let t50 = T::fused(t43, t3, t38 + T::fused(-t44, t39, t35));
-            let t51 = T::fused(t34, t3, t47 - T::fused(-t37, t39, t46));
-            let t52 = t51 * t50;
-            let t53 = t52 - t49;
-            let t54 = k(2.0) * t53;
-            let t55 = t7 - t5;
-            let t56 = T::fused(
-                t25,
-                t55,
+            let t14 = k(2.8) * t13.cos();
+            let t15 = t14 * t12;
+            let t16 = k(0.3333333333333333) * t4;
+            let t17 = T::fused(-k(0.4444444444444444), t6, k(0.4444444444444444));
+            let t18 = t9.cos();
+            let t19 = t11.sin();
+            let t20 = k(0.8944271909999159) * t19;
+            let t21 = T::fused(-k(1.3416407864998738), t18, t14 * t20);
+            let t22 = T::fused(k(0.5555555555555556), t6, k(0.4444444444444444));
+            let t23 = k(0.4472135954999579) * t19;
+            let t24 = T::fused(k(2.6832815729997477), t18, t14 * t23);
+            let t25 = k(0.6666666666666666) * u0;
+            let t26 = t25 + T::fused(t24, t22, -T::fused(-t15, t8, t21 * (t17 - t16)));
+            let t27 = k(0.6666666666666666) * t1;
+            let t28 = k(0.25) * t10;
+            let t29 = t28.cos();
+            let t30 = t13.sin();
+            let t31 = k(0.35) * t30;
+            let t32 = t31.sin();
+            let t33 = t32 * t29;
+            let t34 = t33 * t27;
+            let t35 = t31.cos();
+            let t36 = t35 * t29;
+            let t37 = t36 * t27;
+            let t38 = k(0.3333333333333333) * t1;
+            let t39 = t28.sin();
+            let t40 = k(0.8944271909999159) * t39;
+            let t41 = k(0.4472135954999579) * t39;
+            let t42 = T::fused(t35, t40, t32 * t41);
+            let t43 = T::fused(-t32, t40, t35 * t41);
+            let t44 = T::fused(t43, t3, T::fused(t42, t38, t37) - t34);
+            let t45 = t42 * t27;
+            let t46 = t43 * t27;
+            let t47 = T::fused(t36, t3, -(T::fused(t33, t38, t46) + t45));
+            let t48 = t47 * t44;
+            let t49 = T::fused(t42, t3, t37 + T::fused(-t43, t38, t34));
+            let t50 = T::fused(t33, t3, t46 - T::fused(-t36, t38, t45));
+            let t51 = t50 * t49;
+            let t52 = t51 - t48;
+            let t53 = k(2.0) * t52;
+            let t54 = t7 - t5;
+            let t55 = T::fused(
+                t24,
+                t54,
                 -T::fused(
-                    -t16,
+                    -t15,
                     T::fused(k(0.8888888888888888), t6, k(0.1111111111111111)),
-                    t22 * t8,
+                    t21 * t8,
                 ),
             );
-            let t57 = k(0.3333333333333333) * u0;
-            let t58 = t57 + t56;
-            let t59 = t48 * t48;
-            let t60 = k(0.5) - T::fused(t50, t50, t59);
-            let t61 = k(2.0) * t60;
-            let t62 = T::fused(t54, t27, t61 * t58);
-            let t63 = t26 + T::fused(t25, t18 + t17, -T::fused(-t16, t55, t22 * t23));
-            let t64 = t48 * t51;
-            let t65 = t45 * t50;
-            let t66 = t65 + t64;
-            let t67 = k(2.0) * t66;
-            let t68 = T::fused(-t54, t63, t67 * t58);
-            let t69 = k(0.1) * t68;
-            let t70 = T::fused(k(0.1), t63, k(0.05) * t27);
-            let t71 = k(0.1) * t58;
-            let t72 = k(0.05) * t58;
-            let t73 = k(0.6666666666666666) * x1;
-            let t74 = k(0.1) + t73;
-            let t75 = T::fused(-k(0.3333333333333333), x1, k(0.1));
-            let t76 = T::fused(-t74, t63, t75 * t27);
-            let t77 = k(0.6666666666666666) * u1;
-            let t78 = t77 - t76;
-            let t79 = k(0.2) + t73;
-            let t80 = T::fused(-t79, t27, t74 * t58);
-            let t81 = k(0.3333333333333333) * u1;
-            let t82 = t81 + t80;
-            let t83 = T::fused(-t75, t58, t79 * t63);
-            let t84 = t77 - t83;
-            let t85 = k(0.1) * t27;
-            let t86 = k(0.2) * t27;
-            let t87 = T::fused(k(0.2), t63, t71);
-            let t88 = k(0.1) * t22;
-            let t89 = T::fused(k(0.2), t12, k(0.8));
-            let t90 = k(0.7) * t31;
-            let t91 = t90.cos();
-            let t92 = T::fused(-k(0.4), t12, k(0.4));
-            let t93 = t90.sin();
-            let t94 = t93 * t92;
-            let t95 = T::fused(t91, t89, t94);
-            let t96 = T::fused(-k(0.2), t16, k(0.1) * t25);
-            let t97 = T::fused(k(0.8), t12, k(0.2));
-            let t98 = t91 * t92;
-            let t99 = T::fused(t93, t97, t98);
-            let t100 = k(0.2) * t22;
-            let t101 = T::fused(-t91, t24, t93 * t21);
-            let t102 = T::fused(-t95, t88, T::fused(-t99, t96, t101 * t100))
-                - T::fused(t61, t87, T::fused(t54, t85, t67 * t86));
-            let t103 = t102 + T::fused(t61, t84, T::fused(-t54, t78, t67 * t82))
-                - T::fused(t61, t72, -T::fused(-t54, t70, t67 * t71));
-            let t104 = T::fused(t67, t27, t61 * t63);
-            let t105 = t102 - (T::fused(-k(0.1), t62, k(0.2) * t104) - t69)
-                - (t103 - T::fused(-k(0.05), t62, t69));
-            let t106 = T::fused(
+            let t56 = k(0.3333333333333333) * u0;
+            let t57 = t56 + t55;
+            let t58 = t47 * t47;
+            let t59 = k(0.5) - T::fused(t49, t49, t58);
+            let t60 = k(2.0) * t59;
+            let t61 = T::fused(t53, t26, t60 * t57);
+            let t62 = t25 + T::fused(t24, t17 + t16, -T::fused(-t15, t54, t21 * t22));
+            let t63 = t47 * t50;
+            let t64 = t44 * t49;
+            let t65 = t64 + t63;
+            let t66 = k(2.0) * t65;
+            let t67 = T::fused(-t53, t62, t66 * t57);
+            let t68 = k(0.1) * t67;
+            let t69 = T::fused(k(0.1), t62, k(0.05) * t26);
+            let t70 = k(0.1) * t57;
+            let t71 = k(0.05) * t57;
+            let t72 = k(0.6666666666666666) * x1;
+            let t73 = k(0.1) + t72;
+            let t74 = T::fused(-k(0.3333333333333333), x1, k(0.1));
+            let t75 = T::fused(-t73, t62, t74 * t26);
+            let t76 = k(0.6666666666666666) * u1;
+            let t77 = t76 - t75;
+            let t78 = k(0.2) + t72;
+            let t79 = T::fused(-t78, t26, t73 * t57);
+            let t80 = k(0.3333333333333333) * u1;
+            let t81 = t80 + t79;
+            let t82 = T::fused(-t74, t57, t78 * t62);
+            let t83 = t76 - t82;
+            let t84 = k(0.1) * t26;
+            let t85 = k(0.2) * t26;
+            let t86 = T::fused(k(0.2), t62, t70);
+            let t87 = k(0.1) * t21;
+            let t88 = T::fused(k(0.2), t12, k(0.8));
+            let t89 = k(0.7) * t30;
+            let t90 = t89.cos();
+            let t91 = T::fused(-k(0.4), t12, k(0.4));
+            let t92 = t89.sin();
+            let t93 = t92 * t91;
+            let t94 = T::fused(t90, t88, t93);
+            let t95 = T::fused(-k(0.2), t15, k(0.1) * t24);
+            let t96 = T::fused(k(0.8), t12, k(0.2));
+            let t97 = t90 * t91;
+            let t98 = T::fused(t92, t96, t97);
+            let t99 = k(0.2) * t21;
+            let t100 = T::fused(-t90, t23, t92 * t20);
+            let t101 = T::fused(-t94, t87, T::fused(-t98, t95, t100 * t99))
+                - T::fused(t60, t86, T::fused(t53, t84, t66 * t85));
+            let t102 = t101 + T::fused(t60, t83, T::fused(-t53, t77, t66 * t81))
+                - T::fused(t60, t71, -T::fused(-t53, t69, t66 * t70));
+            let t103 = T::fused(t66, t26, t60 * t62);
+            let t104 = t101 - (T::fused(-k(0.1), t61, k(0.2) * t103) - t68)
+                - (t102 - T::fused(-k(0.05), t61, t68));
+            let t105 = T::fused(
                 k(1.3333333333333333),
-                t60,
-                T::fused(-k(1.3333333333333333), t53, k(0.6666666666666666) * t66),
+                t59,
+                T::fused(-k(1.3333333333333333), t52, k(0.6666666666666666) * t65),
             );
-            let t107 = k(0.2) * t66;
-            let t108 = k(0.4) * t53;
-            let t109 = k(0.2) * t60;
-            let t110 = T::fused(k(0.2), t95, k(0.1) * t101) + (t108 - t107);
-            let t111 = T::fused(k(0.1), t66, t109);
-            let t112 = t111
-                - (t110 + T::fused(-t74, t61, T::fused(t75, t67, t79 * t54)));
-            let t113 = t111 - t112;
-            let t114 = t113 - (t110 - (t109 - (t108 + t107)));
-            let t115 = T::fused(
-                -t106,
-                t105,
-                t114
+            let t106 = k(0.2) * t65;
+            let t107 = k(0.4) * t52;
+            let t108 = k(0.2) * t59;
+            let t109 = T::fused(k(0.2), t94, k(0.1) * t100) + (t107 - t106);
+            let t110 = T::fused(k(0.1), t65, t108);
+            let t111 = t110
+                - (t109 + T::fused(-t73, t60, T::fused(t74, t66, t78 * t53)));
+            let t112 = t110 - t111;
+            let t113 = t112 - (t109 - (t108 - (t107 + t106)));
+            let t114 = T::fused(
+                -t105,
+                t104,
+                t113
                     * T::fused(
                         -k(0.6666666666666666),
-                        t68,
+                        t67,
                         T::fused(
                             k(0.3333333333333333),
-                            t62,
-                            k(0.6666666666666666) * t104,
+                            t61,
+                            k(0.6666666666666666) * t103,
                         ),
                     ),
             );
-            let t116 = t48 * t50;
-            let t117 = t51 * t45;
-            let t118 = t117 + t116;
-            let t119 = k(2.0) * t118;
-            let t120 = t65 - t64;
-            let t121 = k(2.0) * t120;
-            let t122 = T::fused(-t119, t27, t121 * t58);
-            let t123 = k(0.5) - T::fused(t45, t45, t59);
-            let t124 = k(2.0) * t123;
-            let t125 = T::fused(t119, t63, t124 * t58);
-            let t126 = k(0.1) * t125;
-            let t127 = T::fused(-t93, t89, t98);
-            let t128 = T::fused(t91, t97, -t94);
-            let t129 = T::fused(t93, t24, t91 * t21);
-            let t130 = k(5.0) * t;
-            let t131 = t130.cos();
-            let t132 = t131 - T::fused(-t127, t88, T::fused(-t128, t96, t129 * t100))
-                - T::fused(t121, t87, T::fused(-t119, t85, t124 * t86));
-            let t133 = t132 + T::fused(t121, t84, T::fused(t119, t78, t124 * t82))
-                - T::fused(t121, t72, -T::fused(t119, t70, t124 * t71));
-            let t134 = T::fused(t124, t27, t121 * t63);
-            let t135 = t132 - (T::fused(-k(0.1), t122, k(0.2) * t134) - t126)
-                - (t133 - T::fused(-k(0.05), t122, t126));
-            let t136 = T::fused(
+            let t115 = t47 * t49;
+            let t116 = t50 * t44;
+            let t117 = t116 + t115;
+            let t118 = k(2.0) * t117;
+            let t119 = t64 - t63;
+            let t120 = k(2.0) * t119;
+            let t121 = T::fused(-t118, t26, t120 * t57);
+            let t122 = k(0.5) - T::fused(t44, t44, t58);
+            let t123 = k(2.0) * t122;
+            let t124 = T::fused(t118, t62, t123 * t57);
+            let t125 = k(0.1) * t124;
+            let t126 = T::fused(-t92, t88, t97);
+            let t127 = T::fused(t90, t96, -t93);
+            let t128 = T::fused(t92, t23, t90 * t20);
+            let t129 = k(5.0) * t;
+            let t130 = t129.cos();
+            let t131 = t130 - T::fused(-t126, t87, T::fused(-t127, t95, t128 * t99))
+                - T::fused(t120, t86, T::fused(-t118, t84, t123 * t85));
+            let t132 = t131 + T::fused(t120, t83, T::fused(t118, t77, t123 * t81))
+                - T::fused(t120, t71, -T::fused(t118, t69, t123 * t70));
+            let t133 = T::fused(t123, t26, t120 * t62);
+            let t134 = t131 - (T::fused(-k(0.1), t121, k(0.2) * t133) - t125)
+                - (t132 - T::fused(-k(0.05), t121, t125));
+            let t135 = T::fused(
                 k(1.3333333333333333),
-                t120,
-                T::fused(k(1.3333333333333333), t118, k(0.6666666666666666) * t123),
+                t119,
+                T::fused(k(1.3333333333333333), t117, k(0.6666666666666666) * t122),
             );
-            let t137 = k(0.2) * t123;
-            let t138 = k(0.4) * t118;
-            let t139 = k(0.2) * t120;
-            let t140 = t130.sin();
-            let t141 = T::fused(k(0.2), t140, T::fused(k(0.2), t127, k(0.1) * t129))
-                + (t138 + t137);
-            let t142 = T::fused(k(0.1), t123, t139);
-            let t143 = t142
-                + (t141 + T::fused(t74, t121, T::fused(-t75, t124, t79 * t119)));
-            let t144 = t142 - t143;
-            let t145 = t144 + (t141 + (t139 + (t138 - t137)));
-            let t146 = T::fused(
-                -t136,
-                t135,
-                t145
+            let t136 = k(0.2) * t122;
+            let t137 = k(0.4) * t117;
+            let t138 = k(0.2) * t119;
+            let t139 = t129.sin();
+            let t140 = T::fused(k(0.2), t139, T::fused(k(0.2), t126, k(0.1) * t128))
+                + (t137 + t136);
+            let t141 = T::fused(k(0.1), t122, t138);
+            let t142 = t141
+                + (t140 + T::fused(t73, t120, T::fused(-t74, t123, t78 * t118)));
+            let t143 = t141 - t142;
+            let t144 = t143 + (t140 + (t138 + (t137 - t136)));
+            let t145 = T::fused(
+                -t135,
+                t134,
+                t144
                     * T::fused(
                         -k(0.6666666666666666),
-                        t125,
+                        t124,
                         T::fused(
                             k(0.3333333333333333),
-                            t122,
-                            k(0.6666666666666666) * t134,
+                            t121,
+                            k(0.6666666666666666) * t133,
                         ),
                     ),
             );
-            let t147 = k(0.5) - T::fused(t51, t51, t59);
-            let t148 = k(2.0) * t147;
-            let t149 = t52 + t49;
-            let t150 = k(2.0) * t149;
-            let t151 = T::fused(t148, t27, t150 * t58);
-            let t152 = t117 - t116;
-            let t153 = k(2.0) * t152;
-            let t154 = T::fused(t148, t63, t153 * t58);
-            let t155 = k(0.1) * t154;
-            let t156 = T::fused(k(3.0), t, k(0.4));
-            let t157 = k(0.3) * t156.cos();
-            let t158 = t157 - T::fused(-t24, t88, T::fused(t21, t96, t12 * t100))
-                - T::fused(t150, t87, -T::fused(-t148, t85, t153 * t86));
-            let t159 = t158 + T::fused(t150, t84, -T::fused(t148, t78, t153 * t82))
-                - T::fused(t150, t72, T::fused(t148, t70, t153 * t71));
-            let t160 = T::fused(-t153, t27, t150 * t63);
-            let t161 = t158 - (T::fused(-k(0.1), t151, k(0.2) * t160) + t155)
-                - (t159 + T::fused(k(0.05), t151, t155));
-            let t162 = T::fused(
+            let t146 = k(0.5) - T::fused(t50, t50, t58);
+            let t147 = k(2.0) * t146;
+            let t148 = t51 + t48;
+            let t149 = k(2.0) * t148;
+            let t150 = T::fused(t147, t26, t149 * t57);
+            let t151 = t116 - t115;
+            let t152 = k(2.0) * t151;
+            let t153 = T::fused(t147, t62, t152 * t57);
+            let t154 = k(0.1) * t153;
+            let t155 = T::fused(k(3.0), t, k(0.4));
+            let t156 = k(0.3) * t155.cos();
+            let t157 = t156 - T::fused(-t23, t87, T::fused(t20, t95, t12 * t99))
+                - T::fused(t149, t86, -T::fused(-t147, t84, t152 * t85));
+            let t158 = t157 + T::fused(t149, t83, -T::fused(t147, t77, t152 * t81))
+                - T::fused(t149, t71, T::fused(t147, t69, t152 * t70));
+            let t159 = T::fused(-t152, t26, t149 * t62);
+            let t160 = t157 - (T::fused(-k(0.1), t150, k(0.2) * t159) + t154)
+                - (t158 + T::fused(k(0.05), t150, t154));
+            let t161 = T::fused(
                 k(1.3333333333333333),
-                t149,
-                -T::fused(k(1.3333333333333333), t147, k(0.6666666666666666) * t152),
+                t148,
+                -T::fused(k(1.3333333333333333), t146, k(0.6666666666666666) * t151),
             );
-            let t163 = k(0.2) * t152;
-            let t164 = k(0.4) * t147;
-            let t165 = k(0.2) * t149;
-            let t166 = t156.sin();
-            let t167 = T::fused(
+            let t162 = k(0.2) * t151;
+            let t163 = k(0.4) * t146;
+            let t164 = k(0.2) * t148;
+            let t165 = t155.sin();
+            let t166 = T::fused(
                 k(0.1),
-                t166,
-                T::fused(k(0.08944271909999159), t20, k(0.1) * t12),
-            ) - (t164 + t163);
-            let t168 = T::fused(k(0.1), t152, -t165);
-            let t169 = t168
-                - (t167 - T::fused(-t74, t150, T::fused(-t75, t153, t79 * t148)));
-            let t170 = t168 - t169;
-            let t171 = t170 - (t167 + (t165 - (t164 - t163)));
-            let t172 = T::fused(
-                t162,
+                t165,
+                T::fused(k(0.08944271909999159), t19, k(0.1) * t12),
+            ) - (t163 + t162);
+            let t167 = T::fused(k(0.1), t151, -t164);
+            let t168 = t167
+                - (t166 - T::fused(-t73, t149, T::fused(-t74, t152, t78 * t147)));
+            let t169 = t167 - t168;
+            let t170 = t169 - (t166 + (t164 - (t163 - t162)));
+            let t171 = T::fused(
                 t161,
-                t171
+                t160,
+                t170
                     * T::fused(
                         k(0.6666666666666666),
-                        t154,
+                        t153,
                         T::fused(
                             k(0.3333333333333333),
-                            t151,
-                            k(0.6666666666666666) * t160,
+                            t150,
+                            k(0.6666666666666666) * t159,
                         ),
                     ),
             );
-            let t173 = t172 - t146 - t115;
-            let t174 = k(0.5) * t173;
-            let t175 = T::fused(
+            let t172 = t171 - t145 - t114;
+            let t173 = k(0.5) * t172;
+            let t174 = T::fused(
                 k(0.6666666666666666),
-                t25,
-                T::fused(-k(0.6666666666666666), t22, k(0.3333333333333333) * t16),
+                t24,
+                T::fused(-k(0.6666666666666666), t21, k(0.3333333333333333) * t15),
             )
                 - T::fused(
                     k(0.6666666666666666),
-                    t27,
-                    T::fused(k(0.3333333333333333), t58, k(0.6666666666666666) * t63),
+                    t26,
+                    T::fused(k(0.3333333333333333), t57, k(0.6666666666666666) * t62),
                 );
-            let t176 = k(0.3) - x0;
-            let t177 = k(0.6666666666666666) * t176;
-            let t178 = k(0.03333333333333333) * t175;
-            let t179 = k(1.3333333333333333) * t176;
-            let t180 = k(0.06666666666666667) * t175;
-            let t181 = t180 + t179;
-            let t182 = k(30.0)
-                * (k(0.1) + T::fused(t106, t114, T::fused(-t162, t171, t136 * t145)));
-            let t183 = T::fused(t162, t174, t162 * t182);
-            let t184 = k(5.0) * t140;
-            let t185 = k(0.9) * t166;
-            let t186 = k(3.0) * t19;
-            let t187 = t186 * t12;
-            let t188 = k(0.8944271909999159) * t187;
-            let t189 = k(11.2) * t31;
-            let t190 = T::fused(
+            let t175 = k(0.3) - x0;
+            let t176 = k(0.6666666666666666) * t175;
+            let t177 = k(0.03333333333333333) * t174;
+            let t178 = k(1.3333333333333333) * t175;
+            let t179 = k(0.06666666666666667) * t174;
+            let t180 = t179 + t178;
+            let t181 = k(30.0)
+                * (k(0.1) + T::fused(t105, t113, T::fused(-t161, t170, t135 * t144)));
+            let t182 = T::fused(t161, t173, t161 * t181);
+            let t183 = k(5.0) * t139;
+            let t184 = k(0.9) * t165;
+            let t185 = k(3.0) * t18;
+            let t186 = t185 * t12;
+            let t187 = k(0.8944271909999159) * t186;
+            let t188 = k(11.2) * t30;
+            let t189 = T::fused(
                 k(8.049844718999243),
                 t10,
-                -T::fused(-t15, t188, t21 * t189),
+                -T::fused(-t14, t187, t20 * t188),
             );
-            let t191 = T::fused(k(0.2), t190, T::fused(t129, t184, t12 * t185));
+            let t190 = k(0.2) * t189;
+            let t191 = t190 + T::fused(t128, t183, t12 * t184);
             let t192 = x0.cos();
             let t193 = T::fused(k(0.8888888888888888), t192, k(0.1111111111111111));
-            let t194 = t186 * t20;
-            let t195 = T::fused(t15, t194, t12 * t189);
-            let t196 = k(0.4472135954999579) * t187;
+            let t194 = t185 * t19;
+            let t195 = T::fused(t14, t194, t12 * t188);
+            let t196 = k(0.4472135954999579) * t186;
             let t197 = T::fused(
                 k(16.099689437998485),
                 t10,
-                T::fused(-t15, t196, t24 * t189),
+                T::fused(-t14, t196, t23 * t188),
             );
-            let t198 = T::fused(-k(0.2), t195, k(0.1) * t197)
-                - T::fused(-t128, t184, t21 * t185);
-            let t199 = x0.sin();
+            let t198 = T::fused(-k(0.2), t195, k(0.1) * t197);
+            let t199 = t198 - T::fused(-t127, t183, t20 * t184);
             (
-                t10,
                 t12,
                 t14,
                 t15,
-                t16,
-                t19,
                 t20,
                 t21,
-                t22,
+                t23,
                 t24,
                 t25,
                 t26,
-                t27,
-                t31,
+                t52,
                 t53,
-                t54,
+                t56,
                 t57,
-                t58,
+                t59,
                 t60,
-                t61,
-                t63,
+                t62,
+                t65,
                 t66,
-                t67,
+                t69,
                 t70,
                 t71,
-                t72,
+                t73,
                 t74,
                 t75,
                 t76,
-                t77,
+                t78,
                 t79,
                 t80,
-                t81,
-                t83,
+                t82,
+                t84,
                 t85,
                 t86,
                 t87,
                 t88,
-                t89,
+                t90,
                 t91,
                 t92,
-                t93,
+                t94,
                 t95,
                 t96,
-                t97,
+                t98,
                 t99,
                 t100,
-                t101,
+                t105,
                 t106,
-                t107,
+                t108,
                 t109,
-                t110,
-                t113,
+                t112,
+                t117,
                 t118,
                 t119,
                 t120,
-                t121,
+                t122,
                 t123,
-                t124,
+                t126,
                 t127,
                 t128,
-                t129,
-                t131,
+                t130,
+                t135,
                 t136,
-                t137,
-                t139,
+                t138,
                 t140,
-                t141,
-                t144,
+                t143,
+                t146,
                 t147,
                 t148,
                 t149,
-                t150,
+                t151,
                 t152,
-                t153,
-                t157,
+                t156,
+                t161,
                 t162,
-                t163,
-                t165,
+                t164,
                 t166,
-                t167,
-                t170,
+                t169,
+                t172,
                 t173,
                 t174,
                 t175,
+                t176,
                 t177,
                 t178,
                 t179,
@@ -9460,9 +9300,9 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
                 t182,
                 t183,
                 t184,
-                t185,
+                t186,
                 t187,
-                t188,
+                t189,
                 t190,
                 t191,
                 t192,
@@ -9476,35 +9316,40 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             )
         };
         let (
-            t298,
-            t299,
-            t303,
-            t304,
             t305,
-            t307,
-            t320,
-            t321,
-            t323,
-            t324,
+            t306,
+            t309,
+            t310,
+            t311,
+            t312,
+            t325,
+            t326,
             t328,
             t329,
-            t330,
+            t333,
+            t334,
             t335,
-            t336,
-            t338,
-            t339,
-            t349,
-            t350,
-            t351,
+            t340,
+            t341,
+            t343,
+            t344,
+            t354,
+            t355,
             t356,
-            t357,
-            t359,
-            t360,
+            t361,
+            t362,
             t364,
-            t366,
+            t365,
+            t369,
             t371,
-            t373,
-            t383,
+            t376,
+            t378,
+            t381,
+            t384,
+            t387,
+            t388,
+            t390,
+            t392,
             t394,
             t395,
             t396,
@@ -9512,631 +9357,406 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
             t398,
             t399,
         ) = {
-            let t200 = k(0.6666666666666666) * t199;
-            let t201 = T::fused(-k(0.2222222222222222), t192, k(0.2222222222222222));
-            let t202 = t201 + t200;
-            let t203 = T::fused(k(0.1), t190, -T::fused(t127, t184, t24 * t185));
-            let t204 = t201 - t200;
-            let t205 = T::fused(t204, t203, -T::fused(t193, t191, t202 * t198));
-            let t206 = T::fused(k(0.5555555555555556), t192, k(0.4444444444444444));
-            let t207 = k(0.3333333333333333) * t199;
-            let t208 = T::fused(-k(0.4444444444444444), t192, k(0.4444444444444444));
-            let t209 = t208 + t207;
-            let t210 = T::fused(t209, t203, -T::fused(t204, t191, t206 * t198));
-            let t211 = t208 - t207;
-            let t212 = T::fused(t206, t203, -T::fused(t202, t191, t211 * t198));
-            let t213 = T::fused(t63, t87, t27 * t86);
-            let t214 = T::fused(t27, t85, t58 * t87);
-            let t215 = T::fused(-t58, t86, t63 * t85);
-            let t216 = T::fused(-t22, t100, t16 * t96);
-            let t217 = T::fused(t16, t88, t25 * t100);
-            let t218 = T::fused(t25, t96, t22 * t88);
-            let t219 = T::fused(-t24, t216, T::fused(-t21, t217, t12 * t218))
-                + T::fused(t150, t215, -T::fused(t148, t213, t153 * t214));
-            let t220 = T::fused(t197, t204, T::fused(t195, t193, t190 * t202))
-                + T::fused(-t26, t63, t26 * t27);
-            let t221 = T::fused(
-                t192,
-                T::fused(-k(1.5505273875327696), t20, t12),
-                k(0.12817586257052085) * (t20 * (x1 - k(2.44375))),
-            );
-            let t222 = T::fused(k(0.8027174905402471), t20, t12);
-            let t223 = T::fused(
-                k(1.652037617554859),
-                t199
-                    * T::fused(
-                        k(2.3529411764705883),
-                        x1 * t222,
-                        T::fused(k(0.72088794948238), t20, t12),
-                    ),
-                -t221,
-            );
-            let t224 = T::fused(
-                -t199,
-                t223,
-                k(3.2524625127269666)
-                    * (t20
-                        * T::fused(
-                            -k(0.06896551724137931),
-                            t192 * (x1 - k(1.4285714285714286)),
-                            x1 + k(0.7745997536945812),
-                        )),
-            );
-            let t225 = T::fused(
-                k(193.0),
-                x1 + k(0.7366580310880829),
-                T::fused(
-                    t199,
-                    x1 - k(10.15),
-                    k(86.0) * (t192 * (x1 + k(0.5837209302325581))),
-                ),
-            );
-            let t226 = t14 * t19;
-            let t227 = T::fused(
-                k(3.7136462289744983),
-                t192 * T::fused(-k(0.12901271775065906), t20, t12),
-                T::fused(-k(0.6793133264254652), t20, t12),
-            );
-            let t228 = T::fused(-t199, t199, k(0.5));
-            let t229 = T::fused(
-                T::fused(k(7.579093565841393), t20, t12),
-                t228,
-                k(1.3909774436090225) * (t192 * T::fused(k(1.353727640432305), t20, t12)),
-            );
-            let t230 = t31 * t31;
-            let t231 = t20 * T::fused(-k(6.360135566698069), t230, k(6.360135566698069));
-            let t232 = k(1.2951895043731778)
-                - T::fused(
-                    -k(0.0803601191578524),
-                    t231 * T::fused(-k(4.416234255562085), t20, t12),
-                    t230,
-                );
-            let t233 = k(0.8367346938775511)
-                + T::fused(
-                    k(0.246102864920923),
-                    t231 * T::fused(k(0.25555062599997597), t20, t12),
-                    t230,
-                );
-            let t234 = T::fused(
-                t231,
-                T::fused(-k(0.9934472611469121), t20, k(0.37568058076225047) * t12),
-                k(3.0388148148148146),
-            );
-            let t235 = T::fused(k(0.711476174659024), t12, t20);
-            let t236 = T::fused(
-                -k(0.6136363636363636),
-                t20,
-                k(0.9147550817044594) * t12,
-            );
-            let t237 = T::fused(t192, t235, t199 * t236);
+            let t200 = x0.sin();
+            let t201 = k(0.6666666666666666) * t200;
+            let t202 = T::fused(-k(0.2222222222222222), t192, k(0.2222222222222222));
+            let t203 = t202 + t201;
+            let t204 = k(0.1) * t189;
+            let t205 = t204 - T::fused(t126, t183, t23 * t184);
+            let t206 = t202 - t201;
+            let t207 = T::fused(t206, t205, -T::fused(t193, t191, t203 * t199));
+            let t208 = T::fused(k(0.5555555555555556), t192, k(0.4444444444444444));
+            let t209 = k(0.3333333333333333) * t200;
+            let t210 = T::fused(-k(0.4444444444444444), t192, k(0.4444444444444444));
+            let t211 = t210 + t209;
+            let t212 = T::fused(t211, t205, -T::fused(t206, t191, t208 * t199));
+            let t213 = t210 - t209;
+            let t214 = T::fused(t208, t205, -T::fused(t203, t191, t213 * t199));
+            let t215 = T::fused(t62, t86, t26 * t85);
+            let t216 = T::fused(t26, t84, t57 * t86);
+            let t217 = T::fused(-t57, t85, t62 * t84);
+            let t218 = T::fused(-t21, t99, t15 * t95);
+            let t219 = T::fused(t15, t87, t24 * t99);
+            let t220 = T::fused(t24, t95, t21 * t87);
+            let t221 = T::fused(-t23, t218, T::fused(-t20, t219, t12 * t220))
+                + T::fused(t149, t217, -T::fused(t147, t215, t152 * t216));
+            let t222 = T::fused(t197, t206, T::fused(t195, t193, t189 * t203));
+            let t223 = t56 + T::fused(t24, t206, -T::fused(-t15, t193, t21 * t203));
+            let t224 = t25 * t223;
+            let t225 = t25 + T::fused(t24, t211, -T::fused(-t15, t206, t21 * t208));
+            let t226 = T::fused(t197, t208, T::fused(t195, t203, t189 * t213));
+            let t227 = t226 + T::fused(t56, t225, -t224);
+            let t228 = k(0.1) * t223;
+            let t229 = T::fused(k(0.2), t225, t228);
+            let t230 = t25 + T::fused(t24, t208, -T::fused(-t15, t203, t21 * t213));
+            let t231 = k(0.2) * t230;
+            let t232 = T::fused(t218, t206, -T::fused(t220, t193, t219 * t203))
+                - T::fused(t225, t229, t230 * t231);
+            let t233 = k(9.0) - t183;
+            let t234 = k(1.0) + t184;
+            let t235 = T::fused(k(3.0), t100, T::fused(-t128, t233, t12 * t234)) + t190;
+            let t236 = T::fused(-k(3.0), t98, T::fused(t127, t233, t20 * t234)) - t198;
+            let t237 = T::fused(k(3.0), t94, T::fused(-t126, t233, t23 * t234)) - t204;
             let t238 = T::fused(
-                -k(0.36134979423868313),
-                T::fused(t199, t232, k(1.2857142857142858) * (t192 * t233)),
-                T::fused(t234, t228, k(2.1766603443197954) * (t31 * t237)),
+                k(0.1),
+                t227,
+                T::fused(t237, t206, -T::fused(-t235, t193, t236 * t203)) - t232,
             );
-            let t239 = T::fused(k(0.125), t199, t192);
-            let t240 = T::fused(-k(0.125), t192, t199);
-            let t241 = t12 - t21;
-            let t242 = T::fused(
-                k(3.2142857142857144),
-                t10 * T::fused(-k(0.4472135954999579), t10 * t239, t240),
-                t226 * T::fused(t241, t239, k(4.919349550499537) * t235),
-            );
-            let t243 = T::fused(k(0.393547964039963), t166, k(0.43727551559995886));
-            let t244 = T::fused(
-                x1,
-                T::fused(k(0.5936346393599442), t242, -t238),
-                t243 * T::fused(-t199, t235, t192 * t236),
-            );
-            let t245 = T::fused(
-                -t231,
-                T::fused(k(13.585476419395064), t20, t12),
-                k(44.34900170631336),
-            );
-            let t246 = T::fused(-k(0.6956655929999346), t140, k(0.41739935579996074));
-            let t247 = T::fused(
-                k(2.24),
-                t93,
-                -T::fused(
-                    k(1.0666666666666667),
-                    t140 * t93,
-                    k(0.7666518779999278) * (t91 * t246),
-                ),
-            );
-            let t248 = T::fused(
-                t226,
-                T::fused(-k(1.3536465206072552), t20, t12),
-                k(0.5518621316880434)
-                    * (t231 * T::fused(-k(0.07136528672984159), t20, t12)),
-            );
-            let t249 = k(0.12388655091064271) - t248;
-            let t250 = t31
-                * T::fused(
-                    k(1.359529330319872),
-                    t20 * (x1 + k(0.4826315789473684)),
-                    t12 * (x1 + k(0.512)),
-                );
-            let t251 = x1 * t199;
-            let t252 = T::fused(
-                t226,
-                T::fused(-k(1.426962962962963), t20, k(2.9310710318397244) * t12),
-                t231 * T::fused(k(0.3747747327079956), t20, t12),
-            );
-            let t253 = T::fused(
-                -k(2.921795490599725),
-                t91,
-                T::fused(-t93, t246, k(1.3913311859998692) * (t140 * t91)),
-            );
-            let t254 = T::fused(
-                t231,
-                T::fused(k(0.08254377978647137), t20, k(0.09882032667876588) * t12),
-                t253 * T::fused(k(1.2857142857142858), t20, k(0.8624833627499189) * t12),
-            );
-            let t255 = t10 * t10;
-            let t256 = k(0.06127407407407407)
-                - T::fused(k(1.6659423868312757), t251, k(0.944) * t255)
-                + (t254 + T::fused(t252, t251, k(0.8827259259259259) * t230));
-            let t257 = T::fused(
-                k(1.658466773711844),
-                T::fused(
-                    t199,
-                    T::fused(x1, t249, k(0.008590561306175786)),
-                    k(1.2505973028522315) * t250,
-                ),
-                T::fused(-x1, t256, k(0.7718755555555555)),
-            );
-            let t258 = T::fused(
-                -(T::fused(k(3.144296296296296), t20, k(1.743801753119836) * t12)
-                    * t226),
-                t251,
-                k(0.09419237749546279) * (t12 * t231),
-            );
-            let t259 = t20 * t253;
-            let t260 = k(1.4055284429998678) * (t12 * t253);
-            let t261 = T::fused(-k(0.06581728395061728), t230, t260)
-                - (t259 + k(0.6221827160493827))
-                - (T::fused(-k(0.688), t255, k(0.11273678478211281) * (t20 * t231))
-                    - t258);
-            let t262 = T::fused(
-                k(1.2191822222222222),
-                t199 - k(0.4400359034430689),
-                T::fused(x1, t261, k(2.0750710831198047) * (t10 * (k(0.1) + x1))),
-            );
-            let t263 = t199
-                * T::fused(
-                    -k(1.084154170908989),
-                    t12 * (x1 + k(0.53125)),
-                    t20 * (x1 + k(0.6227272727272727)),
-                );
+            let t239 = k(0.2) * t227;
+            let t240 = k(0.1) * t230;
+            let t241 = T::fused(t218, t211, -T::fused(t220, t206, t219 * t208))
+                + T::fused(t230, t240, t223 * t229);
+            let t242 = T::fused(t237, t211, -T::fused(-t235, t206, t236 * t208)) - t241
+                + t239;
+            let t243 = t222 + T::fused(-t25, t225, t25 * t230);
+            let t244 = k(0.1) * t243;
+            let t245 = T::fused(t197, t211, T::fused(t195, t206, t189 * t208));
+            let t246 = t245 + T::fused(-t56, t230, t224);
+            let t247 = T::fused(t218, t208, -T::fused(t220, t203, t219 * t213))
+                - T::fused(-t223, t231, t225 * t240);
+            let t248 = T::fused(t237, t208, -T::fused(-t235, t203, t236 * t213)) - t247
+                - T::fused(k(0.2), t246, t244);
+            let t249 = k(0.02) * t230;
+            let t250 = k(0.03) * t225;
+            let t251 = t225 * t230;
+            let t252 = t230 * t230;
+            let t253 = t225 * t225;
+            let t254 = t253 - t252;
+            let t255 = T::fused(
+                -t223,
+                t250 + t249,
+                T::fused(-k(0.05), t251, k(0.01) * t254),
+            ) + T::fused(k(0.03), t227, -T::fused(k(0.3), t243, k(0.02) * t246));
+            let t256 = k(0.02) * t243;
+            let t257 = k(0.01) * t223;
+            let t258 = t223 * t230;
+            let t259 = t223 * t223;
+            let t260 = t259 - t252;
+            let t261 = T::fused(
+                -t225,
+                t257 - t249,
+                T::fused(k(0.1), t258, k(0.03) * t260),
+            ) - T::fused(k(0.01), t227, T::fused(k(0.25), t246, t256));
+            let t262 = t225 * t223;
+            let t263 = t259 - t253;
             let t264 = T::fused(
-                -t10,
-                T::fused(-k(14.38), t199, t192),
-                k(31.304951684997057) * (t192 * (x1 + k(0.8042857142857143))),
-            );
-            let t265 = k(0.2582908163265306) * t255;
-            let t266 = t199 * t192;
-            let t267 = T::fused(-x1, x1 - k(0.6375), k(0.34125))
-                * T::fused(-t265, t228, t230 * t266);
-            let t268 = T::fused(x1, x1 + k(0.8714285714285714), k(0.3525))
-                * T::fused(t230, t228, t265 * t266);
-            let t269 = T::fused(k(2.583900773999757), x1, k(1.0077213018599052));
-            let t270 = T::fused(
-                -(t14 * t12),
-                T::fused(k(0.48118518518518516), t192, k(0.24888888888888888) * t199),
-                t19 * t269,
-            );
-            let t271 = T::fused(
-                k(0.6360371135999402),
-                t19 * x1 * t240,
-                k(0.3478327964999673) * (t269 * (t14 * t241)),
-            );
-            let t272 = T::fused(
-                -k(0.3042377526719714),
-                t192,
-                k(0.4563566290079571) * t199,
-            );
-            let t273 = T::fused(
-                t14,
-                T::fused(-k(1.0883301721598977), x1 * t237, t20 * t272),
-                t19
-                    * T::fused(
-                        k(0.08347987115999216),
-                        t192,
-                        k(0.2623653093599753) * t199,
-                    ),
-            );
-            let t274 = t273 + (t271 + t270);
-            let t275 = T::fused(x1, x1 + k(0.78), k(0.8867307692307692));
-            let t276 = T::fused(
-                k(1.797530864197531),
-                t275 * T::fused(k(4.312416813749595), t10, t31 * t241),
-                -T::fused(k(2.0), x0, k(0.009591111111111111)),
-            );
-            let t277 = T::fused(
-                -k(0.975),
-                t247 * T::fused(-k(0.4230769230769231), t199, t192),
-                T::fused(-u1, t274, t276),
-            );
-            let t278 = T::fused(
-                -k(1.084090909090909),
-                T::fused(t20, t243, -t260) * T::fused(k(0.5408805031446541), t199, t192),
-                t277,
-            );
-            let t279 = T::fused(
-                k(0.4573775408522297),
-                T::fused(k(1.4055284429998678), t259, t12 * t243)
-                    * T::fused(-k(2.466666666666667), t199, t192),
-                t278,
-            );
-            let t280 = T::fused(
-                -k(3.252148148148148),
-                t268,
-                T::fused(
-                    k(0.37267799624996495),
-                    u0 * T::fused(u1, t269, k(0.2683281572999748)),
-                    -t279,
-                ),
-            );
-            let t281 = T::fused(
-                -k(0.8118755555555556),
-                t31
-                    * T::fused(
-                        t31,
-                        T::fused(-k(0.047687172150691466), t199, t192),
-                        k(2.7145399113731354) * t263,
-                    ),
-                T::fused(
-                    -k(0.04),
-                    t10 * t264,
-                    T::fused(k(0.8259423868312757), t267, t280),
-                ),
-            );
-            let t282 = T::fused(
-                x1,
-                T::fused(k(0.06696914700544465), t245 * t228, t247 * t239) - t244,
-                T::fused(t192, t257, T::fused(-t199, t262, t281)),
-            );
-            let t283 = T::fused(
-                -k(0.6213685076675416),
-                t226 * T::fused(k(0.017913121361397222), t12 * t225, t224),
-                T::fused(
-                    -k(0.1003448275862069),
-                    t231 * T::fused(t199, t227, k(0.48711340206185566) * t229),
-                    t282,
-                ),
-            );
-            let t284 = T::fused(
-                t199,
-                T::fused(
-                    t192,
-                    t222,
-                    k(1.0441853535482888) * (t20 * (x1 + k(1.0342105263157895))),
-                ),
-                k(2.363156326451391)
-                    * (t20
-                        * T::fused(
-                            -t192,
-                            x1 + k(0.2895348837209302),
-                            k(0.05813953488372093) * (x1 - k(1.095)),
-                        )),
-            );
-            let t285 = T::fused(
-                k(0.39655172413793105),
-                x1 + k(1.0239130434782608),
-                T::fused(
-                    t192,
-                    x1 + k(0.6413793103448275),
-                    k(0.9655172413793104) * (t199 * (x1 - k(0.02142857142857143))),
-                ),
-            );
-            let t286 = T::fused(
-                k(0.8259423868312757),
-                (x1 - k(0.31875)) * T::fused(-t199, t230, t192 * t265),
-                -t256,
-            );
-            let t287 = T::fused(
-                -k(21.77777777777778),
-                (x1 + k(0.4357142857142857)) * T::fused(t192, t230, t199 * t265),
-                t31 * T::fused(k(10.73312629199899), t20, t12),
-            );
-            let t288 = T::fused(
-                -k(0.829233386855922),
-                T::fused(-t199, t249, k(1.1205351833555992) * (x1 * t233)),
-                t192 * T::fused(k(0.033484573502722326), t245, x1 * t234),
-            );
-            let t289 = T::fused(
-                k(1.036641975308642),
-                t10 * T::fused(x1, k(2.65625) + t240, k(1.0734375)),
-                k(0.6736693094879367) - t272,
-            );
-            let t290 = T::fused(
-                k(0.25555062599997597),
-                t253 * T::fused(k(1.118033988749895), t20, t12),
-                T::fused(-t247, t240, t247 - T::fused(k(0.5), u1, -k(6.230617283950617))),
-            );
-            let t291 = T::fused(
-                -k(0.7226995884773663),
-                x1 * T::fused(t192, t232, k(30.622175655976676)),
-                T::fused(t243, T::fused(k(0.20327890704543541), t241, t237), t290),
-            );
-            let t292 = T::fused(
-                t192,
-                T::fused(
-                    k(1.3937777777777778),
-                    t31 * T::fused(-k(0.27152254012497445), t20, t12),
-                    -t261,
-                ),
-                T::fused(u0, T::fused(k(0.18633899812498247), u0 * t269, t274), t291),
-            );
-            let t293 = t31
-                * T::fused(
-                    k(0.21635810997513125),
-                    T::fused(-k(0.5243193878275368), t20, t12),
-                    t31 * (x1 + k(0.4192456479690522)),
-                );
-            let t294 = T::fused(
-                t199,
-                t288 + T::fused(k(0.14933333333333335), t287, t286),
-                T::fused(
-                    k(1.646341463414634),
-                    t10 * t289,
-                    T::fused(k(3.3360329218106997), t293, -t292),
-                ),
-            );
-            let t295 = t231
-                * T::fused(
-                    k(2.778433401829526),
-                    t12 * (x1 + k(0.4464041095890411)),
-                    t20 * (x1 - k(0.184468085106383)),
-                );
-            let t296 = T::fused(
-                k(1.2076754694478864),
-                t226 * T::fused(k(1.781874039938556), t12 * t285, -t284),
-                T::fused(k(0.19073538102085322), t295, t294),
-            );
-            let t297 = T::fused(k(0.14444444444444443), t296, t283)
-                / T::fused(k(0.48148148148148145), t275, -k(0.012518518518518519));
-            let t298 = T::fused(k(0.3333333333333333), t297, t220);
-            let t299 = k(0.4) * t149;
-            let t300 = t26 * t58;
-            let t301 = T::fused(t197, t209, T::fused(t195, t204, t190 * t206))
-                + T::fused(-t57, t27, t300);
-            let t302 = k(0.6666666666666666) * t297;
-            let t303 = t302 + t301;
-            let t304 = k(0.2) * t147;
-            let t305 = T::fused(k(0.4), t152, -t304);
-            let t306 = T::fused(t197, t206, T::fused(t195, t202, t190 * t211))
-                + T::fused(t57, t63, -t300);
-            let t307 = t302 + t306;
-            let t308 = T::fused(t307, t305, -T::fused(t165, t298, t303 * t299))
-                + (t219 - T::fused(t150, t212, T::fused(-t148, t205, t153 * t210)));
-            let t309 = t77 * t63;
-            let t310 = T::fused(
-                k(2.0),
-                T::fused(t81, t27, t309),
-                T::fused(-t63, t83, t27 * t80),
-            );
-            let t311 = T::fused(
-                -k(2.0),
-                T::fused(-t77, t27, t77 * t58),
-                T::fused(-t27, t76, t58 * t83),
-            );
-            let t312 = T::fused(
-                -k(2.0),
-                T::fused(t81, t58, t309),
-                T::fused(-t58, t80, t63 * t76),
-            );
-            let t313 = T::fused(-t63, t72, t71 * t27);
-            let t314 = T::fused(t27, t70, t58 * t72);
-            let t315 = T::fused(t58, t71, t63 * t70);
-            let t316 = T::fused(t150, t315, -T::fused(-t148, t313, t153 * t314))
-                - T::fused(t150, t312, T::fused(-t148, t310, t153 * t311));
-            let t317 = T::fused(
-                -t298,
-                T::fused(-t74, t153, t75 * t150),
-                t303 * T::fused(t74, t148, t79 * t150),
-            );
-            let t318 = t308 + T::fused(t307, T::fused(t75, t148, t79 * t153), -t317)
-                + t316;
-            let t319 = T::fused(
-                k(1.6666666666666667),
-                t296,
-                k(0.14444444444444443) * t297,
-            );
-            let t320 = T::fused(k(0.1), t149, t163);
-            let t321 = k(0.1) * t147;
-            let t322 = T::fused(t307, t321, T::fused(t298, t320, t304 * t303))
-                - T::fused(t319, t162, t318);
-            let t323 = T::fused(k(0.6), t322, -(k(0.6) + t183));
-            let t324 = t323 - T::fused(k(1.5), t308, k(1.5) - t183);
-            let t325 = T::fused(
-                t157 + T::fused(-k(0.1), t194, k(0.08944271909999159) * t187),
-                t324,
-                T::fused(t25, t181, -T::fused(-t16, t178 + t177, t22 * t181)),
-            );
-            let t326 = T::fused(t136, t174, t136 * t182);
-            let t327 = T::fused(-t127, t216, T::fused(t128, t217, t129 * t218))
-                + T::fused(t121, t215, T::fused(t119, t213, t124 * t214));
-            let t328 = k(0.4) * t120;
-            let t329 = k(0.2) * t118;
-            let t330 = T::fused(k(0.4), t123, -t329);
-            let t331 = T::fused(t307, t330, T::fused(t139, t298, t303 * t328))
-                - (t327 - T::fused(t121, t212, -T::fused(-t119, t205, t124 * t210)));
-            let t332 = T::fused(t121, t315, T::fused(-t119, t313, t124 * t314))
-                - T::fused(t121, t312, -T::fused(-t119, t310, t124 * t311));
-            let t333 = T::fused(
-                -t298,
-                T::fused(t74, t124, t75 * t121),
-                t303 * T::fused(-t74, t119, t79 * t121),
-            );
-            let t334 = t331 + T::fused(t307, T::fused(t75, t119, t79 * t124), t333)
-                - t332;
-            let t335 = T::fused(-k(0.1), t120, t137);
-            let t336 = k(0.1) * t118;
-            let t337 = T::fused(t307, t336, T::fused(t298, t335, t303 * t329))
-                + T::fused(t319, t136, -t334);
-            let t338 = T::fused(k(0.6), t337, -(k(5.4) - t326));
-            let t339 = t338 - T::fused(k(1.5), t331, k(13.5) + t326);
-            let t340 = t15 * t93;
-            let t341 = t15 * t91;
-            let t342 = T::fused(t93, t196, t24 * t341)
-                - T::fused(-t91, t188, t21 * t340);
-            let t343 = k(0.4) * t194;
-            let t344 = T::fused(-t91, t343, t92 * t340);
-            let t345 = k(0.2) * t194;
-            let t346 = T::fused(-t93, t345, t89 * t341) + t344;
-            let t347 = T::fused(t106, t174, t106 * t182);
-            let t348 = T::fused(-t95, t216, T::fused(t99, t217, t101 * t218))
-                - T::fused(t61, t215, T::fused(-t54, t213, t67 * t214));
-            let t349 = k(0.4) * t60;
-            let t350 = k(0.2) * t53;
-            let t351 = T::fused(k(0.4), t66, t350);
-            let t352 = T::fused(t307, t351, T::fused(t109, t298, t303 * t349))
-                + (t348 + T::fused(t61, t212, -T::fused(t54, t205, t67 * t210)));
-            let t353 = T::fused(t61, t315, T::fused(t54, t313, t67 * t314))
-                - T::fused(t61, t312, -T::fused(t54, t310, t67 * t311));
-            let t354 = T::fused(
-                -t298,
-                T::fused(t74, t67, t75 * t61),
-                t303 * T::fused(t74, t54, t79 * t61),
-            );
-            let t355 = t352 + T::fused(t307, T::fused(-t75, t54, t79 * t67), t354)
-                - t353;
-            let t356 = T::fused(-k(0.1), t60, t107);
-            let t357 = k(0.1) * t53;
-            let t358 = T::fused(t307, t357, T::fused(-t298, t356, t303 * t350))
-                - T::fused(t319, t106, -t355);
-            let t359 = T::fused(k(0.6), t358, k(1.8) - t347);
-            let t360 = t359 + T::fused(k(1.5), t352, k(4.5) + t347);
-            let t361 = T::fused(-t91, t196, t24 * t340)
-                + T::fused(t93, t188, t21 * t341);
-            let t362 = T::fused(t93, t343, t92 * t341);
-            let t363 = T::fused(t91, t345, t89 * t340) - t362;
-            let t364 = T::fused(
-                T::fused(-k(0.1), t361, k(0.2) * t363),
-                t360,
-                -T::fused(t131 - T::fused(-k(0.1), t342, k(0.2) * t346), t339, -t325),
-            );
-            let t365 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-t363, t67, T::fused(t346, t124, t196 * t153)),
-                k(0.3333333333333333)
-                    * T::fused(t363, t54, T::fused(t346, t119, t196 * t148)),
-            );
-            let t366 = T::fused(
+                t230,
+                t257 + t250,
+                T::fused(-k(0.05), t262, k(0.02) * t263),
+            ) - (t239 + T::fused(-k(0.03), t243, k(0.01) * t246));
+            let t265 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t363, t61, T::fused(-t346, t121, t196 * t150)),
-                -t365,
+                t264,
+                T::fused(k(0.3333333333333333), t255, k(0.6666666666666666) * t261),
+            ) + T::fused(k(0.25), t248, -T::fused(k(0.1), t238, k(0.2) * t242));
+            let t266 = k(0.6666666666666666) * t78;
+            let t267 = k(0.016666666666666666)
+                + (k(0.16666666666666666) + T::fused(-k(0.3333333333333333), t74, t266));
+            let t268 = k(0.03333333333333333)
+                - (k(0.13333333333333333) - T::fused(k(0.3333333333333333), t73, -t266));
+            let t269 = k(0.1)
+                + T::fused(-k(0.6666666666666666), t74 - t73, k(0.06666666666666667));
+            let t270 = T::fused(-k(0.4), t267, T::fused(k(0.2), t268, k(0.4) * t269));
+            let t271 = k(1.6666666666666667) * t270;
+            let t272 = T::fused(-k(30.0), k(0.1) - x1, k(0.5) * u1);
+            let t273 = k(0.05) * t223;
+            let t274 = t76 * t225;
+            let t275 = T::fused(-t74, t223, t78 * t225);
+            let t276 = T::fused(-t78, t230, t73 * t223);
+            let t277 = T::fused(
+                k(2.0),
+                T::fused(t80, t230, t274),
+                T::fused(-t225, t275, t230 * t276),
             );
-            let t367 = k(0.8) * t194;
-            let t368 = t344 - T::fused(-t93, t367, t97 * t341);
-            let t369 = t362 + T::fused(t91, t367, t97 * t340);
+            let t278 = t277 + T::fused(-t225, t273, t230 * t228)
+                + (T::fused(-t73, t246, t74 * t227) - t238);
+            let t279 = T::fused(k(0.1), t246, k(0.05) * t227) - t278;
+            let t280 = T::fused(k(0.1), t225, k(0.05) * t230);
+            let t281 = T::fused(-t73, t225, t74 * t230);
+            let t282 = T::fused(
+                -k(2.0),
+                T::fused(-t76, t230, t76 * t223),
+                T::fused(-t230, t281, t223 * t275),
+            );
+            let t283 = t282 + T::fused(t230, t280, t223 * t273)
+                - (T::fused(-t73, t243, t78 * t227) + t242);
+            let t284 = t244 + t283;
+            let t285 = T::fused(
+                -k(2.0),
+                T::fused(t80, t223, t274),
+                T::fused(-t223, t276, t225 * t281),
+            );
+            let t286 = t285 - T::fused(t223, t228, t225 * t280)
+                + (T::fused(-t74, t243, t78 * t246) - t248);
+            let t287 = T::fused(k(0.05), t243, t286);
+            let t288 = t272
+                + T::fused(k(0.4), t287, -T::fused(k(0.4), t279, k(0.2) * t284));
+            let t289 = k(0.6666666666666666) * t288;
+            let t290 = k(1.1111111111111112) * t270;
+            let t291 = t269 - t290;
+            let t292 = T::fused(-k(0.5555555555555556), t270, t268);
+            let t293 = T::fused(
+                t291,
+                T::fused(k(0.6), t279, t289),
+                t292 * T::fused(k(0.6), t284, k(0.3333333333333333) * t288),
+            );
+            let t294 = t267 + t290;
+            let t295 = k(0.001) * t230;
+            let t296 = k(0.002) * t225;
+            let t297 = T::fused(
+                -t223,
+                t296 - t295,
+                T::fused(k(0.005), t251, k(0.003) * t254),
+            ) + T::fused(k(0.002), t227, T::fused(k(0.001), t246, t256));
+            let t298 = k(0.003) * t223;
+            let t299 = T::fused(
+                -t225,
+                t298 + t295,
+                T::fused(k(0.005), t258, k(0.002) * t260),
+            ) - T::fused(k(0.003), t227, -T::fused(k(0.001), t243, k(0.03) * t246));
+            let t300 = T::fused(
+                -t230,
+                t298 + t296,
+                T::fused(k(0.01), t262, k(0.001) * t263),
+            ) - T::fused(k(0.025), t227, -T::fused(-k(0.002), t243, k(0.003) * t246));
+            let t301 = T::fused(
+                k(0.6666666666666666),
+                t300,
+                -T::fused(k(0.3333333333333333), t297, k(0.6666666666666666) * t299),
+            ) + T::fused(t294, T::fused(-k(0.6), t287, t289), -t293);
+            let t302 = t301
+                - (T::fused(t272, t271, T::fused(-k(0.1), u0, k(2.0) * t175)) - t265);
+            let t303 = T::fused(
+                t294,
+                k(0.6) * t294,
+                T::fused(t292, k(0.6) * t292, t291 * (k(0.6) * t291)),
+            );
+            let t304 = t302
+                / (k(0.31277777777777777) + (t303 + k(0.025333333333333333)));
+            let t305 = T::fused(
+                k(0.3333333333333333),
+                t304,
+                t222 + T::fused(-t25, t62, t25 * t26),
+            );
+            let t306 = k(0.4) * t148;
+            let t307 = t25 * t57;
+            let t308 = k(0.6666666666666666) * t304;
+            let t309 = t308 + (t245 + T::fused(-t56, t26, t307));
+            let t310 = k(0.2) * t146;
+            let t311 = T::fused(k(0.4), t151, -t310);
+            let t312 = t308 + (t226 + T::fused(t56, t62, -t307));
+            let t313 = T::fused(t312, t311, -T::fused(t164, t305, t309 * t306))
+                + (t221 - T::fused(t149, t214, T::fused(-t147, t207, t152 * t212)));
+            let t314 = t76 * t62;
+            let t315 = T::fused(
+                k(2.0),
+                T::fused(t80, t26, t314),
+                T::fused(-t62, t82, t26 * t79),
+            );
+            let t316 = T::fused(
+                -k(2.0),
+                T::fused(-t76, t26, t76 * t57),
+                T::fused(-t26, t75, t57 * t82),
+            );
+            let t317 = T::fused(
+                -k(2.0),
+                T::fused(t80, t57, t314),
+                T::fused(-t57, t79, t62 * t75),
+            );
+            let t318 = T::fused(-t62, t71, t70 * t26);
+            let t319 = T::fused(t26, t69, t57 * t71);
+            let t320 = T::fused(t57, t70, t62 * t69);
+            let t321 = T::fused(t149, t320, -T::fused(-t147, t318, t152 * t319))
+                - T::fused(t149, t317, T::fused(-t147, t315, t152 * t316));
+            let t322 = T::fused(
+                -t305,
+                T::fused(-t73, t152, t74 * t149),
+                t309 * T::fused(t73, t147, t78 * t149),
+            );
+            let t323 = t313 + T::fused(t312, T::fused(t74, t147, t78 * t152), -t322)
+                + t321;
+            let t324 = T::fused(-k(1.6666666666666667), t288, t271 * t304);
+            let t325 = T::fused(k(0.1), t148, t162);
+            let t326 = k(0.1) * t146;
+            let t327 = T::fused(t312, t326, T::fused(t305, t325, t310 * t309))
+                + T::fused(t324, t161, -t323);
+            let t328 = T::fused(k(0.6), t327, -(k(0.6) + t182));
+            let t329 = t328 - T::fused(k(1.5), t313, k(1.5) - t182);
+            let t330 = T::fused(
+                t156 + T::fused(-k(0.1), t194, k(0.08944271909999159) * t186),
+                t329,
+                T::fused(t24, t180, -T::fused(-t15, t177 + t176, t21 * t180)),
+            );
+            let t331 = T::fused(t135, t173, t135 * t181);
+            let t332 = T::fused(-t126, t218, T::fused(t127, t219, t128 * t220))
+                + T::fused(t120, t217, T::fused(t118, t215, t123 * t216));
+            let t333 = k(0.4) * t119;
+            let t334 = k(0.2) * t117;
+            let t335 = T::fused(k(0.4), t122, -t334);
+            let t336 = T::fused(t312, t335, T::fused(t138, t305, t309 * t333))
+                - (t332 - T::fused(t120, t214, -T::fused(-t118, t207, t123 * t212)));
+            let t337 = T::fused(t120, t320, T::fused(-t118, t318, t123 * t319))
+                - T::fused(t120, t317, -T::fused(-t118, t315, t123 * t316));
+            let t338 = T::fused(
+                -t305,
+                T::fused(t73, t123, t74 * t120),
+                t309 * T::fused(-t73, t118, t78 * t120),
+            );
+            let t339 = t336 + T::fused(t312, T::fused(t74, t118, t78 * t123), t338)
+                - t337;
+            let t340 = T::fused(-k(0.1), t119, t136);
+            let t341 = k(0.1) * t117;
+            let t342 = T::fused(t312, t341, T::fused(t305, t340, t309 * t334))
+                - T::fused(t324, t135, t339);
+            let t343 = T::fused(k(0.6), t342, -(k(5.4) - t331));
+            let t344 = t343 - T::fused(k(1.5), t336, k(13.5) + t331);
+            let t345 = t14 * t92;
+            let t346 = t14 * t90;
+            let t347 = T::fused(t92, t196, t23 * t346)
+                - T::fused(-t90, t187, t20 * t345);
+            let t348 = k(0.4) * t194;
+            let t349 = T::fused(-t90, t348, t91 * t345);
+            let t350 = k(0.2) * t194;
+            let t351 = T::fused(-t92, t350, t88 * t346) + t349;
+            let t352 = T::fused(t105, t173, t105 * t181);
+            let t353 = T::fused(-t94, t218, T::fused(t98, t219, t100 * t220))
+                - T::fused(t60, t217, T::fused(-t53, t215, t66 * t216));
+            let t354 = k(0.4) * t59;
+            let t355 = k(0.2) * t52;
+            let t356 = T::fused(k(0.4), t65, t355);
+            let t357 = T::fused(t312, t356, T::fused(t108, t305, t309 * t354))
+                + (t353 + T::fused(t60, t214, -T::fused(t53, t207, t66 * t212)));
+            let t358 = T::fused(t60, t320, T::fused(t53, t318, t66 * t319))
+                - T::fused(t60, t317, -T::fused(t53, t315, t66 * t316));
+            let t359 = T::fused(
+                -t305,
+                T::fused(t73, t66, t74 * t60),
+                t309 * T::fused(t73, t53, t78 * t60),
+            );
+            let t360 = t357 + T::fused(t312, T::fused(-t74, t53, t78 * t66), t359)
+                - t358;
+            let t361 = T::fused(-k(0.1), t59, t106);
+            let t362 = k(0.1) * t52;
+            let t363 = T::fused(t312, t362, T::fused(-t305, t361, t309 * t355))
+                + T::fused(t324, t105, t360);
+            let t364 = T::fused(k(0.6), t363, k(1.8) - t352);
+            let t365 = t364 + T::fused(k(1.5), t357, k(4.5) + t352);
+            let t366 = T::fused(-t90, t196, t23 * t345)
+                + T::fused(t92, t187, t20 * t346);
+            let t367 = T::fused(t92, t348, t91 * t346);
+            let t368 = T::fused(t90, t350, t88 * t345) - t367;
+            let t369 = T::fused(
+                T::fused(-k(0.1), t366, k(0.2) * t368),
+                t365,
+                -T::fused(t130 - T::fused(-k(0.1), t347, k(0.2) * t351), t344, -t330),
+            );
             let t370 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(t368, t67, T::fused(-t369, t124, t188 * t153)),
+                T::fused(-t368, t66, T::fused(t351, t123, t196 * t152)),
                 k(0.3333333333333333)
-                    * T::fused(-t368, t54, T::fused(-t369, t119, t188 * t148)),
+                    * T::fused(t368, t53, T::fused(t351, t118, t196 * t147)),
             );
             let t371 = T::fused(
                 k(0.6666666666666666),
-                T::fused(-t368, t61, T::fused(t369, t121, t188 * t150)),
+                T::fused(t368, t60, T::fused(-t351, t120, t196 * t149)),
                 -t370,
             );
-            let t372 = T::fused(
+            let t372 = k(0.8) * t194;
+            let t373 = t349 - T::fused(-t92, t372, t96 * t346);
+            let t374 = t367 + T::fused(t90, t372, t96 * t345);
+            let t375 = T::fused(
                 -k(0.6666666666666666),
-                T::fused(-t361, t67, T::fused(t342, t124, t194 * t153)),
+                T::fused(t373, t66, T::fused(-t374, t123, t187 * t152)),
                 k(0.3333333333333333)
-                    * T::fused(t361, t54, T::fused(t342, t119, t194 * t148)),
+                    * T::fused(-t373, t53, T::fused(-t374, t118, t187 * t147)),
             );
-            let t373 = T::fused(
+            let t376 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t361, t61, T::fused(-t342, t121, t194 * t150)),
-                -t372,
+                T::fused(-t373, t60, T::fused(t374, t120, t187 * t149)),
+                -t375,
             );
-            let t374 = T::fused(t95, t67, -T::fused(-t24, t153, t127 * t124));
-            let t375 = T::fused(t95, t61, -T::fused(t24, t150, t127 * t121));
-            let t376 = t375 + t374;
-            let t377 = T::fused(t99, t67, -T::fused(t21, t153, t128 * t124));
-            let t378 = T::fused(t99, t61, -T::fused(-t21, t150, t128 * t121));
-            let t379 = t378 + t377;
-            let t380 = T::fused(t101, t67, -T::fused(-t12, t153, t129 * t124));
-            let t381 = T::fused(t101, t61, -T::fused(t12, t150, t129 * t121));
-            let t382 = t381 + t380;
-            let t383 = T::fused(
+            let t377 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(-t366, t66, T::fused(t347, t123, t194 * t152)),
+                k(0.3333333333333333)
+                    * T::fused(t366, t53, T::fused(t347, t118, t194 * t147)),
+            );
+            let t378 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t366, t60, T::fused(-t347, t120, t194 * t149)),
+                -t377,
+            );
+            let t379 = T::fused(t94, t66, -T::fused(-t23, t152, t126 * t123));
+            let t380 = T::fused(t94, t60, -T::fused(t23, t149, t126 * t120));
+            let t381 = t380 + t379;
+            let t382 = T::fused(t98, t66, -T::fused(t20, t152, t127 * t123));
+            let t383 = T::fused(t98, t60, -T::fused(-t20, t149, t127 * t120));
+            let t384 = t383 + t382;
+            let t385 = T::fused(t100, t66, -T::fused(-t12, t152, t128 * t123));
+            let t386 = T::fused(t100, t60, -T::fused(t12, t149, t128 * t120));
+            let t387 = t386 + t385;
+            let t388 = T::fused(
                 -k(0.4444444444444444),
-                t376,
-                T::fused(k(0.2222222222222222), t379, k(0.4444444444444444) * t382),
+                t381,
+                T::fused(k(0.2222222222222222), t384, k(0.4444444444444444) * t387),
             );
-            let t384 = k(0.6666666666666666)
-                * T::fused(t95, t54, T::fused(-t24, t148, t127 * t119));
-            let t385 = T::fused(-k(0.3333333333333333), t374, t384);
-            let t386 = k(0.6666666666666666)
-                * T::fused(t99, t54, T::fused(t21, t148, t128 * t119));
-            let t387 = T::fused(-k(0.3333333333333333), t377, t386);
-            let t388 = k(0.6666666666666666)
-                * T::fused(t101, t54, T::fused(-t12, t148, t129 * t119));
-            let t389 = T::fused(-k(0.3333333333333333), t380, t388);
-            let t390 = T::fused(
+            let t389 = k(0.6666666666666666)
+                * T::fused(t94, t53, T::fused(-t23, t147, t126 * t118));
+            let t390 = T::fused(-k(0.3333333333333333), t379, t389);
+            let t391 = k(0.6666666666666666)
+                * T::fused(t98, t53, T::fused(t20, t147, t127 * t118));
+            let t392 = T::fused(-k(0.3333333333333333), t382, t391);
+            let t393 = k(0.6666666666666666)
+                * T::fused(t100, t53, T::fused(-t12, t147, t128 * t118));
+            let t394 = T::fused(-k(0.3333333333333333), t385, t393);
+            let t395 = T::fused(
                 k(0.3333333333333333),
-                t385,
-                k(0.6666666666666666) * (t389 - t387),
+                t390,
+                k(0.6666666666666666) * (t394 - t392),
             );
-            let t391 = T::fused(k(0.3333333333333333), t375, t384);
-            let t392 = T::fused(k(0.3333333333333333), t378, t386);
-            let t393 = T::fused(k(0.3333333333333333), t381, t388);
-            let t394 = T::fused(
-                k(0.3333333333333333),
-                t391,
-                k(0.6666666666666666) * (t393 - t392),
-            );
-            let t395 = k(0.6666666666666666) * (t394 + t390);
-            let t396 = T::fused(
-                -k(0.6666666666666666),
-                t391,
-                T::fused(k(0.3333333333333333), t392, k(0.6666666666666666) * t393),
-            );
-            let t397 = k(0.6666666666666666)
-                * T::fused(
-                    k(0.2222222222222222),
-                    t376,
-                    k(0.4444444444444444) * (t382 - t379),
-                );
-            let t398 = T::fused(-k(0.3333333333333333), t390, t397);
+            let t396 = T::fused(k(0.3333333333333333), t380, t389);
+            let t397 = T::fused(k(0.3333333333333333), t383, t391);
+            let t398 = T::fused(k(0.3333333333333333), t386, t393);
             let t399 = T::fused(
-                -k(0.6666666666666666),
-                t385,
-                T::fused(k(0.3333333333333333), t387, k(0.6666666666666666) * t389),
+                k(0.3333333333333333),
+                t396,
+                k(0.6666666666666666) * (t398 - t397),
             );
             (
-                t298,
-                t299,
-                t303,
-                t304,
                 t305,
-                t307,
-                t320,
-                t321,
-                t323,
-                t324,
+                t306,
+                t309,
+                t310,
+                t311,
+                t312,
+                t325,
+                t326,
                 t328,
                 t329,
-                t330,
+                t333,
+                t334,
                 t335,
-                t336,
-                t338,
-                t339,
-                t349,
-                t350,
-                t351,
+                t340,
+                t341,
+                t343,
+                t344,
+                t354,
+                t355,
                 t356,
-                t357,
-                t359,
-                t360,
+                t361,
+                t362,
                 t364,
-                t366,
+                t365,
+                t369,
                 t371,
-                t373,
-                t383,
+                t376,
+                t378,
+                t381,
+                t384,
+                t387,
+                t388,
+                t390,
+                t392,
                 t394,
                 t395,
                 t396,
@@ -10145,170 +9765,188 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
                 t399,
             )
         };
-        let (t461,) = {
-            let t400 = T::fused(k(0.3333333333333333), t394, t397);
-            let t401 = k(1.0) / T::fused(t400, t399, T::fused(-t395, t383, t398 * t396));
-            let t402 = t167 - t170;
-            let t403 = t141 + t144;
-            let t404 = t110 - t113;
-            let t405 = T::fused(t61, t404, -T::fused(t150, t402, t121 * t403));
-            let t406 = T::fused(t67, t404, -T::fused(-t153, t402, t124 * t403));
-            let t407 = k(0.6666666666666666) * t406;
-            let t408 = T::fused(-k(0.3333333333333333), t405, t407);
-            let t409 = k(0.02) * t27;
-            let t410 = k(0.03) * t63;
-            let t411 = t63 * t27;
-            let t412 = t27 * t27;
-            let t413 = t63 * t63;
-            let t414 = t413 - t412;
-            let t415 = T::fused(
-                -t58,
-                t410 + t409,
-                T::fused(-k(0.05), t411, k(0.01) * t414),
-            ) - T::fused(t182, t408, t178 + T::fused(t174, t408, t177));
-            let t416 = T::fused(
+        let (t466,) = {
+            let t400 = k(0.6666666666666666) * (t399 + t395);
+            let t401 = T::fused(
+                -k(0.6666666666666666),
+                t396,
+                T::fused(k(0.3333333333333333), t397, k(0.6666666666666666) * t398),
+            );
+            let t402 = k(0.6666666666666666)
+                * T::fused(
+                    k(0.2222222222222222),
+                    t381,
+                    k(0.4444444444444444) * (t387 - t384),
+                );
+            let t403 = T::fused(-k(0.3333333333333333), t395, t402);
+            let t404 = T::fused(
+                -k(0.6666666666666666),
+                t390,
+                T::fused(k(0.3333333333333333), t392, k(0.6666666666666666) * t394),
+            );
+            let t405 = T::fused(k(0.3333333333333333), t399, t402);
+            let t406 = k(1.0) / T::fused(t405, t404, T::fused(-t400, t388, t403 * t401));
+            let t407 = t166 - t169;
+            let t408 = t140 + t143;
+            let t409 = t109 - t112;
+            let t410 = T::fused(t60, t409, -T::fused(t149, t407, t120 * t408));
+            let t411 = T::fused(t66, t409, -T::fused(-t152, t407, t123 * t408));
+            let t412 = k(0.6666666666666666) * t411;
+            let t413 = T::fused(-k(0.3333333333333333), t410, t412);
+            let t414 = k(0.02) * t26;
+            let t415 = k(0.03) * t62;
+            let t416 = t62 * t26;
+            let t417 = t26 * t26;
+            let t418 = t62 * t62;
+            let t419 = t418 - t417;
+            let t420 = T::fused(
+                -t57,
+                t415 + t414,
+                T::fused(-k(0.05), t416, k(0.01) * t419),
+            ) - T::fused(t181, t413, t177 + T::fused(t173, t413, t176));
+            let t421 = T::fused(
                 -k(0.05),
-                T::fused(t61, t106, T::fused(t150, t162, t121 * t136)),
-                k(0.1) * T::fused(t67, t106, T::fused(-t153, t162, t124 * t136)),
+                T::fused(t60, t105, T::fused(t149, t161, t120 * t135)),
+                k(0.1) * T::fused(t66, t105, T::fused(-t152, t161, t123 * t135)),
             );
-            let t417 = k(0.001) * t27;
-            let t418 = k(0.002) * t63;
-            let t419 = T::fused(
-                -t58,
-                t418 - t417,
-                T::fused(k(0.005), t411, k(0.003) * t414),
-            ) - T::fused(t174, t416, t182 * t416);
-            let t420 = k(0.02) * t298;
-            let t421 = T::fused(t356, t359, -T::fused(t320, t323, t335 * t338))
-                - (T::fused(k(0.002), t307, T::fused(k(0.001), t303, t420)) + t419);
-            let t422 = T::fused(t54, t67, -T::fused(t148, t153, t119 * t124));
-            let t423 = T::fused(t54, t106, -T::fused(-t148, t162, t119 * t136));
-            let t424 = k(0.1) * t423;
-            let t425 = k(0.003) * t58;
-            let t426 = t58 * t27;
-            let t427 = t58 * t58;
-            let t428 = t427 - t412;
-            let t429 = T::fused(
-                -t63,
-                t425 + t417,
-                T::fused(k(0.005), t426, k(0.002) * t428),
-            ) + T::fused(t174, t424, t182 * t424);
-            let t430 = T::fused(t350, t359, T::fused(t304, t323, t329 * t338))
-                - (T::fused(k(0.003), t307, -T::fused(k(0.001), t298, k(0.03) * t303))
-                    - t429);
-            let t431 = T::fused(
-                -t421,
-                T::fused(t54, t54, T::fused(t148, t148, t119 * t119)),
-                t430 * t422,
-            );
-            let t432 = T::fused(t54, t61, -T::fused(-t148, t150, t119 * t121));
-            let t433 = k(0.05) * t423;
-            let t434 = t63 * t58;
-            let t435 = t427 - t413;
+            let t422 = k(0.001) * t26;
+            let t423 = k(0.002) * t62;
+            let t424 = T::fused(
+                -t57,
+                t423 - t422,
+                T::fused(k(0.005), t416, k(0.003) * t419),
+            ) - T::fused(t173, t421, t181 * t421);
+            let t425 = k(0.02) * t305;
+            let t426 = T::fused(t361, t364, -T::fused(t325, t328, t340 * t343))
+                - (T::fused(k(0.002), t312, T::fused(k(0.001), t309, t425)) + t424);
+            let t427 = T::fused(t53, t66, -T::fused(t147, t152, t118 * t123));
+            let t428 = T::fused(t53, t105, -T::fused(-t147, t161, t118 * t135));
+            let t429 = k(0.1) * t428;
+            let t430 = k(0.003) * t57;
+            let t431 = t57 * t26;
+            let t432 = t57 * t57;
+            let t433 = t432 - t417;
+            let t434 = T::fused(
+                -t62,
+                t430 + t422,
+                T::fused(k(0.005), t431, k(0.002) * t433),
+            ) + T::fused(t173, t429, t181 * t429);
+            let t435 = T::fused(t355, t364, T::fused(t310, t328, t334 * t343))
+                - (T::fused(k(0.003), t312, -T::fused(k(0.001), t305, k(0.03) * t309))
+                    - t434);
             let t436 = T::fused(
-                -t27,
-                t425 + t418,
-                T::fused(k(0.01), t434, k(0.001) * t435),
-            ) - T::fused(t174, t433, t182 * t433);
-            let t437 = T::fused(t357, t359, T::fused(t321, t323, t336 * t338))
-                + (T::fused(k(0.025), t307, -T::fused(-k(0.002), t298, k(0.003) * t303))
-                    - t436);
-            let t438 = T::fused(
-                -t323,
-                T::fused(t153, t405, t150 * t406),
-                t338 * T::fused(-t124, t405, t121 * t406),
+                -t426,
+                T::fused(t53, t53, T::fused(t147, t147, t118 * t118)),
+                t435 * t427,
             );
-            let t439 = T::fused(t359, T::fused(-t67, t405, t61 * t406), -t438)
-                - T::fused(t437, t432, -t431);
-            let t440 = t439
-                - (T::fused(k(0.03), t307, -T::fused(k(0.3), t298, k(0.02) * t303))
-                    + t415);
-            let t441 = T::fused(t109, t360, -T::fused(-t165, t324, t139 * t339)) + t440;
-            let t442 = T::fused(t54, t404, T::fused(-t148, t402, t119 * t403));
-            let t443 = k(0.6666666666666666) * (t442 + t405);
-            let t444 = k(0.01) * t58;
-            let t445 = T::fused(
-                -t63,
-                t444 - t409,
-                T::fused(k(0.1), t426, k(0.03) * t428),
-            ) + T::fused(t182, t443, -(t180 + T::fused(-t174, t443, t179)));
-            let t446 = T::fused(
-                -t421,
-                t422,
-                t430 * T::fused(t67, t67, T::fused(t153, t153, t124 * t124)),
+            let t437 = T::fused(t53, t60, -T::fused(-t147, t149, t118 * t120));
+            let t438 = k(0.05) * t428;
+            let t439 = t62 * t57;
+            let t440 = t432 - t418;
+            let t441 = T::fused(
+                -t26,
+                t430 + t423,
+                T::fused(k(0.01), t439, k(0.001) * t440),
+            ) - T::fused(t173, t438, t181 * t438);
+            let t442 = T::fused(t362, t364, T::fused(t326, t328, t341 * t343))
+                + (T::fused(k(0.025), t312, -T::fused(-k(0.002), t305, k(0.003) * t309))
+                    - t441);
+            let t443 = T::fused(
+                -t328,
+                T::fused(t152, t410, t149 * t411),
+                t343 * T::fused(-t123, t410, t120 * t411),
             );
-            let t447 = T::fused(t67, t61, T::fused(-t153, t150, t124 * t121));
-            let t448 = T::fused(
-                -t323,
-                T::fused(-t148, t405, t150 * t442),
-                t338 * T::fused(t119, t405, t121 * t442),
+            let t444 = T::fused(t364, T::fused(-t66, t410, t60 * t411), -t443)
+                - T::fused(t442, t437, -t436);
+            let t445 = t444
+                - (T::fused(k(0.03), t312, -T::fused(k(0.3), t305, k(0.02) * t309))
+                    + t420);
+            let t446 = T::fused(t108, t365, -T::fused(-t164, t329, t138 * t344)) + t445;
+            let t447 = T::fused(t53, t409, T::fused(-t147, t407, t118 * t408));
+            let t448 = k(0.6666666666666666) * (t447 + t410);
+            let t449 = k(0.01) * t57;
+            let t450 = T::fused(
+                -t62,
+                t449 - t414,
+                T::fused(k(0.1), t431, k(0.03) * t433),
+            ) + T::fused(t181, t448, -(t179 + T::fused(-t173, t448, t178)));
+            let t451 = T::fused(
+                -t426,
+                t427,
+                t435 * T::fused(t66, t66, T::fused(t152, t152, t123 * t123)),
             );
-            let t449 = T::fused(t359, T::fused(-t54, t405, t61 * t442), -t448)
-                + T::fused(t437, t447, -t446);
-            let t450 = T::fused(t349, t360, -T::fused(-t299, t324, t328 * t339))
-                - (t449
-                    - (T::fused(k(0.01), t307, T::fused(k(0.25), t303, t420)) - t445));
-            let t451 = T::fused(k(0.3333333333333333), t442, t407);
-            let t452 = T::fused(
-                t27,
-                t444 + t410,
-                T::fused(-k(0.05), t434, k(0.02) * t435),
-            ) + T::fused(t182, t451, -(t180 + T::fused(-t174, t451, t179)));
+            let t452 = T::fused(t66, t60, T::fused(-t152, t149, t123 * t120));
             let t453 = T::fused(
-                t437,
-                T::fused(t61, t61, T::fused(t150, t150, t121 * t121)),
-                -T::fused(-t421, t432, t430 * t447),
+                -t328,
+                T::fused(-t147, t410, t149 * t447),
+                t343 * T::fused(t118, t410, t120 * t447),
             );
-            let t454 = T::fused(
-                t323,
-                T::fused(t148, t406, t153 * t442),
-                t338 * T::fused(t119, t406, t124 * t442),
-            );
-            let t455 = T::fused(t359, T::fused(-t54, t406, t67 * t442), -t454) - t453
-                - (T::fused(k(0.2), t307, T::fused(-k(0.03), t298, k(0.01) * t303))
-                    - t452);
-            let t456 = T::fused(t351, t360, -T::fused(t305, t324, t330 * t339)) - t455;
+            let t454 = T::fused(t364, T::fused(-t53, t410, t60 * t447), -t453)
+                + T::fused(t442, t452, -t451);
+            let t455 = T::fused(t354, t365, -T::fused(-t306, t329, t333 * t344))
+                - (t454
+                    - (T::fused(k(0.01), t312, T::fused(k(0.25), t309, t425)) - t450));
+            let t456 = T::fused(k(0.3333333333333333), t447, t412);
             let t457 = T::fused(
-                t456,
-                t400 * t401,
-                -T::fused(t441, t395 * t401, t450 * (t398 * t401)),
-            );
+                t26,
+                t449 + t415,
+                T::fused(-k(0.05), t439, k(0.02) * t440),
+            ) + T::fused(t181, t456, -(t179 + T::fused(-t173, t456, t178)));
             let t458 = T::fused(
-                t457,
+                t442,
+                T::fused(t60, t60, T::fused(t149, t149, t120 * t120)),
+                -T::fused(-t426, t437, t435 * t452),
+            );
+            let t459 = T::fused(
+                t328,
+                T::fused(t147, t411, t152 * t447),
+                t343 * T::fused(t118, t411, t123 * t447),
+            );
+            let t460 = T::fused(t364, T::fused(-t53, t411, t66 * t447), -t459) - t458
+                - (T::fused(k(0.2), t312, T::fused(-k(0.03), t305, k(0.01) * t309))
+                    - t457);
+            let t461 = T::fused(t356, t365, -T::fused(t311, t329, t335 * t344)) - t460;
+            let t462 = T::fused(
+                t461,
+                t405 * t406,
+                -T::fused(t446, t400 * t406, t455 * (t403 * t406)),
+            );
+            let t463 = T::fused(
+                t462,
                 T::fused(
                     k(0.6666666666666666),
-                    t366,
-                    T::fused(k(0.3333333333333333), t371, k(0.6666666666666666) * t373),
+                    t371,
+                    T::fused(k(0.3333333333333333), t376, k(0.6666666666666666) * t378),
                 ),
-                t364,
+                t369,
             );
-            let t459 = k(0.6666666666666666) * t383;
-            let t460 = T::fused(
-                t441,
-                t401 * (k(0.6666666666666666) * (t399 + t396)),
-                t450 * (t401 * T::fused(-k(0.3333333333333333), t399, t459)),
+            let t464 = k(0.6666666666666666) * t388;
+            let t465 = T::fused(
+                t446,
+                t406 * (k(0.6666666666666666) * (t404 + t401)),
+                t455 * (t406 * T::fused(-k(0.3333333333333333), t404, t464)),
             );
-            let t461 = T::fused(
+            let t466 = T::fused(
                 T::fused(
-                    t456,
-                    t401 * T::fused(k(0.3333333333333333), t396, t459),
-                    -t460,
+                    t461,
+                    t406 * T::fused(k(0.3333333333333333), t401, t464),
+                    -t465,
                 ),
                 T::fused(
                     -k(0.3333333333333333),
-                    t366,
-                    k(0.6666666666666666) * (t373 - t371),
+                    t371,
+                    k(0.6666666666666666) * (t378 - t376),
                 ),
-                -t458,
+                -t463,
             );
-            (t461,)
+            (t466,)
         };
         *dx = [
             u0,
             u1,
             rates[0],
             rates[1],
-            -(t461 + T::fused(t173, t174, t175 * (k(0.1) * t175))),
+            -(t466 + T::fused(t172, t173, t174 * (k(0.1) * t174))),
         ];
     }
     /// Writes the maximal state of a joint state: 308 operations (130 ±, 178 ×, 0 ÷) and 18 functions.
@@ -10754,7 +10392,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
         x[3] = t93 - (t107 + t100);
         x[4] = y[26];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 878 operations (358 ±, 519 ×, 1 ÷) and 17 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 811 operations (346 ±, 464 ×, 1 ÷) and 17 functions.
     fn joint_accelerations_at(&self, t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let arm_rx = y[0];
@@ -10785,417 +10423,72 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
         let slider_wz = y[25];
         let turn0 = y[27];
         let (
-            t1,
-            t3,
-            t4,
-            t8,
-            t24,
-            t64,
-            t70,
-            t110,
-            t118,
+            t11,
+            t15,
+            t17,
+            t19,
+            t53,
+            t60,
+            t62,
+            t66,
+            t69,
+            t82,
+            t84,
+            t90,
+            t92,
+            t95,
+            t96,
+            t98,
+            t136,
+            t137,
+            t140,
+            t141,
+            t143,
+            t150,
+            t151,
             t153,
-            t158,
-            t159,
+            t160,
+            t161,
+            t163,
+            t179,
+            t180,
+            t183,
             t189,
-            t190,
             t191,
-            t192,
-            t193,
             t194,
             t195,
             t196,
             t197,
+            t198,
             t199,
         ) = {
-            let t0 = k(6.0) * t;
-            let t1 = t0.sin();
-            let t2 = k(0.5) * t1;
-            let t3 = t2.sin();
-            let t4 = t2.cos();
-            let t5 = k(0.25) * t1;
-            let t6 = t5.cos();
-            let t7 = T::fused(k(4.0), t, k(0.2));
-            let t8 = t7.sin();
-            let t9 = k(0.35) * t8;
-            let t10 = t9.cos();
-            let t11 = t10 * t6;
-            let t12 = t9.sin();
-            let t13 = t12 * t6;
-            let t14 = t5.sin();
-            let t15 = k(0.8944271909999159) * t14;
-            let t16 = k(0.4472135954999579) * t14;
-            let t17 = T::fused(-t12, t15, t10 * t16);
-            let t18 = T::fused(t10, t15, t12 * t16);
+            let t0 = k(0.005) * slider_wz;
+            let t1 = slider_wx * slider_wx;
+            let t2 = slider_wz * slider_wz;
+            let t3 = k(0.003) * slider_wx;
+            let t4 = k(0.001) * slider_wz;
+            let t5 = T::fused(
+                slider_wy,
+                t4 + t3,
+                T::fused(-slider_wx, t0, k(0.002) * (t2 - t1)),
+            );
+            let t6 = k(6.0) * t;
+            let t7 = t6.cos();
+            let t8 = t6.sin();
+            let t9 = k(0.5) * t8;
+            let t10 = t9.sin();
+            let t11 = k(0.4472135954999579) * t10;
+            let t12 = T::fused(k(4.0), t, k(0.2));
+            let t13 = k(2.8) * t12.cos();
+            let t14 = T::fused(k(2.6832815729997477), t7, t13 * t11);
+            let t15 = k(0.8944271909999159) * t10;
+            let t16 = T::fused(-k(1.3416407864998738), t7, t13 * t15);
+            let t17 = t9.cos();
+            let t18 = t13 * t17;
             let t19 = T::fused(
-                -t11,
-                arm_e3,
-                T::fused(t13, arm_e2, T::fused(-t17, arm_e1, t18 * arm_e0)),
-            );
-            let t20 = T::fused(
-                -t13,
-                arm_e3,
-                T::fused(-t11, arm_e2, T::fused(t18, arm_e1, t17 * arm_e0)),
-            );
-            let t21 = T::fused(
-                t17,
-                arm_e3,
-                T::fused(-t18, arm_e2, T::fused(-t11, arm_e1, t13 * arm_e0)),
-            );
-            let t22 = T::fused(
                 k(0.6666666666666666),
-                t19,
-                T::fused(k(0.6666666666666666), t20, k(0.3333333333333333) * t21),
-            );
-            let t23 = k(2.0) * t22;
-            let t24 = T::fused(-t22, t23, k(1.0));
-            let t25 = arm_e0 * arm_e0;
-            let t26 = k(0.5) - T::fused(arm_e1, arm_e1, t25);
-            let t27 = arm_e0 * arm_e3;
-            let t28 = arm_e1 * arm_e2;
-            let t29 = t28 - t27;
-            let t30 = arm_e0 * arm_e2;
-            let t31 = arm_e1 * arm_e3;
-            let t32 = t31 + t30;
-            let t33 = slider_e0 * slider_e3;
-            let t34 = slider_e1 * slider_e2;
-            let t35 = t34 - t33;
-            let t36 = slider_e0 * slider_e2;
-            let t37 = slider_e1 * slider_e3;
-            let t38 = t37 + t36;
-            let t39 = slider_rx - T::fused(-k(0.1), t35, k(0.2) * t38)
-                - (arm_rx + T::fused(k(0.2), t32, T::fused(-k(0.4), t26, k(0.2) * t29)));
-            let t40 = T::fused(
-                k(1.3333333333333333),
-                t32,
-                -T::fused(k(1.3333333333333333), t26, k(0.6666666666666666) * t29),
-            );
-            let t41 = t28 + t27;
-            let t42 = k(0.5) - T::fused(arm_e2, arm_e2, t25);
-            let t43 = arm_e0 * arm_e1;
-            let t44 = arm_e2 * arm_e3;
-            let t45 = t44 - t43;
-            let t46 = slider_e0 * slider_e0;
-            let t47 = k(0.5) - T::fused(slider_e2, slider_e2, t46);
-            let t48 = slider_e0 * slider_e1;
-            let t49 = slider_e2 * slider_e3;
-            let t50 = t49 - t48;
-            let t51 = slider_ry - T::fused(k(0.1), t47, k(0.2) * t50)
-                - (arm_ry
-                    + T::fused(k(0.2), t45, -T::fused(-k(0.4), t41, k(0.2) * t42)));
-            let t52 = T::fused(
-                k(1.3333333333333333),
-                t45,
-                T::fused(k(1.3333333333333333), t41, k(0.6666666666666666) * t42),
-            );
-            let t53 = t31 - t30;
-            let t54 = t44 + t43;
-            let t55 = k(0.5) - T::fused(arm_e3, arm_e3, t25);
-            let t56 = t49 + t48;
-            let t57 = k(0.5) - T::fused(slider_e3, slider_e3, t46);
-            let t58 = slider_rz + T::fused(k(0.1), t56, k(0.2) * t57)
-                - (arm_rz - T::fused(k(0.2), t55, -T::fused(k(0.4), t53, k(0.2) * t54)));
-            let t59 = T::fused(
-                k(1.3333333333333333),
-                t55,
-                T::fused(-k(1.3333333333333333), t53, k(0.6666666666666666) * t54),
-            );
-            let t60 = T::fused(t59, t58, -T::fused(t40, t39, t52 * t51));
-            let t61 = T::fused(
-                -t24,
-                T::fused(-k(1.5505273875327696), t3, t4),
-                k(0.12817586257052085) * (t3 * (t60 + k(2.44375))),
-            );
-            let t62 = T::fused(k(0.8027174905402471), t3, t4);
-            let t63 = T::fused(
-                t18,
-                arm_e3,
-                T::fused(t17, arm_e2, T::fused(t13, arm_e1, t11 * arm_e0)),
-            );
-            let t64 = t63 * t23;
-            let t65 = T::fused(
-                k(1.652037617554859),
-                t64
-                    * T::fused(
-                        -k(2.3529411764705883),
-                        t60 * t62,
-                        T::fused(k(0.72088794948238), t3, t4),
-                    ),
-                -t61,
-            );
-            let t66 = T::fused(
-                -t64,
-                t65,
-                k(3.2524625127269666)
-                    * (t3
-                        * T::fused(
-                            k(0.06896551724137931),
-                            t24 * (t60 + k(1.4285714285714286)),
-                            -(t60 - k(0.7745997536945812)),
-                        )),
-            );
-            let t67 = T::fused(
-                k(193.0),
-                t60 - k(0.7366580310880829),
-                T::fused(
-                    -t64,
-                    t60 + k(10.15),
-                    k(86.0) * (t24 * (t60 - k(0.5837209302325581))),
-                ),
-            );
-            let t68 = t0.cos();
-            let t69 = t7.cos();
-            let t70 = t69 * t68;
-            let t71 = T::fused(
-                k(3.7136462289744983),
-                t24 * T::fused(-k(0.12901271775065906), t3, t4),
-                T::fused(-k(0.6793133264254652), t3, t4),
-            );
-            let t72 = T::fused(-t64, t64, k(0.5));
-            let t73 = T::fused(
-                T::fused(k(7.579093565841393), t3, t4),
-                t72,
-                k(1.3909774436090225) * (t24 * T::fused(k(1.353727640432305), t3, t4)),
-            );
-            let t74 = t8 * t8;
-            let t75 = t3 * T::fused(-k(6.360135566698069), t74, k(6.360135566698069));
-            let t76 = k(1.2951895043731778)
-                - T::fused(
-                    -k(0.0803601191578524),
-                    t75 * T::fused(-k(4.416234255562085), t3, t4),
-                    t74,
-                );
-            let t77 = k(0.8367346938775511)
-                + T::fused(
-                    k(0.246102864920923),
-                    t75 * T::fused(k(0.25555062599997597), t3, t4),
-                    t74,
-                );
-            let t78 = T::fused(
-                t75,
-                T::fused(-k(0.9934472611469121), t3, k(0.37568058076225047) * t4),
-                k(3.0388148148148146),
-            );
-            let t79 = T::fused(k(0.711476174659024), t4, t3);
-            let t80 = T::fused(-k(0.6136363636363636), t3, k(0.9147550817044594) * t4);
-            let t81 = T::fused(-t24, t79, t64 * t80);
-            let t82 = T::fused(
-                k(0.36134979423868313),
-                T::fused(-t64, t76, k(1.2857142857142858) * (t24 * t77)),
-                T::fused(-t78, t72, k(2.1766603443197954) * (t8 * t81)),
-            );
-            let t83 = T::fused(-k(0.125), t64, t24);
-            let t84 = T::fused(k(0.125), t24, t64);
-            let t85 = k(0.8944271909999159) * t3;
-            let t86 = t4 - t85;
-            let t87 = T::fused(
-                -k(3.2142857142857144),
-                t1 * T::fused(k(0.4472135954999579), t1 * t83, t84),
-                t70 * T::fused(t86, t83, k(4.919349550499537) * t79),
-            );
-            let t88 = T::fused(
-                k(0.393547964039963),
-                T::fused(k(3.0), t, k(0.4)).sin(),
-                k(0.43727551559995886),
-            );
-            let t89 = T::fused(
-                -t60,
-                T::fused(k(0.5936346393599442), t87, t82),
-                t88 * T::fused(t64, t79, t24 * t80),
-            );
-            let t90 = T::fused(
-                -t75,
-                T::fused(k(13.585476419395064), t3, t4),
-                k(44.34900170631336),
-            );
-            let t91 = k(0.7) * t8;
-            let t92 = t91.sin();
-            let t93 = (k(5.0) * t).sin();
-            let t94 = T::fused(-k(0.6956655929999346), t93, k(0.41739935579996074));
-            let t95 = t91.cos();
-            let t96 = T::fused(
-                k(2.24),
-                t92,
-                -T::fused(
-                    k(1.0666666666666667),
-                    t93 * t92,
-                    k(0.7666518779999278) * (t95 * t94),
-                ),
-            );
-            let t97 = T::fused(
-                t70,
-                T::fused(-k(1.3536465206072552), t3, t4),
-                k(0.5518621316880434) * (t75 * T::fused(-k(0.07136528672984159), t3, t4)),
-            );
-            let t98 = k(0.12388655091064271) - t97;
-            let t99 = t8
-                * T::fused(
-                    t4,
-                    t60 - k(0.512),
-                    k(1.359529330319872) * (t3 * (t60 - k(0.4826315789473684))),
-                );
-            let t100 = t60 * t64;
-            let t101 = T::fused(
-                t70,
-                T::fused(-k(1.426962962962963), t3, k(2.9310710318397244) * t4),
-                t75 * T::fused(k(0.3747747327079956), t3, t4),
-            );
-            let t102 = T::fused(
-                -k(2.921795490599725),
-                t95,
-                T::fused(-t92, t94, k(1.3913311859998692) * (t93 * t95)),
-            );
-            let t103 = T::fused(
-                t75,
-                T::fused(k(0.08254377978647137), t3, k(0.09882032667876588) * t4),
-                t102 * T::fused(k(1.2857142857142858), t3, k(0.8624833627499189) * t4),
-            );
-            let t104 = t1 * t1;
-            let t105 = k(0.06127407407407407)
-                - T::fused(k(1.6659423868312757), t100, k(0.944) * t104)
-                + (t103 + T::fused(t101, t100, k(0.8827259259259259) * t74));
-            let t106 = T::fused(
-                -k(1.658466773711844),
-                T::fused(
-                    t64,
-                    T::fused(-t60, t98, k(0.008590561306175786)),
-                    k(1.2505973028522315) * t99,
-                ),
-                T::fused(t60, t105, k(0.7718755555555555)),
-            );
-            let t107 = T::fused(
-                -(T::fused(k(3.144296296296296), t3, k(1.743801753119836) * t4) * t70),
-                t100,
-                k(0.09419237749546279) * (t4 * t75),
-            );
-            let t108 = t3 * t102;
-            let t109 = k(1.4055284429998678) * (t4 * t102);
-            let t110 = T::fused(-k(0.06581728395061728), t74, t109)
-                - (t108 + k(0.6221827160493827))
-                - (T::fused(-k(0.688), t104, k(0.11273678478211281) * (t3 * t75))
-                    - t107);
-            let t111 = T::fused(
-                k(1.2191822222222222),
-                t64 + k(0.4400359034430689),
-                T::fused(-k(2.0750710831198047), t1 * (k(0.1) - t60), t60 * t110),
-            );
-            let t112 = t64
-                * T::fused(
-                    -t3,
-                    t60 - k(0.6227272727272727),
-                    k(1.084154170908989) * (t4 * (t60 - k(0.53125))),
-                );
-            let t113 = T::fused(
-                t1,
-                T::fused(k(14.38), t64, t24),
-                k(31.304951684997057) * (t24 * (t60 - k(0.8042857142857143))),
-            );
-            let t114 = k(0.2582908163265306) * t104;
-            let t115 = t64 * t24;
-            let t116 = T::fused(-t60, t60 + k(0.6375), k(0.34125))
-                * T::fused(t114, t72, t74 * t115);
-            let t117 = T::fused(t60, t60 - k(0.8714285714285714), k(0.3525))
-                * T::fused(-t74, t72, t114 * t115);
-            let t118 = T::fused(-k(2.583900773999757), t60, k(1.0077213018599052));
-            let t119 = k(2.0) * (t37 - t36);
-            let t120 = T::fused(
-                -k(0.1),
-                T::fused(-t119, slider_wy, k(2.0) * t56 * slider_wx),
-                k(0.05) * T::fused(t119, slider_wz, k(2.0) * t57 * slider_wx),
-            );
-            let t121 = k(2.0) * t53;
-            let t122 = k(2.0) * t54;
-            let t123 = T::fused(-t121, arm_wy, t122 * arm_wx);
-            let t124 = k(2.0) * t55;
-            let t125 = T::fused(t121, arm_wz, t124 * arm_wx);
-            let t126 = T::fused(t122, arm_wz, t124 * arm_wy);
-            let t127 = arm_sz
-                + T::fused(-k(0.1), t123, T::fused(-k(0.1), t125, k(0.2) * t126))
-                - (slider_sz - t120);
-            let t128 = T::fused(
-                t59,
-                t127,
-                t58
-                    * T::fused(
-                        -k(0.6666666666666666),
-                        t123,
-                        T::fused(
-                            k(0.3333333333333333),
-                            t125,
-                            k(0.6666666666666666) * t126,
-                        ),
-                    ),
-            );
-            let t129 = k(2.0) * (t34 + t33);
-            let t130 = T::fused(
-                -k(0.1),
-                T::fused(t129, slider_wy, k(2.0) * t47 * slider_wx),
-                k(0.05) * T::fused(-t129, slider_wz, k(2.0) * t50 * slider_wx),
-            );
-            let t131 = k(2.0) * t41;
-            let t132 = k(2.0) * t42;
-            let t133 = T::fused(t131, arm_wy, t132 * arm_wx);
-            let t134 = k(2.0) * t45;
-            let t135 = T::fused(-t131, arm_wz, t134 * arm_wx);
-            let t136 = T::fused(t132, arm_wz, t134 * arm_wy);
-            let t137 = arm_sy
-                - T::fused(-k(0.1), t133, T::fused(-k(0.1), t135, k(0.2) * t136))
-                - (slider_sy + t130);
-            let t138 = T::fused(
-                t52,
-                t137,
-                t51
-                    * T::fused(
-                        -k(0.6666666666666666),
-                        t133,
-                        T::fused(
-                            k(0.3333333333333333),
-                            t135,
-                            k(0.6666666666666666) * t136,
-                        ),
-                    ),
-            );
-            let t139 = k(2.0) * (k(0.5) - T::fused(slider_e1, slider_e1, t46));
-            let t140 = T::fused(
-                k(0.1),
-                T::fused(t139, slider_wy, k(2.0) * t35 * slider_wx),
-                k(0.05) * T::fused(t139, slider_wz, k(2.0) * t38 * slider_wx),
-            );
-            let t141 = k(2.0) * t26;
-            let t142 = k(2.0) * t29;
-            let t143 = T::fused(t141, arm_wy, t142 * arm_wx);
-            let t144 = k(2.0) * t32;
-            let t145 = T::fused(t141, arm_wz, t144 * arm_wx);
-            let t146 = T::fused(-t142, arm_wz, t144 * arm_wy);
-            let t147 = arm_sx
-                - T::fused(k(0.1), t143, T::fused(-k(0.1), t145, k(0.2) * t146))
-                - (slider_sx + t140);
-            let t148 = T::fused(
-                t40,
-                t147,
-                t39
-                    * T::fused(
-                        k(0.6666666666666666),
-                        t143,
-                        T::fused(
-                            k(0.3333333333333333),
-                            t145,
-                            k(0.6666666666666666) * t146,
-                        ),
-                    ),
-            );
-            let t149 = t148 + t138 - t128;
-            let t150 = k(0.4472135954999579) * t3;
-            let t151 = k(2.8) * t69;
-            let t152 = T::fused(
-                -k(0.6666666666666666),
-                T::fused(-k(1.3416407864998738), t68, t151 * t85),
-                k(0.3333333333333333) * (t151 * t4),
-            );
-            let t153 = T::fused(
-                k(0.6666666666666666),
-                T::fused(k(2.6832815729997477), t68, t151 * t150),
-                t152,
+                t14,
+                T::fused(-k(0.6666666666666666), t16, k(0.3333333333333333) * t18),
             )
                 - T::fused(
                     k(0.6666666666666666),
@@ -11206,263 +10499,501 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Carried<T> {
                         k(0.3333333333333333) * arm_wx,
                     ),
                 );
-            let t154 = T::fused(
-                t69 * t4,
-                T::fused(-k(0.48118518518518516), t24, k(0.24888888888888888) * t64),
-                t68 * t118,
+            let t20 = k(0.6666666666666666) * t19;
+            let t21 = k(0.25) * t8;
+            let t22 = t21.cos();
+            let t23 = t12.sin();
+            let t24 = k(0.35) * t23;
+            let t25 = t24.cos();
+            let t26 = t25 * t22;
+            let t27 = t24.sin();
+            let t28 = t27 * t22;
+            let t29 = t21.sin();
+            let t30 = k(0.8944271909999159) * t29;
+            let t31 = k(0.4472135954999579) * t29;
+            let t32 = T::fused(-t27, t30, t25 * t31);
+            let t33 = T::fused(t25, t30, t27 * t31);
+            let t34 = T::fused(
+                -t26,
+                arm_e3,
+                T::fused(t28, arm_e2, T::fused(-t32, arm_e1, t33 * arm_e0)),
             );
-            let t155 = T::fused(
-                k(0.3478327964999673),
-                t69 * t86 * t118,
-                k(0.6360371135999402) * (t84 * (t68 * t60)),
+            let t35 = T::fused(
+                -t28,
+                arm_e3,
+                T::fused(-t26, arm_e2, T::fused(t33, arm_e1, t32 * arm_e0)),
             );
-            let t156 = T::fused(k(0.3042377526719714), t24, k(0.4563566290079571) * t64);
-            let t157 = T::fused(
-                t69,
-                T::fused(k(1.0883301721598977), t60 * t81, t3 * t156),
-                t68 * T::fused(-k(0.08347987115999216), t24, k(0.2623653093599753) * t64),
+            let t36 = T::fused(
+                t32,
+                arm_e3,
+                T::fused(-t33, arm_e2, T::fused(-t26, arm_e1, t28 * arm_e0)),
             );
-            let t158 = t157 - (t155 + t154);
-            let t159 = T::fused(t60, t60 - k(0.78), k(0.8867307692307692));
-            let t160 = T::fused(t92, t150, t95 * t85);
-            let t161 = T::fused(-t95, t150, t92 * t85);
-            let t162 = T::fused(
+            let t37 = T::fused(
                 k(0.6666666666666666),
-                T::fused(t161, t121, T::fused(-t4, t141, t160 * t131)),
-                k(0.3333333333333333)
-                    * T::fused(t161, t122, T::fused(-t160, t132, t4 * t142)),
+                t34,
+                T::fused(k(0.6666666666666666), t35, k(0.3333333333333333) * t36),
             );
-            let t163 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t161, t124, T::fused(t160, t134, t4 * t144)),
-                -t162,
+            let t38 = k(2.0) * t37;
+            let t39 = T::fused(-t37, t38, k(1.0));
+            let t40 = T::fused(k(0.8888888888888888), t39, k(0.1111111111111111));
+            let t41 = k(3.0) * t7;
+            let t42 = k(11.2) * t23;
+            let t43 = T::fused(t13, t41 * t10, t17 * t42);
+            let t44 = T::fused(
+                t33,
+                arm_e3,
+                T::fused(t32, arm_e2, T::fused(t28, arm_e1, t26 * arm_e0)),
             );
-            let t164 = T::fused(-k(0.4), t4, k(0.4));
-            let t165 = t92 * t164;
-            let t166 = T::fused(k(0.8), t4, k(0.2));
-            let t167 = T::fused(t95, t166, -t165);
-            let t168 = t95 * t164;
-            let t169 = T::fused(t92, t166, t168);
-            let t170 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t169, t121, T::fused(t85, t141, t167 * t131)),
-                k(0.3333333333333333)
-                    * T::fused(t169, t122, -T::fused(t167, t132, t85 * t142)),
-            );
-            let t171 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t169, t124, T::fused(-t167, t134, t85 * t144)),
-                t170,
-            );
-            let t172 = T::fused(k(0.2), t4, k(0.8));
-            let t173 = T::fused(-t92, t172, t168);
-            let t174 = T::fused(t95, t172, t165);
-            let t175 = T::fused(
-                k(0.6666666666666666),
-                T::fused(t174, t121, T::fused(-t150, t141, t173 * t131)),
-                k(0.3333333333333333)
-                    * T::fused(t174, t122, T::fused(-t173, t132, t150 * t142)),
-            );
-            let t176 = T::fused(
-                k(0.6666666666666666),
-                T::fused(-t174, t124, T::fused(t173, t134, t150 * t144)),
-                -t175,
-            );
-            let t177 = T::fused(
-                k(0.6666666666666666),
-                t176,
-                T::fused(-k(0.6666666666666666), t163, k(0.3333333333333333) * t171),
-            );
-            let t178 = turn0.cos();
-            let t179 = T::fused(
-                k(0.6666666666666666),
-                t171 + t163,
-                k(0.3333333333333333) * t176,
-            );
-            let t180 = turn0.sin();
-            let t181 = T::fused(-t180, t177, t178 * t179)
-                .atan2(T::fused(t178, t177, t180 * t179));
-            let t182 = T::fused(
-                -k(1.797530864197531),
-                T::fused(k(4.312416813749595), t1, t8 * t86) * t159,
-                T::fused(k(2.0), turn0 + t181, k(0.009591111111111111)),
-            );
-            let t183 = T::fused(
-                k(0.975),
-                t96 * T::fused(k(0.4230769230769231), t64, t24),
-                T::fused(t149, t158, t182),
-            );
-            let t184 = T::fused(
-                k(1.084090909090909),
-                T::fused(t3, t88, -t109) * T::fused(-k(0.5408805031446541), t64, t24),
-                t183,
-            );
-            let t185 = T::fused(
-                -k(0.4573775408522297),
-                T::fused(k(1.4055284429998678), t108, t4 * t88)
-                    * T::fused(k(2.466666666666667), t64, t24),
-                t184,
-            );
-            let t186 = T::fused(
-                k(3.252148148148148),
-                t117,
-                T::fused(
-                    -k(0.37267799624996495),
-                    t153 * T::fused(-t149, t118, k(0.2683281572999748)),
-                    t185,
-                ),
-            );
-            let t187 = T::fused(
-                k(0.8118755555555556),
-                t8
-                    * T::fused(
-                        -t8,
-                        T::fused(k(0.047687172150691466), t64, t24),
-                        k(2.7145399113731354) * t112,
-                    ),
-                T::fused(
-                    k(0.04),
-                    t1 * t113,
-                    T::fused(-k(0.8259423868312757), t116, t186),
-                ),
-            );
-            let t188 = T::fused(
-                -t60,
-                T::fused(k(0.06696914700544465), t90 * t72, t96 * t83) - t89,
-                T::fused(t24, t106, T::fused(-t64, t111, t187)),
-            );
-            let t189 = T::fused(
-                k(0.6213685076675416),
-                t70 * T::fused(k(0.017913121361397222), t4 * t67, -t66),
-                T::fused(
-                    -k(0.1003448275862069),
-                    t75 * T::fused(-t64, t71, k(0.48711340206185566) * t73),
-                    t188,
-                ),
-            );
-            let t190 = T::fused(
-                -t64,
-                T::fused(
-                    -t24,
-                    t62,
-                    k(1.0441853535482888) * (t3 * (t60 - k(1.0342105263157895))),
-                ),
-                k(2.363156326451391)
-                    * (t3
-                        * T::fused(
-                            -t24,
-                            t60 - k(0.2895348837209302),
-                            k(0.05813953488372093) * (t60 + k(1.095)),
-                        )),
-            );
-            let t191 = T::fused(
-                k(0.39655172413793105),
-                t60 - k(1.0239130434782608),
-                -T::fused(
-                    -t24,
-                    t60 - k(0.6413793103448275),
-                    k(0.9655172413793104) * (t64 * (t60 + k(0.02142857142857143))),
-                ),
-            );
-            let t192 = t75
-                * T::fused(
-                    t3,
-                    t60 + k(0.184468085106383),
-                    k(2.778433401829526) * (t4 * (t60 - k(0.4464041095890411))),
-                );
-            let t193 = T::fused(
-                k(0.8259423868312757),
-                (t60 + k(0.31875)) * T::fused(t64, t74, t24 * t114),
-                t105,
-            );
-            let t194 = T::fused(
-                -k(21.77777777777778),
-                (t60 - k(0.4357142857142857)) * T::fused(-t24, t74, t64 * t114),
-                t8 * T::fused(k(10.73312629199899), t3, t4),
-            );
-            let t195 = T::fused(
-                k(0.829233386855922),
-                T::fused(-t64, t98, k(1.1205351833555992) * (t60 * t77)),
-                t24 * T::fused(-t60, t78, k(0.033484573502722326) * t90),
-            );
-            let t196 = T::fused(
-                k(1.036641975308642),
-                t1 * T::fused(-t60, k(2.65625) - t84, k(1.0734375)),
-                k(0.6736693094879367) + t156,
-            );
-            let t197 = t8
-                * T::fused(
-                    -t8,
-                    t60 - k(0.4192456479690522),
-                    k(0.21635810997513125) * T::fused(-k(0.5243193878275368), t3, t4),
-                );
-            let t198 = T::fused(
-                k(0.25555062599997597),
-                t102 * T::fused(k(1.118033988749895), t3, t4),
-                T::fused(t96, t84, t96 + T::fused(k(0.5), t149, k(6.230617283950617))),
-            );
-            let t199 = T::fused(
-                k(0.7226995884773663),
-                t60 * T::fused(t24, t76, k(30.622175655976676)),
-                T::fused(t88, T::fused(k(0.20327890704543541), t86, -t81), t198),
-            );
-            (
-                t1,
-                t3,
-                t4,
+            let t45 = t44 * t38;
+            let t46 = k(0.6666666666666666) * t45;
+            let t47 = T::fused(-k(0.2222222222222222), t39, k(0.2222222222222222));
+            let t48 = t47 - t46;
+            let t49 = t41 * t17;
+            let t50 = T::fused(
+                k(8.049844718999243),
                 t8,
-                t24,
-                t64,
-                t70,
-                t110,
-                t118,
+                -T::fused(-t13, k(0.8944271909999159) * t49, t15 * t42),
+            );
+            let t51 = t47 + t46;
+            let t52 = T::fused(
+                k(16.099689437998485),
+                t8,
+                T::fused(-t13, k(0.4472135954999579) * t49, t11 * t42),
+            );
+            let t53 = T::fused(t52, t51, T::fused(t43, t40, t50 * t48))
+                - T::fused(-arm_wy, t20, arm_wz * t20);
+            let t54 = k(0.3333333333333333) * t19;
+            let t55 = arm_wx * t20;
+            let t56 = T::fused(k(0.5555555555555556), t39, k(0.4444444444444444));
+            let t57 = k(0.3333333333333333) * t45;
+            let t58 = T::fused(-k(0.4444444444444444), t39, k(0.4444444444444444));
+            let t59 = t58 - t57;
+            let t60 = T::fused(t52, t59, T::fused(t43, t51, t50 * t56))
+                - T::fused(-arm_wz, t54, t55);
+            let t61 = t58 + t57;
+            let t62 = T::fused(t52, t56, T::fused(t43, t48, t50 * t61))
+                - T::fused(arm_wy, t54, -t55);
+            let t63 = slider_wy * slider_wy;
+            let t64 = k(0.002) * slider_wy;
+            let t65 = T::fused(
+                slider_wx,
+                t64 - t4,
+                T::fused(-slider_wy, t0, k(0.003) * (t2 - t63)),
+            );
+            let t66 = k(0.02) * t53;
+            let t67 = T::fused(
+                -k(0.6666666666666666),
+                T::fused(k(0.003), t62, -T::fused(k(0.001), t53, k(0.03) * t60)) + t5,
+                k(0.3333333333333333)
+                    * (T::fused(k(0.002), t62, T::fused(k(0.001), t60, t66)) - t65),
+            );
+            let t68 = T::fused(
+                slider_wz,
+                t64 + t3,
+                -T::fused(-k(0.001), t63 - t1, k(0.01) * (slider_wx * slider_wy)),
+            );
+            let t69 = T::fused(
+                k(0.6666666666666666),
+                t68 + T::fused(k(0.025), t62, -T::fused(-k(0.002), t53, k(0.003) * t60)),
+                t67,
+            );
+            let t70 = T::fused(-k(0.2), t18, k(0.1) * t14);
+            let t71 = k(0.1) * t16;
+            let t72 = T::fused(t14, t70, t16 * t71);
+            let t73 = k(0.2) * t16;
+            let t74 = T::fused(t18, t71, t14 * t73);
+            let t75 = T::fused(-t16, t73, t18 * t70);
+            let t76 = k(0.2) * arm_wz;
+            let t77 = T::fused(k(0.2), arm_wy, k(0.1) * arm_wx);
+            let t78 = T::fused(arm_wz, t76, arm_wy * t77)
+                - T::fused(t75, t51, -T::fused(t72, t40, t74 * t48));
+            let t79 = k(0.7) * t23;
+            let t80 = t79.cos();
+            let t81 = t79.sin();
+            let t82 = T::fused(-t80, t11, t81 * t15);
+            let t83 = T::fused(-k(5.0), (k(5.0) * t).sin(), k(9.0));
+            let t84 = T::fused(t81, t11, t80 * t15);
+            let t85 = T::fused(k(0.9), T::fused(k(3.0), t, k(0.4)).sin(), k(1.0));
+            let t86 = T::fused(
+                k(0.2),
+                t50,
+                T::fused(k(3.0), t82, T::fused(-t84, t83, t17 * t85)),
+            );
+            let t87 = T::fused(k(0.8), t17, k(0.2));
+            let t88 = T::fused(-k(0.4), t17, k(0.4));
+            let t89 = t80 * t88;
+            let t90 = T::fused(t81, t87, t89);
+            let t91 = t81 * t88;
+            let t92 = T::fused(t80, t87, -t91);
+            let t93 = T::fused(-k(3.0), t90, T::fused(t92, t83, t15 * t85))
+                - T::fused(-k(0.2), t43, k(0.1) * t52);
+            let t94 = T::fused(k(0.2), t17, k(0.8));
+            let t95 = T::fused(t80, t94, t91);
+            let t96 = T::fused(-t81, t94, t89);
+            let t97 = T::fused(
+                -k(0.1),
+                t50,
+                T::fused(k(3.0), t95, T::fused(-t96, t83, t11 * t85)),
+            );
+            let t98 = T::fused(
+                k(0.1),
+                t62,
+                T::fused(t97, t51, -T::fused(-t86, t40, t93 * t48)) + t78,
+            );
+            let t99 = arm_e0 * arm_e0;
+            let t100 = k(0.5) - T::fused(arm_e1, arm_e1, t99);
+            let t101 = arm_e0 * arm_e3;
+            let t102 = arm_e1 * arm_e2;
+            let t103 = t102 - t101;
+            let t104 = arm_e0 * arm_e2;
+            let t105 = arm_e1 * arm_e3;
+            let t106 = t105 + t104;
+            let t107 = slider_e0 * slider_e3;
+            let t108 = slider_e1 * slider_e2;
+            let t109 = t108 - t107;
+            let t110 = slider_e0 * slider_e2;
+            let t111 = slider_e1 * slider_e3;
+            let t112 = t111 + t110;
+            let t113 = slider_rx - T::fused(-k(0.1), t109, k(0.2) * t112)
+                - (arm_rx
+                    + T::fused(k(0.2), t106, T::fused(-k(0.4), t100, k(0.2) * t103)));
+            let t114 = T::fused(
+                k(1.3333333333333333),
+                t106,
+                -T::fused(k(1.3333333333333333), t100, k(0.6666666666666666) * t103),
+            );
+            let t115 = t102 + t101;
+            let t116 = k(0.5) - T::fused(arm_e2, arm_e2, t99);
+            let t117 = arm_e0 * arm_e1;
+            let t118 = arm_e2 * arm_e3;
+            let t119 = t118 - t117;
+            let t120 = slider_e0 * slider_e0;
+            let t121 = k(0.5) - T::fused(slider_e2, slider_e2, t120);
+            let t122 = slider_e0 * slider_e1;
+            let t123 = slider_e2 * slider_e3;
+            let t124 = t123 - t122;
+            let t125 = slider_ry - T::fused(k(0.1), t121, k(0.2) * t124)
+                - (arm_ry
+                    + T::fused(k(0.2), t119, -T::fused(-k(0.4), t115, k(0.2) * t116)));
+            let t126 = T::fused(
+                k(1.3333333333333333),
+                t119,
+                T::fused(k(1.3333333333333333), t115, k(0.6666666666666666) * t116),
+            );
+            let t127 = t105 - t104;
+            let t128 = t118 + t117;
+            let t129 = k(0.5) - T::fused(arm_e3, arm_e3, t99);
+            let t130 = t123 + t122;
+            let t131 = k(0.5) - T::fused(slider_e3, slider_e3, t120);
+            let t132 = slider_rz + T::fused(k(0.1), t130, k(0.2) * t131)
+                - (arm_rz
+                    - T::fused(k(0.2), t129, -T::fused(k(0.4), t127, k(0.2) * t128)));
+            let t133 = T::fused(
+                k(1.3333333333333333),
+                t129,
+                T::fused(-k(1.3333333333333333), t127, k(0.6666666666666666) * t128),
+            );
+            let t134 = T::fused(t133, t132, -T::fused(t114, t113, t126 * t125));
+            let t135 = k(0.6666666666666666) * t134;
+            let t136 = k(0.1) - t135;
+            let t137 = T::fused(k(0.3333333333333333), t134, k(0.1));
+            let t138 = k(2.0) * (t111 - t110);
+            let t139 = T::fused(
+                -k(0.1),
+                T::fused(-t138, slider_wy, k(2.0) * t130 * slider_wx),
+                k(0.05) * T::fused(t138, slider_wz, k(2.0) * t131 * slider_wx),
+            );
+            let t140 = k(2.0) * t127;
+            let t141 = k(2.0) * t128;
+            let t142 = T::fused(-t140, arm_wy, t141 * arm_wx);
+            let t143 = k(2.0) * t129;
+            let t144 = T::fused(t140, arm_wz, t143 * arm_wx);
+            let t145 = T::fused(t141, arm_wz, t143 * arm_wy);
+            let t146 = arm_sz
+                + T::fused(-k(0.1), t142, T::fused(-k(0.1), t144, k(0.2) * t145))
+                - (slider_sz - t139);
+            let t147 = T::fused(
+                t133,
+                t146,
+                t132
+                    * T::fused(
+                        -k(0.6666666666666666),
+                        t142,
+                        T::fused(
+                            k(0.3333333333333333),
+                            t144,
+                            k(0.6666666666666666) * t145,
+                        ),
+                    ),
+            );
+            let t148 = k(2.0) * (t108 + t107);
+            let t149 = T::fused(
+                -k(0.1),
+                T::fused(t148, slider_wy, k(2.0) * t121 * slider_wx),
+                k(0.05) * T::fused(-t148, slider_wz, k(2.0) * t124 * slider_wx),
+            );
+            let t150 = k(2.0) * t115;
+            let t151 = k(2.0) * t116;
+            let t152 = T::fused(t150, arm_wy, t151 * arm_wx);
+            let t153 = k(2.0) * t119;
+            let t154 = T::fused(-t150, arm_wz, t153 * arm_wx);
+            let t155 = T::fused(t151, arm_wz, t153 * arm_wy);
+            let t156 = arm_sy
+                - T::fused(-k(0.1), t152, T::fused(-k(0.1), t154, k(0.2) * t155))
+                - (slider_sy + t149);
+            let t157 = T::fused(
+                t126,
+                t156,
+                t125
+                    * T::fused(
+                        -k(0.6666666666666666),
+                        t152,
+                        T::fused(
+                            k(0.3333333333333333),
+                            t154,
+                            k(0.6666666666666666) * t155,
+                        ),
+                    ),
+            );
+            let t158 = k(2.0) * (k(0.5) - T::fused(slider_e1, slider_e1, t120));
+            let t159 = T::fused(
+                k(0.1),
+                T::fused(t158, slider_wy, k(2.0) * t109 * slider_wx),
+                k(0.05) * T::fused(t158, slider_wz, k(2.0) * t112 * slider_wx),
+            );
+            let t160 = k(2.0) * t100;
+            let t161 = k(2.0) * t103;
+            let t162 = T::fused(t160, arm_wy, t161 * arm_wx);
+            let t163 = k(2.0) * t106;
+            let t164 = T::fused(t160, arm_wz, t163 * arm_wx);
+            let t165 = T::fused(-t161, arm_wz, t163 * arm_wy);
+            let t166 = arm_sx
+                - T::fused(k(0.1), t162, T::fused(-k(0.1), t164, k(0.2) * t165))
+                - (slider_sx + t159);
+            let t167 = T::fused(
+                t114,
+                t166,
+                t113
+                    * T::fused(
+                        k(0.6666666666666666),
+                        t162,
+                        T::fused(
+                            k(0.3333333333333333),
+                            t164,
+                            k(0.6666666666666666) * t165,
+                        ),
+                    ),
+            );
+            let t168 = t167 + t157 - t147;
+            let t169 = k(0.3333333333333333) * t168;
+            let t170 = k(0.6666666666666666) * t168;
+            let t171 = arm_wy * t170;
+            let t172 = k(0.2) - t135;
+            let t173 = T::fused(-arm_wx, t137, arm_wy * t172);
+            let t174 = T::fused(-arm_wz, t172, arm_wx * t136);
+            let t175 = T::fused(
+                -k(2.0),
+                T::fused(arm_wz, t169, t171),
+                T::fused(-arm_wy, t173, arm_wz * t174),
+            );
+            let t176 = k(0.1) * slider_wx;
+            let t177 = k(0.05) * slider_wx;
+            let t178 = T::fused(-slider_wz, t176, slider_wy * t177) - t175
+                - (T::fused(-t136, t60, t137 * t62) - t98);
+            let t179 = T::fused(k(0.1), t60, k(0.05) * t62) + t178;
+            let t180 = k(0.2) * t62;
+            let t181 = k(0.1) * arm_wz;
+            let t182 = T::fused(arm_wx, t77, arm_wz * t181)
+                + T::fused(t75, t59, -T::fused(t72, t51, t74 * t56));
+            let t183 = T::fused(t97, t59, -T::fused(-t86, t51, t93 * t56)) - t182 + t180;
+            let t184 = T::fused(-arm_wy, t136, arm_wz * t137);
+            let t185 = T::fused(
+                k(2.0),
+                T::fused(-arm_wz, t170, arm_wx * t170),
+                T::fused(-arm_wz, t184, arm_wx * t173),
+            );
+            let t186 = T::fused(k(0.05), slider_wz, k(0.1) * slider_wy);
+            let t187 = T::fused(slider_wx, t177, slider_wz * t186) + t185
+                - (T::fused(-t136, t53, t172 * t62) + t183);
+            let t188 = k(0.1) * t53;
+            let t189 = t188 + t187;
+            let t190 = T::fused(-arm_wy, t181, arm_wx * t76)
+                + T::fused(t75, t56, -T::fused(t72, t48, t74 * t61));
+            let t191 = T::fused(t97, t56, -T::fused(-t86, t48, t93 * t61)) - t190
+                - T::fused(k(0.2), t60, t188);
+            let t192 = T::fused(
+                k(2.0),
+                T::fused(arm_wx, t169, t171),
+                T::fused(-arm_wx, t174, arm_wy * t184),
+            );
+            let t193 = T::fused(slider_wy, t186, slider_wx * t176) - t192
+                - (T::fused(-t137, t53, t172 * t60) - t191);
+            let t194 = T::fused(k(0.05), t53, -t193);
+            let t195 = T::fused(k(0.5), t168, k(30.0) * (k(0.1) + t134));
+            let t196 = t195
+                - T::fused(k(0.4), t194, -T::fused(k(0.4), t179, k(0.2) * t189));
+            let t197 = k(0.6666666666666666) * t196;
+            let t198 = k(0.1)
+                + T::fused(-k(0.6666666666666666), t137 - t136, k(0.06666666666666667));
+            let t199 = k(0.6666666666666666) * t172;
+            (
+                t11,
+                t15,
+                t17,
+                t19,
+                t53,
+                t60,
+                t62,
+                t66,
+                t69,
+                t82,
+                t84,
+                t90,
+                t92,
+                t95,
+                t96,
+                t98,
+                t136,
+                t137,
+                t140,
+                t141,
+                t143,
+                t150,
+                t151,
                 t153,
-                t158,
-                t159,
+                t160,
+                t161,
+                t163,
+                t179,
+                t180,
+                t183,
                 t189,
-                t190,
                 t191,
-                t192,
-                t193,
                 t194,
                 t195,
                 t196,
                 t197,
+                t198,
                 t199,
             )
         };
-        let (t202, t203) = {
-            let t200 = T::fused(
-                t24,
-                T::fused(
-                    k(1.3937777777777778),
-                    t8 * T::fused(-k(0.27152254012497445), t3, t4),
-                    -t110,
-                ),
-                T::fused(t153, T::fused(k(0.18633899812498247), t153 * t118, t158), t199),
+        let (t220, t235) = {
+            let t200 = k(0.03333333333333333)
+                - (k(0.13333333333333333)
+                    + T::fused(-k(0.3333333333333333), t136, t199));
+            let t201 = k(0.016666666666666666)
+                + (k(0.16666666666666666)
+                    - T::fused(k(0.3333333333333333), t137, -t199));
+            let t202 = T::fused(k(0.4), t201, -T::fused(k(0.4), t198, k(0.2) * t200));
+            let t203 = k(1.1111111111111112) * t202;
+            let t204 = t198 + t203;
+            let t205 = T::fused(k(0.5555555555555556), t202, t200);
+            let t206 = T::fused(
+                t204,
+                T::fused(-k(0.6), t179, t197),
+                t205 * T::fused(-k(0.6), t189, k(0.3333333333333333) * t196),
             );
-            let t201 = T::fused(
-                t64,
-                t195 + T::fused(k(0.14933333333333335), t194, -t193),
-                T::fused(
-                    -k(1.646341463414634),
-                    t1 * t196,
-                    T::fused(-k(3.3360329218106997), t197, t200),
-                ),
+            let t207 = t201 - t203;
+            let t208 = k(0.05) * arm_wy;
+            let t209 = arm_wx * arm_wx;
+            let t210 = arm_wy * arm_wy;
+            let t211 = k(0.01) * arm_wx;
+            let t212 = k(0.03) * arm_wy;
+            let t213 = T::fused(
+                arm_wz,
+                t212 + t211,
+                -T::fused(arm_wx, t208, k(0.02) * (t210 - t209)),
             );
-            let t202 = T::fused(
-                k(1.2076754694478864),
-                t70 * T::fused(k(1.781874039938556), t4 * t191, -t190),
-                T::fused(k(0.19073538102085322), t192, t201),
+            let t214 = arm_wz * arm_wz;
+            let t215 = k(0.02) * arm_wz;
+            let t216 = T::fused(
+                arm_wx,
+                t212 + t215,
+                T::fused(arm_wz, t208, k(0.01) * (t214 - t210)),
             );
-            let t203 = T::fused(k(0.14444444444444443), t202, -t189)
-                / T::fused(-k(0.48148148148148145), t159, k(0.012518518518518519));
-            (t202, t203)
+            let t217 = T::fused(
+                arm_wy,
+                t215 - t211,
+                T::fused(-k(0.03), t214 - t209, k(0.1) * (arm_wx * arm_wz)),
+            );
+            let t218 = T::fused(
+                k(0.3333333333333333),
+                T::fused(k(0.03), t62, -T::fused(k(0.3), t53, k(0.02) * t60)) - t216,
+                k(0.6666666666666666)
+                    * (t217 - T::fused(k(0.01), t62, T::fused(k(0.25), t60, t66))),
+            );
+            let t219 = T::fused(
+                -k(0.6666666666666666),
+                t180 + T::fused(-k(0.03), t53, k(0.01) * t60) - t213,
+                t218,
+            );
+            let t220 = k(1.6666666666666667) * t202;
+            let t221 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t82, t140, T::fused(-t17, t160, t84 * t150)),
+                k(0.3333333333333333)
+                    * T::fused(t82, t141, T::fused(-t84, t151, t17 * t161)),
+            );
+            let t222 = T::fused(
+                k(0.6666666666666666),
+                T::fused(-t82, t143, T::fused(t84, t153, t17 * t163)),
+                -t221,
+            );
+            let t223 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t90, t140, T::fused(t15, t160, t92 * t150)),
+                k(0.3333333333333333)
+                    * T::fused(t90, t141, -T::fused(t92, t151, t15 * t161)),
+            );
+            let t224 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t90, t143, T::fused(-t92, t153, t15 * t163)),
+                t223,
+            );
+            let t225 = T::fused(
+                k(0.6666666666666666),
+                T::fused(t95, t140, T::fused(-t11, t160, t96 * t150)),
+                k(0.3333333333333333)
+                    * T::fused(t95, t141, T::fused(-t96, t151, t11 * t161)),
+            );
+            let t226 = T::fused(
+                k(0.6666666666666666),
+                T::fused(-t95, t143, T::fused(t96, t153, t11 * t163)),
+                -t225,
+            );
+            let t227 = T::fused(
+                k(0.6666666666666666),
+                t226,
+                T::fused(-k(0.6666666666666666), t222, k(0.3333333333333333) * t224),
+            );
+            let t228 = turn0.cos();
+            let t229 = T::fused(
+                k(0.6666666666666666),
+                t224 + t222,
+                k(0.3333333333333333) * t226,
+            );
+            let t230 = turn0.sin();
+            let t231 = T::fused(-t230, t227, t228 * t229)
+                .atan2(T::fused(t228, t227, t230 * t229));
+            let t232 = T::fused(
+                t195,
+                t220,
+                T::fused(k(2.0), k(0.3) - (turn0 + t231), k(0.1) * t19),
+            );
+            let t233 = t232
+                - (T::fused(k(0.25), t191, -T::fused(k(0.1), t98, k(0.2) * t183))
+                    + t219);
+            let t234 = T::fused(
+                t207,
+                k(0.6) * t207,
+                T::fused(t204, k(0.6) * t204, t205 * (k(0.6) * t205)),
+            );
+            let t235 = (t233
+                + (T::fused(t207, T::fused(k(0.6), t194, t197), -t206) + t69))
+                / (k(0.31277777777777777) + (k(0.025333333333333333) + t234));
+            (t220, t235)
         };
-        *out = [
-            -t203,
-            T::fused(-k(0.14444444444444443), t203, k(1.6666666666666667) * t202),
-        ];
+        *out = [t235, T::fused(t220, t235, k(1.6666666666666667) * t196)];
     }
     /// Writes (s̈, ẇ') at a state that satisfies the constraints: 1933 operations (836 ±, 1093 ×, 4 ÷) and 13 functions.
     fn corrected_accelerations(
@@ -16927,6 +16458,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             t484,
             t488,
             t489,
+            t490,
             t491,
             t496,
             t497,
@@ -16950,7 +16482,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             t521,
             t522,
             t523,
-            t527,
+            t525,
             t528,
             t530,
             t531,
@@ -17226,20 +16758,20 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 + T::fused(-t504, t505, t504 * t508);
             let t519 = T::fused(-k(0.3333333333333333), t490, t518);
             let t520 = k(0.6666666666666666) * t490;
-            let t521 = T::fused(k(0.8888888888888888), t494, k(0.1111111111111111));
-            let t522 = k(0.3333333333333333) * u0;
-            let t523 = t522 + T::fused(t503, t496, -T::fused(-t497, t521, t499 * t506));
+            let t521 = k(0.3333333333333333) * u0;
+            let t522 = T::fused(k(0.8888888888888888), t494, k(0.1111111111111111));
+            let t523 = t521 + T::fused(t503, t496, -T::fused(-t497, t522, t499 * t506));
             let t524 = t504 * t523;
-            let t525 = k(0.3333333333333333) * t6;
-            let t526 = T::fused(-k(0.4444444444444444), t17, k(0.4444444444444444));
-            let t527 = t526 - t525;
-            let t528 = T::fused(k(0.5555555555555556), t17, k(0.4444444444444444));
-            let t529 = T::fused(t517, t528, T::fused(t511, t514, t515 * t527))
-                + T::fused(t522, t505, -t524);
+            let t525 = T::fused(k(0.5555555555555556), t17, k(0.4444444444444444));
+            let t526 = k(0.3333333333333333) * t6;
+            let t527 = T::fused(-k(0.4444444444444444), t17, k(0.4444444444444444));
+            let t528 = t527 + t526;
+            let t529 = T::fused(t517, t528, T::fused(t511, t516, t515 * t525))
+                + T::fused(-t521, t508, t524);
             let t530 = t529 - t520;
-            let t531 = t526 + t525;
-            let t532 = T::fused(t517, t531, T::fused(t511, t516, t515 * t528))
-                + T::fused(-t522, t508, t524);
+            let t531 = t527 - t526;
+            let t532 = T::fused(t517, t525, T::fused(t511, t514, t515 * t531))
+                + T::fused(t521, t505, -t524);
             let t533 = t532 - t520;
             let t534 = k(5.0) * t66;
             let t535 = k(0.9) * t59;
@@ -17248,8 +16780,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 - T::fused(-t339, t534, t54 * t535);
             let t538 = T::fused(k(0.1), t515, -T::fused(t333, t534, t326 * t535));
             let t539 = T::fused(t516, t538, -T::fused(t509, t536, t514 * t537));
-            let t540 = T::fused(t531, t538, -T::fused(t516, t536, t528 * t537));
-            let t541 = T::fused(t528, t538, -T::fused(t514, t536, t527 * t537));
+            let t540 = T::fused(t528, t538, -T::fused(t516, t536, t525 * t537));
+            let t541 = T::fused(t525, t538, -T::fused(t514, t536, t531 * t537));
             let t542 = k(0.1) * t523;
             let t543 = T::fused(k(0.2), t505, t542);
             let t544 = k(0.2) * t508;
@@ -17266,7 +16798,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t555 = T::fused(-t326, t551, T::fused(-t54, t553, t12 * t554))
                 + T::fused(t317, t548, -T::fused(t310, t545, t300 * t547));
             let t556 = t555 - T::fused(t317, t541, T::fused(-t310, t539, t300 * t540))
-                - T::fused(-t385, t530, T::fused(t379, t533, t373 * t519));
+                + T::fused(t385, t533, -T::fused(t373, t519, t379 * t530));
             let t557 = T::fused(t306, t508, t313 * t523);
             let t558 = T::fused(-t306, t505, t280 * t523);
             let t559 = k(0.1) * t558;
@@ -17332,11 +16864,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t597 = k(30.0)
                 * (k(0.1) + T::fused(t463, t575, T::fused(-t436, t593, t450 * t584)));
             let t598 = T::fused(t436, t596, t436 * t597);
-            let t599 = T::fused(
-                k(0.14444444444444443),
-                t490,
-                k(1.6666666666666667) * t198,
-            );
+            let t599 = t563 * t505;
             (
                 t400,
                 t402,
@@ -17398,6 +16926,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 t484,
                 t488,
                 t489,
+                t490,
                 t491,
                 t496,
                 t497,
@@ -17421,7 +16950,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 t521,
                 t522,
                 t523,
-                t527,
+                t525,
                 t528,
                 t530,
                 t531,
@@ -17475,12 +17004,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             )
         };
         let (
+            t600,
             t601,
             t602,
             t603,
             t604,
             t605,
-            t606,
+            t608,
             t610,
             t611,
             t614,
@@ -17509,18 +17039,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             t675,
             t684,
             t690,
-            t691,
             t692,
             t693,
+            t694,
             t697,
-            t700,
-            t701,
-            t702,
-            t705,
+            t699,
+            t703,
+            t706,
+            t707,
+            t710,
             t711,
-            t712,
-            t714,
-            t719,
+            t713,
+            t718,
             t736,
             t742,
             t744,
@@ -17562,32 +17092,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             t798,
             t799,
         ) = {
-            let t600 = t563 * t505;
-            let t601 = T::fused(
+            let t600 = T::fused(
                 k(2.0),
-                T::fused(t566, t508, t600),
+                T::fused(t566, t508, t599),
                 T::fused(-t505, t568, t508 * t565),
             );
-            let t602 = T::fused(
+            let t601 = T::fused(
                 -k(2.0),
                 T::fused(-t563, t508, t563 * t523),
                 T::fused(-t508, t562, t523 * t568),
             );
-            let t603 = T::fused(
+            let t602 = T::fused(
                 -k(2.0),
-                T::fused(t566, t523, t600),
+                T::fused(t566, t523, t599),
                 T::fused(-t523, t565, t505 * t562),
             );
-            let t604 = T::fused(-t505, t561, t542 * t508);
-            let t605 = T::fused(t508, t560, t523 * t561);
-            let t606 = T::fused(t523, t542, t505 * t560);
-            let t607 = T::fused(t317, t606, -T::fused(-t310, t604, t300 * t605))
-                - T::fused(t317, t603, T::fused(-t310, t601, t300 * t602));
-            let t608 = t607
-                + (T::fused(t482, t530, T::fused(-t475, t533, t466 * t519)) + t556);
-            let t609 = T::fused(-t436, t599, t608)
-                - T::fused(t400, t530, T::fused(t384, t533, t394 * t519));
-            let t610 = T::fused(k(0.6), t609, k(0.6) + t598);
+            let t603 = T::fused(-t505, t561, t542 * t508);
+            let t604 = T::fused(t508, t560, t523 * t561);
+            let t605 = T::fused(t523, t542, t505 * t560);
+            let t606 = T::fused(t317, t605, -T::fused(-t310, t603, t300 * t604))
+                - T::fused(t317, t602, T::fused(-t310, t600, t300 * t601));
+            let t607 = t606
+                + (T::fused(t482, t533, -T::fused(-t466, t519, t475 * t530)) + t556);
+            let t608 = T::fused(
+                k(0.14444444444444443),
+                t490,
+                k(1.6666666666666667) * t198,
+            );
+            let t609 = T::fused(t400, t533, T::fused(t394, t519, t384 * t530))
+                + T::fused(t436, t608, -t607);
+            let t610 = T::fused(-k(0.6), t609, k(0.6) + t598);
             let t611 = t610 + T::fused(k(1.5), t556, k(1.5) - t598);
             let t612 = t388 + t434;
             let t613 = t436 * t612;
@@ -17622,28 +17156,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t638 = T::fused(-t333, t551, T::fused(t339, t553, t344 * t554))
                 + T::fused(t315, t548, T::fused(t308, t545, t294 * t547));
             let t639 = t638 - T::fused(t315, t541, -T::fused(-t308, t539, t294 * t540))
-                - T::fused(t439, t530, T::fused(t437, t533, t414 * t519));
-            let t640 = T::fused(t315, t606, T::fused(-t308, t604, t294 * t605))
-                - T::fused(t315, t603, -T::fused(-t308, t601, t294 * t602));
+                - T::fused(t439, t533, T::fused(t414, t519, t437 * t530));
+            let t640 = T::fused(t315, t605, T::fused(-t308, t603, t294 * t604))
+                - T::fused(t315, t602, -T::fused(-t308, t600, t294 * t601));
             let t641 = t640
-                + (T::fused(-t483, t530, T::fused(-t476, t533, t468 * t519)) + t639);
-            let t642 = T::fused(-t450, t599, t641)
-                + T::fused(t443, t530, T::fused(t438, t533, t442 * t519));
+                + (t639 - T::fused(t483, t533, T::fused(-t468, t519, t476 * t530)));
+            let t642 = T::fused(t443, t533, T::fused(t442, t519, t438 * t530))
+                - T::fused(t450, t608, -t641);
             let t643 = T::fused(t450, t596, t450 * t597);
             let t644 = T::fused(-k(0.6), t642, k(5.4) - t643);
             let t645 = t372 * t644;
             let t646 = T::fused(-t335, t551, T::fused(t340, t553, t345 * t554))
                 - T::fused(t313, t548, T::fused(-t306, t545, t280 * t547));
             let t647 = t646 + T::fused(t313, t541, -T::fused(t306, t539, t280 * t540))
-                + T::fused(t453, t530, T::fused(t451, t533, t422 * t519));
-            let t648 = T::fused(t313, t606, T::fused(t306, t604, t280 * t605))
-                - T::fused(t313, t603, -T::fused(t306, t601, t280 * t602));
+                + T::fused(t453, t533, T::fused(t422, t519, t451 * t530));
+            let t648 = T::fused(t313, t605, T::fused(t306, t603, t280 * t604))
+                - T::fused(t313, t602, -T::fused(t306, t600, t280 * t601));
             let t649 = t648
-                + (T::fused(-t484, t530, T::fused(-t477, t533, t470 * t519)) - t647);
-            let t650 = T::fused(-t463, t599, t649)
-                + T::fused(-t456, t530, T::fused(-t452, t533, t455 * t519));
+                - (t647 + T::fused(t484, t533, T::fused(-t470, t519, t477 * t530)));
+            let t650 = T::fused(t456, t533, T::fused(-t455, t519, t452 * t530))
+                + T::fused(t463, t608, -t649);
             let t651 = T::fused(t463, t596, t463 * t597);
-            let t652 = T::fused(-k(0.6), t650, k(1.8) - t651);
+            let t652 = T::fused(k(0.6), t650, k(1.8) - t651);
             let t653 = t372 * t652;
             let t654 = t378 * t610;
             let t655 = t378 * t644;
@@ -17688,7 +17222,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t669 = T::fused(t317, t660, T::fused(t300, t666, t310 * t668));
             let t670 = t636 + t669;
             let t671 = t435 * t519;
-            let t672 = t435 * t533;
+            let t672 = t435 * t530;
             let t673 = k(0.002) * t505;
             let t674 = k(0.003) * t523;
             let t675 = t674 + t673;
@@ -17698,9 +17232,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t679 = t678 - t677;
             let t680 = T::fused(-t508, t675, T::fused(k(0.01), t676, k(0.001) * t679))
                 - T::fused(t596, t626, t597 * t626);
-            let t681 = t680
-                - T::fused(k(0.025), t530, T::fused(-k(0.003), t533, k(0.002) * t519))
-                + T::fused(-t456, t652, T::fused(t443, t644, t400 * t610));
+            let t681 = T::fused(t456, t652, -T::fused(t400, t610, t443 * t644))
+                - (t680
+                    - T::fused(
+                        k(0.025),
+                        t533,
+                        -T::fused(-k(0.002), t519, k(0.003) * t530),
+                    ));
             let t682 = k(0.02) * t519;
             let t683 = k(0.001) * t508;
             let t684 = t673 - t683;
@@ -17709,24 +17247,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t687 = t677 - t686;
             let t688 = T::fused(-t523, t684, T::fused(k(0.005), t685, k(0.003) * t687))
                 - T::fused(t596, t621, t597 * t621);
-            let t689 = t688 + T::fused(k(0.002), t530, T::fused(k(0.001), t533, t682))
-                - T::fused(t455, t652, T::fused(t442, t644, t394 * t610));
+            let t689 = T::fused(t455, t652, T::fused(t394, t610, t442 * t644))
+                - (t688 + T::fused(k(0.002), t533, T::fused(k(0.001), t530, t682)));
             let t690 = T::fused(t372, t681, t383 * t689);
-            let t691 = t652 + T::fused(k(1.5), t647, k(4.5) + t651);
-            let t692 = t644 + T::fused(-k(1.5), t639, k(13.5) + t643);
-            let t693 = t674 + t683;
-            let t694 = t523 * t508;
-            let t695 = t678 - t686;
-            let t696 = T::fused(-t505, t693, T::fused(k(0.005), t694, k(0.002) * t695))
-                + T::fused(t596, t624, t597 * t624);
-            let t697 = t696
-                + T::fused(-k(0.003), t530, T::fused(k(0.03), t533, k(0.001) * t519))
-                - T::fused(-t452, t652, T::fused(t438, t644, t384 * t610));
-            let t698 = T::fused(t391, t681, T::fused(t390, t697, t389 * t689))
-                - T::fused(-t457, t652, T::fused(-t444, t644, t429 * t610));
-            let t699 = k(0.3) - x0;
-            let t700 = k(0.6666666666666666) * t699;
-            let t701 = T::fused(
+            let t691 = k(0.3) - x0;
+            let t692 = k(0.6666666666666666) * t691;
+            let t693 = T::fused(
                 k(0.6666666666666666),
                 t503,
                 T::fused(-k(0.6666666666666666), t499, k(0.3333333333333333) * t497),
@@ -17736,37 +17262,54 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                     t508,
                     T::fused(k(0.3333333333333333), t523, k(0.6666666666666666) * t505),
                 );
-            let t702 = k(0.03333333333333333) * t701;
-            let t703 = k(0.02) * t508;
-            let t704 = k(0.03) * t505;
-            let t705 = t704 + t703;
-            let t706 = T::fused(-t523, t705, T::fused(-k(0.05), t685, k(0.01) * t687))
-                - T::fused(t597, t619, t702 + T::fused(t596, t619, t700));
-            let t707 = t706
-                - T::fused(-k(0.03), t530, T::fused(k(0.02), t533, k(0.3) * t519))
-                - t698;
-            let t708 = t707 + T::fused(-t422, t691, T::fused(-t414, t692, t373 * t611));
+            let t694 = k(0.03333333333333333) * t693;
+            let t695 = k(0.02) * t508;
+            let t696 = k(0.03) * t505;
+            let t697 = t696 + t695;
+            let t698 = T::fused(-t523, t697, T::fused(-k(0.05), t685, k(0.01) * t687))
+                - T::fused(t597, t619, t694 + T::fused(t596, t619, t692));
+            let t699 = t674 + t683;
+            let t700 = t523 * t508;
+            let t701 = t678 - t686;
+            let t702 = T::fused(-t505, t699, T::fused(k(0.005), t700, k(0.002) * t701))
+                + T::fused(t596, t624, t597 * t624);
+            let t703 = T::fused(t452, t652, -T::fused(t384, t610, t438 * t644))
+                + (t702
+                    - T::fused(
+                        k(0.003),
+                        t533,
+                        -T::fused(k(0.001), t519, k(0.03) * t530),
+                    ));
+            let t704 = T::fused(t457, t652, T::fused(-t429, t610, t444 * t644))
+                - T::fused(t391, t681, -T::fused(-t389, t689, t390 * t703));
+            let t705 = t704
+                - (t698
+                    + T::fused(k(0.03), t533, -T::fused(k(0.3), t519, k(0.02) * t530)));
+            let t706 = t644 + T::fused(-k(1.5), t639, k(13.5) + t643);
+            let t707 = T::fused(k(1.5), t647, k(4.5) + t651) + t652;
+            let t708 = T::fused(t422, t707, T::fused(-t373, t611, t414 * t706)) + t705;
             let t709 = t331 * t708;
-            let t710 = T::fused(t396, t681, T::fused(t395, t697, t390 * t689))
-                + T::fused(-t458, t652, T::fused(-t445, t644, t431 * t610));
-            let t711 = k(1.3333333333333333) * t699;
-            let t712 = k(0.06666666666666667) * t701;
-            let t713 = k(0.01) * t523;
-            let t714 = t713 - t703;
-            let t715 = T::fused(-t505, t714, T::fused(k(0.1), t694, k(0.03) * t695))
-                + T::fused(t597, t628, -(t712 + T::fused(-t596, t628, t711)));
-            let t716 = t715 - T::fused(k(0.01), t530, T::fused(k(0.25), t533, t682))
-                - t710 + T::fused(-t451, t691, T::fused(-t437, t692, t379 * t611));
+            let t710 = k(1.3333333333333333) * t691;
+            let t711 = k(0.06666666666666667) * t693;
+            let t712 = k(0.01) * t523;
+            let t713 = t712 - t695;
+            let t714 = T::fused(-t505, t713, T::fused(k(0.1), t700, k(0.03) * t701))
+                + T::fused(t597, t628, -(t711 + T::fused(-t596, t628, t710)));
+            let t715 = T::fused(t458, t652, T::fused(-t431, t610, t445 * t644))
+                + T::fused(t396, t681, -T::fused(-t390, t689, t395 * t703));
+            let t716 = T::fused(t451, t707, T::fused(-t379, t611, t437 * t706))
+                - (t715
+                    + (t714 - T::fused(k(0.01), t533, T::fused(k(0.25), t530, t682))));
             let t717 = t331 * t716;
-            let t718 = T::fused(t398, t681, T::fused(t396, t697, t391 * t689))
-                + T::fused(t459, t652, T::fused(t446, t644, t432 * t610));
-            let t719 = t713 + t704;
-            let t720 = T::fused(t508, t719, T::fused(-k(0.05), t676, k(0.02) * t679))
-                + T::fused(t597, t630, -(t712 + T::fused(-t596, t630, t711)));
+            let t718 = t712 + t696;
+            let t719 = T::fused(t508, t718, T::fused(-k(0.05), t676, k(0.02) * t679))
+                + T::fused(t597, t630, -(t711 + T::fused(-t596, t630, t710)));
+            let t720 = T::fused(t459, t652, T::fused(t432, t610, t446 * t644))
+                - T::fused(t398, t681, -T::fused(-t391, t689, t396 * t703));
             let t721 = t720
-                + T::fused(-k(0.2), t530, T::fused(-k(0.01), t533, k(0.03) * t519))
-                + t718;
-            let t722 = t721 - T::fused(t453, t691, T::fused(t439, t692, t385 * t611));
+                + (t719
+                    - T::fused(k(0.2), t533, T::fused(-k(0.03), t519, k(0.01) * t530)));
+            let t722 = T::fused(t453, t707, T::fused(t385, t611, t439 * t706)) - t721;
             let t723 = t331 * t722;
             let t724 = t369 * t708;
             let t725 = t369 * t716;
@@ -17810,11 +17353,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t747 = t743 - t735;
             let t748 = t740 - t738;
             let t749 = T::fused(k(0.2222222222222222), t748, -t747);
-            let t750 = T::fused(t378, t681, t383 * t697);
+            let t750 = T::fused(-t378, t681, t383 * t703);
             let t751 = t383 * t681;
             let t752 = t317 * t751;
-            let t753 = T::fused(-t380, t722, T::fused(t374, t716, t368 * t708));
-            let t754 = T::fused(-t382, t722, T::fused(t377, t716, t371 * t708));
+            let t753 = T::fused(t380, t722, -T::fused(t368, t708, t374 * t716));
+            let t754 = T::fused(t382, t722, -T::fused(t371, t708, t377 * t716));
             let t755 = T::fused(
                 k(0.6666666666666666),
                 t753,
@@ -17827,25 +17370,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 k(0.6666666666666666) * t754,
             );
             let t758 = k(0.6666666666666666) * t757;
-            let t759 = t753 - t754;
+            let t759 = t754 - t753;
             let t760 = k(0.4444444444444444) * t759;
-            let t761 = T::fused(t302, t756, T::fused(t323, t758, t282 * t760));
+            let t761 = T::fused(-t302, t756, T::fused(-t323, t758, t282 * t760));
             let t762 = T::fused(
                 -t12,
                 t749,
-                T::fused(-t300, t750, T::fused(t430, t654, t752 + (t761 + t752))),
+                T::fused(t300, t750, T::fused(-t430, t654, t752 + (t761 + t752))),
             );
             let t763 = T::fused(
                 t310,
                 t690,
-                T::fused(-t428, t637, T::fused(t326, t742, T::fused(t54, t746, t762))),
+                T::fused(t428, t637, T::fused(t326, t742, T::fused(t54, t746, t762))),
             );
             let t764 = T::fused(t596, t392, t597 * t392);
             let t765 = k(0.05) * t764;
             let t766 = T::fused(
-                t603,
+                t602,
                 t435,
-                -T::fused(t606, t435, T::fused(t410, t660, T::fused(t436, t765, t763))),
+                -T::fused(t605, t435, T::fused(t410, t660, T::fused(t436, t765, -t763))),
             );
             let t767 = t436 * t633;
             let t768 = t593 * t633;
@@ -17876,7 +17419,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             );
             let t777 = T::fused(
                 t435,
-                t599,
+                t608,
                 T::fused(-t317, t765, T::fused(-t300, t775, t310 * t776)),
             );
             let t778 = T::fused(
@@ -17891,7 +17434,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t779 = k(1.3333333333333333) * t778;
             let t780 = T::fused(
                 k(0.4),
-                T::fused(t465, t533, t378 * t611),
+                T::fused(t465, t530, t378 * t611),
                 T::fused(
                     k(2.0),
                     T::fused(t541, t465, -t773),
@@ -17906,11 +17449,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t782 = T::fused(t313, t660, T::fused(-t280, t666, t306 * t668));
             let t783 = T::fused(t574, t633, t463 * t635);
             let t784 = t783 + t782;
-            let t785 = t462 * t533;
-            let t786 = t462 * t530;
+            let t785 = t462 * t530;
+            let t786 = t462 * t533;
             let t787 = t372 * t689;
             let t788 = t306 * t787;
-            let t789 = T::fused(t372, t697, t378 * t689);
+            let t789 = T::fused(-t372, t703, t378 * t689);
             let t790 = T::fused(-k(0.3333333333333333), t729, t737);
             let t791 = T::fused(
                 t366,
@@ -17934,12 +17477,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t798 = k(0.3333333333333333) * t755;
             let t799 = k(0.3333333333333333) * t757;
             (
+                t600,
                 t601,
                 t602,
                 t603,
                 t604,
                 t605,
-                t606,
+                t608,
                 t610,
                 t611,
                 t614,
@@ -17968,18 +17512,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 t675,
                 t684,
                 t690,
-                t691,
                 t692,
                 t693,
+                t694,
                 t697,
-                t700,
-                t701,
-                t702,
-                t705,
+                t699,
+                t703,
+                t706,
+                t707,
+                t710,
                 t711,
-                t712,
-                t714,
-                t719,
+                t713,
+                t718,
                 t736,
                 t742,
                 t744,
@@ -18077,24 +17621,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
         ) = {
             let t800 = k(0.2222222222222222) * t759;
             let t801 = T::fused(
-                t428,
+                -t428,
                 t663,
-                T::fused(t291, t798, T::fused(-t321, t799, t327 * t800)),
+                T::fused(-t291, t798, T::fused(t321, t799, t327 * t800)),
             );
             let t802 = T::fused(
                 -t340,
                 t795,
-                T::fused(-t345, t797, T::fused(t426, t668, T::fused(-t427, t656, t801))),
+                T::fused(-t345, t797, T::fused(-t426, t668, T::fused(t427, t656, t801))),
             );
             let t803 = T::fused(
                 t463,
                 t776,
-                T::fused(-t280, t789, T::fused(-t313, t690, T::fused(t335, t793, t802))),
+                -T::fused(-t280, t789, T::fused(-t313, t690, T::fused(t335, t793, t802))),
             );
             let t804 = T::fused(
                 t403,
                 t786,
-                T::fused(t601, t462, T::fused(t604, t462, -(t788 - (t803 - t788)))),
+                T::fused(t600, t462, T::fused(t603, t462, t788 + (t803 + t788))),
             );
             let t805 = T::fused(
                 -t404,
@@ -18117,7 +17661,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             );
             let t812 = T::fused(
                 -t462,
-                t599,
+                t608,
                 T::fused(-t313, t765, T::fused(t280, t775, t306 * t776)),
             );
             let t813 = T::fused(
@@ -18127,7 +17671,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             );
             let t814 = k(1.3333333333333333) * t813;
             let t815 = t783 + (t782 - t784);
-            let t816 = T::fused(-t469, t530, t383 * t691);
+            let t816 = T::fused(-t469, t533, t383 * t707);
             let t817 = T::fused(
                 -k(0.2),
                 t816 - T::fused(t397, t652, t785),
@@ -18139,27 +17683,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 T::fused(-k(0.4), t783 + t815, t817) + t814,
             );
             let t819 = t818 + t781;
-            let t820 = T::fused(-t465, t530, t383 * t611);
-            let t821 = t435 * t530;
+            let t820 = T::fused(-t465, t533, t383 * t611);
+            let t821 = t435 * t533;
             let t822 = T::fused(k(0.3333333333333333), t792, t736);
             let t823 = T::fused(k(0.3333333333333333), t794, t744);
             let t824 = T::fused(-k(0.2222222222222222), t796, t747);
-            let t825 = t378 * t697;
+            let t825 = t378 * t703;
             let t826 = t300 * t825;
             let t827 = T::fused(
-                -t12,
+                t12,
                 t824,
-                t826 + (T::fused(-t317, t750, T::fused(t430, t661, t761)) + t826),
+                t826 + (T::fused(-t317, t750, T::fused(t430, t661, -t761)) + t826),
             );
             let t828 = T::fused(
-                -t310,
+                t310,
                 t789,
-                T::fused(-t427, t637, T::fused(-t326, t822, T::fused(-t54, t823, t827))),
+                T::fused(-t427, t637, T::fused(t326, t822, T::fused(t54, t823, t827))),
             );
             let t829 = T::fused(
-                t602,
+                t601,
                 t435,
-                T::fused(t605, t435, -T::fused(t410, t666, T::fused(t436, t775, t828))),
+                T::fused(t604, t435, -T::fused(t410, t666, T::fused(t436, t775, t828))),
             );
             let t830 = T::fused(
                 t508,
@@ -18181,28 +17725,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t835 = T::fused(-t315, t660, T::fused(t294, t666, t308 * t668));
             let t836 = T::fused(t583, t633, t450 * t635);
             let t837 = t836 - t835;
-            let t838 = t449 * t533;
-            let t839 = t449 * t530;
+            let t838 = t449 * t530;
+            let t839 = t449 * t533;
             let t840 = t308 * t787;
             let t841 = T::fused(
-                -t428,
+                t428,
                 t662,
-                T::fused(t296, t798, T::fused(-t322, t799, t328 * t800)),
+                T::fused(-t296, t798, T::fused(t322, t799, t328 * t800)),
             );
             let t842 = T::fused(
                 -t339,
                 t795,
-                T::fused(-t344, t797, T::fused(t418, t668, T::fused(t427, t655, t841))),
+                T::fused(-t344, t797, T::fused(-t418, t668, T::fused(-t427, t655, t841))),
             );
             let t843 = T::fused(
                 t450,
                 t776,
-                -T::fused(t294, t789, T::fused(t315, t690, T::fused(t333, t793, t842))),
+                T::fused(t294, t789, T::fused(t315, t690, T::fused(t333, t793, t842))),
             );
             let t844 = T::fused(
                 t403,
                 t839,
-                T::fused(t601, t449, T::fused(t604, t449, t840 + (t843 + t840))),
+                T::fused(t600, t449, T::fused(t603, t449, -(t840 - (t843 - t840)))),
             );
             let t845 = T::fused(
                 -t404,
@@ -18224,7 +17768,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 t849 - T::fused(t560, t846, T::fused(t564, t846, t845)),
             );
             let t852 = t836 - (t835 + t837);
-            let t853 = T::fused(-t467, t530, t383 * t692);
+            let t853 = T::fused(-t467, t533, t383 * t706);
             let t854 = T::fused(
                 -k(0.2),
                 T::fused(t397, t644, t838) - t853,
@@ -18232,7 +17776,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             );
             let t855 = T::fused(
                 t449,
-                t599,
+                t608,
                 T::fused(t315, t765, T::fused(-t294, t775, t308 * t776)),
             );
             let t856 = T::fused(
@@ -18249,21 +17793,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t859 = t858 - t834;
             let t860 = t462 * t519;
             let t861 = t280 * t825;
-            let t862 = T::fused(t291, t756, T::fused(-t321, t758, t327 * t760));
+            let t862 = T::fused(-t291, t756, T::fused(t321, t758, t327 * t760));
             let t863 = T::fused(
-                -t345,
+                t345,
                 t824,
-                t861 - (T::fused(-t313, t750, T::fused(-t430, t663, t862)) - t861),
+                t861 + (T::fused(t313, t750, T::fused(t430, t663, t862)) + t861),
             );
             let t864 = T::fused(
-                t306,
+                -t306,
                 t789,
-                T::fused(-t427, t653, T::fused(-t335, t822, T::fused(t340, t823, t863))),
+                T::fused(-t427, t653, T::fused(t335, t822, T::fused(-t340, t823, t863))),
             );
             let t865 = T::fused(
-                t602,
+                t601,
                 t462,
-                T::fused(t605, t462, T::fused(-t426, t666, T::fused(t463, t775, -t864))),
+                T::fused(t604, t462, T::fused(-t426, t666, T::fused(t463, t775, -t864))),
             );
             let t866 = T::fused(
                 t540,
@@ -18284,21 +17828,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t870 = T::fused(k(2.0), T::fused(t523, t808, -t867), t869);
             let t871 = t449 * t519;
             let t872 = t315 * t751;
-            let t873 = T::fused(t296, t756, T::fused(-t322, t758, t328 * t760));
+            let t873 = T::fused(-t296, t756, T::fused(t322, t758, t328 * t760));
             let t874 = T::fused(
                 -t344,
                 t749,
-                T::fused(t294, t750, T::fused(-t430, t655, t872 - (t873 - t872))),
+                T::fused(-t294, t750, T::fused(t430, t655, t872 - (t873 - t872))),
             );
             let t875 = T::fused(
                 -t308,
                 t690,
-                T::fused(t428, t645, T::fused(t333, t742, T::fused(-t339, t746, t874))),
+                T::fused(-t428, t645, T::fused(t333, t742, T::fused(-t339, t746, t874))),
             );
             let t876 = T::fused(
-                t603,
+                t602,
                 t449,
-                -T::fused(t606, t449, -T::fused(t418, t660, T::fused(t450, t765, t875))),
+                -T::fused(t605, t449, -T::fused(t418, t660, T::fused(t450, t765, -t875))),
             );
             let t877 = T::fused(
                 t541,
@@ -18313,26 +17857,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t879 = T::fused(t392, t644, t871);
             let t880 = T::fused(
                 k(0.2),
-                t836 + T::fused(t467, t519, t372 * t692),
-                T::fused(k(0.4), T::fused(t467, t533, t378 * t692), k(0.1) * t879),
+                t836 + T::fused(t467, t519, t372 * t706),
+                T::fused(k(0.4), T::fused(t467, t530, t378 * t706), k(0.1) * t879),
             );
             let t881 = T::fused(k(2.0), T::fused(t523, t850, -t878), t880 - t857);
             let t882 = t881 - t870;
             let t883 = t294 * t825;
             let t884 = T::fused(
-                t344,
+                -t344,
                 t824,
-                t883 + (T::fused(t315, t750, T::fused(t430, t662, t873)) + t883),
+                t883 - (T::fused(-t315, t750, T::fused(-t430, t662, t873)) - t883),
             );
             let t885 = T::fused(
-                -t308,
+                t308,
                 t789,
-                T::fused(-t427, t645, T::fused(t333, t822, T::fused(-t339, t823, t884))),
+                T::fused(-t427, t645, T::fused(-t333, t822, T::fused(t339, t823, t884))),
             );
             let t886 = T::fused(
-                t602,
+                t601,
                 t449,
-                T::fused(t605, t449, T::fused(t418, t666, T::fused(t450, t775, -t885))),
+                T::fused(t604, t449, T::fused(t418, t666, T::fused(t450, t775, -t885))),
             );
             let t887 = T::fused(
                 t540,
@@ -18361,17 +17905,21 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t895 = T::fused(
                 t345,
                 t749,
-                T::fused(t280, t750, T::fused(-t430, t656, t894 + (t862 + t894))),
+                T::fused(-t280, t750, T::fused(t430, t656, t894 + (t862 + t894))),
             );
             let t896 = T::fused(
                 t306,
                 t690,
-                T::fused(t428, t653, T::fused(-t335, t742, T::fused(t340, t746, t895))),
+                T::fused(-t428, t653, T::fused(-t335, t742, T::fused(t340, t746, t895))),
             );
             let t897 = T::fused(
-                t603,
+                t602,
                 t462,
-                -T::fused(t606, t462, -T::fused(-t426, t660, T::fused(t463, t765, t896))),
+                -T::fused(
+                    t605,
+                    t462,
+                    -T::fused(-t426, t660, T::fused(t463, t765, -t896)),
+                ),
             );
             let t898 = T::fused(
                 t541,
@@ -18385,8 +17933,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             );
             let t900 = T::fused(
                 k(0.2),
-                t783 + T::fused(t469, t519, t372 * t691),
-                T::fused(k(0.4), T::fused(t469, t533, t378 * t691), k(0.1) * t868),
+                t783 + T::fused(t469, t519, t372 * t707),
+                T::fused(k(0.4), T::fused(t469, t530, t378 * t707), k(0.1) * t868),
             );
             let t901 = T::fused(-k(2.0), T::fused(t523, t810, -t899), t814 - t900);
             let t902 = t276 * t901;
@@ -18399,24 +17947,24 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t905 = t903 + t891;
             let t906 = t310 * t787;
             let t907 = T::fused(
-                -t428,
+                t428,
                 t661,
-                T::fused(t302, t798, T::fused(t323, t799, t282 * t800)),
+                T::fused(-t302, t798, T::fused(-t323, t799, t282 * t800)),
             );
             let t908 = T::fused(
                 -t54,
                 t795,
-                T::fused(t12, t797, T::fused(-t410, t668, T::fused(t427, t654, t907))),
+                T::fused(t12, t797, T::fused(t410, t668, T::fused(-t427, t654, t907))),
             );
             let t909 = T::fused(
                 t436,
                 t776,
-                T::fused(t300, t789, T::fused(-t317, t690, T::fused(-t326, t793, t908))),
+                -T::fused(t300, t789, T::fused(-t317, t690, T::fused(-t326, t793, t908))),
             );
             let t910 = T::fused(
                 t403,
                 t821,
-                T::fused(t601, t435, T::fused(t604, t435, t906 - (t909 - t906))),
+                T::fused(t600, t435, T::fused(t603, t435, -(t906 + (t909 + t906)))),
             );
             let t911 = T::fused(
                 t560,
@@ -18490,7 +18038,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t948 = T::fused(
                 -k(0.03333333333333333),
                 t946,
-                T::fused(k(0.06666666666666667), t947, k(0.2) * t701),
+                T::fused(k(0.06666666666666667), t947, k(0.2) * t693),
             );
             let t949 = k(0.6666666666666666) * t948;
             let t950 = t523 * t372;
@@ -18505,7 +18053,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t959 = T::fused(
                 -k(0.002),
                 t957 + t956,
-                T::fused(-t693, t397, T::fused(-t523, t958, t714 * t378)),
+                T::fused(-t699, t397, T::fused(-t523, t958, t713 * t378)),
             );
             let t960 = T::fused(
                 -k(0.03),
@@ -18533,7 +18081,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 T::fused(-t306, t808, T::fused(k(0.1), t935, T::fused(t402, t937, t963))),
             );
             let t965 = T::fused(
-                t522,
+                t521,
                 t488,
                 T::fused(k(0.2), t927, T::fused(-t543, t925, t964)),
             ) + t924;
@@ -18561,7 +18109,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 t982 + (T::fused(-t505, t958, k(0.01) * (t951 + t983)) + t982),
             );
             let t985 = T::fused(
-                t705,
+                t697,
                 t372,
                 T::fused(-t684, t392, T::fused(-k(0.003), t957 + t979, t984)),
             );
@@ -18598,7 +18146,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t996 = T::fused(
                 -k(0.001),
                 t979 - t956,
-                T::fused(-t523, t980, T::fused(-t675, t399, t719 * t383)),
+                T::fused(-t523, t980, T::fused(-t675, t399, t718 * t383)),
             );
             let t997 = T::fused(
                 -k(0.02),
@@ -18689,7 +18237,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 T::fused(t508, t925, t523 * t928),
                 T::fused(t544, t925, t1001),
             );
-            let t1003 = T::fused(t522, t481, t1002) + t924;
+            let t1003 = T::fused(t521, t481, t1002) + t924;
             let t1004 = T::fused(t497, t1003, t499 * t992);
             let t1005 = t503 * t965;
             let t1006 = t499 * t1003;
@@ -19165,85 +18713,85 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 k(0.14444444444444443) * t1100,
             );
             let t1102 = T::fused(
-                -k(0.1),
-                t692,
+                k(0.1),
+                t706,
                 T::fused(-t294, t760, T::fused(t308, t800, t315 * t760)),
             );
             let t1103 = T::fused(
-                -k(0.1),
-                t691,
+                k(0.1),
+                t707,
                 T::fused(-t280, t760, T::fused(-t306, t800, t313 * t760)),
             );
             let t1104 = T::fused(
-                t64,
+                -t64,
                 t1103,
                 T::fused(t300, t758, T::fused(-t310, t799, t317 * t758)),
             );
             let t1105 = T::fused(-t509, t925, T::fused(-t516, t926, t514 * t928));
-            let t1106 = T::fused(-t516, t925, T::fused(-t531, t926, t528 * t928));
+            let t1106 = T::fused(-t516, t925, T::fused(-t528, t926, t525 * t928));
             let t1107 = T::fused(
-                -t528,
+                -t525,
                 t481,
-                T::fused(-t527, t488, T::fused(-k(0.2), t1105, k(0.1) * t1106)),
+                T::fused(-t531, t488, T::fused(-k(0.2), t1105, k(0.1) * t1106)),
             );
             let t1108 = T::fused(t514, t474, t1107);
             let t1109 = T::fused(
-                -t68,
+                t68,
                 t1103,
                 T::fused(t300, t756, T::fused(-t310, t798, t317 * t756)),
             );
-            let t1110 = T::fused(-t514, t925, T::fused(-t528, t926, t527 * t928));
+            let t1110 = T::fused(-t514, t925, T::fused(-t525, t926, t531 * t928));
             let t1111 = T::fused(
                 -t516,
                 t474,
-                T::fused(t531, t481, T::fused(t528, t488, k(0.1) * t1110)),
+                T::fused(t528, t481, T::fused(t525, t488, k(0.1) * t1110)),
             );
             let t1112 = T::fused(
                 -k(0.4472135954999579),
-                T::fused(t284, t1111, T::fused(-t64, t1102, t1109)),
+                T::fused(t284, t1111, T::fused(t64, t1102, t1109)),
                 k(0.08944271909999159) * t611,
             );
             let t1113 = T::fused(
                 -k(0.8944271909999159),
-                T::fused(t284, t1108, T::fused(-t68, t1102, t1104)),
+                T::fused(t284, t1108, T::fused(t68, t1102, t1104)),
                 t1112,
             );
             let t1114 = T::fused(
                 t553,
                 t467,
-                -T::fused(-t294, t823, T::fused(-t315, t746, t308 * t795)),
+                T::fused(-t294, t823, T::fused(-t315, t746, t308 * t795)),
             );
             let t1115 = T::fused(t534, t1110, t1114);
             let t1116 = T::fused(
                 t551,
                 t469,
-                T::fused(t280, t822, T::fused(t313, t742, t306 * t793)),
+                -T::fused(t280, t822, T::fused(t313, t742, t306 * t793)),
             );
             let t1117 = T::fused(k(0.2), t815, t1116);
             let t1118 = t1117 - t1115;
             let t1119 = T::fused(
                 t551,
                 t467,
-                -T::fused(-t294, t822, T::fused(-t315, t742, t308 * t793)),
+                T::fused(-t294, t822, T::fused(-t315, t742, t308 * t793)),
             );
             let t1120 = k(0.2) * t852;
             let t1121 = T::fused(t534, t1106, -(t1120 + t1119));
             let t1122 = T::fused(
                 t553,
                 t469,
-                T::fused(t280, t823, T::fused(t313, t746, t306 * t795)),
+                -T::fused(t280, t823, T::fused(t313, t746, t306 * t795)),
             );
             let t1123 = t1122 - t1121;
             let t1124 = T::fused(
                 k(0.2),
-                t692,
+                t706,
                 T::fused(-t294, t756, T::fused(t308, t798, t315 * t756)),
             );
             let t1125 = T::fused(-t280, t758, T::fused(-t306, t799, t313 * t758));
             let t1126 = t1125 + t1124;
             let t1127 = T::fused(
                 k(0.2),
-                t691,
+                t707,
                 T::fused(-t280, t756, T::fused(-t306, t798, t313 * t756)),
             );
             let t1128 = T::fused(-t294, t758, T::fused(t308, t799, t315 * t758));
@@ -19267,7 +18815,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t1134 = T::fused(
                 t554,
                 t465,
-                t1133 - T::fused(t300, t824, T::fused(t317, t749, t310 * t797)),
+                t1133 + T::fused(t300, t824, T::fused(t317, t749, t310 * t797)),
             );
             let t1135 = T::fused(
                 t535,
@@ -19290,23 +18838,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t1141 = T::fused(
                 -k(0.2),
                 t1139,
-                T::fused(-t550, t1137, T::fused(t552, t1140, t702 + t700 - t978)),
+                T::fused(-t550, t1137, T::fused(t552, t1140, t694 + t692 - t978)),
             );
             let t1142 = T::fused(
                 -t496,
                 t965,
-                T::fused(t506, t1003, T::fused(-t521, t992, t1141)),
+                T::fused(t506, t1003, T::fused(-t522, t992, t1141)),
             );
             let t1143 = T::fused(
                 t554,
                 t467,
-                -T::fused(t294, t824, T::fused(-t315, t749, t308 * t797)),
+                T::fused(t294, t824, T::fused(-t315, t749, t308 * t797)),
             );
             let t1144 = T::fused(t534, t1105, T::fused(-k(0.1), t852, t1143));
             let t1145 = T::fused(
                 t554,
                 t469,
-                T::fused(-t280, t824, T::fused(t313, t749, t306 * t797)),
+                -T::fused(-t280, t824, T::fused(t313, t749, t306 * t797)),
             );
             let t1146 = T::fused(-k(0.1), t815, t1145);
             let t1147 = T::fused(
@@ -19320,10 +18868,10 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 -T::fused(
                     t553,
                     t465,
-                    -T::fused(t64, t1146, T::fused(t289, t1102, t1147)),
+                    T::fused(-t64, t1146, T::fused(t289, t1102, t1147)),
                 ),
             );
-            let t1149 = t712 + t711 - t949;
+            let t1149 = t711 + t710 - t949;
             let t1150 = T::fused(
                 -k(0.1),
                 T::fused(t497, t1140, t499 * t1138),
@@ -19347,11 +18895,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t1154 = T::fused(
                 t535,
                 t1106,
-                T::fused(
-                    t551,
-                    t465,
-                    -T::fused(-t68, t1146, T::fused(-t285, t1102, t1153)),
-                ),
+                T::fused(t551, t465, T::fused(t68, t1146, T::fused(-t285, t1102, t1153))),
             );
             let t1155 = T::fused(
                 -t496,
@@ -19364,16 +18908,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             );
             let t1156 = T::fused(-t502, t965, T::fused(t498, t1003, t1155));
             let t1157 = T::fused(
-                k(0.8),
+                -k(0.8),
                 T::fused(-t64, t1125, t68 * t1128),
                 T::fused(t300, t760, T::fused(-t310, t800, t317 * t760)),
             );
             let t1158 = T::fused(
-                k(0.4),
+                -k(0.4),
                 T::fused(t68, t1126, t64 * t1129),
-                T::fused(k(0.2), T::fused(t64, t1124, t68 * t1127), t1157),
+                T::fused(-k(0.2), T::fused(t64, t1124, t68 * t1127), t1157),
             );
-            let t1159 = T::fused(t284, t1136, T::fused(k(0.1), t611, t1158));
+            let t1159 = T::fused(t284, t1136, -T::fused(-k(0.1), t611, t1158));
             let t1160 = T::fused(
                 k(0.4472135954999579),
                 T::fused(
@@ -19432,15 +18976,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t1171 = T::fused(
                 -t286,
                 t1126,
-                T::fused(t326, t1103, T::fused(t290, t1127, t320 * t1128)),
+                T::fused(-t326, t1103, T::fused(t290, t1127, t320 * t1128)),
             );
-            let t1172 = T::fused(t54, t1102, t1171);
+            let t1172 = T::fused(-t54, t1102, t1171);
             let t1173 = T::fused(
                 -t290,
                 t1124,
-                T::fused(t54, t1103, T::fused(t286, t1129, t320 * t1125)),
+                T::fused(-t54, t1103, T::fused(t286, t1129, t320 * t1125)),
             );
-            let t1174 = T::fused(-t326, t1102, t1173);
+            let t1174 = T::fused(t326, t1102, t1173);
             let t1175 = T::fused(
                 t323,
                 t1108,
@@ -19463,7 +19007,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             let t1178 = T::fused(
                 -t288,
                 t1124,
-                T::fused(-t323, t1103, T::fused(-t283, t1129, t319 * t1125)),
+                T::fused(t323, t1103, T::fused(-t283, t1129, t319 * t1125)),
             );
             let t1179 = T::fused(
                 -t320,
@@ -19471,13 +19015,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 T::fused(
                     -t54,
                     t1146,
-                    T::fused(-t284, t1172, T::fused(t302, t1102, t1178)),
+                    T::fused(-t284, t1172, T::fused(-t302, t1102, t1178)),
                 ),
             );
             let t1180 = T::fused(
                 t283,
                 t1126,
-                T::fused(-t302, t1103, T::fused(t288, t1127, t319 * t1128)),
+                T::fused(t302, t1103, T::fused(t288, t1127, t319 * t1128)),
             );
             let t1181 = T::fused(
                 -t290,
@@ -19485,7 +19029,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
                 T::fused(
                     -t326,
                     t1146,
-                    T::fused(-t323, t1102, T::fused(t284, t1174, t1180)),
+                    T::fused(t323, t1102, T::fused(t284, t1174, t1180)),
                 ),
             );
             let t1182 = T::fused(
@@ -19519,7 +19063,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Carried<T> {
             );
             let t1186 = T::fused(
                 -k(5.0),
-                T::fused(t440, t1184, t66 * t692),
+                T::fused(t440, t1184, t66 * t706),
                 k(3.0) * T::fused(-t386, t1185, t59 * (k(0.3) * t611)),
             );
             let t1187 = T::fused(

@@ -12,9 +12,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 1765 operations by rotations of the bodies, doubled; 1772 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 1002 operations by rotations of the bodies, doubled; 1009 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 217 operations by normal form; 1232 operations by recursion
-//! * joint_accelerations_at: 634 operations by normal form; 1649 operations by recursion; 1 more compared
-//! * corrected_accelerations: 914 operations by normal form in the bodies' frames; 1017 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 217 operations by normal form; 651 operations by orthogonal motions; 1 more compared
+//! * joint_accelerations_at: 634 operations by normal form; 1068 operations by orthogonal motions; 3 more compared
+//! * corrected_accelerations: 914 operations by normal form in the bodies' frames; 1017 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 1657 operations by derivatives of u̇, from its leaves; 1657 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,9 +13,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 141 operations by rotations of the bodies, doubled; 141 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 112 operations by rotations of the bodies; 112 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 0 operations by recursion; 0 operations by normal form
-//! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 1 more compared
-//! * corrected_accelerations: 69 operations by recursion in the bodies' frames; 69 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_accelerations: 0 operations by recursion; 0 operations by normal form; 1 more compared
+//! * joint_accelerations_at: 0 operations by recursion; 0 operations by normal form; 3 more compared
+//! * corrected_accelerations: 69 operations by recursion in the bodies' frames; 69 operations by normal form in the bodies' frames; 9 more compared
 //! * joint_jacobian: 0 operations by derivatives of u̇, from its leaves; 0 operations by derivatives of u̇, from its roots; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -1001,34 +1001,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let t4 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
         let t5 = k(0.6) * t4;
         let t6 = spindle_wx * t5;
-        let t7 = T::fused(-k(0.15), t6, T::fused(-spindle_wx, t1, k(5.886)));
+        let t7 = T::fused(k(0.15), t6, -T::fused(-spindle_wx, t1, k(5.886)));
         let t8 = spindle_e0 * spindle_e3;
         let t9 = spindle_e1 * spindle_e2;
         let t10 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3))),
+            k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3)),
             t2,
             k(2.0) * (t9 - t8) * t7,
         );
         let t11 = k(0.8) * t4;
         let t12 = spindle_wx * t11;
-        let t13 = T::fused(-k(0.15), t12, T::fused(-spindle_wx, t0, k(7.848)));
+        let t13 = T::fused(k(0.15), t12, -T::fused(-spindle_wx, t0, k(7.848)));
         let t14 = spindle_e0 * spindle_e2;
         let t15 = spindle_e1 * spindle_e3;
         let t16 = T::fused(
-            -(k(2.0) * (t9 + t8)),
+            k(2.0) * (t9 + t8),
             t2,
             k(2.0) * (k(0.5) - T::fused(spindle_e2, spindle_e2, t3)) * t7,
         );
         let t17 = spindle_e0 * spindle_e1;
         let t18 = spindle_e2 * spindle_e3;
-        let t19 = T::fused(k(2.0) * (t15 - t14), t2, k(2.0) * (t18 + t17) * t7);
+        let t19 = T::fused(-(k(2.0) * (t15 - t14)), t2, k(2.0) * (t18 + t17) * t7);
         *out = [
-            -T::fused(k(2.0) * (t15 + t14), t13, t10),
-            T::fused(-(k(2.0) * (t18 - t17)), t13, t16),
+            T::fused(k(2.0) * (t15 + t14), t13, t10),
+            T::fused(k(2.0) * (t18 - t17), t13, -t16),
             T::fused(
-                k(2.0) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t3)),
+                -(k(2.0) * (k(0.5) - T::fused(spindle_e3, spindle_e3, t3))),
                 t13,
-                -t19,
+                t19,
             ),
             T::fused(-spindle_wz, t5, spindle_wy * t11),
             -t12,
@@ -1107,18 +1107,18 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let t4 = T::fused(k(0.8), spindle_wz, k(0.6) * spindle_wy);
         let t5 = k(0.6) * t4;
         let t6 = spindle_wx * t5;
-        let t7 = T::fused(-k(0.15), t6, T::fused(-spindle_wx, t1, k(5.886)));
+        let t7 = T::fused(k(0.15), t6, -T::fused(-spindle_wx, t1, k(5.886)));
         let t8 = spindle_e0 * spindle_e3;
         let t9 = spindle_e1 * spindle_e2;
         let t10 = t9 - t8;
         let t11 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3))),
+            k(2.0) * (k(0.5) - T::fused(spindle_e1, spindle_e1, t3)),
             t2,
             k(2.0) * t10 * t7,
         );
         let t12 = k(0.8) * t4;
         let t13 = spindle_wx * t12;
-        let t14 = T::fused(-k(0.15), t13, T::fused(-spindle_wx, t0, k(7.848)));
+        let t14 = T::fused(k(0.15), t13, -T::fused(-spindle_wx, t0, k(7.848)));
         let t15 = spindle_e0 * spindle_e2;
         let t16 = spindle_e1 * spindle_e3;
         let t17 = t16 + t15;
@@ -1130,44 +1130,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Cylindrical<T> {
         let t23 = T::fused(
             k(2.0) * t22,
             t14,
-            -T::fused(-(k(2.0) * (t9 + t8)), t2, k(2.0) * t19 * t7),
+            -T::fused(k(2.0) * (t9 + t8), t2, k(2.0) * t19 * t7),
         );
         let t24 = t21 + t20;
         let t25 = k(0.5) - T::fused(spindle_e3, spindle_e3, t3);
         let t26 = T::fused(
             k(2.0) * t25,
             t14,
-            -T::fused(k(2.0) * (t16 - t15), t2, k(2.0) * t24 * t7),
+            -T::fused(-(k(2.0) * (t16 - t15)), t2, k(2.0) * t24 * t7),
         );
         let t27 = T::fused(-spindle_wy, t12, spindle_wz * t5);
         let t28 = k(0.8) * t18;
         let t29 = k(0.8) * t23;
         let t30 = k(0.01) * spindle_wx;
-        let t31 = T::fused(k(0.8), t26, k(7.848));
+        let t31 = T::fused(-k(0.8), t26, k(7.848));
         let t32 = T::fused(
-            k(0.3) * t25,
+            -(k(0.3) * t25),
             t31,
             T::fused(k(0.3) * t22, t29, k(0.3) * t17 * t28),
         );
-        let t33 = t32 - T::fused(spindle_wz, t30, k(0.02) * t13);
+        let t33 = t32 + T::fused(spindle_wz, t30, k(0.02) * t13);
         let t34 = T::fused(k(0.3333333333333333), spindle_e2, spindle_e3);
         let t35 = k(1.8) * t34;
         let t36 = T::fused(-t34, t35, k(1.0));
         let t37 = k(0.01) * t27;
         let t38 = T::fused(k(0.3333333333333333), spindle_e1, spindle_e0) * t35;
         let t39 = T::fused(
-            -(k(0.3) * t24),
+            k(0.3) * t24,
             t31,
             T::fused(-(k(0.3) * t19), t29, k(0.3) * t10 * t28),
         );
-        let t40 = t39 - T::fused(spindle_wy, t30, k(0.02) * t6);
-        let t41 = T::fused(
-            k(0.6) * t36,
+        let t40 = t39 + T::fused(spindle_wy, t30, k(0.02) * t6);
+        let t41 = T::fused(k(0.6) * t36, t40, T::fused(k(0.8) * t36, t33, t38 * t37));
+        let t42 = T::fused(
+            k(0.6) * t38,
             t40,
-            -T::fused(-(k(0.8) * t36), t33, t38 * t37),
+            -T::fused(-(k(0.8) * t38), t33, t36 * t37),
         );
-        let t42 = T::fused(k(0.6) * t38, t40, T::fused(k(0.8) * t38, t33, t36 * t37));
-        *out = [-t18, -t23, t26, -t27, -t13, t6, t28, t29, -t41, -t42];
+        *out = [t18, t23, -t26, -t27, -t13, t6, -t28, -t29, t41, t42];
     }
 }
 impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Cylindrical<T> {

@@ -15,8 +15,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 116 operations by rotations of the bodies, doubled; 116 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 71 operations by rotations of the bodies, doubled; 71 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations_at: 25 operations by recursion; 25 operations by recursion on the bodies' spins
-//! * corrected_accelerations: 43 operations by recursion in the bodies' frames; 43 operations by recursion in the global frame; 3 more compared
+//! * joint_accelerations: 9 operations by recursion; 9 operations by orthogonal motions
+//! * joint_accelerations_at: 25 operations by recursion; 25 operations by recursion on the bodies' spins; 2 more compared
+//! * corrected_accelerations: 43 operations by recursion in the bodies' frames; 43 operations by recursion in the global frame; 7 more compared
 //! * joint_jacobian: 19 operations by derivatives of u̇, from its leaves; 19 operations by derivatives of u̇, from its roots
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -14,9 +14,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 200 operations by rotations of the bodies, doubled; 200 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 124 operations by rotations of the bodies; 124 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 14 operations by normal form; 18 operations by recursion
-//! * joint_accelerations_at: 43 operations by normal form; 51 operations by recursion; 1 more compared
-//! * corrected_accelerations: 61 operations by normal form in the global frame; 66 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_accelerations: 14 operations by normal form; 18 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 43 operations by normal form; 51 operations by recursion; 3 more compared
+//! * corrected_accelerations: 61 operations by normal form in the global frame; 66 operations by normal form in the bodies' frames; 9 more compared
 //! * joint_jacobian: 0 operations by normal form of that; 42 operations by derivatives of the balance, from its leaves, normal form; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

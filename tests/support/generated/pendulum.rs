@@ -44,8 +44,8 @@
 //! | to_joints | (x, u) of a maximal state | 10 | 12 | 0 | 22 | 0 of 2 | 43 | 22 |
 //! | joint_accelerations_at | u̇ at a corrected maximal state | 2 | 2 | 0 | 4 | 0 of 1 | 4 | 4 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 23 | 40 | 0 | 63 | 0 of 6 | 111 | 63 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 14 | 22 | 0 | 36 | 0 of 5 | 74 | 36 |
-//! | corrected_solution | both | 30 | 53 | 0 | 83 | 0 of 11 | 498 | 83 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 15 | 23 | 0 | 38 | 0 of 5 | 82 | 38 |
+//! | corrected_solution | both | 31 | 54 | 0 | 85 | 0 of 11 | 506 | 85 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 0 | 1 | 0 | 1 | 4 of 6 | 1 | 1 |
 //!
 //! # Proof
@@ -1011,7 +1011,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Pendulum<T> {
             -(k(14.715) * t4),
         ];
     }
-    /// Writes λ: 36 operations (14 ±, 22 ×, 0 ÷).
+    /// Writes λ: 38 operations (15 ±, 23 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -1034,20 +1034,27 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Pendulum<T> {
         let t0 = k(1.2) * rod_dsx;
         let t1 = T::fused(k(1.2), rod_dsy, k(11.772));
         let t2 = k(1.2) * rod_dsz;
-        let t3 = rod_e0 + rod_e3;
-        let t4 = t3 * (rod_e0 - rod_e3);
-        let t5 = k(0.0001) * rod_dwx;
-        let t6 = T::fused(
+        let t3 = rod_e0 - rod_e3;
+        let t4 = rod_e0 + rod_e3;
+        let t5 = t4 * t3;
+        let t6 = k(0.0001) * rod_dwx;
+        let t7 = T::fused(
             T::fused(rod_e0, rod_e2, rod_e1 * rod_e3),
             t0,
             T::fused(-rod_e0, rod_e1, rod_e2 * rod_e3) * t1,
         );
-        let t7 = T::fused(-k(0.1), rod_dwy, k(0.0999) * (rod_wx * rod_wz))
-            - T::fused(k(0.5) - T::fused(rod_e3, rod_e3, rod_e0 * rod_e0), t2, -t6);
-        let t8 = T::fused(-t3, t3, k(1.0));
-        *lambda = [-t0, -t1, -t2, T::fused(-t5, t4, t8 * t7), T::fused(t5, t8, t4 * t7)];
+        let t8 = T::fused(-k(0.1), rod_dwy, k(0.0999) * (rod_wx * rod_wz))
+            - T::fused(k(0.5) - T::fused(rod_e3, rod_e3, rod_e0 * rod_e0), t2, -t7);
+        let t9 = k(0.5) * ((t4 - t3) * (t4 + t3));
+        *lambda = [
+            -t0,
+            -t1,
+            -t2,
+            -T::fused(t6, t5, t9 * t8),
+            T::fused(-t6, t9, t5 * t8),
+        ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 83 operations (30 ±, 53 ×, 0 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 85 operations (31 ±, 54 ×, 0 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let rod_e0 = y[3];
@@ -1061,57 +1068,58 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Pendulum<T> {
         let t1 = k(0.5) * rod_wy;
         let t2 = T::fused(rod_wz, t0, rod_wy * t1);
         let t3 = rod_e0 * rod_e0;
-        let t4 = rod_e0 + rod_e3;
-        let t5 = t4 * (rod_e0 - rod_e3);
-        let t6 = T::fused(-k(7.3575), t5, rod_wx * t1);
-        let t7 = rod_e0 * rod_e3;
-        let t8 = rod_e1 * rod_e2;
-        let t9 = T::fused(
+        let t4 = rod_e0 - rod_e3;
+        let t5 = rod_e0 + rod_e3;
+        let t6 = t5 * t4;
+        let t7 = T::fused(-k(7.3575), t6, rod_wx * t1);
+        let t8 = rod_e0 * rod_e3;
+        let t9 = rod_e1 * rod_e2;
+        let t10 = T::fused(
             k(2.0) * (k(0.5) - T::fused(rod_e1, rod_e1, t3)),
             t2,
-            k(2.0) * (t8 - t7) * t6,
+            k(2.0) * (t9 - t8) * t7,
         );
-        let t10 = rod_wx * rod_wz;
-        let t11 = T::fused(k(0.5), t10, rod_wx * t0);
-        let t12 = rod_e0 * rod_e2;
-        let t13 = rod_e1 * rod_e3;
-        let t14 = t13 + t12;
-        let t15 = T::fused(k(2.0) * t14, t11, t9);
-        let t16 = T::fused(
-            k(2.0) * (t8 + t7),
+        let t11 = rod_wx * rod_wz;
+        let t12 = T::fused(k(0.5), t11, rod_wx * t0);
+        let t13 = rod_e0 * rod_e2;
+        let t14 = rod_e1 * rod_e3;
+        let t15 = t14 + t13;
+        let t16 = T::fused(k(2.0) * t15, t12, t10);
+        let t17 = T::fused(
+            k(2.0) * (t9 + t8),
             t2,
-            k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t3)) * t6,
+            k(2.0) * (k(0.5) - T::fused(rod_e2, rod_e2, t3)) * t7,
         );
-        let t17 = rod_e0 * rod_e1;
-        let t18 = rod_e2 * rod_e3;
-        let t19 = t18 - t17;
-        let t20 = T::fused(k(2.0) * t19, t11, -t16);
-        let t21 = T::fused(-(k(2.0) * (t13 - t12)), t2, k(2.0) * (t18 + t17) * t6);
-        let t22 = k(0.5) - T::fused(rod_e3, rod_e3, t3);
-        let t23 = T::fused(k(2.0) * t22, t11, -t21);
-        let t24 = rod_wy * rod_wz;
-        let t25 = k(1.2) * t15;
-        let t26 = T::fused(k(1.2), t20, k(11.772));
-        let t27 = k(1.2) * t23;
-        let t28 = T::fused(
+        let t18 = rod_e0 * rod_e1;
+        let t19 = rod_e2 * rod_e3;
+        let t20 = t19 - t18;
+        let t21 = T::fused(k(2.0) * t20, t12, -t17);
+        let t22 = T::fused(-(k(2.0) * (t14 - t13)), t2, k(2.0) * (t19 + t18) * t7);
+        let t23 = k(0.5) - T::fused(rod_e3, rod_e3, t3);
+        let t24 = T::fused(k(2.0) * t23, t12, -t22);
+        let t25 = rod_wy * rod_wz;
+        let t26 = k(1.2) * t16;
+        let t27 = T::fused(k(1.2), t21, k(11.772));
+        let t28 = k(1.2) * t24;
+        let t29 = T::fused(
             k(0.1999),
-            t10,
-            T::fused(t22, t27, T::fused(t19, t26, t14 * t25)),
+            t11,
+            T::fused(t23, t28, T::fused(t20, t27, t15 * t26)),
         );
-        let t29 = T::fused(-t4, t4, k(1.0));
-        let t30 = k(0.0001) * t24;
+        let t30 = k(0.5) * ((t5 - t4) * (t5 + t4));
+        let t31 = k(0.0001) * t25;
         *out = [
-            t15,
-            t20,
-            -t23,
-            t24,
-            -t10,
-            -(k(14.715) * t5),
-            -t25,
+            t16,
+            t21,
+            -t24,
+            t25,
+            -t11,
+            -(k(14.715) * t6),
             -t26,
-            t27,
-            T::fused(-t5, t30, t29 * t28),
-            T::fused(t5, t28, t29 * t30),
+            -t27,
+            t28,
+            -T::fused(t30, t29, t6 * t31),
+            T::fused(-t30, t31, t6 * t29),
         ];
     }
 }

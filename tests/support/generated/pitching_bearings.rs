@@ -12,9 +12,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 523 operations by relative Euler parameters, doubled; 533 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 403 operations by rotations of the bodies, doubled; 410 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 115 operations by recursion; 124 operations by normal form
-//! * joint_accelerations_at: 145 operations by recursion on the bodies' spins; 160 operations by recursion; 1 more compared
-//! * corrected_accelerations: 523 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 5 more compared
+//! * joint_accelerations: 115 operations by recursion; 124 operations by normal form; 1 more compared
+//! * joint_accelerations_at: 145 operations by recursion on the bodies' spins; 156 operations by orthogonal motions on the bodies' spins; 3 more compared
+//! * corrected_accelerations: 523 operations by elimination in maximal coordinates; 248 operations by recursion on the bodies' spins in the bodies' frames; 9 more compared
 //! * joint_jacobian: 1755 operations by derivatives of u̇, from its leaves; 1755 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,9 +13,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 152 operations by rotations of the bodies, doubled; 152 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 120 operations by rotations of the bodies, doubled; 120 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 40 operations by normal form; 77 operations by recursion
-//! * joint_accelerations_at: 44 operations by normal form; 81 operations by recursion; 1 more compared
-//! * corrected_accelerations: 130 operations by normal form in the bodies' frames; 152 operations by elimination in maximal coordinates; 5 more compared
+//! * joint_accelerations: 40 operations by normal form; 77 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 44 operations by normal form; 81 operations by recursion; 3 more compared
+//! * corrected_accelerations: 130 operations by normal form in the bodies' frames; 152 operations by elimination in maximal coordinates; 9 more compared
 //! * joint_jacobian: 94 operations by derivatives of u̇, from its leaves; 94 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

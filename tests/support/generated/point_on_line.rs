@@ -13,9 +13,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 6 operations by rotations of the bodies; 6 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 18 operations by rotations of the bodies; 18 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations: 6 operations by normal form; 66 operations by recursion
-//! * joint_accelerations_at: 6 operations by normal form; 66 operations by recursion; 1 more compared
-//! * corrected_accelerations: 6 operations by elimination in maximal coordinates; 70 operations by normal form in the bodies' frames; 5 more compared
+//! * joint_accelerations: 6 operations by normal form; 66 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 6 operations by normal form; 66 operations by recursion; 3 more compared
+//! * corrected_accelerations: 6 operations by elimination in maximal coordinates; 70 operations by normal form in the bodies' frames; 9 more compared
 //! * joint_jacobian: 11 operations by derivatives of u̇, from its leaves; 11 operations by derivatives of u̇, from its roots; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -12,9 +12,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 202 operations by rotations of the bodies, doubled; 202 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 88 operations by rotations of the bodies, doubled; 88 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 61 operations by normal form; 95 operations by recursion
-//! * joint_accelerations_at: 61 operations by normal form; 95 operations by recursion; 1 more compared
-//! * corrected_accelerations: 129 operations by normal form in the bodies' frames; 143 operations by recursion in the bodies' frames; 5 more compared
+//! * joint_accelerations: 61 operations by normal form; 95 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 61 operations by normal form; 95 operations by recursion; 3 more compared
+//! * corrected_accelerations: 129 operations by normal form in the bodies' frames; 143 operations by recursion in the bodies' frames; 9 more compared
 //! * joint_jacobian: 100 operations by normal form of that; 169 operations by derivatives of u̇, from its leaves; 1 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

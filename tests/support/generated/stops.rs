@@ -14,9 +14,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 144 operations by rotations of the bodies, doubled; 144 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 71 operations by rotations of the bodies, doubled; 71 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 38 operations by recursion; 38 operations by normal form
-//! * joint_accelerations_at: 54 operations by recursion; 54 operations by normal form; 1 more compared
-//! * corrected_accelerations: 72 operations by recursion in the bodies' frames; 72 operations by recursion in the global frame; 5 more compared
+//! * joint_accelerations: 38 operations by recursion; 38 operations by normal form; 1 more compared
+//! * joint_accelerations_at: 54 operations by recursion; 54 operations by normal form; 3 more compared
+//! * corrected_accelerations: 72 operations by recursion in the bodies' frames; 72 operations by recursion in the global frame; 9 more compared
 //! * joint_jacobian: 83 operations by normal form of that; 129 operations by derivatives of u̇, from its leaves; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

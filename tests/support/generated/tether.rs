@@ -12,9 +12,10 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 31 operations by rotations of the bodies; 31 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 0 operations by rotations of the bodies; 0 operations by rotations of the bodies, doubled; 2 more compared
-//! * joint_accelerations_at: 215 operations by recursion; 215 operations by recursion on the bodies' spins
-//! * corrected_accelerations: 31 operations by elimination in maximal coordinates; 239 operations by recursion in the bodies' frames; 3 more compared
-//! * joint_jacobian: 1397 operations by derivatives of u̇, from its roots; 1875 operations by derivatives of u̇, from its leaves
+//! * joint_accelerations: 174 operations by orthogonal motions; 215 operations by recursion
+//! * joint_accelerations_at: 174 operations by orthogonal motions; 174 operations by orthogonal motions on the bodies' spins; 2 more compared
+//! * corrected_accelerations: 31 operations by elimination in maximal coordinates; 204 operations by orthogonal motions in the bodies' frames; 7 more compared
+//! * joint_jacobian: 1121 operations by derivatives of u̇, from its roots; 1381 operations by derivatives of u̇, from its leaves
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
 //!
@@ -30,14 +31,14 @@
 //! | chart vectors | for the choice of independent coordinates | 0 | 0 | 0 | 0 | 0 of 4 | 0 | 0 |
 //! | newton_step | dependent positions, one Newton step | 11 | 13 | 1 | 25 | 0 of 7 | 80 | 26 |
 //! | solve_velocities | dependent velocities, eq. (19) | 0 | 0 | 0 | 0 | 0 of 6 | 0 | 0 |
-//! | joint_accelerations | u̇ in joint coordinates | 81 | 130 | 4 | 215 | 0 of 6 | 377970 | 216 |
+//! | joint_accelerations | u̇ in joint coordinates | 63 | 107 | 4 | 174 | 0 of 6 | 83213 | 175 |
 //! | joint_derivative | ẋ but for u̇ | 12 | 27 | 1 | 40 | 0 of 8 | 78 | 40 |
 //! | to_maximal | (q, v) of a joint state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
 //! | to_joints | (x, u) of a maximal state | 0 | 0 | 0 | 0 | 0 of 13 | 0 | 0 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 81 | 130 | 4 | 215 | 0 of 6 | 377970 | 216 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 63 | 107 | 4 | 174 | 0 of 6 | 83213 | 175 |
 //! | corrected_accelerations | (s̈, ẇ') at a corrected state | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
 //! | corrected_solution | both | 7 | 22 | 1 | 30 | 0 of 6 | 139 | 30 |
-//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 584 | 805 | 4 | 1393 | 141 of 210 | 9.2e8 | 1393 |
+//! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 449 | 658 | 4 | 1111 | 141 of 210 | 6.2e8 | 1111 |
 //!
 //! # Proof
 //!
@@ -546,7 +547,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
     fn solution(&self) -> Self::Solution {
         [T::constant(0.0); 6]
     }
-    /// Writes u̇: 215 operations (81 ±, 130 ×, 4 ÷) and 1 functions.
+    /// Writes u̇: 174 operations (63 ±, 107 ×, 4 ÷) and 1 functions.
     fn joint_accelerations(&self, _t: T, x: &Self::Joints, out: &mut Self::Rates) {
         let k = T::constant;
         let x0 = x[0];
@@ -562,98 +563,91 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let u3 = x[10];
         let u4 = x[11];
         let u5 = x[12];
-        let t0 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
-        let t1 = k(1.0) / t0;
-        let t2 = x0 * t1;
-        let t3 = x1 * t1;
-        let t4 = x2 * t1;
-        let t5 = T::fused(
+        let t0 = x3 * x5;
+        let t1 = x4 * x6;
+        let t2 = t1 - t0;
+        let t3 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
+        let t4 = k(1.0) / t3;
+        let t5 = x0 * t4;
+        let t6 = x1 * t4;
+        let t7 = x2 * t4;
+        let t8 = T::fused(
             -k(40.0),
-            k(0.6) - t0,
-            k(0.3) * T::fused(u2, t4, T::fused(u0, t2, u1 * t3)),
+            k(0.6) - t3,
+            k(0.3) * T::fused(u2, t7, T::fused(u0, t5, u1 * t6)),
         );
-        let t6 = t2 * t5;
-        let t7 = x3 * x3;
-        let t8 = k(0.5) - T::fused(x4, x4, t7);
-        let t9 = k(2.0) * t8;
-        let t10 = t3 * t5;
-        let t11 = x3 * x6;
-        let t12 = x4 * x5;
-        let t13 = t12 + t11;
-        let t14 = k(2.0) * t13;
-        let t15 = t4 * t5;
-        let t16 = x3 * x5;
-        let t17 = x4 * x6;
-        let t18 = t17 - t16;
-        let t19 = k(2.0) * t18;
-        let t20 = T::fused(t19, t15, T::fused(-t9, t6, t14 * t10));
-        let t21 = t12 - t11;
-        let t22 = k(2.0) * t21;
-        let t23 = k(0.5) - T::fused(x5, x5, t7);
-        let t24 = k(2.0) * t23;
-        let t25 = x3 * x4;
-        let t26 = x5 * x6;
-        let t27 = t26 + t25;
-        let t28 = k(2.0) * t27;
-        let t29 = T::fused(t28, t15, -T::fused(-t22, t6, t24 * t10));
-        let t30 = t17 + t16;
-        let t31 = k(2.0) * t30;
-        let t32 = t26 - t25;
-        let t33 = k(2.0) * t32;
-        let t34 = k(0.5) - T::fused(x6, x6, t7);
-        let t35 = k(2.0) * t34;
-        let t36 = T::fused(t35, t15, -T::fused(t31, t6, t33 * t10));
-        let t37 = T::fused(t31, t36, -T::fused(-t9, t20, t22 * t29));
-        let t38 = k(1.0) / T::fused(t30, t31, T::fused(t21, t22, t8 * t9));
-        let t39 = t38 * t37;
-        let t40 = T::fused(-t8, t39, t20);
-        let t41 = T::fused(t21, t39, t29);
-        let t42 = T::fused(-t30, t39, t36);
-        let t43 = T::fused(t33, t42, T::fused(-t14, t40, t24 * t41));
-        let t44 = t30 * (t30 * t38);
-        let t45 = t21 * t38;
-        let t46 = t30 * t45;
-        let t47 = t8 * t38;
-        let t48 = t30 * t47;
-        let t49 = t32 + T::fused(-t33, t44, T::fused(t24, t46, t14 * t48));
-        let t50 = t21 * t45;
-        let t51 = t21 * t47;
-        let t52 = t23 - T::fused(-t33, t46, T::fused(t24, t50, t14 * t51));
-        let t53 = t8 * t47;
-        let t54 = t13 - T::fused(-t33, t48, T::fused(t24, t51, t14 * t53));
-        let t55 = k(1.0) / T::fused(t33, t49, T::fused(t24, t52, t14 * t54));
-        let t56 = t55 * t43;
-        let t57 = T::fused(t19, T::fused(t54, t56, t40), t28 * T::fused(-t52, t56, t41));
-        let t58 = t52 * t55;
-        let t59 = T::fused(-t49, t58, t46);
-        let t60 = t54 * t55;
-        let t61 = T::fused(-t49, t60, t48);
-        let t62 = T::fused(
-            t35,
-            T::fused(t49, t49 * t55, t44),
-            T::fused(-t28, t59, t19 * t61),
+        let t9 = t5 * t8;
+        let t10 = x3 * x3;
+        let t11 = k(2.0) * (k(0.5) - T::fused(x4, x4, t10));
+        let t12 = t6 * t8;
+        let t13 = x3 * x6;
+        let t14 = x4 * x5;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = t7 * t8;
+        let t17 = k(2.0) * t2;
+        let t18 = T::fused(
+            k(9.81),
+            t2,
+            T::fused(t17, t16, T::fused(-t11, t9, t15 * t12)),
         );
-        let t63 = t34 - t62;
-        let t64 = k(19.62) * t34;
-        let t65 = T::fused(t52, t60, t51);
-        let t66 = T::fused(t35, t59, T::fused(-t28, T::fused(t52, t58, t50), t19 * t65));
-        let t67 = t27 + t66;
-        let t68 = k(19.62) * t27;
-        let t69 = T::fused(t35, t61, T::fused(-t28, t65, t19 * T::fused(t54, t60, t53)));
-        let t70 = t18 - t69;
-        let t71 = k(19.62) * t18;
-        let t72 = T::fused(t64, t63, T::fused(t68, t67, t71 * t70))
-            + T::fused(t35, T::fused(-t49, t56, t42), t57);
-        let t73 = t72 / T::fused(t35, t63, T::fused(t28, t67, t19 * t70));
-        let t74 = T::fused(-t19, t73, t71);
-        let t75 = T::fused(-t28, t73, t68);
-        let t76 = T::fused(-t35, t73, t64);
-        let t77 = t55 * (t43 + T::fused(t49, t76, T::fused(-t54, t74, t52 * t75)));
-        let t78 = T::fused(-t8, T::fused(t14, t77, t74), t21 * T::fused(-t24, t77, t75));
+        let t19 = x3 * x4;
+        let t20 = x5 * x6;
+        let t21 = t20 + t19;
+        let t22 = k(2.0) * (t14 - t13);
+        let t23 = k(2.0) * (k(0.5) - T::fused(x5, x5, t10));
+        let t24 = k(2.0) * t21;
+        let t25 = T::fused(
+            k(9.81),
+            t21,
+            T::fused(t24, t16, -T::fused(-t22, t9, t23 * t12)),
+        );
+        let t26 = k(0.5) - T::fused(x6, x6, t10);
+        let t27 = k(2.0) * (t1 + t0);
+        let t28 = k(2.0) * (t20 - t19);
+        let t29 = k(2.0) * t26;
+        let t30 = T::fused(
+            k(9.81),
+            t26,
+            T::fused(t29, t16, -T::fused(t27, t9, t28 * t12)),
+        );
+        let t31 = k(1.0) / T::fused(t26, t29, T::fused(t21, t24, t2 * t17));
+        let t32 = t31 * T::fused(t29, t30, T::fused(t17, t18, t24 * t25));
+        let t33 = T::fused(-t2, t32, t18);
+        let t34 = t31 * T::fused(-t28, t26, T::fused(-t23, t21, t15 * t2));
+        let t35 = T::fused(-t17, t34, t15);
+        let t36 = T::fused(-t21, t32, t25);
+        let t37 = T::fused(t24, t34, t23);
+        let t38 = T::fused(-t26, t32, t30);
+        let t39 = T::fused(t29, t34, t28);
+        let t40 = k(0.5) * t39;
+        let t41 = k(0.5) * t37;
+        let t42 = k(0.5) * t35;
+        let t43 = k(1.0) / T::fused(t39, t40, T::fused(t37, t41, t35 * t42));
+        let t44 = t43 * T::fused(t39, t38, T::fused(-t35, t33, t37 * t36));
+        let t45 = t31 * T::fused(t27, t26, T::fused(-t22, t21, t11 * t2));
+        let t46 = T::fused(-t29, t45, t27);
+        let t47 = T::fused(t24, t45, t22);
+        let t48 = T::fused(-t17, t45, t11);
+        let t49 = t43 * T::fused(-t40, t46, T::fused(t41, t47, t42 * t48));
+        let t50 = T::fused(-t35, t49, t48);
+        let t51 = T::fused(-t37, t49, t47);
+        let t52 = T::fused(
+            -t50,
+            T::fused(t42, t44, t33),
+            t51 * T::fused(-t41, t44, t36),
+        );
+        let t53 = T::fused(t39, t49, t46);
+        let t54 = T::fused(
+            t53,
+            k(0.5) * t53,
+            T::fused(t51, k(0.5) * t51, t50 * (k(0.5) * t50)),
+        );
+        let t55 = T::fused(t53, T::fused(-t40, t44, t38), -t52) / t54;
+        let t56 = T::fused(t49, t55, t44);
         *out = [
-            t38 * (t37 + T::fused(t30, T::fused(-t33, t77, t76), -t78)),
-            t77,
-            -t73,
+            t55,
+            t56,
+            -T::fused(t34, t56, T::fused(-t45, t55, t32)),
             -(k(0.5) * (u4 * u5)),
             k(0.6666666666666666) * (u3 * u5),
             -(k(0.25) * (u3 * u4)),
@@ -743,7 +737,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         x[12] = bob_wz;
         x[13] = y[13];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 215 operations (81 ±, 130 ×, 4 ÷) and 1 functions.
+    /// Writes u̇ at a state that satisfies the constraints: 174 operations (63 ±, 107 ×, 4 ÷) and 1 functions.
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let bob_rx = y[0];
@@ -759,107 +753,92 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Tether<T> {
         let bob_wx = y[10];
         let bob_wy = y[11];
         let bob_wz = y[12];
-        let t0 = bob_e0 * bob_e0;
-        let t1 = k(0.5) - T::fused(bob_e1, bob_e1, t0);
-        let t2 = k(2.0) * t1;
-        let t3 = bob_e0 * bob_e3;
-        let t4 = bob_e1 * bob_e2;
-        let t5 = t4 - t3;
-        let t6 = k(2.0) * t5;
-        let t7 = bob_e0 * bob_e2;
-        let t8 = bob_e1 * bob_e3;
-        let t9 = t8 + t7;
-        let t10 = k(2.0) * t9;
-        let t11 = k(1.0) / T::fused(t9, t10, T::fused(t1, t2, t5 * t6));
-        let t12 = t1 * t11;
-        let t13 = t1 * t12;
-        let t14 = t4 + t3;
-        let t15 = k(2.0) * t14;
-        let t16 = t5 * t12;
-        let t17 = k(0.5) - T::fused(bob_e2, bob_e2, t0);
-        let t18 = k(2.0) * t17;
-        let t19 = t9 * t12;
-        let t20 = bob_e0 * bob_e1;
-        let t21 = bob_e2 * bob_e3;
-        let t22 = t21 - t20;
-        let t23 = k(2.0) * t22;
-        let t24 = t14 + T::fused(t23, t19, -T::fused(t15, t13, t18 * t16));
-        let t25 = t5 * t11;
-        let t26 = t5 * t25;
-        let t27 = t9 * t25;
-        let t28 = t17 + T::fused(t23, t27, -T::fused(t15, t16, t18 * t26));
-        let t29 = t9 * (t9 * t11);
-        let t30 = t22 - T::fused(t23, t29, -T::fused(t15, t19, t18 * t27));
-        let t31 = k(1.0) / T::fused(t23, t30, T::fused(t15, t24, t18 * t28));
-        let t32 = t24 * t31;
-        let t33 = t8 - t7;
-        let t34 = k(2.0) * t33;
-        let t35 = T::fused(t28, t32, t16);
-        let t36 = t21 + t20;
-        let t37 = k(2.0) * t36;
-        let t38 = T::fused(-t30, t32, t19);
-        let t39 = k(0.5) - T::fused(bob_e3, bob_e3, t0);
-        let t40 = k(2.0) * t39;
-        let t41 = T::fused(
-            t40,
-            t38,
-            -T::fused(-t34, T::fused(t24, t32, t13), t37 * t35),
+        let t0 = bob_e0 * bob_e2;
+        let t1 = bob_e1 * bob_e3;
+        let t2 = t1 - t0;
+        let t3 = bob_e0 * bob_e0;
+        let t4 = k(2.0) * (k(0.5) - T::fused(bob_e1, bob_e1, t3));
+        let t5 = bob_e0 * bob_e1;
+        let t6 = bob_e2 * bob_e3;
+        let t7 = t6 + t5;
+        let t8 = bob_e0 * bob_e3;
+        let t9 = bob_e1 * bob_e2;
+        let t10 = k(2.0) * (t9 - t8);
+        let t11 = k(0.5) - T::fused(bob_e3, bob_e3, t3);
+        let t12 = k(2.0) * (t1 + t0);
+        let t13 = k(2.0) * t2;
+        let t14 = k(2.0) * t7;
+        let t15 = k(2.0) * t11;
+        let t16 = k(1.0) / T::fused(t11, t15, T::fused(t2, t13, t7 * t14));
+        let t17 = t16 * T::fused(t12, t11, -T::fused(-t4, t2, t10 * t7));
+        let t18 = T::fused(-t13, t17, t4);
+        let t19 = k(2.0) * (t9 + t8);
+        let t20 = k(2.0) * (k(0.5) - T::fused(bob_e2, bob_e2, t3));
+        let t21 = k(2.0) * (t6 - t5);
+        let t22 = t16 * T::fused(t21, t11, T::fused(-t19, t2, t20 * t7));
+        let t23 = T::fused(t13, t22, t19);
+        let t24 = k(0.5) * t23;
+        let t25 = T::fused(t14, t17, t10);
+        let t26 = T::fused(-t14, t22, t20);
+        let t27 = k(0.5) * t26;
+        let t28 = T::fused(-t15, t17, t12);
+        let t29 = T::fused(-t15, t22, t21);
+        let t30 = k(0.5) * t29;
+        let t31 = k(1.0) / T::fused(t29, t30, T::fused(t23, t24, t26 * t27));
+        let t32 = t31 * T::fused(t30, t28, -T::fused(t24, t18, t27 * t25));
+        let t33 = T::fused(t23, t32, t18);
+        let t34 = T::fused(t26, t32, t25);
+        let t35 = T::fused(-t29, t32, t28);
+        let t36 = T::fused(
+            t35,
+            k(0.5) * t35,
+            T::fused(t33, k(0.5) * t33, t34 * (k(0.5) * t34)),
         );
-        let t42 = t33 - t41;
-        let t43 = t28 * t31;
-        let t44 = T::fused(-t30, t43, t27);
-        let t45 = T::fused(
-            t40,
-            t44,
-            -T::fused(-t34, t35, t37 * T::fused(t28, t43, t26)),
-        );
-        let t46 = t36 + t45;
-        let t47 = T::fused(
-            t40,
-            T::fused(t30, t30 * t31, t29),
-            -T::fused(-t34, t38, t37 * t44),
-        );
-        let t48 = t39 - t47;
-        let t49 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
+        let t37 = T::fused(bob_rz, bob_rz, T::fused(bob_ry, bob_ry, bob_rx * bob_rx))
             .sqrt();
-        let t50 = k(1.0) / t49;
-        let t51 = bob_rz * t50;
-        let t52 = bob_ry * t50;
-        let t53 = bob_rx * t50;
-        let t54 = T::fused(
+        let t38 = k(1.0) / t37;
+        let t39 = bob_rz * t38;
+        let t40 = bob_ry * t38;
+        let t41 = bob_rx * t38;
+        let t42 = T::fused(
             -k(0.3),
-            T::fused(bob_sz, t51, T::fused(bob_sy, t52, bob_sx * t53)),
-            k(40.0) * (k(0.6) - t49),
+            T::fused(bob_sz, t39, T::fused(bob_sy, t40, bob_sx * t41)),
+            k(40.0) * (k(0.6) - t37),
         );
-        let t55 = t53 * t54;
-        let t56 = t52 * t54;
-        let t57 = t51 * t54;
-        let t58 = T::fused(t34, t57, T::fused(-t2, t55, t15 * t56));
-        let t59 = T::fused(t37, t57, -T::fused(-t6, t55, t18 * t56));
-        let t60 = T::fused(t40, t57, -T::fused(t10, t55, t23 * t56));
-        let t61 = T::fused(t10, t60, -T::fused(-t2, t58, t6 * t59));
-        let t62 = t11 * t61;
-        let t63 = T::fused(-t1, t62, t58);
-        let t64 = T::fused(t5, t62, t59);
-        let t65 = T::fused(-t9, t62, t60);
-        let t66 = T::fused(t23, t65, T::fused(-t15, t63, t18 * t64));
-        let t67 = t31 * t66;
-        let t68 = T::fused(t34, T::fused(t24, t67, t63), t37 * T::fused(-t28, t67, t64));
-        let t69 = k(19.62) * t33;
-        let t70 = k(19.62) * t36;
-        let t71 = k(19.62) * t39;
-        let t72 = T::fused(t48, t71, T::fused(t42, t69, t46 * t70))
-            - T::fused(t40, T::fused(-t30, t67, t65), t68);
-        let t73 = t72 / T::fused(t40, t48, T::fused(t34, t42, t37 * t46));
-        let t74 = T::fused(-t34, t73, t69);
-        let t75 = T::fused(-t37, t73, t70);
-        let t76 = T::fused(-t40, t73, t71);
-        let t77 = t31 * (t66 - T::fused(t30, t76, T::fused(-t24, t74, t28 * t75)));
-        let t78 = T::fused(-t1, T::fused(-t15, t77, t74), t5 * T::fused(t18, t77, t75));
+        let t43 = t41 * t42;
+        let t44 = t40 * t42;
+        let t45 = t39 * t42;
+        let t46 = T::fused(
+            -k(9.81),
+            t2,
+            T::fused(t13, t45, T::fused(-t4, t43, t19 * t44)),
+        );
+        let t47 = T::fused(
+            -k(9.81),
+            t7,
+            T::fused(t14, t45, -T::fused(-t10, t43, t20 * t44)),
+        );
+        let t48 = T::fused(
+            -k(9.81),
+            t11,
+            T::fused(t15, t45, -T::fused(t12, t43, t21 * t44)),
+        );
+        let t49 = T::fused(t15, t48, T::fused(t13, t46, t14 * t47)) * t16;
+        let t50 = T::fused(-t2, t49, t46);
+        let t51 = T::fused(-t7, t49, t47);
+        let t52 = T::fused(-t11, t49, t48);
+        let t53 = T::fused(t52, t29, T::fused(-t50, t23, t51 * t26)) * t31;
+        let t54 = T::fused(
+            -T::fused(t24, t53, t50),
+            t33,
+            T::fused(-t27, t53, t51) * t34,
+        );
+        let t55 = T::fused(T::fused(-t30, t53, t52), t35, -t54) / t36;
+        let t56 = T::fused(-t32, t55, t53);
         *out = [
-            -(t11 * (t61 - T::fused(t9, T::fused(t23, t77, t76), -t78))),
-            -t77,
-            -t73,
+            -t55,
+            -t56,
+            T::fused(-t22, t56, T::fused(-t17, t55, t49)),
             -(k(0.5) * (bob_wy * bob_wz)),
             k(0.6666666666666666) * (bob_wx * bob_wz),
             -(k(0.25) * (bob_wx * bob_wy)),
@@ -956,7 +935,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
     fn input_jacobian_buffer(&self) -> Self::InputJacobian {
         [T::constant(0.0); 0]
     }
-    /// Writes ∂f/∂x and ∂f/∂t: 1393 operations (584 ±, 805 ×, 4 ÷) and 1 functions.
+    /// Writes ∂f/∂x and ∂f/∂t: 1111 operations (449 ±, 658 ×, 4 ÷) and 1 functions.
     fn joint_jacobian(
         &self,
         _t: T,
@@ -986,19 +965,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t4,
             t5,
             t6,
-            t9,
-            t10,
-            t13,
+            t8,
+            t11,
             t14,
-            t16,
             t17,
             t18,
             t19,
+            t20,
             t21,
             t22,
+            t23,
             t24,
             t25,
+            t26,
+            t27,
+            t28,
             t29,
+            t30,
             t31,
             t32,
             t33,
@@ -1009,26 +992,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t38,
             t39,
             t40,
+            t41,
+            t42,
+            t43,
             t44,
+            t45,
+            t46,
             t47,
-            t50,
-            t52,
-            t53,
-            t54,
-            t55,
-            t56,
-            t57,
-            t58,
-            t59,
-            t60,
-            t61,
-            t62,
-            t63,
-            t64,
-            t81,
+            t48,
+            t49,
+            t65,
+            t66,
+            t68,
+            t70,
+            t72,
+            t73,
+            t74,
+            t75,
+            t76,
+            t77,
+            t78,
+            t80,
             t82,
+            t83,
             t84,
+            t85,
             t86,
+            t87,
             t88,
             t89,
             t90,
@@ -1036,43 +1026,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t92,
             t93,
             t94,
+            t95,
             t96,
+            t97,
             t98,
             t99,
             t100,
             t101,
             t102,
-            t103,
-            t104,
-            t105,
-            t106,
-            t107,
-            t108,
             t109,
-            t110,
-            t111,
-            t112,
-            t113,
-            t114,
-            t115,
-            t116,
-            t117,
-            t118,
-            t119,
-            t120,
-            t121,
-            t135,
-            t136,
-            t137,
-            t138,
-            t139,
-            t141,
+            t126,
+            t146,
+            t150,
+            t151,
+            t153,
+            t154,
+            t155,
+            t162,
             t163,
+            t164,
+            t165,
+            t166,
+            t167,
+            t168,
+            t169,
+            t174,
+            t175,
+            t176,
+            t177,
+            t180,
+            t181,
+            t182,
+            t185,
+            t186,
             t187,
+            t188,
             t191,
-            t194,
+            t193,
             t195,
-            t196,
             t197,
             t198,
             t199,
@@ -1084,310 +1075,303 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             let t4 = k(0.5) * x5;
             let t5 = k(0.5) * x6;
             let t6 = k(0.5) * x3;
-            let t7 = x3 * x5;
-            let t8 = x4 * x6;
-            let t9 = t8 + t7;
-            let t10 = k(2.0) * t9;
-            let t11 = x3 * x6;
-            let t12 = x4 * x5;
-            let t13 = t12 - t11;
-            let t14 = k(2.0) * t13;
-            let t15 = x3 * x3;
-            let t16 = k(0.5) - T::fused(x4, x4, t15);
-            let t17 = k(2.0) * t16;
-            let t18 = k(1.0) / T::fused(t9, t10, T::fused(t13, t14, t16 * t17));
-            let t19 = t16 * t18;
-            let t20 = t12 + t11;
-            let t21 = k(2.0) * t20;
-            let t22 = t13 * t18;
-            let t23 = k(0.5) - T::fused(x5, x5, t15);
-            let t24 = k(2.0) * t23;
-            let t25 = t9 * t18;
-            let t26 = x3 * x4;
-            let t27 = x5 * x6;
-            let t28 = t27 - t26;
-            let t29 = k(2.0) * t28;
-            let t30 = T::fused(-t21, t19, T::fused(-t24, t22, t29 * t25));
-            let t31 = t9 * t25;
-            let t32 = t9 * t22;
-            let t33 = t9 * t19;
-            let t34 = t28 + T::fused(-t29, t31, T::fused(t24, t32, t21 * t33));
-            let t35 = t13 * t22;
-            let t36 = t13 * t19;
-            let t37 = t23 - T::fused(-t29, t32, T::fused(t24, t35, t21 * t36));
-            let t38 = t16 * t19;
-            let t39 = t20 - T::fused(-t29, t33, T::fused(t24, t36, t21 * t38));
-            let t40 = k(1.0) / T::fused(t29, t34, T::fused(t24, t37, t21 * t39));
-            let t41 = t40 * t30;
-            let t42 = T::fused(t39, t41, t19);
-            let t43 = t8 - t7;
-            let t44 = k(2.0) * t43;
-            let t45 = T::fused(t37, t41, t22);
-            let t46 = t27 + t26;
-            let t47 = k(2.0) * t46;
-            let t48 = T::fused(-t34, t41, t25);
-            let t49 = k(0.5) - T::fused(x6, x6, t15);
-            let t50 = k(2.0) * t49;
-            let t51 = T::fused(t44, t42, T::fused(-t47, t45, t50 * t48));
-            let t52 = t34 * t40;
-            let t53 = T::fused(t34, t52, t31);
-            let t54 = t37 * t40;
-            let t55 = T::fused(-t34, t54, t32);
-            let t56 = t39 * t40;
-            let t57 = T::fused(-t34, t56, t33);
-            let t58 = t49 - T::fused(t50, t53, T::fused(-t47, t55, t44 * t57));
-            let t59 = T::fused(t37, t54, t35);
-            let t60 = T::fused(t37, t56, t36);
-            let t61 = t46 + T::fused(t50, t55, T::fused(-t47, t59, t44 * t60));
-            let t62 = T::fused(t39, t56, t38);
-            let t63 = t43 - T::fused(t50, t57, T::fused(-t47, t60, t44 * t62));
-            let t64 = k(1.0) / T::fused(t50, t58, T::fused(t47, t61, t44 * t63));
-            let t65 = t64 * t51;
-            let t66 = t44 * t65;
-            let t67 = t47 * t65;
-            let t68 = t50 * t65;
-            let t69 = T::fused(-t39, t66, T::fused(t37, t67, t34 * t68));
-            let t70 = T::fused(-t40, t69, t41);
-            let t71 = T::fused(-t21, t70, t66);
-            let t72 = T::fused(t24, t70, t67);
-            let t73 = T::fused(t29, t70, t68);
-            let t74 = T::fused(t16, t71, T::fused(-t13, t72, t9 * t73));
-            let t75 = T::fused(t18, t74, t18);
-            let t76 = T::fused(-t17, t75, t71);
-            let t77 = T::fused(t14, t75, t72);
-            let t78 = T::fused(-t10, t75, t73);
-            let t79 = T::fused(t17, t76, T::fused(-t14, t77, t10 * t78));
-            let t80 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
-            let t81 = k(1.0) / t80;
-            let t82 = x0 * t81;
-            let t83 = T::fused(-t21, t76, T::fused(t24, t77, t29 * t78));
-            let t84 = x1 * t81;
-            let t85 = T::fused(t44, t76, T::fused(t47, t77, t50 * t78));
-            let t86 = x2 * t81;
-            let t87 = T::fused(-t82, t79, T::fused(-t84, t83, t86 * t85));
-            let t88 = k(0.3) * t87;
-            let t89 = T::fused(u2, t86, T::fused(u0, t82, u1 * t84));
-            let t90 = T::fused(-k(40.0), k(0.6) - t80, k(0.3) * t89);
-            let t91 = T::fused(-u0, t88, t90 * t79);
-            let t92 = T::fused(-u1, t88, t90 * t83);
-            let t93 = T::fused(u2, t88, t90 * t85);
-            let t94 = t81 * t81;
-            let t95 = T::fused(
+            let t7 = x3 * x3;
+            let t8 = k(0.5) - T::fused(x6, x6, t7);
+            let t9 = x3 * x5;
+            let t10 = x4 * x6;
+            let t11 = k(2.0) * (t10 + t9);
+            let t12 = x3 * x4;
+            let t13 = x5 * x6;
+            let t14 = t13 + t12;
+            let t15 = x3 * x6;
+            let t16 = x4 * x5;
+            let t17 = k(2.0) * (t16 - t15);
+            let t18 = t10 - t9;
+            let t19 = k(2.0) * (k(0.5) - T::fused(x4, x4, t7));
+            let t20 = T::fused(t11, t8, T::fused(-t17, t14, t19 * t18));
+            let t21 = k(2.0) * t8;
+            let t22 = k(2.0) * t14;
+            let t23 = k(2.0) * t18;
+            let t24 = k(1.0) / T::fused(t8, t21, T::fused(t14, t22, t18 * t23));
+            let t25 = t24 * t20;
+            let t26 = T::fused(-t21, t25, t11);
+            let t27 = k(2.0) * (t13 - t12);
+            let t28 = k(2.0) * (k(0.5) - T::fused(x5, x5, t7));
+            let t29 = k(2.0) * (t16 + t15);
+            let t30 = T::fused(-t27, t8, T::fused(-t28, t14, t29 * t18));
+            let t31 = t24 * t30;
+            let t32 = T::fused(t21, t31, t27);
+            let t33 = k(0.5) * t32;
+            let t34 = T::fused(t22, t25, t17);
+            let t35 = T::fused(t22, t31, t28);
+            let t36 = k(0.5) * t35;
+            let t37 = T::fused(-t23, t25, t19);
+            let t38 = T::fused(-t23, t31, t29);
+            let t39 = k(0.5) * t38;
+            let t40 = T::fused(-t33, t26, T::fused(t36, t34, t39 * t37));
+            let t41 = k(1.0) / T::fused(t32, t33, T::fused(t35, t36, t38 * t39));
+            let t42 = t41 * t40;
+            let t43 = T::fused(t32, t42, t26);
+            let t44 = k(0.5) * t43;
+            let t45 = T::fused(-t35, t42, t34);
+            let t46 = k(0.5) * t45;
+            let t47 = T::fused(-t38, t42, t37);
+            let t48 = k(0.5) * t47;
+            let t49 = k(1.0) / T::fused(t43, t44, T::fused(t45, t46, t47 * t48));
+            let t50 = t47 * t49;
+            let t51 = t45 * t49;
+            let t52 = t43 * t49;
+            let t53 = T::fused(-t39, t50, T::fused(-t36, t51, t33 * t52));
+            let t54 = t41 * t53;
+            let t55 = T::fused(t38, t54, t50);
+            let t56 = T::fused(t35, t54, t51);
+            let t57 = T::fused(-t32, t54, t52);
+            let t58 = T::fused(t18, t55, T::fused(-t14, t56, t8 * t57));
+            let t59 = t24 * t58;
+            let t60 = T::fused(-t23, t59, t55);
+            let t61 = T::fused(t22, t59, t56);
+            let t62 = T::fused(-t21, t59, t57);
+            let t63 = T::fused(t19, t60, T::fused(t17, t61, t11 * t62));
+            let t64 = T::fused(x2, x2, T::fused(x0, x0, x1 * x1)).sqrt();
+            let t65 = k(1.0) / t64;
+            let t66 = x0 * t65;
+            let t67 = T::fused(-t29, t60, T::fused(-t28, t61, t27 * t62));
+            let t68 = x1 * t65;
+            let t69 = T::fused(t23, t60, T::fused(-t22, t61, t21 * t62));
+            let t70 = x2 * t65;
+            let t71 = T::fused(-t66, t63, T::fused(-t68, t67, t70 * t69));
+            let t72 = k(0.3) * t71;
+            let t73 = T::fused(u2, t70, T::fused(u0, t66, u1 * t68));
+            let t74 = T::fused(-k(40.0), k(0.6) - t64, k(0.3) * t73);
+            let t75 = T::fused(-u0, t72, t74 * t63);
+            let t76 = T::fused(-u1, t72, t74 * t67);
+            let t77 = T::fused(u2, t72, t74 * t69);
+            let t78 = t65 * t65;
+            let t79 = T::fused(
                 -k(40.0),
-                t87,
-                t94 * T::fused(-x0, t91, T::fused(-x1, t92, x2 * t93)),
+                t71,
+                t78 * T::fused(-x0, t75, T::fused(-x1, t76, x2 * t77)),
             );
-            let t96 = k(0.5) * t81;
-            let t97 = t96 * t95;
-            let t98 = x0 * t97;
-            let t99 = x1 * t97;
-            let t100 = x2 * t97;
-            let t101 = t82 * t90;
-            let t102 = t84 * t90;
-            let t103 = t86 * t90;
-            let t104 = T::fused(t44, t103, T::fused(-t17, t101, t21 * t102));
-            let t105 = T::fused(t47, t103, -T::fused(-t14, t101, t24 * t102));
-            let t106 = T::fused(t50, t103, -T::fused(t10, t101, t29 * t102));
-            let t107 = T::fused(t10, t106, -T::fused(-t17, t104, t14 * t105));
-            let t108 = t18 * t107;
-            let t109 = T::fused(-t16, t108, t104);
-            let t110 = T::fused(t13, t108, t105);
-            let t111 = T::fused(-t9, t108, t106);
-            let t112 = T::fused(t29, t111, T::fused(-t21, t109, t24 * t110));
-            let t113 = k(19.62) * t49;
-            let t114 = t40 * t112;
-            let t115 = T::fused(t39, t114, t109);
-            let t116 = T::fused(-t37, t114, t110);
-            let t117 = T::fused(-t34, t114, t111);
-            let t118 = k(19.62) * t46;
-            let t119 = k(19.62) * t43;
-            let t120 = T::fused(t113, t58, T::fused(t118, t61, t119 * t63))
-                + T::fused(t50, t117, T::fused(t44, t115, t47 * t116));
-            let t121 = t64 * t64;
-            let t122 = t121 * (t120 * t51);
-            let t123 = T::fused(-t113, t65, t50 * t122);
-            let t124 = t50 * t123;
-            let t125 = t34 * t124;
-            let t126 = T::fused(-t118, t65, t47 * t122);
-            let t127 = T::fused(t47, t123, t50 * t126);
-            let t128 = t47 * t126;
-            let t129 = T::fused(t34, t127, t37 * t128);
-            let t130 = T::fused(-t119, t65, t44 * t122);
-            let t131 = T::fused(t44, t123, t50 * t130);
-            let t132 = T::fused(t44, t126, t47 * t130);
-            let t133 = t44 * t130;
-            let t134 = T::fused(-t34, t131, T::fused(-t37, t132, t39 * t133));
-            let t135 = t64 * t120;
-            let t136 = T::fused(-t44, t135, t119);
-            let t137 = T::fused(-t47, t135, t118);
-            let t138 = T::fused(-t50, t135, t113);
-            let t139 = t112 + T::fused(t34, t138, T::fused(-t39, t136, t37 * t137));
-            let t140 = T::fused(
-                t34,
-                t125,
-                T::fused(t37, t129, T::fused(t39, t134, t139 * t30)),
+            let t80 = k(0.5) * t65;
+            let t81 = t80 * t79;
+            let t82 = x0 * t81;
+            let t83 = x1 * t81;
+            let t84 = x2 * t81;
+            let t85 = t49 * t49;
+            let t86 = t66 * t74;
+            let t87 = t68 * t74;
+            let t88 = t70 * t74;
+            let t89 = T::fused(
+                k(9.81),
+                t18,
+                T::fused(t23, t88, T::fused(-t19, t86, t29 * t87)),
             );
-            let t141 = t40 * t40;
-            let t142 = t141 * T::fused(-t112, t69, t140);
+            let t90 = T::fused(
+                k(9.81),
+                t14,
+                T::fused(t22, t88, -T::fused(-t17, t86, t28 * t87)),
+            );
+            let t91 = T::fused(
+                k(9.81),
+                t8,
+                T::fused(t21, t88, -T::fused(t11, t86, t27 * t87)),
+            );
+            let t92 = T::fused(t21, t91, T::fused(t23, t89, t22 * t90));
+            let t93 = t24 * t92;
+            let t94 = T::fused(-t18, t93, t89);
+            let t95 = T::fused(-t14, t93, t90);
+            let t96 = T::fused(-t8, t93, t91);
+            let t97 = T::fused(t32, t96, T::fused(-t38, t94, t35 * t95));
+            let t98 = t41 * t97;
+            let t99 = T::fused(t39, t98, t94);
+            let t100 = T::fused(-t36, t98, t95);
+            let t101 = T::fused(-t33, t98, t96);
+            let t102 = T::fused(t43, t101, -T::fused(-t47, t99, t45 * t100));
+            let t103 = t102 * t85;
+            let t104 = k(0.5) * t103;
+            let t105 = T::fused(t49, t101, -T::fused(t43, t104, t44 * t103));
+            let t106 = T::fused(t49, t100, T::fused(t45, t104, t46 * t103));
+            let t107 = T::fused(t49, t99, -T::fused(t47, t104, t48 * t103));
+            let t108 = T::fused(t38, t107, -T::fused(t32, t105, t35 * t106));
+            let t109 = t41 * t41;
+            let t110 = t109 * T::fused(t40, t108, t97 * t53);
+            let t111 = t41 * t108;
+            let t112 = T::fused(
+                k(0.5),
+                T::fused(t32, t110, -T::fused(-t26, t111, t98 * t52)),
+                T::fused(t42, t105, t33 * t110),
+            );
+            let t113 = T::fused(t96, t54, -t112);
+            let t114 = T::fused(
+                k(0.5),
+                T::fused(t35, t110, T::fused(-t34, t111, t98 * t51)),
+                T::fused(t42, t106, t36 * t110),
+            );
+            let t115 = T::fused(t95, t54, -t114);
+            let t116 = T::fused(
+                k(0.5),
+                T::fused(t38, t110, T::fused(-t37, t111, t98 * t50)),
+                T::fused(-t42, t107, t39 * t110),
+            );
+            let t117 = T::fused(t94, t54, t116);
+            let t118 = T::fused(t23, t117, T::fused(t21, t113, t22 * t115));
+            let t119 = t24 * t118;
+            let t120 = k(2.0) * T::fused(t87, t62, T::fused(-t8, t119, t113));
+            let t121 = T::fused(-t39, t111, t107);
+            let t122 = T::fused(t36, t111, t106);
+            let t123 = T::fused(t33, t111, t105);
+            let t124 = T::fused(t21, t123, T::fused(t23, t121, t22 * t122));
+            let t125 = t24 * t124;
+            let t126 = t24 * t24;
+            let t127 = t126 * T::fused(t92, t58, T::fused(t20, t124, t30 * t118));
+            let t128 = T::fused(
+                t22,
+                t127,
+                T::fused(t28, t119, T::fused(t17, t125, t93 * t56)),
+            );
+            let t129 = T::fused(
+                t90,
+                t59,
+                -T::fused(t14, t127, -T::fused(t25, t122, t31 * t115)),
+            );
+            let t130 = T::fused(
+                k(9.81),
+                t61,
+                T::fused(k(2.0), T::fused(t88, t61, t129), -t128),
+            );
+            let t131 = t130 - t120;
+            let t132 = T::fused(t86, t61, T::fused(-t14, t125, t122));
+            let t133 = T::fused(t87, t60, T::fused(-t18, t119, t117));
+            let t134 = k(2.0) * (t133 + t132);
+            let t135 = T::fused(
+                t21,
+                t127,
+                T::fused(t27, t119, -T::fused(t11, t125, t93 * t57)),
+            );
+            let t136 = T::fused(
+                t91,
+                t59,
+                -T::fused(t8, t127, -T::fused(t25, t123, t31 * t113)),
+            );
+            let t137 = T::fused(
+                k(9.81),
+                t62,
+                T::fused(k(2.0), T::fused(t88, t62, -t136), t135),
+            );
+            let t138 = k(2.0) * T::fused(t87, t61, -T::fused(-t14, t119, t115));
+            let t139 = k(2.0) * T::fused(t86, t60, -T::fused(-t18, t125, t121));
+            let t140 = x3 * (t139 - (t138 + t137));
+            let t141 = k(2.0) * T::fused(t86, t62, -T::fused(-t8, t125, t123));
+            let t142 = T::fused(
+                t23,
+                t127,
+                -T::fused(t93, t55, T::fused(t19, t125, t29 * t119)),
+            );
             let t143 = T::fused(
-                t52,
-                t124,
-                T::fused(t54, t127, T::fused(-t56, t131, t138 * t41)),
+                t89,
+                t59,
+                -T::fused(t18, t127, -T::fused(t25, t121, t31 * t117)),
             );
             let t144 = T::fused(
-                -t29,
-                t142,
-                T::fused(-t114, t68, T::fused(t40, t125, t143)),
+                k(9.81),
+                t60,
+                T::fused(k(2.0), T::fused(t88, t60, -t143), t142),
             );
-            let t145 = T::fused(-t29, t144, t124);
-            let t146 = t9 * t145;
-            let t147 = T::fused(
-                t40,
-                t129,
-                T::fused(t54, t128, T::fused(-t56, t132, t137 * t41)),
-            );
-            let t148 = T::fused(-t24, t142, T::fused(-t114, t67, t147));
-            let t149 = T::fused(-t24, t144, T::fused(-t29, t148, t127));
-            let t150 = T::fused(-t24, t148, t128);
-            let t151 = T::fused(-t9, t149, t13 * t150);
-            let t152 = T::fused(
-                -t114,
-                t66,
-                T::fused(-t40, t134, T::fused(-t56, t133, t136 * t41)),
-            );
-            let t153 = T::fused(t21, t142, t152);
-            let t154 = T::fused(t21, t144, T::fused(-t29, t153, t131));
-            let t155 = T::fused(t21, t148, T::fused(-t24, t153, t132));
-            let t156 = T::fused(t21, t153, t133);
-            let t157 = T::fused(t9, t154, T::fused(-t13, t155, t16 * t156));
-            let t158 = t40 * t139;
-            let t159 = T::fused(t21, t158, t136);
-            let t160 = T::fused(-t24, t158, t137);
-            let t161 = T::fused(-t29, t158, t138);
-            let t162 = T::fused(
-                -t16,
-                t157,
-                t107 + T::fused(t9, t161, -T::fused(-t16, t159, t13 * t160)),
-            );
-            let t163 = t18 * t18;
-            let t164 = t163
-                * T::fused(t107, t74, T::fused(-t9, t146, T::fused(-t13, t151, t162)));
-            let t165 = T::fused(
-                t108,
-                t71,
-                T::fused(-t18, t157, T::fused(-t19, t156, t18 * t159)),
-            );
-            let t166 = T::fused(
-                -k(2.0),
-                T::fused(-t101, t76, T::fused(-t104, t75, t16 * t164)),
-                T::fused(-t17, t164, t165),
-            );
-            let t167 = T::fused(
-                t35,
-                t148,
-                T::fused(t37, t142, T::fused(-t36, t153, t22 * t158)),
-            );
-            let t168 = T::fused(
-                -k(2.0),
-                T::fused(t102, t77, T::fused(-t110, t70, T::fused(-t32, t144, t167))),
-                t148,
-            );
-            let t169 = T::fused(
-                -t55,
-                t126,
-                T::fused(t57, t130, T::fused(-t58, t122, t135 * t48)),
-            );
-            let t170 = T::fused(
-                -k(2.0),
-                T::fused(t103, t78, T::fused(t117, t65, T::fused(t53, t123, t169))),
-                T::fused(k(19.62), T::fused(-t58, t65, t48), t123),
-            );
-            let t171 = x3 * (t170 - t168 + t166);
-            let t172 = T::fused(
-                t36,
-                t148,
-                T::fused(-t38, t153, T::fused(t39, t142, t19 * t158)),
-            );
-            let t173 = T::fused(
-                k(2.0),
-                T::fused(-t102, t76, T::fused(t109, t70, T::fused(-t33, t144, t172))),
-                t153,
-            );
-            let t174 = T::fused(
-                t18,
-                t151,
-                T::fused(t22, t150, T::fused(-t19, t155, t18 * t160)),
-            );
-            let t175 = T::fused(
-                k(2.0),
-                T::fused(t101, t77, T::fused(t105, t75, t13 * t164)),
-                T::fused(t14, t164, T::fused(t108, t72, t174)),
-            );
-            let t176 = t175 + t173;
-            let t177 = T::fused(
-                -t60,
-                t126,
-                T::fused(t62, t130, T::fused(-t63, t122, t135 * t42)),
-            );
-            let t178 = T::fused(
-                -k(2.0),
-                T::fused(t103, t76, T::fused(t115, t65, T::fused(t57, t123, t177))),
-                T::fused(k(19.62), T::fused(-t63, t65, t42), t130),
-            );
-            let t179 = T::fused(
-                -t25,
+            let t145 = t144 + t141;
+            let t146 = T::fused(
+                x5,
                 t145,
-                T::fused(t22, t149, T::fused(-t19, t154, t18 * t161)),
+                -(t140 + (t140 + T::fused(-x4, t131, x6 * t134))),
             );
-            let t180 = T::fused(
-                -k(2.0),
-                T::fused(-t101, t78, T::fused(-t106, t75, t9 * t164)),
-                T::fused(-t10, t164, T::fused(t108, t73, T::fused(-t18, t146, t179))),
+            let t147 = k(2.0) * (t133 - t132);
+            let t148 = x4 * t139;
+            let t149 = t144 - t141;
+            let t150 = T::fused(
+                x6,
+                t149,
+                t148 + (t148 + T::fused(-x3, t131, x5 * t147)),
             );
-            let t181 = t180 - t178;
-            let t182 = T::fused(
-                -t59,
-                t126,
-                T::fused(t60, t130, T::fused(t61, t122, t135 * t45)),
-            );
-            let t183 = T::fused(
-                k(2.0),
-                T::fused(-t103, t77, T::fused(-t116, t65, T::fused(t55, t123, t182))),
-                T::fused(-k(19.62), T::fused(t61, t65, t45), t126),
-            );
-            let t184 = T::fused(
-                -t34,
-                t142,
-                T::fused(t32, t148, T::fused(-t33, t153, t25 * t158)),
-            );
-            let t185 = T::fused(
-                k(2.0),
-                T::fused(-t102, t78, T::fused(t111, t70, T::fused(-t31, t144, t184))),
-                t144,
-            );
-            let t186 = t185 + t183;
-            let t187 = t171 - (T::fused(x6, t176, T::fused(x5, t181, x4 * t186)) - t171);
-            let t188 = x4 * t166;
-            let t189 = t175 - t173;
-            let t190 = t180 + t178;
-            let t191 = t188
-                - (T::fused(-x5, t189, T::fused(x6, t190, x3 * t186)) - t188);
-            let t192 = x5 * t168;
-            let t193 = t185 - t183;
-            let t194 = T::fused(
-                -x4,
-                t189,
-                T::fused(x3, t181, t192 - T::fused(x6, t193, -t192)),
-            );
-            let t195 = k(2.0) * x6;
-            let t196 = T::fused(
+            let t151 = k(2.0) * x5;
+            let t152 = t130 + t120;
+            let t153 = T::fused(
                 x3,
-                t176,
-                T::fused(x4, t190, -T::fused(t195, t170, x5 * t193)),
+                t145,
+                -T::fused(x4, t147, -T::fused(t151, t138, x6 * t152)),
             );
-            let t197 = T::fused(-t44, t56, T::fused(t47, t54, t50 * t52));
-            let t198 = t64 * t197;
-            let t199 = t44 * t198;
+            let t154 = k(2.0) * x6;
+            let t155 = T::fused(
+                x4,
+                t149,
+                T::fused(x3, t134, -T::fused(t154, t137, x5 * t152)),
+            );
+            let t156 = t42 * t49;
+            let t157 = t47 * t156;
+            let t158 = t45 * t156;
+            let t159 = t43 * t156;
+            let t160 = T::fused(
+                t39,
+                t157,
+                T::fused(t36, t158, T::fused(-t33, t159, k(1.0))),
+            );
+            let t161 = t41 * t160;
+            let t162 = T::fused(-t38, t161, t157);
+            let t163 = T::fused(-t35, t161, t158);
+            let t164 = T::fused(t32, t161, t159);
+            let t165 = T::fused(t18, t162, T::fused(-t14, t163, t8 * t164));
+            let t166 = t24 * t165;
+            let t167 = T::fused(-t23, t166, t162);
+            let t168 = T::fused(t22, t166, t163);
+            let t169 = T::fused(-t21, t166, t164);
+            let t170 = T::fused(t19, t167, T::fused(t17, t168, t11 * t169));
+            let t171 = T::fused(-t29, t167, T::fused(-t28, t168, t27 * t169));
+            let t172 = T::fused(t23, t167, T::fused(-t22, t168, t21 * t169));
+            let t173 = T::fused(-t66, t170, T::fused(-t68, t171, t70 * t172));
+            let t174 = k(0.3) * t173;
+            let t175 = T::fused(-u0, t174, t74 * t170);
+            let t176 = T::fused(-u1, t174, t74 * t171);
+            let t177 = T::fused(u2, t174, t74 * t172);
+            let t178 = T::fused(
+                -k(40.0),
+                t173,
+                t78 * T::fused(-x0, t175, T::fused(-x1, t176, x2 * t177)),
+            );
+            let t179 = t80 * t178;
+            let t180 = x0 * t179;
+            let t181 = x1 * t179;
+            let t182 = x2 * t179;
+            let t183 = t85 * (t42 * t102);
+            let t184 = k(0.5) * t183;
+            let t185 = T::fused(t101, t156, -T::fused(t43, t184, t44 * t183));
+            let t186 = t49 * t102;
+            let t187 = T::fused(t100, t156, T::fused(t45, t184, t46 * t183));
+            let t188 = T::fused(t99, t156, -T::fused(t47, t184, t48 * t183));
+            let t189 = T::fused(
+                t38,
+                t188,
+                -T::fused(t35, t187, T::fused(t32, t185, t186)),
+            );
+            let t190 = t109 * T::fused(-t40, t189, t97 * t160);
+            let t191 = t41 * t189;
+            let t192 = T::fused(
+                k(0.5),
+                T::fused(t32, t190, T::fused(-t26, t191, t98 * t159)),
+                T::fused(-t42, t185, t33 * t190),
+            );
+            let t193 = T::fused(t96, t161, -t192);
+            let t194 = T::fused(
+                k(0.5),
+                T::fused(t35, t190, -T::fused(-t34, t191, t98 * t158)),
+                T::fused(-t42, t187, t36 * t190),
+            );
+            let t195 = T::fused(t95, t161, -t194);
+            let t196 = T::fused(
+                k(0.5),
+                T::fused(t38, t190, -T::fused(-t37, t191, t98 * t157)),
+                T::fused(t42, t188, t39 * t190),
+            );
+            let t197 = T::fused(t94, t161, t196);
+            let t198 = T::fused(t23, t197, T::fused(t21, t193, t22 * t195));
+            let t199 = t24 * t198;
             (
                 t0,
                 t1,
@@ -1396,19 +1380,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t4,
                 t5,
                 t6,
-                t9,
-                t10,
-                t13,
+                t8,
+                t11,
                 t14,
-                t16,
                 t17,
                 t18,
                 t19,
+                t20,
                 t21,
                 t22,
+                t23,
                 t24,
                 t25,
+                t26,
+                t27,
+                t28,
                 t29,
+                t30,
                 t31,
                 t32,
                 t33,
@@ -1419,26 +1407,33 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t38,
                 t39,
                 t40,
+                t41,
+                t42,
+                t43,
                 t44,
+                t45,
+                t46,
                 t47,
-                t50,
-                t52,
-                t53,
-                t54,
-                t55,
-                t56,
-                t57,
-                t58,
-                t59,
-                t60,
-                t61,
-                t62,
-                t63,
-                t64,
-                t81,
+                t48,
+                t49,
+                t65,
+                t66,
+                t68,
+                t70,
+                t72,
+                t73,
+                t74,
+                t75,
+                t76,
+                t77,
+                t78,
+                t80,
                 t82,
+                t83,
                 t84,
+                t85,
                 t86,
+                t87,
                 t88,
                 t89,
                 t90,
@@ -1446,508 +1441,354 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
                 t92,
                 t93,
                 t94,
+                t95,
                 t96,
+                t97,
                 t98,
                 t99,
                 t100,
                 t101,
                 t102,
-                t103,
-                t104,
-                t105,
-                t106,
-                t107,
-                t108,
                 t109,
-                t110,
-                t111,
-                t112,
-                t113,
-                t114,
-                t115,
-                t116,
-                t117,
-                t118,
-                t119,
-                t120,
-                t121,
-                t135,
-                t136,
-                t137,
-                t138,
-                t139,
-                t141,
+                t126,
+                t146,
+                t150,
+                t151,
+                t153,
+                t154,
+                t155,
+                t162,
                 t163,
+                t164,
+                t165,
+                t166,
+                t167,
+                t168,
+                t169,
+                t174,
+                t175,
+                t176,
+                t177,
+                t180,
+                t181,
+                t182,
+                t185,
+                t186,
                 t187,
+                t188,
                 t191,
-                t194,
+                t193,
                 t195,
-                t196,
                 t197,
                 t198,
                 t199,
             )
         };
         let (
-            t216,
-            t217,
-            t218,
-            t219,
-            t222,
-            t223,
-            t224,
-            t279,
-            t283,
-            t286,
-            t287,
-            t305,
+            t225,
+            t229,
+            t231,
+            t232,
+            t252,
+            t253,
+            t254,
+            t255,
+            t258,
+            t259,
+            t260,
+            t302,
             t306,
-            t307,
             t308,
+            t309,
+            t310,
             t311,
             t312,
             t313,
-            t368,
-            t372,
-            t375,
-            t376,
-            t377,
-            t378,
-            t379,
-            t380,
-            t382,
-            t383,
-            t384,
+            t315,
+            t316,
+            t317,
         ) = {
-            let t200 = t47 * t198;
-            let t201 = t50 * t198;
-            let t202 = T::fused(-t39, t199, T::fused(t37, t200, t34 * t201));
-            let t203 = T::fused(t40, t202, t40);
-            let t204 = T::fused(t21, t203, t199);
-            let t205 = T::fused(-t24, t203, t200);
-            let t206 = T::fused(-t29, t203, t201);
-            let t207 = T::fused(t16, t204, T::fused(-t13, t205, t9 * t206));
-            let t208 = t18 * t207;
-            let t209 = T::fused(-t17, t208, t204);
-            let t210 = T::fused(t14, t208, t205);
-            let t211 = T::fused(-t10, t208, t206);
-            let t212 = T::fused(t17, t209, T::fused(-t14, t210, t10 * t211));
-            let t213 = T::fused(-t21, t209, T::fused(t24, t210, t29 * t211));
-            let t214 = T::fused(t44, t209, T::fused(t47, t210, t50 * t211));
-            let t215 = T::fused(-t82, t212, T::fused(-t84, t213, t86 * t214));
-            let t216 = k(0.3) * t215;
-            let t217 = T::fused(-u0, t216, t90 * t212);
-            let t218 = T::fused(-u1, t216, t90 * t213);
-            let t219 = T::fused(u2, t216, t90 * t214);
-            let t220 = T::fused(
-                -k(40.0),
-                t215,
-                t94 * T::fused(-x0, t217, T::fused(-x1, t218, x2 * t219)),
+            let t200 = k(2.0) * T::fused(t87, t169, -T::fused(-t8, t199, t193));
+            let t201 = T::fused(-t39, t191, t188);
+            let t202 = T::fused(t36, t191, t187);
+            let t203 = T::fused(t33, t191, t185);
+            let t204 = T::fused(t21, t203, T::fused(t23, t201, t22 * t202));
+            let t205 = t24 * t204;
+            let t206 = t126 * T::fused(t92, t165, -T::fused(-t20, t204, t30 * t198));
+            let t207 = T::fused(
+                t22,
+                t206,
+                -T::fused(t28, t199, -T::fused(t17, t205, t93 * t163)),
             );
-            let t221 = t96 * t220;
-            let t222 = x0 * t221;
-            let t223 = x1 * t221;
-            let t224 = x2 * t221;
-            let t225 = t121 * (t120 * t197);
-            let t226 = T::fused(-t113, t198, t50 * t225);
-            let t227 = t50 * t226;
-            let t228 = t34 * t227;
-            let t229 = T::fused(-t118, t198, t47 * t225);
-            let t230 = T::fused(t47, t226, t50 * t229);
-            let t231 = t47 * t229;
-            let t232 = T::fused(t34, t230, t37 * t231);
-            let t233 = T::fused(-t119, t198, t44 * t225);
-            let t234 = T::fused(t44, t226, t50 * t233);
-            let t235 = T::fused(t44, t229, t47 * t233);
-            let t236 = t44 * t233;
-            let t237 = T::fused(-t34, t234, T::fused(-t37, t235, t39 * t236));
-            let t238 = T::fused(
-                t112,
-                t202,
-                T::fused(-t34, t228, T::fused(-t37, t232, T::fused(-t39, t237, t139))),
+            let t208 = T::fused(
+                t90,
+                t166,
+                -T::fused(t14, t206, T::fused(-t25, t202, t31 * t195)),
             );
-            let t239 = t141 * t238;
-            let t240 = T::fused(
-                -t52,
-                t227,
-                T::fused(-t54, t230, T::fused(t56, t234, t40 * t138)),
+            let t209 = T::fused(
+                k(9.81),
+                t168,
+                T::fused(k(2.0), T::fused(t88, t168, t208), -t207),
             );
-            let t241 = T::fused(
-                -t29,
-                t239,
-                T::fused(t114, t201, T::fused(-t40, t228, t240)),
+            let t210 = t209 - t200;
+            let t211 = T::fused(t86, t168, T::fused(-t14, t205, t202));
+            let t212 = T::fused(t87, t167, -T::fused(-t18, t199, t197));
+            let t213 = k(2.0) * (t212 + t211);
+            let t214 = T::fused(
+                t21,
+                t206,
+                -T::fused(t27, t199, T::fused(t11, t205, t93 * t164)),
             );
-            let t242 = T::fused(t29, t241, t227);
-            let t243 = t9 * t242;
-            let t244 = T::fused(
-                -t40,
-                t232,
-                T::fused(-t54, t231, T::fused(t56, t235, t40 * t137)),
+            let t215 = T::fused(
+                t91,
+                t166,
+                -T::fused(t8, t206, T::fused(-t25, t203, t31 * t193)),
             );
-            let t245 = T::fused(-t24, t239, T::fused(t114, t200, t244));
-            let t246 = T::fused(t24, t241, T::fused(t29, t245, t230));
-            let t247 = T::fused(t24, t245, t231);
-            let t248 = T::fused(-t9, t246, t13 * t247);
-            let t249 = T::fused(
-                t114,
-                t199,
-                T::fused(t40, t237, T::fused(t56, t236, t40 * t136)),
+            let t216 = T::fused(
+                k(9.81),
+                t169,
+                T::fused(k(2.0), T::fused(t88, t169, -t215), t214),
             );
-            let t250 = T::fused(t21, t239, t249);
-            let t251 = T::fused(-t21, t241, T::fused(t29, t250, t234));
-            let t252 = T::fused(-t21, t245, T::fused(t24, t250, t235));
-            let t253 = T::fused(-t21, t250, t236);
-            let t254 = T::fused(t9, t251, T::fused(-t13, t252, t16 * t253));
-            let t255 = T::fused(
-                -t107,
-                t207,
-                T::fused(t9, t243, T::fused(t13, t248, t16 * t254)),
+            let t217 = k(2.0) * T::fused(t87, t168, T::fused(-t14, t199, t195));
+            let t218 = k(2.0) * T::fused(t86, t167, -T::fused(-t18, t205, t201));
+            let t219 = x3 * (t218 - (t217 + t216));
+            let t220 = k(2.0) * T::fused(t86, t169, -T::fused(-t8, t205, t203));
+            let t221 = T::fused(
+                t23,
+                t206,
+                -T::fused(t93, t162, -T::fused(-t19, t205, t29 * t199)),
             );
-            let t256 = t163 * t255;
-            let t257 = T::fused(
-                -t17,
-                t256,
-                T::fused(-t108, t204, T::fused(t18, t254, t19 * t253)),
+            let t222 = T::fused(
+                t89,
+                t166,
+                -T::fused(t18, t206, T::fused(-t25, t201, t31 * t197)),
             );
-            let t258 = T::fused(
-                -k(2.0),
-                T::fused(t101, t209, T::fused(t104, t208, t16 * t256)),
-                t257,
+            let t223 = T::fused(
+                k(9.81),
+                t167,
+                T::fused(k(2.0), T::fused(t88, t167, -t222), t221),
             );
-            let t259 = T::fused(
-                t32,
-                t241,
-                T::fused(-t35, t245, T::fused(-t37, t239, t36 * t250)),
-            );
-            let t260 = T::fused(
-                k(2.0),
-                T::fused(t102, t210, T::fused(t110, t203, t259)),
-                t245,
-            );
-            let t261 = T::fused(
-                -t55,
-                t229,
-                T::fused(t57, t233, T::fused(-t58, t225, t52 * t135)),
-            );
-            let t262 = T::fused(
-                -k(2.0),
-                T::fused(t103, t211, T::fused(t117, t198, T::fused(t53, t226, t261))),
-                T::fused(k(19.62), T::fused(-t58, t198, t52), t226),
-            );
-            let t263 = x3 * (t262 + t260 - t258);
-            let t264 = T::fused(
-                -t33,
-                t241,
-                T::fused(t36, t245, T::fused(-t38, t250, t39 * t239)),
-            );
-            let t265 = T::fused(
-                k(2.0),
-                T::fused(t102, t209, T::fused(t109, t203, t264)),
-                t250,
-            );
-            let t266 = T::fused(
-                -t108,
-                t205,
-                T::fused(-t18, t248, T::fused(-t22, t247, t19 * t252)),
-            );
-            let t267 = T::fused(
-                k(2.0),
-                T::fused(-t101, t210, T::fused(-t105, t208, t13 * t256)),
-                T::fused(t14, t256, t266),
-            );
-            let t268 = t267 + t265;
-            let t269 = T::fused(
-                t60,
-                t229,
-                T::fused(-t62, t233, T::fused(t63, t225, t56 * t135)),
-            );
-            let t270 = T::fused(
-                k(2.0),
-                T::fused(-t103, t209, T::fused(-t115, t198, T::fused(-t57, t226, t269))),
-                T::fused(-k(19.62), T::fused(t63, t198, t56), t233),
-            );
-            let t271 = T::fused(
-                t18,
-                t243,
-                T::fused(t25, t242, T::fused(-t22, t246, t19 * t251)),
-            );
-            let t272 = T::fused(
-                -k(2.0),
-                T::fused(t101, t211, T::fused(t106, t208, t9 * t256)),
-                T::fused(-t10, t256, T::fused(-t108, t206, t271)),
-            );
-            let t273 = t272 + t270;
-            let t274 = T::fused(
-                t59,
-                t229,
-                T::fused(-t60, t233, T::fused(-t61, t225, t54 * t135)),
-            );
-            let t275 = T::fused(
-                -k(2.0),
-                T::fused(t103, t210, T::fused(t116, t198, T::fused(-t55, t226, t274))),
-                T::fused(k(19.62), T::fused(-t61, t198, t54), t229),
-            );
-            let t276 = T::fused(
-                t31,
-                t241,
-                T::fused(t34, t239, T::fused(-t32, t245, t33 * t250)),
-            );
-            let t277 = T::fused(
-                -k(2.0),
-                T::fused(-t102, t211, T::fused(-t111, t203, t276)),
-                t241,
-            );
-            let t278 = t277 - t275;
-            let t279 = t263 + (T::fused(x6, t268, T::fused(x5, t273, x4 * t278)) + t263);
-            let t280 = x4 * t258;
-            let t281 = t267 - t265;
-            let t282 = t272 - t270;
-            let t283 = t280
-                - (T::fused(-x5, t281, T::fused(x6, t282, x3 * t278)) - t280);
-            let t284 = x5 * t260;
-            let t285 = t277 + t275;
-            let t286 = T::fused(
-                -x4,
-                t281,
-                T::fused(x3, t273, t284 - T::fused(x6, t285, -t284)),
-            );
-            let t287 = T::fused(
-                x3,
-                t268,
-                T::fused(x4, t282, -T::fused(-t195, t262, x5 * t285)),
-            );
-            let t288 = t44 * t64;
-            let t289 = t47 * t64;
-            let t290 = t50 * t64;
-            let t291 = T::fused(-t39, t288, T::fused(t37, t289, t34 * t290));
-            let t292 = t40 * t291;
-            let t293 = T::fused(t21, t292, t288);
-            let t294 = T::fused(-t24, t292, t289);
-            let t295 = T::fused(-t29, t292, t290);
-            let t296 = T::fused(t16, t293, T::fused(-t13, t294, t9 * t295));
-            let t297 = t18 * t296;
-            let t298 = T::fused(-t17, t297, t293);
-            let t299 = T::fused(t14, t297, t294);
-            let t300 = T::fused(-t10, t297, t295);
-            let t301 = T::fused(t17, t298, T::fused(-t14, t299, t10 * t300));
-            let t302 = T::fused(-t21, t298, T::fused(t24, t299, t29 * t300));
-            let t303 = T::fused(t44, t298, T::fused(t47, t299, t50 * t300));
-            let t304 = T::fused(-t82, t301, T::fused(-t84, t302, t86 * t303));
-            let t305 = k(0.3) * t304;
-            let t306 = T::fused(-u0, t305, t90 * t301);
-            let t307 = T::fused(-u1, t305, t90 * t302);
-            let t308 = T::fused(u2, t305, t90 * t303);
-            let t309 = T::fused(
-                -k(40.0),
-                t304,
-                t94 * T::fused(-x0, t306, T::fused(-x1, t307, x2 * t308)),
-            );
-            let t310 = t96 * t309;
-            let t311 = x0 * t310;
-            let t312 = x1 * t310;
-            let t313 = x2 * t310;
-            let t314 = k(19.62) * t64;
-            let t315 = t120 * t121;
-            let t316 = T::fused(-t118, t64, t47 * t315);
-            let t317 = T::fused(-t113, t64, t50 * t315);
-            let t318 = T::fused(-t119, t64, t44 * t315);
-            let t319 = T::fused(
-                t55,
-                t317,
-                T::fused(-t59, t316, T::fused(t60, t318, t61 * t315)),
-            );
-            let t320 = T::fused(
-                k(2.0),
-                T::fused(-t103, t299, T::fused(-t64, t116, t319)),
-                T::fused(-t61, t314, t316),
-            );
-            let t321 = t50 * t317;
-            let t322 = t34 * t321;
-            let t323 = T::fused(t47, t317, t50 * t316);
-            let t324 = t47 * t316;
-            let t325 = T::fused(t34, t323, t37 * t324);
-            let t326 = T::fused(t44, t317, t50 * t318);
-            let t327 = T::fused(t44, t316, t47 * t318);
-            let t328 = t44 * t318;
-            let t329 = T::fused(-t34, t326, T::fused(-t37, t327, t39 * t328));
-            let t330 = T::fused(
-                -t112,
-                t291,
-                T::fused(t34, t322, T::fused(t37, t325, t39 * t329)),
-            );
-            let t331 = t141 * t330;
-            let t332 = T::fused(
-                -t40,
-                t322,
-                T::fused(-t52, t321, T::fused(-t54, t323, t56 * t326)),
-            );
-            let t333 = T::fused(t29, t331, T::fused(t114, t290, t332));
-            let t334 = T::fused(
-                t114,
-                t289,
-                T::fused(-t40, t325, T::fused(-t54, t324, t56 * t327)),
-            );
-            let t335 = T::fused(t24, t331, t334);
-            let t336 = T::fused(
-                -t21,
-                t331,
-                T::fused(t114, t288, T::fused(t40, t329, t56 * t328)),
-            );
-            let t337 = T::fused(
-                t31,
-                t333,
-                T::fused(-t34, t331, T::fused(-t32, t335, t33 * t336)),
-            );
-            let t338 = T::fused(
-                -k(2.0),
-                T::fused(-t102, t300, T::fused(-t111, t292, t337)),
-                t333,
-            );
-            let t339 = t338 - t320;
-            let t340 = T::fused(
-                -t57,
-                t317,
-                T::fused(t60, t316, T::fused(-t62, t318, t63 * t315)),
-            );
-            let t341 = T::fused(
-                k(2.0),
-                T::fused(-t103, t298, T::fused(-t64, t115, t340)),
-                T::fused(-t63, t314, t318),
-            );
-            let t342 = T::fused(t29, t333, t321);
-            let t343 = t9 * t342;
-            let t344 = T::fused(t24, t333, T::fused(t29, t335, t323));
-            let t345 = T::fused(t24, t335, t324);
-            let t346 = T::fused(-t9, t344, t13 * t345);
-            let t347 = T::fused(-t21, t333, T::fused(t29, t336, t326));
-            let t348 = T::fused(-t21, t335, T::fused(t24, t336, t327));
-            let t349 = T::fused(-t21, t336, t328);
-            let t350 = T::fused(t9, t347, T::fused(-t13, t348, t16 * t349));
-            let t351 = T::fused(
-                -t107,
-                t296,
-                T::fused(t9, t343, T::fused(t13, t346, t16 * t350)),
-            );
-            let t352 = t163 * t351;
-            let t353 = T::fused(
-                t18,
-                t343,
-                T::fused(t25, t342, T::fused(-t22, t344, t19 * t347)),
-            );
-            let t354 = T::fused(
-                -k(2.0),
-                T::fused(t101, t300, T::fused(t106, t297, t9 * t352)),
-                T::fused(-t10, t352, T::fused(-t108, t295, t353)),
-            );
-            let t355 = t354 + t341;
-            let t356 = T::fused(
-                t33,
-                t333,
-                T::fused(-t36, t335, T::fused(t38, t336, t39 * t331)),
-            );
-            let t357 = T::fused(
-                -k(2.0),
-                T::fused(-t102, t298, T::fused(-t109, t292, t356)),
-                t336,
-            );
-            let t358 = T::fused(
-                -t108,
-                t294,
-                T::fused(-t18, t346, T::fused(-t22, t345, t19 * t348)),
-            );
-            let t359 = T::fused(
-                k(2.0),
-                T::fused(-t101, t299, T::fused(-t105, t297, t13 * t352)),
-                T::fused(t14, t352, t358),
-            );
-            let t360 = t359 + t357;
-            let t361 = T::fused(
-                -t53,
-                t317,
-                T::fused(t55, t316, T::fused(-t57, t318, t58 * t315)),
-            );
-            let t362 = T::fused(
-                k(2.0),
-                T::fused(-t103, t300, T::fused(-t64, t117, t361)),
-                T::fused(-t58, t314, t317),
-            );
-            let t363 = T::fused(
-                t32,
-                t333,
-                T::fused(-t35, t335, T::fused(t37, t331, t36 * t336)),
-            );
-            let t364 = T::fused(
-                k(2.0),
-                T::fused(t102, t299, T::fused(t110, t292, t363)),
-                t335,
-            );
-            let t365 = T::fused(
-                -t17,
-                t352,
-                T::fused(-t108, t293, T::fused(t18, t350, t19 * t349)),
-            );
-            let t366 = T::fused(
-                -k(2.0),
-                T::fused(t101, t298, T::fused(t104, t297, t16 * t352)),
-                t365,
-            );
-            let t367 = x3 * (t366 - (t364 + t362));
-            let t368 = t367 + (t367 - T::fused(x6, t360, T::fused(x4, t339, x5 * t355)));
-            let t369 = t354 - t341;
-            let t370 = t359 - t357;
-            let t371 = x4 * t366;
-            let t372 = t371
-                + (t371 + T::fused(x5, t370, -T::fused(x3, t339, x6 * t369)));
-            let t373 = t338 + t320;
-            let t374 = x5 * t364;
-            let t375 = T::fused(
-                x4,
-                t370,
-                -T::fused(x3, t355, t374 + T::fused(-x6, t373, t374)),
-            );
-            let t376 = T::fused(
-                x3,
-                t360,
-                T::fused(x4, t369, -T::fused(-t195, t362, x5 * t373)),
-            );
-            let t377 = k(0.6) * t89;
-            let t378 = u0 * t377;
-            let t379 = u1 * t377;
-            let t380 = u2 * t377;
-            let t381 = t96 * (t94 * T::fused(x0, t378, T::fused(x1, t379, x2 * t380)));
-            let t382 = x0 * t381;
-            let t383 = x1 * t381;
-            let t384 = x2 * t381;
-            (
-                t216,
-                t217,
-                t218,
-                t219,
-                t222,
-                t223,
+            let t224 = t223 + t220;
+            let t225 = T::fused(
+                x5,
                 t224,
-                t279,
+                -(t219 + (t219 + T::fused(-x4, t210, x6 * t213))),
+            );
+            let t226 = k(2.0) * (t212 - t211);
+            let t227 = x4 * t218;
+            let t228 = t223 - t220;
+            let t229 = T::fused(
+                x6,
+                t228,
+                t227 + (t227 + T::fused(-x3, t210, x5 * t226)),
+            );
+            let t230 = t209 + t200;
+            let t231 = T::fused(
+                x3,
+                t224,
+                -T::fused(x4, t226, -T::fused(t151, t217, x6 * t230)),
+            );
+            let t232 = T::fused(
+                x4,
+                t228,
+                T::fused(x3, t213, -T::fused(t154, t216, x5 * t230)),
+            );
+            let t233 = T::fused(-t31, t42, t25);
+            let t234 = t49 * t233;
+            let t235 = t47 * t234;
+            let t236 = t45 * t234;
+            let t237 = t43 * t234;
+            let t238 = T::fused(
+                -t39,
+                t235,
+                T::fused(-t36, t236, T::fused(t33, t237, t31)),
+            );
+            let t239 = t41 * t238;
+            let t240 = T::fused(t38, t239, t235);
+            let t241 = T::fused(t35, t239, t236);
+            let t242 = T::fused(-t32, t239, t237);
+            let t243 = T::fused(
+                t18,
+                t240,
+                T::fused(-t14, t241, T::fused(t8, t242, k(1.0))),
+            );
+            let t244 = t24 * t243;
+            let t245 = T::fused(-t23, t244, t240);
+            let t246 = T::fused(t22, t244, t241);
+            let t247 = T::fused(-t21, t244, t242);
+            let t248 = T::fused(t19, t245, T::fused(t17, t246, t11 * t247));
+            let t249 = T::fused(-t29, t245, T::fused(-t28, t246, t27 * t247));
+            let t250 = T::fused(t23, t245, T::fused(-t22, t246, t21 * t247));
+            let t251 = T::fused(-t66, t248, T::fused(-t68, t249, t70 * t250));
+            let t252 = k(0.3) * t251;
+            let t253 = T::fused(-u0, t252, t74 * t248);
+            let t254 = T::fused(-u1, t252, t74 * t249);
+            let t255 = T::fused(u2, t252, t74 * t250);
+            let t256 = T::fused(
+                -k(40.0),
+                t251,
+                t78 * T::fused(-x0, t253, T::fused(-x1, t254, x2 * t255)),
+            );
+            let t257 = t80 * t256;
+            let t258 = x0 * t257;
+            let t259 = x1 * t257;
+            let t260 = x2 * t257;
+            let t261 = t85 * (t102 * t233);
+            let t262 = k(0.5) * t261;
+            let t263 = T::fused(t101, t234, -T::fused(t43, t262, t44 * t261));
+            let t264 = T::fused(t100, t234, T::fused(t45, t262, t46 * t261));
+            let t265 = T::fused(t99, t234, -T::fused(t47, t262, t48 * t261));
+            let t266 = T::fused(
+                t38,
+                t265,
+                -T::fused(t35, t264, -T::fused(-t32, t263, t31 * t186)),
+            );
+            let t267 = t109 * T::fused(t40, t266, t97 * t238);
+            let t268 = t41 * t266;
+            let t269 = T::fused(
+                k(0.5),
+                T::fused(t32, t267, -T::fused(-t26, t268, t98 * t237)),
+                T::fused(t42, t263, t33 * t267),
+            );
+            let t270 = T::fused(t96, t239, -t269);
+            let t271 = T::fused(
+                k(0.5),
+                T::fused(t35, t267, T::fused(-t34, t268, t98 * t236)),
+                T::fused(t42, t264, t36 * t267),
+            );
+            let t272 = T::fused(t95, t239, -t271);
+            let t273 = T::fused(
+                k(0.5),
+                T::fused(t38, t267, T::fused(-t37, t268, t98 * t235)),
+                T::fused(-t42, t265, t39 * t267),
+            );
+            let t274 = T::fused(t94, t239, t273);
+            let t275 = T::fused(
+                t23,
+                t274,
+                T::fused(t22, t272, T::fused(t21, t270, T::fused(t42, t186, t98))),
+            );
+            let t276 = t24 * t275;
+            let t277 = k(2.0) * T::fused(t87, t247, T::fused(-t8, t276, t270));
+            let t278 = T::fused(-t39, t268, t265);
+            let t279 = T::fused(t36, t268, t264);
+            let t280 = T::fused(t33, t268, t263);
+            let t281 = T::fused(
+                t21,
+                t280,
+                T::fused(t22, t279, -T::fused(-t23, t278, t186)),
+            );
+            let t282 = t24 * t281;
+            let t283 = t126 * T::fused(t92, t243, T::fused(t20, t281, t30 * t275));
+            let t284 = T::fused(
+                t22,
                 t283,
-                t286,
-                t287,
+                T::fused(t28, t276, T::fused(t17, t282, t93 * t241)),
+            );
+            let t285 = T::fused(
+                t90,
+                t244,
+                -T::fused(t14, t283, -T::fused(t25, t279, t31 * t272)),
+            );
+            let t286 = T::fused(
+                k(9.81),
+                t246,
+                T::fused(k(2.0), T::fused(t88, t246, t285), -t284),
+            );
+            let t287 = t286 - t277;
+            let t288 = T::fused(t86, t246, T::fused(-t14, t282, t279));
+            let t289 = T::fused(t87, t245, T::fused(-t18, t276, t274));
+            let t290 = k(2.0) * (t289 + t288);
+            let t291 = T::fused(
+                t21,
+                t283,
+                T::fused(t27, t276, -T::fused(t11, t282, t93 * t242)),
+            );
+            let t292 = T::fused(
+                t91,
+                t244,
+                -T::fused(t8, t283, -T::fused(t25, t280, t31 * t270)),
+            );
+            let t293 = T::fused(
+                k(9.81),
+                t247,
+                T::fused(k(2.0), T::fused(t88, t247, -t292), t291),
+            );
+            let t294 = k(2.0) * T::fused(t87, t246, -T::fused(-t14, t276, t272));
+            let t295 = k(2.0) * T::fused(t86, t245, -T::fused(-t18, t282, t278));
+            let t296 = x3 * (t295 - (t294 + t293));
+            let t297 = k(2.0) * T::fused(t86, t247, -T::fused(-t8, t282, t280));
+            let t298 = T::fused(
+                t23,
+                t283,
+                -T::fused(t93, t240, T::fused(t19, t282, t29 * t276)),
+            );
+            let t299 = T::fused(
+                t89,
+                t244,
+                -T::fused(t18, t283, -T::fused(t25, t278, t31 * t274)),
+            );
+            let t300 = T::fused(
+                k(9.81),
+                t245,
+                T::fused(k(2.0), T::fused(t88, t245, -t299), t298),
+            );
+            let t301 = t300 + t297;
+            let t302 = T::fused(
+                x5,
+                t301,
+                -(t296 + (t296 + T::fused(-x4, t287, x6 * t290))),
+            );
+            let t303 = k(2.0) * (t289 - t288);
+            let t304 = x4 * t295;
+            let t305 = t300 - t297;
+            let t306 = T::fused(
+                x6,
                 t305,
+                t304 + (t304 + T::fused(-x3, t287, x5 * t303)),
+            );
+            let t307 = t286 + t277;
+            let t308 = T::fused(
+                x3,
+                t301,
+                -T::fused(x4, t303, -T::fused(t151, t294, x6 * t307)),
+            );
+            let t309 = T::fused(
+                x4,
+                t305,
+                T::fused(x3, t290, -T::fused(t154, t293, x5 * t307)),
+            );
+            let t310 = k(0.6) * t73;
+            let t311 = u0 * t310;
+            let t312 = u1 * t310;
+            let t313 = u2 * t310;
+            let t314 = t80 * (t78 * T::fused(x0, t311, T::fused(x1, t312, x2 * t313)));
+            let t315 = x0 * t314;
+            let t316 = x1 * t314;
+            let t317 = x2 * t314;
+            (
+                t225,
+                t229,
+                t231,
+                t232,
+                t252,
+                t253,
+                t254,
+                t255,
+                t258,
+                t259,
+                t260,
+                t302,
                 t306,
-                t307,
                 t308,
+                t309,
+                t310,
                 t311,
                 t312,
                 t313,
-                t368,
-                t372,
-                t375,
-                t376,
-                t377,
-                t378,
-                t379,
-                t380,
-                t382,
-                t383,
-                t384,
+                t315,
+                t316,
+                t317,
             )
         };
         *dfdx = [
@@ -2049,44 +1890,44 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             t3,
             t6,
             k(0.0),
-            t98 + T::fused(t81, t91, t98),
-            t99 + T::fused(t81, t92, t99),
-            t100 - T::fused(t81, t93, -t100),
-            -t187,
-            -t191,
-            t194,
-            t196,
-            -(t82 * t88),
-            -(t84 * t88),
-            -(t86 * t88),
+            -(t82 + T::fused(t65, t75, t82)),
+            -(t83 + T::fused(t65, t76, t83)),
+            T::fused(t65, t77, -t84) - t84,
+            -t146,
+            t150,
+            -t153,
+            t155,
+            t66 * t72,
+            t68 * t72,
+            t70 * t72,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t222 + T::fused(t81, t217, t222),
-            t223 + T::fused(t81, t218, t223),
-            t224 - T::fused(t81, t219, -t224),
-            -t279,
-            t283,
-            -t286,
-            -t287,
-            -(t82 * t216),
-            -(t84 * t216),
-            -(t86 * t216),
+            -(t180 + T::fused(t65, t175, t180)),
+            -(t181 + T::fused(t65, t176, t181)),
+            T::fused(t65, t177, -t182) - t182,
+            -t225,
+            t229,
+            -t231,
+            t232,
+            t66 * t174,
+            t68 * t174,
+            t70 * t174,
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            t311 + T::fused(t81, t306, t311),
-            t312 + T::fused(t81, t307, t312),
-            t313 - T::fused(t81, t308, -t313),
-            t368,
-            t372,
-            t375,
-            -t376,
-            -(t82 * t305),
-            -(t84 * t305),
-            -(t86 * t305),
+            -(t258 + T::fused(t65, t253, t258)),
+            -(t259 + T::fused(t65, t254, t259)),
+            T::fused(t65, t255, -t260) - t260,
+            -t302,
+            t306,
+            -t308,
+            t309,
+            t66 * t252,
+            t68 * t252,
+            t70 * t252,
             k(0.0),
             k(0.0),
             k(0.0),
@@ -2133,16 +1974,16 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Tether<T> {
             -(k(0.25) * u3),
             k(0.0),
             k(0.0),
-            t382 - T::fused(t81, t378, -t382),
-            t383 - T::fused(t81, t379, -t383),
-            t384 - T::fused(t81, t380, -t384),
+            t315 - T::fused(t65, t311, -t315),
+            t316 - T::fused(t65, t312, -t316),
+            t317 - T::fused(t65, t313, -t317),
             k(0.0),
             k(0.0),
             k(0.0),
             k(0.0),
-            -(t82 * t377),
-            -(t84 * t377),
-            -(t86 * t377),
+            -(t66 * t310),
+            -(t68 * t310),
+            -(t70 * t310),
             k(0.0),
             k(0.0),
             k(0.0),

@@ -12,9 +12,9 @@
 //! * left out: parameters (all numbers are folded)
 //! * accelerations: 280 operations by rotations of the bodies, doubled; 280 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 148 operations by rotations of the bodies, doubled; 148 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 48 operations by normal form; 136 operations by recursion
-//! * joint_accelerations_at: 81 operations by normal form; 169 operations by recursion; 1 more compared
-//! * corrected_accelerations: 163 operations by normal form in the bodies' frames; 196 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 48 operations by normal form; 136 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 81 operations by normal form; 169 operations by recursion; 3 more compared
+//! * corrected_accelerations: 163 operations by normal form in the bodies' frames; 196 operations by normal form in the global frame; 9 more compared
 //! * joint_jacobian: 130 operations by derivatives of u̇, from its leaves; 130 operations by normal form of that; 7 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.

@@ -13,8 +13,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 2608 operations by rotations of the bodies, doubled; 2643 operations by relative Euler parameters, doubled; 2 more compared
 //! * project: 2215 operations by rotations of the bodies, doubled; 2254 operations by rotations of the bodies; 2 more compared
-//! * joint_accelerations_at: 1207 operations by recursion; 1244 operations by recursion on the bodies' spins
-//! * corrected_accelerations: 1625 operations by recursion on the bodies' spins in the bodies' frames; 1699 operations by recursion in the bodies' frames; 3 more compared
+//! * joint_accelerations: 1108 operations by recursion; 1483 operations by orthogonal motions
+//! * joint_accelerations_at: 1207 operations by recursion; 1244 operations by recursion on the bodies' spins; 2 more compared
+//! * corrected_accelerations: 1625 operations by recursion on the bodies' spins in the bodies' frames; 1699 operations by recursion in the bodies' frames; 7 more compared
 //! * joint_jacobian: 5652 operations by derivatives of the balance, from its roots, by M⁻¹; 5776 operations by derivatives of the balance, from its leaves, by M⁻¹; 4 more compared
 //!
 //! Written out, every expression would be computed wherever it is used; shared, once; in total, products with reciprocals are quotients.
@@ -14889,11 +14890,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t238 = k(0.1) * T::fused(t201, t236, t232);
             let t239 = t230 * (t238 + (t238 + t237));
             let t240 = t19 * t0;
-            let t241 = T::fused(-t4, t240, t15 * t6);
+            let t241 = T::fused(-t15, t6, t4 * t240);
             let t242 = T::fused(k(0.1), k(1.0) + t15, k(0.1));
             let t243 = T::fused(k(0.1), t15, t242);
             let t244 = T::fused(k(0.05), t15, k(0.5) * (t0 * t243));
-            let t245 = T::fused(k(0.05), t15 + t241, t244);
+            let t245 = T::fused(k(0.05), t15 - t241, t244);
             let t246 = t244 + t245;
             let t247 = t9 * t243;
             let t248 = t19 * t9;
@@ -14918,19 +14919,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t267 = k(0.1) * t221;
             let t268 = t230 * (t267 + (T::fused(t25, t213, t27 * t218) + t267));
             let t269 = t21 * t15;
-            let t270 = T::fused(-t9, t269, t13 * t0);
+            let t270 = T::fused(-t13, t0, t9 * t269);
             let t271 = T::fused(k(0.1), k(1.0) + t13, k(0.1));
             let t272 = k(0.1) * t13;
             let t273 = t272 + t271;
             let t274 = T::fused(t15, t273, t272);
-            let t275 = T::fused(k(0.1), t13 + t270, t274);
-            let t276 = T::fused(k(0.1), t270, t275);
+            let t275 = T::fused(k(0.1), t13 - t270, t274);
+            let t276 = T::fused(k(0.1), t270, -t275);
             let t277 = t19 * t273;
             let t278 = t21 * t19;
             let t279 = k(0.2) * t278;
             let t280 = T::fused(t0, t277, t9 * t279);
-            let t281 = T::fused(-k(0.05), t270, k(0.5) * T::fused(-t6, t276, t4 * t280));
-            let t282 = k(0.5) * T::fused(t4, t276, t6 * t280);
+            let t281 = T::fused(k(0.05), t270, k(0.5) * T::fused(t6, t276, t4 * t280));
+            let t282 = k(0.5) * T::fused(-t4, t276, t6 * t280);
             let t283 = T::fused(-t6, t281, t4 * t282);
             let t284 = T::fused(k(0.5), t275, t283);
             let t285 = T::fused(k(0.5), t274, t284);
@@ -14938,8 +14939,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t287 = t6 * t282;
             let t288 = T::fused(k(0.5), t280, t287) + t286;
             let t289 = t0 * t288;
-            let t290 = T::fused(t0, t269, t13 * t9);
-            let t291 = T::fused(t4, t290, t6 * t278);
+            let t290 = T::fused(t13, t9, t0 * t269);
+            let t291 = T::fused(t6, t278, t4 * t290);
             let t292 = k(0.05) * t278;
             let t293 = T::fused(k(0.5), T::fused(-t9, t277, t0 * t279), t292);
             let t294 = T::fused(k(0.05), t278 + t291, t293);
@@ -14957,26 +14958,26 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t306 = T::fused(t21, t301, t13 * t303);
             let t307 = T::fused(-t29, k(9.81) * t305, t23 * (k(9.81) * t306));
             let t308 = t27 * t13;
-            let t309 = T::fused(t15, t308, t25 * t19);
+            let t309 = T::fused(-t25, t15, t19 * t308);
             let t310 = t27 * t21;
-            let t311 = T::fused(-t0, t309, t9 * t310);
-            let t312 = T::fused(-t19, t308, t25 * t15);
-            let t313 = T::fused(t4, t311, t6 * t312);
+            let t311 = T::fused(t25, t19, t15 * t308);
+            let t312 = T::fused(-t9, t310, t0 * t311);
+            let t313 = T::fused(t6, t309, t4 * t312);
             let t314 = T::fused(k(0.1), k(1.0) + t25, k(0.1));
             let t315 = k(0.1) * t25;
             let t316 = t315 + t314;
             let t317 = T::fused(t13, t316, t315);
-            let t318 = T::fused(k(0.1), t25 + t312, t317);
-            let t319 = T::fused(k(0.1), t312, t318);
+            let t318 = T::fused(k(0.1), t25 - t309, t317);
+            let t319 = T::fused(k(0.1), t309, -t318);
             let t320 = t21 * t316;
             let t321 = k(0.2) * t310;
             let t322 = T::fused(t15, t320, t19 * t321);
-            let t323 = T::fused(-k(0.05), t312, k(0.5) * T::fused(-t0, t319, t9 * t322));
-            let t324 = T::fused(-k(0.05), t312 + t313, t323);
+            let t323 = T::fused(k(0.05), t309, k(0.5) * T::fused(t0, t319, t9 * t322));
+            let t324 = T::fused(k(0.05), t309 + t313, t323);
             let t325 = t323 + t324;
-            let t326 = T::fused(t9, t319, t0 * t322);
-            let t327 = T::fused(t9, t309, t0 * t310);
-            let t328 = T::fused(-t19, t320, T::fused(t15, t321, k(0.1) * t310));
+            let t326 = T::fused(-t9, t319, t0 * t322);
+            let t327 = T::fused(t0, t310, t9 * t311);
+            let t328 = T::fused(-t19, t320, T::fused(k(0.1), t310, t15 * t321));
             let t329 = T::fused(k(0.1), t310 + t327, t328);
             let t330 = T::fused(k(0.1), t327, t329);
             let t331 = T::fused(k(0.5), T::fused(-t4, t326, t6 * t330), k(0.05) * t327);
@@ -15775,8 +15776,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t624,
             t626,
             t628,
-            t630,
-            t633,
+            t629,
+            t632,
             t636,
             t637,
             t640,
@@ -15917,19 +15918,19 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t620, t478, T::fused(t420, t24, t421 * t24)),
             );
             let t628 = T::fused(t25, t621, t27 * t627);
-            let t629 = k(0.0016) * t15;
-            let t630 = T::fused(k(0.0016), t241, k(0.1) * t245);
-            let t631 = t245 + t246;
-            let t632 = T::fused(t6, t240, t15 * t4);
-            let t633 = k(0.0002) * t632;
+            let t629 = T::fused(-k(0.0016), t241, k(0.1) * t245);
+            let t630 = t245 + t246;
+            let t631 = T::fused(t15, t4, t6 * t240);
+            let t632 = k(0.0002) * t631;
+            let t633 = k(0.0016) * t15;
             let t634 = t255 + t256;
             let t635 = T::fused(
                 k(0.1),
                 t634,
-                T::fused(t6, t630, T::fused(k(0.1), t631, t4 * t633)) + t629,
+                t633 + T::fused(t6, t629, T::fused(k(0.1), t630, t4 * t632)),
             );
-            let t636 = t629 + t635;
-            let t637 = T::fused(-t4, t630, T::fused(t6, t633, k(0.0002) * t240));
+            let t636 = t633 + t635;
+            let t637 = T::fused(-t4, t629, T::fused(t6, t632, k(0.0002) * t240));
             let t638 = t259 + t260;
             let t639 = k(0.0017) * t248;
             let t640 = T::fused(k(0.1), t638, t639 + T::fused(k(0.1), t251, t639));
@@ -15949,34 +15950,34 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             );
             let t647 = k(0.0015) * t15;
             let t648 = k(0.0015) * t241;
-            let t649 = k(0.0001) * t632;
+            let t649 = k(0.0001) * t631;
             let t650 = T::fused(
                 k(0.1),
                 T::fused(t443, t245, t437 * t252),
                 T::fused(t446, t649, t438 * t252),
             );
-            let t651 = T::fused(t443, t648, t650);
+            let t651 = T::fused(-t443, t648, t650);
             let t652 = t253 + t254;
             let t653 = k(0.0001) * t240;
             let t654 = T::fused(
                 -k(0.1),
-                T::fused(t442, t631, t436 * t652),
+                T::fused(t442, t630, t436 * t652),
                 T::fused(-t453, t652, t441 * t653),
             );
             let t655 = T::fused(-t442, t647, T::fused(-u4, t637, t654 - t651));
             let t656 = k(0.0014) * t248;
             let t657 = T::fused(
-                t437,
+                -t437,
                 t648,
                 T::fused(t438, t245, T::fused(t461, t251, t446 * t656)),
             );
-            let t658 = T::fused(u5, t630, t657);
+            let t658 = T::fused(u5, t629, t657);
             let t659 = T::fused(
                 k(0.1),
                 T::fused(t443, t251, t446 * t252),
                 T::fused(t461, t252, t443 * t656),
             );
-            let t660 = T::fused(u5, t633, T::fused(t437, t649, t659));
+            let t660 = T::fused(u5, t632, T::fused(t437, t649, t659));
             let t661 = T::fused(
                 -t4,
                 t660,
@@ -15985,7 +15986,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t662 = T::fused(
                 -t436,
                 t647,
-                T::fused(-t6, t658, T::fused(-t453, t631, t661)),
+                T::fused(-t6, t658, T::fused(-t453, t630, t661)),
             );
             let t663 = k(2.0) * t260;
             let t664 = T::fused(
@@ -16059,32 +16060,32 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t690 = T::fused(-t25, t683, t27 * t689);
             let t691 = k(0.0017) * t270;
             let t692 = t283 + t284;
-            let t693 = t691 + T::fused(k(0.1), t692, -T::fused(k(0.1), t281, -t691));
+            let t693 = t691 - T::fused(k(0.1), t692, -T::fused(k(0.1), t281, t691));
             let t694 = T::fused(k(0.0016), t291, k(0.1) * t294);
-            let t695 = T::fused(-t6, t290, t4 * t278);
+            let t695 = T::fused(-t4, t278, t6 * t290);
             let t696 = k(0.0002) * t695;
-            let t697 = T::fused(-k(0.0002), t290, T::fused(-t4, t694, t6 * t696));
-            let t698 = T::fused(-t9, t693, T::fused(-t0, t697, k(0.0002) * t269));
+            let t697 = T::fused(k(0.0002), t290, T::fused(t4, t694, t6 * t696));
+            let t698 = T::fused(t9, t693, T::fused(t0, t697, k(0.0002) * t269));
             let t699 = t302 + t303;
             let t700 = t294 + t295;
             let t701 = k(0.0016) * t278;
             let t702 = t701
-                + T::fused(t6, t694, T::fused(k(0.1), t700, T::fused(t4, t696, t701)));
+                + T::fused(t6, t694, T::fused(k(0.1), t700, T::fused(-t4, t696, t701)));
             let t703 = T::fused(k(0.1), t699, t702);
             let t704 = T::fused(
                 k(0.2),
                 t306,
                 T::fused(-t19, t698, T::fused(k(0.2), t303, t15 * t703)),
             );
-            let t705 = k(0.0017) * t13;
-            let t706 = t284 + t285;
+            let t705 = t284 + t285;
+            let t706 = k(0.0017) * t13;
             let t707 = t298 + t299;
             let t708 = T::fused(
                 k(0.1),
                 t707,
-                -(T::fused(-t0, t693, T::fused(-k(0.1), t706, t9 * t697)) - t705),
+                t706 + T::fused(-t0, t693, T::fused(k(0.1), t705, t9 * t697)),
             );
-            let t709 = t705 + t708;
+            let t709 = t706 + t708;
             let t710 = T::fused(t15, t698, T::fused(t19, t703, k(0.0002) * t21));
             let t711 = T::fused(-t21, t709, t13 * t710);
             let t712 = k(0.0014) * t13;
@@ -16095,36 +16096,36 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t281,
                 T::fused(u5, t694, T::fused(t437, t714, t438 * t294)),
             );
-            let t716 = T::fused(t446, t713, t715);
+            let t716 = T::fused(-t446, t713, t715);
             let t717 = k(0.0001) * t695;
             let t718 = T::fused(
-                k(0.1),
+                -k(0.1),
                 T::fused(-t443, t281, t446 * t282),
-                T::fused(t461, t282, T::fused(u5, t696, t437 * t717)),
+                T::fused(-t461, t282, T::fused(u5, t696, t437 * t717)),
             );
             let t719 = T::fused(t443, t713, t718);
             let t720 = k(0.0015) * t278;
             let t721 = T::fused(
-                t4,
+                -t4,
                 t719,
                 T::fused(-t460, t692, T::fused(t453, t700, t436 * t720)),
             );
             let t722 = T::fused(
-                -u4,
+                u4,
                 t693,
-                T::fused(-t441, t713, T::fused(t6, t716, t721)),
+                T::fused(t441, t713, T::fused(t6, t716, t721)),
             );
             let t723 = t287 + t286 + t288;
             let t724 = T::fused(
-                k(0.1),
+                -k(0.1),
                 T::fused(t437, t282, t443 * t294),
-                T::fused(t438, t282, T::fused(t443, t714, t446 * t717)),
+                T::fused(-t438, t282, T::fused(-t443, t714, t446 * t717)),
             );
             let t725 = k(0.0001) * t290;
             let t726 = T::fused(
                 t453,
                 t723,
-                T::fused(u4, t697, T::fused(t441, t725, t442 * t720)) + t724,
+                T::fused(-u4, t697, T::fused(t441, t725, t442 * t720)) - t724,
             );
             let t727 = T::fused(k(0.1), T::fused(t436, t723, t442 * t700), t726);
             let t728 = T::fused(
@@ -16135,7 +16136,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t729 = T::fused(
                 t440,
                 t712,
-                T::fused(t0, t722, T::fused(t481, t706, t728)),
+                T::fused(t0, t722, T::fused(t481, t705, t728)),
             );
             let t730 = T::fused(
                 k(0.1),
@@ -16143,15 +16144,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t460, t723, t436 * t725),
             );
             let t731 = T::fused(
-                -t442,
+                t442,
                 t713,
-                T::fused(t4, t716, T::fused(-t6, t719, t730)),
+                T::fused(t4, t716, T::fused(t6, t719, t730)),
             );
             let t732 = t296 - t289 - t297;
             let t733 = k(0.0001) * t269;
             let t734 = T::fused(
                 k(0.1),
-                T::fused(-t435, t706, t440 * t732),
+                T::fused(-t435, t705, t440 * t732),
                 T::fused(t481, t732, t433 * t733),
             );
             let t735 = T::fused(-t435, t712, T::fused(u3, t698, t734 + t731));
@@ -16270,8 +16271,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t624,
                 t626,
                 t628,
-                t630,
-                t633,
+                t629,
+                t632,
                 t636,
                 t637,
                 t640,
@@ -16368,8 +16369,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             t845,
             t846,
             t850,
-            t853,
-            t856,
+            t852,
+            t855,
             t859,
             t860,
             t863,
@@ -16521,80 +16522,80 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t351,
                 T::fused(k(0.0002), t766, t605) + T::fused(t13, t844, t21 * t850),
             );
-            let t852 = k(0.0016) * t312;
-            let t853 = T::fused(-k(0.0016), t313, k(0.1) * t324);
-            let t854 = t324 + t325;
-            let t855 = T::fused(-t6, t311, t4 * t312);
-            let t856 = k(0.0002) * t855;
+            let t852 = T::fused(k(0.0016), t313, k(0.1) * t324);
+            let t853 = t324 + t325;
+            let t854 = T::fused(-t4, t309, t6 * t312);
+            let t855 = k(0.0002) * t854;
+            let t856 = k(0.0016) * t309;
             let t857 = t335 + t336;
             let t858 = T::fused(
                 k(0.1),
                 t857,
-                T::fused(-t6, t853, T::fused(-k(0.1), t854, t4 * t856)) + t852,
+                -(t856 - T::fused(-t6, t852, T::fused(-k(0.1), t853, t4 * t855))),
             );
-            let t859 = t852 + t858;
-            let t860 = T::fused(-t4, t853, T::fused(-t6, t856, k(0.0002) * t311));
+            let t859 = t856 - t858;
+            let t860 = T::fused(t4, t852, T::fused(t6, t855, k(0.0002) * t312));
             let t861 = t342 + t343;
             let t862 = k(0.0017) * t327;
             let t863 = T::fused(k(0.1), t861, t862 + T::fused(k(0.1), t331, t862));
-            let t864 = T::fused(-t0, t860, T::fused(t9, t863, k(0.0002) * t309));
-            let t865 = T::fused(-t19, t859, T::fused(t15, t864, k(0.0002) * t308));
+            let t864 = T::fused(t0, t860, T::fused(t9, t863, k(0.0002) * t311));
+            let t865 = T::fused(t19, t859, T::fused(t15, t864, k(0.0002) * t308));
             let t866 = t343 + t344;
             let t867 = k(0.0017) * t310;
             let t868 = t350 + t351;
             let t869 = T::fused(k(0.1), t868, t867)
-                + T::fused(t9, t860, T::fused(k(0.1), t866, T::fused(t0, t863, t867)));
+                + T::fused(-t9, t860, T::fused(k(0.1), t866, T::fused(t0, t863, t867)));
             let t870 = T::fused(t13, t865, T::fused(t21, t869, k(0.0002) * t27));
-            let t871 = k(0.0016) * t25;
-            let t872 = t336 + t337;
+            let t871 = t336 + t337;
+            let t872 = k(0.0016) * t25;
             let t873 = t347 + t348;
             let t874 = T::fused(
                 k(0.1),
                 t873,
-                T::fused(t15, t859, T::fused(t19, t864, k(0.1) * t872)) + t871,
+                t872 + T::fused(-t15, t859, T::fused(t19, t864, k(0.1) * t871)),
             );
-            let t875 = t871 + t874;
+            let t875 = t872 + t874;
             let t876 = k(0.0015) * t25;
             let t877 = t876 + t875;
-            let t878 = k(0.0015) * t312;
+            let t878 = k(0.0015) * t309;
             let t879 = k(0.0015) * t313;
-            let t880 = k(0.0001) * t855;
+            let t880 = k(0.0001) * t854;
             let t881 = T::fused(
                 k(0.1),
                 T::fused(-t443, t324, t437 * t332),
                 T::fused(t446, t880, t438 * t332),
             );
-            let t882 = T::fused(t443, t879, t881);
+            let t882 = T::fused(-t443, t879, t881);
             let t883 = t333 + t334;
-            let t884 = k(0.0001) * t311;
+            let t884 = k(0.0001) * t312;
             let t885 = T::fused(
-                k(0.1),
-                T::fused(-t442, t854, t436 * t883),
-                T::fused(t453, t883, t441 * t884),
+                -k(0.1),
+                T::fused(-t442, t853, t436 * t883),
+                T::fused(-t453, t883, t441 * t884),
             );
-            let t886 = T::fused(t442, t878, T::fused(-u4, t860, t885 + t882));
+            let t886 = T::fused(t442, t878, T::fused(-u4, t860, t885 - t882));
             let t887 = k(0.0014) * t327;
             let t888 = T::fused(
-                t437,
+                -t437,
                 t879,
                 T::fused(-t438, t324, T::fused(t461, t331, t446 * t887)),
             );
-            let t889 = T::fused(-u5, t853, t888);
+            let t889 = T::fused(-u5, t852, t888);
             let t890 = T::fused(
                 k(0.1),
                 T::fused(t443, t331, t446 * t332),
                 T::fused(t461, t332, t443 * t887),
             );
-            let t891 = T::fused(u5, t856, T::fused(t437, t880, t890));
+            let t891 = T::fused(u5, t855, T::fused(t437, t880, t890));
             let t892 = T::fused(
                 -t4,
                 t891,
                 T::fused(t460, t861, T::fused(u4, t863, t441 * t887)),
             );
             let t893 = T::fused(
-                -t436,
+                t436,
                 t878,
-                T::fused(-t6, t889, T::fused(t453, t854, t892)),
+                T::fused(-t6, t889, T::fused(t453, t853, t892)),
             );
             let t894 = k(0.0014) * t310;
             let t895 = T::fused(
@@ -16603,28 +16604,28 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t457, t857, T::fused(t481, t866, t440 * t894)),
             );
             let t896 = T::fused(
-                u3,
+                -u3,
                 t859,
-                T::fused(t433, t878, T::fused(t9, t886, t895)),
+                T::fused(-t433, t878, T::fused(-t9, t886, t895)),
             );
             let t897 = T::fused(
-                -k(0.1),
+                k(0.1),
                 T::fused(-t441, t883, t442 * t861),
-                T::fused(t460, t883, T::fused(-t442, t887, t436 * t884)),
+                T::fused(-t460, t883, T::fused(t442, t887, t436 * t884)),
             );
-            let t898 = T::fused(t4, t889, T::fused(-t6, t891, t897));
+            let t898 = T::fused(-t4, t889, T::fused(t6, t891, t897));
             let t899 = t339 + t338 + t340;
-            let t900 = k(0.0001) * t309;
+            let t900 = k(0.0001) * t311;
             let t901 = T::fused(
                 k(0.1),
                 T::fused(t440, t899, t435 * t866),
                 T::fused(t481, t899, T::fused(t433, t900, t435 * t894)),
             );
-            let t902 = T::fused(u3, t864, t901 - t898);
+            let t902 = T::fused(u3, t864, t901 + t898);
             let t903 = T::fused(
                 -t19,
                 t902,
-                T::fused(-t430, t872, T::fused(t480, t868, t434 * t894)),
+                T::fused(-t430, t871, T::fused(t480, t868, t434 * t894)),
             );
             let t904 = T::fused(
                 -t429,
@@ -16637,15 +16638,15 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t457, t899, t440 * t900),
             );
             let t906 = T::fused(
-                t435,
+                -t435,
                 t878,
-                T::fused(t0, t886, T::fused(t9, t893, t905)),
+                T::fused(-t0, t886, T::fused(t9, t893, t905)),
             );
             let t907 = t345 - t341 - t346;
             let t908 = k(0.0001) * t308;
             let t909 = T::fused(
                 k(0.1),
-                T::fused(-t432, t872, t429 * t907),
+                T::fused(-t432, t871, t429 * t907),
                 T::fused(t430, t907, t434 * t908),
             );
             let t910 = T::fused(-t432, t876, T::fused(-u2, t865, t909 - t906));
@@ -16693,7 +16694,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t628,
                 T::fused(-t239, t690, T::fused(-t268, t756, t230 * t926)),
             );
-            let t928 = T::fused(k(0.0016), t6, k(0.1) * t377);
+            let t928 = T::fused(k(0.1), t377, k(0.0016) * t6);
             let t929 = t377 + t378;
             let t930 = k(0.2) * t379;
             let t931 = t930
@@ -16859,8 +16860,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 t845,
                 t846,
                 t850,
-                t853,
-                t856,
+                t852,
+                t855,
                 t859,
                 t860,
                 t863,
@@ -17268,7 +17269,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1057 = T::fused(
                 t773,
                 t859,
-                -T::fused(t434, t896, T::fused(t864, t776, T::fused(t432, t902, -t1056))),
+                T::fused(t434, t896, T::fused(t864, t776, T::fused(t432, t902, -t1056))),
             );
             let t1058 = T::fused(
                 t25,
@@ -17283,13 +17284,17 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1060 = T::fused(
                 t859,
                 t776,
-                T::fused(t432, t896, T::fused(t773, t864, -T::fused(t434, t902, -t1059))),
+                -T::fused(
+                    t432,
+                    t896,
+                    T::fused(t773, t864, -T::fused(t434, t902, -t1059)),
+                ),
             );
             let t1061 = T::fused(t15, t1057, t19 * t1060);
             let t1062 = T::fused(
-                t231,
+                -t231,
                 t1044,
-                T::fused(t239, t1049, T::fused(-t268, t1054, t230 * t1061)),
+                T::fused(-t239, t1049, T::fused(t268, t1054, t230 * t1061)),
             );
             let t1063 = T::fused(
                 t933,
@@ -17381,12 +17386,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1082 = T::fused(
                 t511,
                 t288,
-                T::fused(t697, t791, -T::fused(t785, t295, T::fused(t512, t295, -t1081))),
+                -T::fused(t697, t791, T::fused(t785, t295, T::fused(t512, t295, -t1081))),
             );
             let t1083 = T::fused(
                 t693,
                 t778,
-                -T::fused(t433, t722, -T::fused(t288, t806, T::fused(t435, t727, t1082))),
+                T::fused(t433, t722, -T::fused(t288, t806, T::fused(t435, t727, t1082))),
             );
             let t1084 = T::fused(
                 t511,
@@ -17396,49 +17401,49 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1085 = T::fused(
                 t512,
                 t288,
-                -T::fused(t13, t833, -T::fused(t697, t778, T::fused(t295, t806, t1084))),
+                -T::fused(t13, t833, T::fused(t697, t778, -T::fused(t295, t806, t1084))),
             );
             let t1086 = T::fused(
                 t693,
                 t791,
-                -T::fused(t435, t722, T::fused(t785, t288, T::fused(t433, t727, t1085))),
+                T::fused(t435, t722, T::fused(t785, t288, T::fused(t433, t727, t1085))),
             );
             let t1087 = T::fused(t0, t1083, t9 * t1086);
             let t1088 = T::fused(
                 t319,
                 t835,
-                -T::fused(t309, t833, -T::fused(t310, t811, t322 * t837)),
+                T::fused(t311, t833, -T::fused(t310, t811, t322 * t837)),
             );
             let t1089 = T::fused(
                 t512,
                 t325,
-                T::fused(t334, t806, T::fused(t511, t334, T::fused(t863, t778, t1088))),
+                T::fused(t334, t806, T::fused(t511, t334, T::fused(t863, t778, -t1088))),
             );
             let t1090 = T::fused(
                 t435,
                 t886,
-                T::fused(t433, t893, -T::fused(t860, t791, -T::fused(t785, t325, t1089))),
+                -T::fused(t433, t893, T::fused(t860, t791, T::fused(t785, t325, t1089))),
             );
             let t1091 = T::fused(
                 t863,
                 t791,
-                T::fused(t309, t811, -T::fused(-t310, t833, t322 * t835)),
+                T::fused(t311, t811, -T::fused(-t310, t833, t322 * t835)),
             );
             let t1092 = T::fused(
                 t511,
                 t325,
-                T::fused(t319, t837, -T::fused(t785, t334, T::fused(t512, t334, -t1091))),
+                -T::fused(t319, t837, T::fused(t785, t334, T::fused(t512, t334, -t1091))),
             );
             let t1093 = T::fused(
                 t433,
                 t886,
-                -T::fused(t435, t893, T::fused(t860, t778, T::fused(t325, t806, t1092))),
+                T::fused(t435, t893, -T::fused(t860, t778, -T::fused(t325, t806, t1092))),
             );
             let t1094 = T::fused(-t0, t1090, t9 * t1093);
             let t1095 = T::fused(
-                -t231,
+                t231,
                 t1075,
-                T::fused(-t239, t1080, T::fused(-t268, t1087, t230 * t1094)),
+                T::fused(t239, t1080, T::fused(-t268, t1087, t230 * t1094)),
             );
             let t1096 = T::fused(
                 t433,
@@ -17510,12 +17515,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 ),
             );
             let t1109 = T::fused(
-                t630,
+                t629,
                 t792,
                 -T::fused(
                     t441,
                     t658,
-                    -T::fused(t633, t798, -T::fused(t442, t660, t1108)),
+                    -T::fused(t632, t798, -T::fused(t442, t660, t1108)),
                 ),
             );
             let t1110 = T::fused(
@@ -17529,77 +17534,69 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t251, t819, T::fused(t517, t251, -T::fused(t252, t818, t1110))),
             );
             let t1112 = T::fused(
-                t630,
+                t629,
                 t798,
-                -T::fused(t442, t658, T::fused(t15, t810, T::fused(t633, t792, -t1111))),
+                -T::fused(t442, t658, T::fused(t15, t810, T::fused(t632, t792, -t1111))),
             );
             let t1113 = T::fused(-t6, t1109, t4 * t1112);
             let t1114 = T::fused(
                 t696,
                 t792,
-                -T::fused(t290, t799, -T::fused(t278, t810, t280 * t820)),
+                T::fused(t290, t799, -T::fused(t278, t810, t280 * t820)),
             );
             let t1115 = T::fused(
                 t276,
                 t828,
-                -T::fused(
-                    t282,
-                    t818,
-                    T::fused(t518, t282, -T::fused(t694, t798, -t1114)),
-                ),
+                T::fused(t282, t818, T::fused(t518, t282, -T::fused(t694, t798, t1114))),
             );
             let t1116 = T::fused(
                 t442,
                 t716,
-                -T::fused(
-                    t441,
-                    t719,
-                    -T::fused(t281, t819, T::fused(t517, t281, -t1115)),
-                ),
+                T::fused(t441, t719, T::fused(t281, t819, T::fused(t517, t281, t1115))),
             );
             let t1117 = T::fused(
                 t290,
                 t810,
-                -T::fused(t696, t798, -T::fused(t278, t799, t280 * t828)),
+                T::fused(t696, t798, T::fused(t278, t799, t280 * t828)),
             );
             let t1118 = T::fused(
                 t282,
                 t819,
-                T::fused(
-                    t517,
-                    t282,
-                    -T::fused(t276, t820, -T::fused(t694, t792, -t1117)),
-                ),
+                T::fused(t517, t282, T::fused(t276, t820, T::fused(t694, t792, -t1117))),
             );
             let t1119 = T::fused(
                 t441,
                 t716,
-                T::fused(t442, t719, T::fused(t281, t818, T::fused(t518, t281, -t1118))),
+                -T::fused(
+                    t442,
+                    t719,
+                    -T::fused(t281, t818, T::fused(t518, t281, -t1118)),
+                ),
             );
             let t1120 = T::fused(-t4, t1116, t6 * t1119);
             let t1121 = T::fused(
                 t332,
                 t819,
-                T::fused(t517, t332, -T::fused(t311, t810, t330 * t820)),
+                T::fused(t517, t332, -T::fused(-t312, t810, t330 * t820)),
             );
             let t1122 = T::fused(
-                t312,
+                t309,
                 t799,
-                -T::fused(
-                    t331,
-                    t818,
-                    T::fused(t518, t331, -T::fused(t326, t828, -t1121)),
-                ),
+                T::fused(t331, t818, T::fused(t518, t331, -T::fused(t326, t828, -t1121))),
             );
             let t1123 = T::fused(
-                t853,
+                t852,
                 t792,
-                T::fused(t441, t889, -T::fused(t856, t798, -T::fused(t442, t891, t1122))),
+                T::fused(
+                    t441,
+                    t889,
+                    -T::fused(t855, t798, -T::fused(t442, t891, -t1122)),
+                ),
             );
             let t1124 = T::fused(
                 t518,
                 t332,
-                T::fused(t326, t820, -T::fused(t311, t799, t330 * t828)),
+                T::fused(t326, t820, -T::fused(-t312, t799, t330 * t828)),
             );
             let t1125 = T::fused(
                 t441,
@@ -17607,9 +17604,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t331, t819, T::fused(t517, t331, -T::fused(t332, t818, t1124))),
             );
             let t1126 = T::fused(
-                t853,
+                t852,
                 t798,
-                T::fused(t442, t889, T::fused(t312, t810, T::fused(t856, t792, -t1125))),
+                T::fused(
+                    t442,
+                    t889,
+                    -T::fused(t309, t810, -T::fused(t855, t792, -t1125)),
+                ),
             );
             let t1127 = T::fused(-t6, t1123, t4 * t1126);
             let t1128 = T::fused(
@@ -17747,7 +17748,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1160 = T::fused(t440, t475, -T::fused(-t435, t474, t471));
             let t1161 = T::fused(t435, t636, T::fused(t440, t641, t676));
             let t1162 = T::fused(-t440, t698, T::fused(t435, t703, -t749));
-            let t1163 = T::fused(t435, t859, T::fused(t440, t864, t906));
+            let t1163 = T::fused(-t435, t859, T::fused(t440, t864, t906));
             let t1164 = T::fused(
                 t231,
                 t1160,
@@ -17757,23 +17758,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1166 = T::fused(-t440, t970, T::fused(t435, t971, t1001));
             let t1167 = T::fused(t442, t469, T::fused(t436, t450, t484));
             let t1168 = T::fused(-t436, t637, T::fused(t442, t640, t667));
-            let t1169 = T::fused(-t442, t693, T::fused(t436, t697, t731));
-            let t1170 = T::fused(t436, t860, T::fused(t442, t863, -t898));
+            let t1169 = T::fused(-t442, t693, T::fused(t436, t697, -t731));
+            let t1170 = T::fused(-t436, t860, T::fused(t442, t863, t898));
             let t1171 = T::fused(
                 -t231,
                 t1167,
-                T::fused(t1168, t239, T::fused(-t1169, t268, t230 * t1170)),
+                T::fused(t1168, t239, T::fused(t1169, t268, t230 * t1170)),
             );
             let t1172 = T::fused(-t436, t932, t953);
             let t1173 = T::fused(t442, t969, t981);
             let t1174 = T::fused(-t443, t448, t446 * t449) - t447;
-            let t1175 = T::fused(t443, t630, T::fused(t446, t633, t651));
-            let t1176 = T::fused(t443, t694, t446 * t696) + t724;
-            let t1177 = T::fused(-t443, t853, T::fused(t446, t856, t882));
+            let t1175 = T::fused(t443, t629, T::fused(t446, t632, t651));
+            let t1176 = T::fused(-t443, t694, t446 * t696) + t724;
+            let t1177 = T::fused(-t443, t852, T::fused(t446, t855, t882));
             let t1178 = T::fused(
                 t231,
                 t1174,
-                T::fused(t1175, t239, T::fused(t1176, t268, t230 * t1177)),
+                T::fused(t1175, t239, T::fused(-t1176, t268, t230 * t1177)),
             );
             let t1179 = T::fused(t443, t928, T::fused(t41, t446, t940));
             let t1180 = k(0.2) * t231;
@@ -18004,14 +18005,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t1187, t1018, T::fused(-t1191, t1023, t1195 * t1028)),
             );
             let t1207 = T::fused(
-                t1183,
+                -t1183,
                 t1044,
-                T::fused(t1187, t1049, T::fused(-t1191, t1054, t1195 * t1061)),
+                T::fused(-t1187, t1049, T::fused(t1191, t1054, t1195 * t1061)),
             );
             let t1208 = T::fused(
-                -t1183,
+                t1183,
                 t1075,
-                T::fused(-t1187, t1080, T::fused(-t1191, t1087, t1195 * t1094)),
+                T::fused(t1187, t1080, T::fused(-t1191, t1087, t1195 * t1094)),
             );
             let t1209 = T::fused(
                 t1183,
@@ -18041,12 +18042,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1214 = T::fused(
                 -t1183,
                 t1167,
-                T::fused(t1168, t1187, T::fused(-t1169, t1191, t1170 * t1195)),
+                T::fused(t1168, t1187, T::fused(t1169, t1191, t1170 * t1195)),
             );
             let t1215 = T::fused(
                 t1183,
                 t1174,
-                T::fused(t1175, t1187, T::fused(t1176, t1191, t1177 * t1195)),
+                T::fused(t1175, t1187, T::fused(-t1176, t1191, t1177 * t1195)),
             );
             let t1216 = k(0.1) * t1181;
             let t1217 = t1216 + (t1180 + t1216);
@@ -18130,14 +18131,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t1235, t1018, T::fused(-t1245, t1023, t1255 * t1028)),
             );
             let t1279 = T::fused(
-                t1225,
+                -t1225,
                 t1044,
-                T::fused(t1235, t1049, T::fused(-t1245, t1054, t1255 * t1061)),
+                T::fused(-t1235, t1049, T::fused(t1245, t1054, t1255 * t1061)),
             );
             let t1280 = T::fused(
-                -t1225,
+                t1225,
                 t1075,
-                T::fused(-t1235, t1080, T::fused(-t1245, t1087, t1255 * t1094)),
+                T::fused(t1235, t1080, T::fused(-t1245, t1087, t1255 * t1094)),
             );
             let t1281 = T::fused(
                 t1225,
@@ -18167,12 +18168,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1286 = T::fused(
                 -t1225,
                 t1167,
-                T::fused(t1168, t1235, T::fused(-t1169, t1245, t1170 * t1255)),
+                T::fused(t1168, t1235, T::fused(t1169, t1245, t1170 * t1255)),
             );
             let t1287 = T::fused(
                 t1225,
                 t1174,
-                T::fused(t1175, t1235, T::fused(t1176, t1245, t1177 * t1255)),
+                T::fused(t1175, t1235, T::fused(-t1176, t1245, t1177 * t1255)),
             );
             let t1288 = k(0.1) * t1224;
             let t1289 = t1288 + (t1218 + t1288);
@@ -18262,14 +18263,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t1309, t1018, T::fused(-t1320, t1023, t1331 * t1028)),
             );
             let t1357 = T::fused(
-                t1298,
+                -t1298,
                 t1044,
-                T::fused(t1309, t1049, T::fused(-t1320, t1054, t1331 * t1061)),
+                T::fused(-t1309, t1049, T::fused(t1320, t1054, t1331 * t1061)),
             );
             let t1358 = T::fused(
-                -t1298,
+                t1298,
                 t1075,
-                T::fused(-t1309, t1080, T::fused(-t1320, t1087, t1331 * t1094)),
+                T::fused(t1309, t1080, T::fused(-t1320, t1087, t1331 * t1094)),
             );
             let t1359 = T::fused(
                 t1298,
@@ -18299,12 +18300,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1364 = T::fused(
                 -t1298,
                 t1167,
-                T::fused(t1168, t1309, T::fused(-t1169, t1320, t1170 * t1331)),
+                T::fused(t1168, t1309, T::fused(t1169, t1320, t1170 * t1331)),
             );
             let t1365 = T::fused(
                 t1298,
                 t1174,
-                T::fused(t1175, t1309, T::fused(t1176, t1320, t1177 * t1331)),
+                T::fused(t1175, t1309, T::fused(-t1176, t1320, t1177 * t1331)),
             );
             let t1366 = k(0.1) * t1294;
             let t1367 = t1366 - (t1289 - t1366);
@@ -18370,14 +18371,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t1373, t1018, T::fused(-t1377, t1023, t1381 * t1028)),
             );
             let t1393 = T::fused(
-                t1369,
+                -t1369,
                 t1044,
-                T::fused(t1373, t1049, T::fused(-t1377, t1054, t1381 * t1061)),
+                T::fused(-t1373, t1049, T::fused(t1377, t1054, t1381 * t1061)),
             );
             let t1394 = T::fused(
-                -t1369,
+                t1369,
                 t1075,
-                T::fused(-t1373, t1080, T::fused(-t1377, t1087, t1381 * t1094)),
+                T::fused(t1373, t1080, T::fused(-t1377, t1087, t1381 * t1094)),
             );
             let t1395 = T::fused(
                 t1369,
@@ -18515,12 +18516,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1400 = T::fused(
                 -t1369,
                 t1167,
-                T::fused(t1168, t1373, T::fused(-t1169, t1377, t1170 * t1381)),
+                T::fused(t1168, t1373, T::fused(t1169, t1377, t1170 * t1381)),
             );
             let t1401 = T::fused(
                 t1369,
                 t1174,
-                T::fused(t1175, t1373, T::fused(t1176, t1377, t1177 * t1381)),
+                T::fused(t1175, t1373, T::fused(-t1176, t1377, t1177 * t1381)),
             );
             let t1402 = k(0.1) * t1297;
             let t1403 = T::fused(-t0, t1297, t9 * t1295);
@@ -18596,14 +18597,14 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
                 T::fused(t1411, t1018, T::fused(-t1416, t1023, t1421 * t1028)),
             );
             let t1435 = T::fused(
-                t1406,
+                -t1406,
                 t1044,
-                T::fused(t1411, t1049, T::fused(-t1416, t1054, t1421 * t1061)),
+                T::fused(-t1411, t1049, T::fused(t1416, t1054, t1421 * t1061)),
             );
             let t1436 = T::fused(
-                -t1406,
+                t1406,
                 t1075,
-                T::fused(-t1411, t1080, T::fused(-t1416, t1087, t1421 * t1094)),
+                T::fused(t1411, t1080, T::fused(-t1416, t1087, t1421 * t1094)),
             );
             let t1437 = T::fused(
                 t1406,
@@ -18633,12 +18634,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             let t1442 = T::fused(
                 -t1406,
                 t1167,
-                T::fused(t1168, t1411, T::fused(-t1169, t1416, t1170 * t1421)),
+                T::fused(t1168, t1411, T::fused(t1169, t1416, t1170 * t1421)),
             );
             let t1443 = T::fused(
                 t1406,
                 t1174,
-                T::fused(t1175, t1411, T::fused(t1176, t1416, t1177 * t1421)),
+                T::fused(t1175, t1411, T::fused(-t1176, t1416, t1177 * t1421)),
             );
             (
                 t1400,
@@ -18735,8 +18736,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             T::fused(t418, t410, -T::fused(t386, t376, -t354)),
             T::fused(t410, t1008, T::fused(t376, t968, -t927)),
             T::fused(t410, t1039, -T::fused(t376, t1034, -t1029)),
-            T::fused(t410, t1070, -T::fused(t376, t1065, t1062)),
-            T::fused(t410, t1101, -T::fused(t376, t1098, t1095)),
+            T::fused(t410, t1070, -T::fused(t376, t1065, -t1062)),
+            T::fused(t410, t1101, -T::fused(t376, t1098, -t1095)),
             T::fused(t410, t1132, T::fused(t376, t1131, -t1128)),
             T::fused(t410, t1139, T::fused(t376, t1138, t1137)),
             T::fused(t1152, t410, -T::fused(t1150, t376, -t1148)),
@@ -18747,8 +18748,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             T::fused(t418, t1204, -T::fused(t386, t1200, -t1196)),
             T::fused(t1204, t1008, T::fused(t1200, t968, -t1205)),
             T::fused(t1204, t1039, -T::fused(t1200, t1034, -t1206)),
-            T::fused(t1204, t1070, -T::fused(t1200, t1065, t1207)),
-            T::fused(t1204, t1101, -T::fused(t1200, t1098, t1208)),
+            T::fused(t1204, t1070, -T::fused(t1200, t1065, -t1207)),
+            T::fused(t1204, t1101, -T::fused(t1200, t1098, -t1208)),
             T::fused(t1204, t1132, T::fused(t1200, t1131, -t1209)),
             T::fused(t1204, t1139, T::fused(t1200, t1138, t1210)),
             T::fused(t1152, t1204, -T::fused(t1150, t1200, -t1211)),
@@ -18759,8 +18760,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             T::fused(-t418, t1276, T::fused(t386, t1266, -t1256)),
             -T::fused(t1276, t1008, T::fused(t1266, t968, -t1277)),
             T::fused(-t1276, t1039, T::fused(t1266, t1034, -t1278)),
-            T::fused(-t1276, t1070, T::fused(t1266, t1065, t1279)),
-            T::fused(-t1276, t1101, T::fused(t1266, t1098, t1280)),
+            T::fused(-t1276, t1070, T::fused(t1266, t1065, -t1279)),
+            T::fused(-t1276, t1101, T::fused(t1266, t1098, -t1280)),
             -T::fused(t1276, t1132, T::fused(t1266, t1131, -t1281)),
             -T::fused(t1276, t1139, T::fused(t1266, t1138, t1282)),
             T::fused(-t1152, t1276, T::fused(t1150, t1266, -t1283)),
@@ -18771,8 +18772,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             T::fused(-t418, t1354, T::fused(t386, t1343, -t1332)),
             -T::fused(t1354, t1008, T::fused(t1343, t968, -t1355)),
             T::fused(-t1354, t1039, T::fused(t1343, t1034, -t1356)),
-            T::fused(-t1354, t1070, T::fused(t1343, t1065, t1357)),
-            T::fused(-t1354, t1101, T::fused(t1343, t1098, t1358)),
+            T::fused(-t1354, t1070, T::fused(t1343, t1065, -t1357)),
+            T::fused(-t1354, t1101, T::fused(t1343, t1098, -t1358)),
             -T::fused(t1354, t1132, T::fused(t1343, t1131, -t1359)),
             -T::fused(t1354, t1139, T::fused(t1343, t1138, t1360)),
             T::fused(-t1152, t1354, T::fused(t1150, t1343, -t1361)),
@@ -18783,8 +18784,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             T::fused(t418, t1390, -T::fused(t386, t1386, -t1382)),
             T::fused(t1390, t1008, T::fused(t1386, t968, -t1391)),
             T::fused(t1390, t1039, -T::fused(t1386, t1034, -t1392)),
-            T::fused(t1390, t1070, -T::fused(t1386, t1065, t1393)),
-            T::fused(t1390, t1101, -T::fused(t1386, t1098, t1394)),
+            T::fused(t1390, t1070, -T::fused(t1386, t1065, -t1393)),
+            T::fused(t1390, t1101, -T::fused(t1386, t1098, -t1394)),
             T::fused(t1390, t1132, T::fused(t1386, t1131, -t1395)),
             T::fused(t1390, t1139, T::fused(t1386, t1138, t1396)),
             T::fused(t1152, t1390, -T::fused(t1150, t1386, -t1397)),
@@ -18795,8 +18796,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointJacobian for Chain<T> {
             T::fused(-t418, t1432, T::fused(t386, t1427, -t1422)),
             -T::fused(t1432, t1008, T::fused(t1427, t968, -t1433)),
             T::fused(-t1432, t1039, T::fused(t1427, t1034, -t1434)),
-            T::fused(-t1432, t1070, T::fused(t1427, t1065, t1435)),
-            T::fused(-t1432, t1101, T::fused(t1427, t1098, t1436)),
+            T::fused(-t1432, t1070, T::fused(t1427, t1065, -t1435)),
+            T::fused(-t1432, t1101, T::fused(t1427, t1098, -t1436)),
             -T::fused(t1432, t1132, T::fused(t1427, t1131, -t1437)),
             -T::fused(t1432, t1139, T::fused(t1427, t1138, t1438)),
             T::fused(-t1152, t1432, T::fused(t1150, t1427, -t1439)),

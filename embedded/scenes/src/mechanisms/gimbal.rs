@@ -12,9 +12,9 @@
 //! * left out: outputs (the page asks for none)
 //! * accelerations: 414 operations by relative Euler parameters, doubled; 435 operations by rotations of the bodies, doubled; 2 more compared
 //! * project: 381 operations by rotations of the bodies, doubled; 381 operations by relative Euler parameters, doubled; 2 more compared
-//! * joint_accelerations: 24 operations by normal form; 43 operations by recursion
-//! * joint_accelerations_at: 44 operations by normal form; 63 operations by recursion; 1 more compared
-//! * corrected_accelerations: 154 operations by normal form in the bodies' frames; 156 operations by normal form in the global frame; 5 more compared
+//! * joint_accelerations: 24 operations by normal form; 43 operations by recursion; 1 more compared
+//! * joint_accelerations_at: 45 operations by normal form; 64 operations by recursion; 2 more compared
+//! * corrected_accelerations: 156 operations by normal form in the bodies' frames; 158 operations by normal form in the global frame; 7 more compared
 //! * joint_jacobian: 69 operations by derivatives of the balance, from its leaves, normal form; 69 operations by derivatives of the balance, from its roots, normal form; 7 more compared
 //! * joint_input_jacobian: 5 operations by derivatives of u̇, from its leaves; 5 operations by derivatives of u̇, from its roots; 7 more compared
 //!
@@ -43,10 +43,10 @@
 //! | joint_derivative | ẋ but for u̇ | 0 | 1 | 0 | 1 | 0 of 4 | 1 | 1 |
 //! | to_maximal | (q, v) of a joint state | 24 | 54 | 0 | 78 | 16 of 39 | 291 | 78 |
 //! | to_joints | (x, u) of a maximal state | 63 | 72 | 0 | 135 | 0 of 6 | 451 | 135 |
-//! | joint_accelerations_at | u̇ at a corrected maximal state | 15 | 25 | 1 | 41 | 0 of 3 | 243 | 42 |
-//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 57 | 93 | 1 | 151 | 6 of 18 | 2544 | 152 |
-//! | corrected_multipliers | λ at such a state and these accelerations | 54 | 80 | 0 | 134 | 0 of 15 | 715 | 134 |
-//! | corrected_solution | both | 89 | 143 | 1 | 233 | 6 of 33 | 22252 | 234 |
+//! | joint_accelerations_at | u̇ at a corrected maximal state | 16 | 25 | 1 | 42 | 0 of 3 | 355 | 43 |
+//! | corrected_accelerations | (s̈, ẇ') at a corrected state | 59 | 93 | 1 | 153 | 6 of 18 | 3580 | 154 |
+//! | corrected_multipliers | λ at such a state and these accelerations | 57 | 80 | 0 | 137 | 0 of 15 | 883 | 137 |
+//! | corrected_solution | both | 92 | 143 | 1 | 236 | 6 of 33 | 31016 | 237 |
 //! | joint_jacobian | ∂f/∂x and ∂f/∂t of ẋ = f(t, x) | 16 | 46 | 1 | 63 | 41 of 56 | 161 | 63 |
 //! | joint_input_jacobian | ∂f/∂(inputs) | 1 | 3 | 1 | 5 | 4 of 7 | 9 | 5 |
 //!
@@ -582,7 +582,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
         let t17 = T::fused(
             t0,
             t15,
-            -T::fused(-(k(2.0) * (k(0.5) - (t7 + t16))), t11, t3 * t6),
+            T::fused(-t3, t6, k(2.0) * (k(0.5) - (t7 + t16)) * t11),
         );
         let t18 = T::fused(inner_ring_e1, inner_ring_e1, t14);
         let t19 = inner_ring_e0 * inner_ring_e3;
@@ -900,29 +900,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
         let t4 = T::fused(outer_ring_e1, outer_ring_e1, t3);
         let t5 = outer_ring_e3 * outer_ring_e3;
         let t6 = k(1.0) - (t5 + (t4 + t2));
-        let t7 = inner_ring_e0 * inner_ring_e2;
-        let t8 = inner_ring_e1 * inner_ring_e3;
-        let t9 = k(2.0) * (t8 - t7);
-        let t10 = inner_ring_e0 * inner_ring_e3;
-        let t11 = inner_ring_e1 * inner_ring_e2;
-        let t12 = k(2.0) * (t11 + t10);
-        let t13 = inner_ring_e2 * inner_ring_e2;
-        let t14 = inner_ring_e0 * inner_ring_e0;
-        let t15 = T::fused(inner_ring_e1, inner_ring_e1, t14);
-        let t16 = inner_ring_e3 * inner_ring_e3;
-        let t17 = k(1.0) - (t16 + (t15 + t13));
-        let t18 = T::fused(k(2.0), k(0.5) - t15, -t17);
-        let t19 = outer_ring_e0 * outer_ring_e3;
-        let t20 = outer_ring_e1 * outer_ring_e2;
-        let t21 = T::fused(
-            t12,
+        let t7 = inner_ring_e0 * inner_ring_e3;
+        let t8 = inner_ring_e1 * inner_ring_e2;
+        let t9 = k(2.0) * (t8 + t7);
+        let t10 = inner_ring_e2 * inner_ring_e2;
+        let t11 = inner_ring_e0 * inner_ring_e0;
+        let t12 = T::fused(inner_ring_e1, inner_ring_e1, t11);
+        let t13 = inner_ring_e3 * inner_ring_e3;
+        let t14 = k(1.0) - (t13 + (t12 + t10));
+        let t15 = T::fused(k(2.0), k(0.5) - t12, -t14);
+        let t16 = outer_ring_e0 * outer_ring_e3;
+        let t17 = outer_ring_e1 * outer_ring_e2;
+        let t18 = T::fused(
+            t9,
             T::fused(k(2.0), k(0.5) - (t3 + t2), -t6),
-            k(2.0) * (t20 - t19) * t18,
+            k(2.0) * (t17 - t16) * t15,
         );
+        let t19 = inner_ring_e0 * inner_ring_e2;
+        let t20 = inner_ring_e1 * inner_ring_e3;
+        let t21 = k(2.0) * (t20 - t19);
         let t22 = T::fused(
-            k(2.0) * (t20 + t19),
-            t12,
-            T::fused(k(2.0), k(0.5) - t4, -t6) * t18,
+            T::fused(k(2.0), k(0.5) - t4, -t6),
+            t15,
+            k(2.0) * (t17 + t16) * t9,
         );
         let t23 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t24 = rotor_e2 * rotor_e2;
@@ -936,11 +936,11 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
         let t27 = inner_ring_e0 * inner_ring_e1;
         let t28 = inner_ring_e2 * inner_ring_e3;
         let t29 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t8 + t7) * t29);
+        let t30 = T::fused(-(k(2.0) * (t28 - t27)), t26, k(2.0) * (t20 + t19) * t29);
         let t31 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t14 + t13), -t17),
+            T::fused(k(2.0), k(0.5) - (t11 + t10), -t14),
             t26,
-            k(2.0) * (t11 - t10) * t29,
+            k(2.0) * (t8 - t7) * t29,
         );
         *out = [
             k(2.0) * (t1 + t0),
@@ -953,12 +953,12 @@ impl<T: gyro_sim::Scalar> gyro_sim::Mechanism for Gimbal<T> {
                         outer_ring_e1,
                         outer_ring_e2 * outer_ring_e3,
                     ),
-                t9,
-                -t21,
+                t21,
+                -t18,
             ),
-            T::fused(k(2.0) * (t1 - t0), t9, t22),
+            T::fused(k(2.0) * (t1 - t0), t21, t22),
             inner_ring_wz - outer_ring_wz,
-            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t14 + t16), -t17), t30),
+            T::fused(-t23, T::fused(k(2.0), k(0.5) - (t11 + t13), -t14), t30),
             T::fused(k(2.0) * (t28 + t27), t23, t31),
             rotor_wx - inner_ring_wx,
         ];
@@ -1475,61 +1475,61 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Gimbal<T> {
         let t32 = inner_ring_e2 * inner_ring_e3;
         let t33 = k(2.0) * (t32 + t31);
         let t34 = T::fused(t5, t33, -T::fused(t2, t28, t30 * t29));
-        let t35 = T::fused(t26, t33, T::fused(t20, t29, t16 * t28));
+        let t35 = T::fused(t26, t33, T::fused(t16, t28, t20 * t29));
         let t36 = T::fused(t5, t23, T::fused(t2, t13, t30 * t19));
         let t37 = k(1.0) / T::fused(-t34, t27, t36 * t35);
         let t38 = k(2.0) * (t22 + t21);
         let t39 = k(2.0) * (t32 - t31);
         let t40 = k(2.0) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t12));
-        let t41 = T::fused(t1, t40, T::fused(k(2.0) * (t25 - t24), t39, t6 * t38));
+        let t41 = T::fused(t1, t40, T::fused(t6, t38, k(2.0) * (t25 - t24) * t39));
         let t42 = T::fused(
-            t11,
             T::fused(t5, t40, -T::fused(-t2, t38, t30 * t39)),
-            t10 * t41,
+            t11,
+            t41 * t10,
         );
         let t43 = t42 - T::fused(-inner_ring_wy, t27, inner_ring_wx * t35);
         let t44 = T::fused(
+            T::fused(t26, t40, T::fused(-t16, t38, t20 * t39)),
             t11,
-            T::fused(t26, t40, -T::fused(-t20, t39, t16 * t38)),
             outer_ring_wy * t41,
         );
         let t45 = t44 + T::fused(-inner_ring_wy, t36, inner_ring_wx * t34);
         let t46 = T::fused(t43, t36 * t37, T::fused(t45, t27 * t37, inner_ring_wx));
         let t47 = T::fused(t43, t34 * t37, T::fused(t45, t35 * t37, inner_ring_wy));
-        let t48 = rotor_e0 * rotor_e0;
-        let t49 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t48));
-        let t50 = rotor_e0 * rotor_e3;
-        let t51 = rotor_e1 * rotor_e2;
-        let t52 = k(2.0) * (t51 - t50);
+        let t48 = rotor_e0 * rotor_e3;
+        let t49 = rotor_e1 * rotor_e2;
+        let t50 = k(2.0) * (t49 - t48);
+        let t51 = rotor_e0 * rotor_e0;
+        let t52 = k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t51));
         let t53 = rotor_e0 * rotor_e1;
         let t54 = rotor_e2 * rotor_e3;
         let t55 = k(2.0) * (t54 + t53);
-        let t56 = T::fused(t40, t55, -T::fused(-t39, t49, t38 * t52));
-        let t57 = k(2.0) * (t54 - t53);
-        let t58 = rotor_e0 * rotor_e2;
-        let t59 = rotor_e1 * rotor_e3;
-        let t60 = k(2.0) * (t59 + t58);
-        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t48));
-        let t62 = T::fused(t33, t61, -T::fused(-t29, t57, t28 * t60));
-        let t63 = T::fused(t40, t61, T::fused(t39, t57, t38 * t60));
-        let t64 = T::fused(t33, t55, T::fused(t29, t49, t28 * t52));
+        let t56 = T::fused(t40, t55, T::fused(-t38, t50, t39 * t52));
+        let t57 = rotor_e0 * rotor_e2;
+        let t58 = rotor_e1 * rotor_e3;
+        let t59 = k(2.0) * (t58 + t57);
+        let t60 = k(2.0) * (t54 - t53);
+        let t61 = k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t51));
+        let t62 = T::fused(t33, t61, T::fused(-t28, t59, t29 * t60));
+        let t63 = T::fused(t33, t55, T::fused(t28, t50, t29 * t52));
+        let t64 = T::fused(t40, t61, T::fused(t38, t59, t39 * t60));
         let t65 = k(1.0) / T::fused(-t62, t56, t64 * t63);
-        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t48));
-        let t67 = k(2.0) * (t51 + t50);
-        let t68 = k(2.0) * (t59 - t58);
+        let t66 = k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t51));
+        let t67 = k(2.0) * (t49 + t48);
+        let t68 = k(2.0) * (t58 - t57);
         let t69 = T::fused(t23, t68, T::fused(t13, t66, t19 * t67));
         let t70 = T::fused(
-            -t47,
-            t69,
-            t46 * T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)),
+            -t69,
+            t47,
+            T::fused(t33, t68, -T::fused(t28, t66, t29 * t67)) * t46,
         );
-        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t63);
+        let t71 = t70 + T::fused(rotor_wz, t56, rotor_wy * t64);
         let t72 = T::fused(
             inner_ring_wz,
             t69,
-            t46 * T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)),
+            T::fused(t40, t68, -T::fused(-t38, t66, t39 * t67)) * t46,
         );
-        let t73 = t72 - T::fused(rotor_wz, t64, rotor_wy * t62);
+        let t73 = t72 - T::fused(rotor_wz, t63, rotor_wy * t62);
         y[21] = k(0.0);
         y[22] = k(0.0);
         y[23] = k(0.0);
@@ -1543,8 +1543,8 @@ impl<T: gyro_sim::Scalar> gyro_sim::Charted for Gimbal<T> {
         y[33] = -(k(0.000125) * T::fused(-t28, inner_ring_wz, t38 * t47));
         y[34] = -(k(0.000125) * T::fused(t29, inner_ring_wz, t39 * t47));
         y[35] = k(0.000125) * T::fused(t33, inner_ring_wz, t40 * t47);
-        y[37] = T::fused(-t71, t64 * t65, T::fused(-t73, t56 * t65, rotor_wy));
-        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t63 * t65, rotor_wz));
+        y[37] = T::fused(-t71, t63 * t65, T::fused(-t73, t56 * t65, rotor_wy));
+        y[38] = T::fused(t71, t62 * t65, T::fused(t73, t64 * t65, rotor_wz));
     }
 }
 impl<T: gyro_sim::Real> gyro_sim::Partition for Gimbal<T> {
@@ -3108,39 +3108,39 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         let t10 = T::fused(k(2.0), k(0.5) - (t6 + t8), -t9);
         let t11 = T::fused(t3, t4, t10 * t0).atan2(T::fused(-t10, t4, t3 * t0));
         let t12 = x1.sin();
-        let t13 = inner_ring_e0 * inner_ring_e2;
-        let t14 = inner_ring_e1 * inner_ring_e3;
-        let t15 = k(2.0) * (t14 - t13);
-        let t16 = inner_ring_e0 * inner_ring_e3;
-        let t17 = inner_ring_e1 * inner_ring_e2;
-        let t18 = k(2.0) * (t17 + t16);
-        let t19 = inner_ring_e2 * inner_ring_e2;
-        let t20 = inner_ring_e0 * inner_ring_e0;
-        let t21 = T::fused(inner_ring_e1, inner_ring_e1, t20);
-        let t22 = inner_ring_e3 * inner_ring_e3;
-        let t23 = k(1.0) - (t22 + (t21 + t19));
-        let t24 = T::fused(k(2.0), k(0.5) - t21, -t23);
-        let t25 = outer_ring_e0 * outer_ring_e3;
-        let t26 = outer_ring_e1 * outer_ring_e2;
-        let t27 = T::fused(
-            t18,
-            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
-            k(2.0) * (t26 - t25) * t24,
-        );
-        let t28 = T::fused(
-            -(k(2.0)
-                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3)),
+        let t13 = inner_ring_e0 * inner_ring_e3;
+        let t14 = inner_ring_e1 * inner_ring_e2;
+        let t15 = k(2.0) * (t14 + t13);
+        let t16 = inner_ring_e2 * inner_ring_e2;
+        let t17 = inner_ring_e0 * inner_ring_e0;
+        let t18 = T::fused(inner_ring_e1, inner_ring_e1, t17);
+        let t19 = inner_ring_e3 * inner_ring_e3;
+        let t20 = k(1.0) - (t19 + (t18 + t16));
+        let t21 = T::fused(k(2.0), k(0.5) - t18, -t20);
+        let t22 = outer_ring_e0 * outer_ring_e3;
+        let t23 = outer_ring_e1 * outer_ring_e2;
+        let t24 = T::fused(
             t15,
+            T::fused(k(2.0), k(0.5) - (t6 + t5), -t9),
+            k(2.0) * (t23 - t22) * t21,
+        );
+        let t25 = inner_ring_e0 * inner_ring_e2;
+        let t26 = inner_ring_e1 * inner_ring_e3;
+        let t27 = k(2.0) * (t26 - t25);
+        let t28 = T::fused(
+            k(2.0)
+                * T::fused(outer_ring_e0, outer_ring_e1, outer_ring_e2 * outer_ring_e3),
             t27,
+            -t24,
         );
         let t29 = x1.cos();
         let t30 = T::fused(
-            k(2.0) * (t26 + t25),
-            t18,
-            T::fused(k(2.0), k(0.5) - t7, -t9) * t24,
+            T::fused(k(2.0), k(0.5) - t7, -t9),
+            t21,
+            k(2.0) * (t23 + t22) * t15,
         );
-        let t31 = T::fused(k(2.0) * (t2 - t1), t15, t30);
-        let t32 = -T::fused(t28, t29, t31 * t12).atan2(T::fused(-t28, t12, t31 * t29));
+        let t31 = T::fused(k(2.0) * (t2 - t1), t27, t30);
+        let t32 = T::fused(-t31, t12, t28 * t29).atan2(T::fused(t28, t12, t31 * t29));
         let t33 = x2.sin();
         let t34 = k(2.0) * T::fused(rotor_e0, rotor_e1, rotor_e2 * rotor_e3);
         let t35 = rotor_e2 * rotor_e2;
@@ -3154,13 +3154,13 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         let t38 = inner_ring_e0 * inner_ring_e1;
         let t39 = inner_ring_e2 * inner_ring_e3;
         let t40 = k(2.0) * T::fused(-rotor_e0, rotor_e3, rotor_e1 * rotor_e2);
-        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t14 + t13) * t40);
-        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t20 + t22), -t23), t41);
+        let t41 = T::fused(-(k(2.0) * (t39 - t38)), t37, k(2.0) * (t26 + t25) * t40);
+        let t42 = T::fused(-t34, T::fused(k(2.0), k(0.5) - (t17 + t19), -t20), t41);
         let t43 = x2.cos();
         let t44 = T::fused(
-            T::fused(k(2.0), k(0.5) - (t20 + t19), -t23),
+            T::fused(k(2.0), k(0.5) - (t17 + t16), -t20),
             t37,
-            k(2.0) * (t17 - t16) * t40,
+            k(2.0) * (t14 - t13) * t40,
         );
         let t45 = T::fused(k(2.0) * (t39 + t38), t34, t44);
         let t46 = T::fused(-t45, t33, t42 * t43).atan2(T::fused(t42, t33, t45 * t43));
@@ -3172,7 +3172,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
         x[5] = rotor_wx - inner_ring_wx;
         x[6] = y[39];
     }
-    /// Writes u̇ at a state that satisfies the constraints: 41 operations (15 ±, 25 ×, 1 ÷).
+    /// Writes u̇ at a state that satisfies the constraints: 42 operations (16 ±, 25 ×, 1 ÷).
     fn joint_accelerations_at(&self, _t: T, y: &Self::State, out: &mut Self::Rates) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3197,8 +3197,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t1 = k(2.0) * t0;
-        let t2 = T::fused(
+        let t1 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3207,25 +3206,25 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t3 = t2 * t1;
-        let t4 = outer_ring_wy * t3;
-        let t5 = inner_ring_wx - rotor_wx;
-        let t6 = T::fused(-t0, t1, k(1.0));
-        let t7 = (outer_ring_wz - inner_ring_wz) * (k(1e-5) * t6);
-        let t8 = T::fused(-t7, T::fused(-t4, self.derived[3], t5), self.torque)
-            / T::fused(self.derived[4], t6 * t6, k(2e-6));
+        let t2 = t1 * (k(2.0) * t0);
+        let t3 = outer_ring_wy * t2;
+        let t4 = inner_ring_wx - rotor_wx;
+        let t5 = (t1 + t0) * (t1 - t0);
+        let t6 = (outer_ring_wz - inner_ring_wz) * (k(1e-5) * t5);
+        let t7 = T::fused(-t6, T::fused(-t3, self.derived[3], t4), self.torque)
+            / T::fused(self.derived[4], t5 * t5, k(2e-6));
         *out = [
-            t8,
-            -(t6
+            t7,
+            -(t5
                 * T::fused(
                     -outer_ring_wy,
-                    T::fused(-t5, self.derived[6], t4 * self.derived[5]),
+                    T::fused(-t4, self.derived[6], t3 * self.derived[5]),
                     self.derived[7],
                 )),
-            T::fused(t3, t8, k(100000.0) * (outer_ring_wy * t7)),
+            T::fused(t2, t7, k(100000.0) * (outer_ring_wy * t6)),
         ];
     }
-    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 151 operations (57 ±, 93 ×, 1 ÷).
+    /// Writes (s̈, ẇ') at a state that satisfies the constraints: 153 operations (59 ±, 93 ×, 1 ÷).
     fn corrected_accelerations(
         &self,
         _t: T,
@@ -3264,8 +3263,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3274,29 +3272,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t4 = t3 * t2;
-        let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = T::fused(-t1, t2, k(1.0));
-        let t8 = outer_ring_wz - inner_ring_wz;
-        let t9 = t8 * (k(1e-5) * t7);
-        let t10 = T::fused(-t9, T::fused(-t5, self.derived[3], t6), self.torque)
-            / T::fused(self.derived[4], t7 * t7, k(2e-6));
-        let t11 = outer_ring_wx * outer_ring_wy;
-        let t12 = t4 * t10;
-        let t13 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, t12));
-        let t14 = T::fused(inner_ring_wx, t8, -T::fused(-t7, t10, t0 * t4));
-        let t15 = T::fused(
-            -t7,
+        let t3 = t2 * (k(2.0) * t1);
+        let t4 = outer_ring_wy * t3;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = (t2 + t1) * (t2 - t1);
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = t7 * (k(1e-5) * t6);
+        let t9 = T::fused(-t8, T::fused(-t4, self.derived[3], t5), self.torque)
+            / T::fused(self.derived[4], t6 * t6, k(2e-6));
+        let t10 = outer_ring_wx * outer_ring_wy;
+        let t11 = t3 * t9;
+        let t12 = T::fused(inner_ring_wy, t7, T::fused(t0, t6, t11));
+        let t13 = T::fused(inner_ring_wx, t7, -T::fused(-t6, t9, t0 * t3));
+        let t14 = T::fused(
+            -t6,
             T::fused(
                 -outer_ring_wy,
-                T::fused(-t6, self.derived[6], t5 * self.derived[5]),
+                T::fused(-t5, self.derived[6], t4 * self.derived[5]),
                 self.derived[7],
             ),
-            t11,
+            t10,
         );
-        let t16 = k(0.000125) * t14;
-        let t17 = T::fused(
+        let t15 = k(0.000125) * t13;
+        let t16 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3305,10 +3303,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(-t17, t18, k(1.0));
-        let t20 = k(0.000125) * t15;
-        let t21 = T::fused(
+        let t17 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3317,54 +3312,56 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t22 = t21 * t18;
-        let t23 = k(0.000125) * inner_ring_wy;
+        let t18 = (t17 + t16) * (t17 - t16);
+        let t19 = k(0.000125) * t14;
+        let t20 = t17 * (k(2.0) * t16);
+        let t21 = k(0.000125) * inner_ring_wy;
+        let t22 = inner_ring_wx * t21;
+        let t23 = k(0.000125) * inner_ring_wz;
         let t24 = inner_ring_wx * t23;
-        let t25 = k(0.000125) * inner_ring_wz;
-        let t26 = inner_ring_wx * t25;
-        let t27 = T::fused(t24, t22, t26 * t19) + T::fused(-t19, t16, t22 * t20);
-        let t28 = rotor_e0 * rotor_e2;
-        let t29 = rotor_e1 * rotor_e3;
-        let t30 = T::fused(-t24, t19, t26 * t22) - T::fused(t22, t16, t19 * t20);
-        let t31 = rotor_e0 * rotor_e3;
-        let t32 = rotor_e1 * rotor_e2;
-        let t33 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
-        let t34 = rotor_e0 * rotor_e0;
-        let t35 = T::fused(
-            -(k(2.0) * (t32 - t31)),
-            t30,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
+        let t25 = T::fused(t22, t20, t24 * t18) + T::fused(-t18, t15, t20 * t19);
+        let t26 = rotor_e0 * rotor_e2;
+        let t27 = rotor_e1 * rotor_e3;
+        let t28 = T::fused(-t22, t18, t24 * t20) - T::fused(t20, t15, t18 * t19);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = T::fused(inner_ring_wz, t23, inner_ring_wy * t21);
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = T::fused(
+            -(k(2.0) * (t30 - t29)),
+            t28,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
         );
-        let t36 = rotor_e0 * rotor_e1;
-        let t37 = rotor_e2 * rotor_e3;
-        let t38 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
-            t30,
-            k(2.0) * (t32 + t31) * t33,
+        let t34 = rotor_e0 * rotor_e1;
+        let t35 = rotor_e2 * rotor_e3;
+        let t36 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
+            t28,
+            k(2.0) * (t30 + t29) * t31,
         );
-        let t39 = T::fused(k(2.0) * (t37 + t36), t30, k(2.0) * (t29 - t28) * t33);
+        let t37 = T::fused(k(2.0) * (t35 + t34), t28, k(2.0) * (t27 - t26) * t31);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            t9,
             t10,
-            t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
+            -t12,
+            t13,
             t14,
-            t15,
-            T::fused(k(2.0) * (t29 + t28), t27, t35),
-            T::fused(k(2.0) * (t37 - t36), t27, -t38),
-            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)), t27, t39),
-            T::fused(k(100000.0), outer_ring_wy * t9, t12) - t13,
-            T::fused(-rotor_wz, t6, T::fused(-t22, t15, t19 * t14)),
-            T::fused(rotor_wy, t6, T::fused(t19, t15, t22 * t14)),
+            T::fused(k(2.0) * (t27 + t26), t25, t33),
+            T::fused(k(2.0) * (t35 - t34), t25, -t36),
+            -T::fused(k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)), t25, t37),
+            T::fused(k(100000.0), outer_ring_wy * t8, t11) - t12,
+            T::fused(-rotor_wz, t5, T::fused(-t20, t14, t18 * t13)),
+            T::fused(rotor_wy, t5, T::fused(t18, t14, t20 * t13)),
         ];
     }
-    /// Writes λ: 134 operations (54 ±, 80 ×, 0 ÷).
+    /// Writes λ: 137 operations (57 ±, 80 ×, 0 ÷).
     fn corrected_multipliers(
         &self,
         _t: T,
@@ -3430,15 +3427,23 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t8 = k(2.0) * t7;
-        let t9 = T::fused(-t7, t8, k(1.0));
+        let t8 = T::fused(
+            outer_ring_e3,
+            inner_ring_e3,
+            T::fused(
+                outer_ring_e2,
+                inner_ring_e2,
+                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
+            ),
+        );
+        let t9 = (t8 + t7) * (t8 - t7);
         let t10 = inner_ring_e0 * inner_ring_e1;
         let t11 = inner_ring_e2 * inner_ring_e3;
         let t12 = T::fused(
-            t0,
             k(0.00025)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3),
-            t2 * (k(0.00025) * (t11 - t10)),
+            t0,
+            k(0.00025) * (t11 - t10) * t2,
         );
         let t13 = inner_ring_e0 * inner_ring_e0;
         let t14 = T::fused(
@@ -3450,10 +3455,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t15 = k(2.0) * t14;
-        let t16 = T::fused(-t14, t15, k(1.0));
-        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
-        let t18 = T::fused(
+        let t15 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3462,67 +3464,63 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t19 = t18 * t15;
-        let t20 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
-        let t21 = T::fused(-t17, t16, t20 * t19);
-        let t22 = t21
+        let t16 = (t15 + t14) * (t15 - t14);
+        let t17 = k(5e-6) * T::fused(rotor_wx, rotor_wz, rotor_dwy);
+        let t18 = t15 * (k(2.0) * t14);
+        let t19 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -rotor_dwz);
+        let t20 = T::fused(-t17, t16, t19 * t18);
+        let t21 = t20
             - T::fused(
-                t4,
                 k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t13)),
+                t4,
                 -t12,
             );
-        let t23 = T::fused(k(2e-6), inner_ring_dwy, -t22);
-        let t24 = T::fused(
-            outer_ring_e3,
-            inner_ring_e3,
-            T::fused(
-                outer_ring_e2,
-                inner_ring_e2,
-                T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
-            ),
+        let t22 = T::fused(k(2e-6), inner_ring_dwy, -t21);
+        let t23 = t8 * (k(2.0) * t7);
+        let t24 = T::fused(-t9, t6, t23 * t22);
+        let t25 = T::fused(k(2e-6), outer_ring_dwx, t24);
+        let t26 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t27 = T::fused(
+            -(k(0.00025)
+                * T::fused(
+                    -inner_ring_e0,
+                    inner_ring_e3,
+                    inner_ring_e1 * inner_ring_e2,
+                )),
+            t0,
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13)) * t2,
         );
-        let t25 = t24 * t8;
-        let t26 = T::fused(-t9, t6, t25 * t23);
-        let t27 = T::fused(k(2e-6), outer_ring_dwx, t26);
-        let t28 = k(2.0) * outer_ring_e2;
-        let t29 = T::fused(-outer_ring_e2, t28, k(1.0));
-        let t30 = T::fused(
-            -t0,
-            k(0.00025)
-                * T::fused(-inner_ring_e0, inner_ring_e3, inner_ring_e1 * inner_ring_e2),
-            t2 * (k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t13))),
-        );
-        let t31 = T::fused(t17, t19, t20 * t16);
-        let t32 = T::fused(
+        let t28 = T::fused(t17, t18, t19 * t16);
+        let t29 = T::fused(
             k(1e-6),
             T::fused(inner_ring_wx, inner_ring_wy, inner_ring_dwz),
-            -(t31 - T::fused(t4, k(0.00025) * (t11 + t10), -t30)),
+            -(t28 - T::fused(k(0.00025) * (t11 + t10), t4, -t27)),
         );
-        let t33 = T::fused(
+        let t30 = T::fused(
             k(1e-6),
             T::fused(outer_ring_wx, outer_ring_wy, -outer_ring_dwz),
-            -t32,
+            -t29,
         );
-        let t34 = outer_ring_e0 * t28;
+        let t31 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
         *lambda = [
             -T::fused(k(0.01), outer_ring_dsx, t1),
             -(T::fused(k(0.01), outer_ring_dsy, k(0.1)) + t3),
             -T::fused(k(0.01), outer_ring_dsz, t5),
-            T::fused(-t29, t27, t34 * t33),
-            -T::fused(t34, t27, t29 * t33),
+            T::fused(-t26, t25, t31 * t30),
+            -T::fused(t31, t25, t26 * t30),
             -t1,
             -t3,
             -t5,
-            -T::fused(t25, t6, t9 * t23),
-            t26,
+            -T::fused(t23, t6, t9 * t22),
+            t24,
             -t0,
             -t2,
             -t4,
-            t31,
-            -t21,
+            t28,
+            -t20,
         ];
     }
-    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 233 operations (89 ±, 143 ×, 1 ÷).
+    /// Writes (s̈, ẇ') and λ at a state that satisfies the constraints: 236 operations (92 ±, 143 ×, 1 ÷).
     fn corrected_solution(&self, _t: T, y: &Self::State, out: &mut Self::Solution) {
         let k = T::constant;
         let outer_ring_e0 = y[3];
@@ -3556,8 +3554,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-outer_ring_e2, inner_ring_e1, outer_ring_e3 * inner_ring_e0),
             ),
         );
-        let t2 = k(2.0) * t1;
-        let t3 = T::fused(
+        let t2 = T::fused(
             outer_ring_e3,
             inner_ring_e3,
             T::fused(
@@ -3566,29 +3563,29 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(outer_ring_e1, inner_ring_e1, outer_ring_e0 * inner_ring_e0),
             ),
         );
-        let t4 = t3 * t2;
-        let t5 = outer_ring_wy * t4;
-        let t6 = inner_ring_wx - rotor_wx;
-        let t7 = T::fused(-t1, t2, k(1.0));
-        let t8 = outer_ring_wz - inner_ring_wz;
-        let t9 = t8 * (k(1e-5) * t7);
-        let t10 = T::fused(-t9, T::fused(-t5, self.derived[3], t6), self.torque)
-            / T::fused(self.derived[4], t7 * t7, k(2e-6));
-        let t11 = outer_ring_wx * outer_ring_wy;
-        let t12 = t4 * t10;
-        let t13 = T::fused(inner_ring_wy, t8, T::fused(t0, t7, t12));
-        let t14 = T::fused(inner_ring_wx, t8, -T::fused(-t7, t10, t0 * t4));
-        let t15 = T::fused(
-            -t7,
+        let t3 = t2 * (k(2.0) * t1);
+        let t4 = outer_ring_wy * t3;
+        let t5 = inner_ring_wx - rotor_wx;
+        let t6 = (t2 + t1) * (t2 - t1);
+        let t7 = outer_ring_wz - inner_ring_wz;
+        let t8 = t7 * (k(1e-5) * t6);
+        let t9 = T::fused(-t8, T::fused(-t4, self.derived[3], t5), self.torque)
+            / T::fused(self.derived[4], t6 * t6, k(2e-6));
+        let t10 = outer_ring_wx * outer_ring_wy;
+        let t11 = t3 * t9;
+        let t12 = T::fused(inner_ring_wy, t7, T::fused(t0, t6, t11));
+        let t13 = T::fused(inner_ring_wx, t7, -T::fused(-t6, t9, t0 * t3));
+        let t14 = T::fused(
+            -t6,
             T::fused(
                 -outer_ring_wy,
-                T::fused(-t6, self.derived[6], t5 * self.derived[5]),
+                T::fused(-t5, self.derived[6], t4 * self.derived[5]),
                 self.derived[7],
             ),
-            t11,
+            t10,
         );
-        let t16 = k(0.000125) * t14;
-        let t17 = T::fused(
+        let t15 = k(0.000125) * t13;
+        let t16 = T::fused(
             inner_ring_e2,
             rotor_e3,
             T::fused(
@@ -3597,10 +3594,7 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(-inner_ring_e0, rotor_e1, inner_ring_e1 * rotor_e0),
             ),
         );
-        let t18 = k(2.0) * t17;
-        let t19 = T::fused(-t17, t18, k(1.0));
-        let t20 = k(0.000125) * t15;
-        let t21 = T::fused(
+        let t17 = T::fused(
             inner_ring_e3,
             rotor_e3,
             T::fused(
@@ -3609,125 +3603,126 @@ impl<T: gyro_sim::Scalar> gyro_sim::JointSpace for Gimbal<T> {
                 T::fused(inner_ring_e1, rotor_e1, inner_ring_e0 * rotor_e0),
             ),
         );
-        let t22 = t21 * t18;
-        let t23 = k(0.000125) * inner_ring_wy;
+        let t18 = (t17 + t16) * (t17 - t16);
+        let t19 = k(0.000125) * t14;
+        let t20 = t17 * (k(2.0) * t16);
+        let t21 = k(0.000125) * inner_ring_wy;
+        let t22 = inner_ring_wx * t21;
+        let t23 = k(0.000125) * inner_ring_wz;
         let t24 = inner_ring_wx * t23;
-        let t25 = k(0.000125) * inner_ring_wz;
-        let t26 = inner_ring_wx * t25;
-        let t27 = T::fused(t24, t22, t26 * t19) + T::fused(-t19, t16, t22 * t20);
-        let t28 = rotor_e0 * rotor_e2;
-        let t29 = rotor_e1 * rotor_e3;
-        let t30 = T::fused(-t24, t19, t26 * t22) - T::fused(t22, t16, t19 * t20);
-        let t31 = rotor_e0 * rotor_e3;
-        let t32 = rotor_e1 * rotor_e2;
-        let t33 = T::fused(inner_ring_wz, t25, inner_ring_wy * t23);
-        let t34 = rotor_e0 * rotor_e0;
-        let t35 = T::fused(
-            -(k(2.0) * (t32 - t31)),
-            t30,
-            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t34)) * t33,
+        let t25 = T::fused(t22, t20, t24 * t18) + T::fused(-t18, t15, t20 * t19);
+        let t26 = rotor_e0 * rotor_e2;
+        let t27 = rotor_e1 * rotor_e3;
+        let t28 = T::fused(-t22, t18, t24 * t20) - T::fused(t20, t15, t18 * t19);
+        let t29 = rotor_e0 * rotor_e3;
+        let t30 = rotor_e1 * rotor_e2;
+        let t31 = T::fused(inner_ring_wz, t23, inner_ring_wy * t21);
+        let t32 = rotor_e0 * rotor_e0;
+        let t33 = T::fused(
+            -(k(2.0) * (t30 - t29)),
+            t28,
+            k(2.0) * (k(0.5) - T::fused(rotor_e1, rotor_e1, t32)) * t31,
         );
-        let t36 = T::fused(k(2.0) * (t29 + t28), t27, t35);
-        let t37 = rotor_e0 * rotor_e1;
-        let t38 = rotor_e2 * rotor_e3;
-        let t39 = T::fused(
-            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t34))),
-            t30,
-            k(2.0) * (t32 + t31) * t33,
+        let t34 = T::fused(k(2.0) * (t27 + t26), t25, t33);
+        let t35 = rotor_e0 * rotor_e1;
+        let t36 = rotor_e2 * rotor_e3;
+        let t37 = T::fused(
+            -(k(2.0) * (k(0.5) - T::fused(rotor_e2, rotor_e2, t32))),
+            t28,
+            k(2.0) * (t30 + t29) * t31,
         );
-        let t40 = T::fused(-(k(2.0) * (t38 - t37)), t27, t39);
-        let t41 = T::fused(k(2.0) * (t38 + t37), t30, k(2.0) * (t29 - t28) * t33);
-        let t42 = T::fused(
-            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t34)),
-            t27,
-            t41,
+        let t38 = T::fused(-(k(2.0) * (t36 - t35)), t25, t37);
+        let t39 = T::fused(k(2.0) * (t36 + t35), t28, k(2.0) * (t27 - t26) * t31);
+        let t40 = T::fused(
+            k(2.0) * (k(0.5) - T::fused(rotor_e3, rotor_e3, t32)),
+            t25,
+            t39,
         );
-        let t43 = T::fused(k(100000.0), outer_ring_wy * t9, t12) - t13;
-        let t44 = T::fused(rotor_wz, t6, -T::fused(-t22, t15, t19 * t14));
-        let t45 = T::fused(rotor_wy, t6, T::fused(t19, t15, t22 * t14));
-        let t46 = self.parameters.rotor_mass * t36;
-        let t47 = T::fused(-self.parameters.rotor_mass, t40, self.derived[0]);
-        let t48 = k(0.1) + t47;
-        let t49 = self.parameters.rotor_mass * t42;
-        let t50 = T::fused(
+        let t41 = T::fused(k(100000.0), outer_ring_wy * t8, t11) - t12;
+        let t42 = T::fused(rotor_wz, t5, -T::fused(-t20, t14, t18 * t13));
+        let t43 = T::fused(rotor_wy, t5, T::fused(t18, t14, t20 * t13));
+        let t44 = self.parameters.rotor_mass * t34;
+        let t45 = T::fused(-self.parameters.rotor_mass, t38, self.derived[0]);
+        let t46 = k(0.1) + t45;
+        let t47 = self.parameters.rotor_mass * t40;
+        let t48 = T::fused(
             -k(1e-5),
-            t43,
-            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t13),
+            t41,
+            k(1e-6) * T::fused(inner_ring_wy, inner_ring_wz, t12),
         );
-        let t51 = inner_ring_e0 * inner_ring_e1;
-        let t52 = inner_ring_e2 * inner_ring_e3;
-        let t53 = T::fused(
+        let t49 = inner_ring_e0 * inner_ring_e1;
+        let t50 = inner_ring_e2 * inner_ring_e3;
+        let t51 = T::fused(
             k(0.00025)
                 * T::fused(inner_ring_e0, inner_ring_e2, inner_ring_e1 * inner_ring_e3),
-            t46,
-            k(0.00025) * (t52 - t51) * t47,
+            t44,
+            k(0.00025) * (t50 - t49) * t45,
         );
-        let t54 = inner_ring_e0 * inner_ring_e0;
-        let t55 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t44);
-        let t56 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t45);
-        let t57 = T::fused(-t19, t55, t22 * t56);
-        let t58 = t57
+        let t52 = inner_ring_e0 * inner_ring_e0;
+        let t53 = k(5e-6) * T::fused(rotor_wx, rotor_wz, -t42);
+        let t54 = k(5e-6) * T::fused(rotor_wx, rotor_wy, -t43);
+        let t55 = T::fused(-t18, t53, t20 * t54);
+        let t56 = t55
             + T::fused(
-                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t54)),
-                t49,
-                t53,
+                k(0.00025) * (k(0.5) - T::fused(inner_ring_e3, inner_ring_e3, t52)),
+                t47,
+                t51,
             );
-        let t59 = T::fused(k(2e-6), t14, -t58);
-        let t60 = T::fused(-t7, t50, t4 * t59);
-        let t61 = T::fused(k(2e-6), t0, -t60);
-        let t62 = k(2.0) * outer_ring_e2;
-        let t63 = T::fused(-outer_ring_e2, t62, k(1.0));
-        let t64 = T::fused(
+        let t57 = T::fused(k(2e-6), t13, -t56);
+        let t58 = T::fused(-t6, t48, t3 * t57);
+        let t59 = T::fused(k(2e-6), t0, -t58);
+        let t60 = (outer_ring_e0 - outer_ring_e2) * (outer_ring_e0 + outer_ring_e2);
+        let t61 = T::fused(
             -(k(0.00025)
                 * T::fused(
                     -inner_ring_e0,
                     inner_ring_e3,
                     inner_ring_e1 * inner_ring_e2,
                 )),
-            t46,
-            k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t54)) * t47,
+            t44,
+            k(0.00025) * (k(0.5) - T::fused(inner_ring_e2, inner_ring_e2, t52)) * t45,
         );
-        let t65 = T::fused(t22, t55, t19 * t56);
-        let t66 = T::fused(
+        let t62 = T::fused(t20, t53, t18 * t54);
+        let t63 = T::fused(
             k(1e-6),
-            T::fused(inner_ring_wx, inner_ring_wy, t15),
-            -(t65 + T::fused(k(0.00025) * (t52 + t51), t49, t64)),
+            T::fused(inner_ring_wx, inner_ring_wy, t14),
+            -(t62 + T::fused(k(0.00025) * (t50 + t49), t47, t61)),
         );
-        let t67 = outer_ring_e0 * t62;
+        let t64 = outer_ring_e0 * (k(2.0) * outer_ring_e2);
         *out = [
             k(0.0),
             k(0.0),
             k(0.0),
             -t0,
+            t9,
             t10,
-            t11,
             k(0.0),
             k(0.0),
             k(0.0),
-            -t13,
+            -t12,
+            t13,
             t14,
-            t15,
-            t36,
+            t34,
+            -t38,
             -t40,
+            t41,
             -t42,
             t43,
             -t44,
-            t45,
+            -(k(0.1) + t46),
+            t47,
+            T::fused(-t64, t63, t60 * t59),
+            T::fused(t64, t59, t60 * t63),
+            -t44,
             -t46,
-            -(k(0.1) + t48),
-            t49,
-            T::fused(-t67, t66, t63 * t61),
-            T::fused(t67, t61, t63 * t66),
-            -t46,
-            -t48,
-            t49,
-            -T::fused(t4, t50, t7 * t59),
-            t60,
-            -t46,
-            -t47,
-            t49,
-            t65,
-            -t57,
+            t47,
+            -T::fused(t3, t48, t6 * t57),
+            t58,
+            -t44,
+            -t45,
+            t47,
+            t62,
+            -t55,
         ];
     }
 }
